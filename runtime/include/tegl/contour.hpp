@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The result of contouring: an indexed simplicial complex.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace tegl {
+
+namespace detail {
+/// Leaves trivial elements uninitialised on resize: outputs are written once, not twice.
+template <class T>
+struct DefaultInitAllocator : std::allocator<T> {
+  using std::allocator<T>::allocator;
+  template <class U>
+  struct rebind {
+    using other = DefaultInitAllocator<U>;
+  };
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    if constexpr (sizeof...(Args) == 0)
+      ::new (static_cast<void*>(p)) U;
+    else
+      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
+};
+}  // namespace detail
+
+template <class T>
+using Buffer = std::vector<T, detail::DefaultInitAllocator<T>>;
+
+using Index = std::uint32_t;
+
+/// Which way the orientation of a contour points: normals towards low (descent), or towards high (ascent).
+enum class GradientDirection { descent, ascent };
+
+/// The contour of an N-dimensional image: an (N-1)-dimensional simplicial complex in N-space.
+/// N = 2: segments, 3: triangles, 4: tetrahedra.
+template <int N, class Real = float>
+struct Contour {
+  using Vertex = std::array<Real, N>;
+  using Simplex = std::array<Index, N>;
+  using VertexMatrix = Eigen::Matrix<Real, Eigen::Dynamic, N, Eigen::RowMajor>;
+  using SimplexMatrix = Eigen::Matrix<Index, Eigen::Dynamic, N, Eigen::RowMajor>;
+
+  Buffer<Vertex> vertices;    ///< #V x N world coordinates, row = vertex; for time-varying images t is last
+  Buffer<Simplex> simplices;  ///< #S x N vertex numbers, row = simplex, consistently oriented
+  std::array<std::string, N> axis_names;  ///< taken from the grid
+  std::array<std::string, N> axis_units;
+  GradientDirection direction = GradientDirection::descent;
+
+  /// The vertices as an Eigen matrix without a copy; valid while `vertices` is unchanged.
+  [[nodiscard]] auto vertex_matrix() const {
+    return Eigen::Map<const VertexMatrix>(vertices.empty() ? nullptr : vertices.data()->data(),
+                                          static_cast<Eigen::Index>(vertices.size()), N);
+  }
+  [[nodiscard]] auto simplex_matrix() const {
+    return Eigen::Map<const SimplexMatrix>(simplices.empty() ? nullptr : simplices.data()->data(),
+                                           static_cast<Eigen::Index>(simplices.size()), N);
+  }
+};
+
+}  // namespace tegl

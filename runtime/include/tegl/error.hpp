@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Errors and progress, the same for every part of the library.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace tegl {
+
+enum class ErrorCode {
+  InvalidArgument,    ///< an option or parameter outside of what it may be
+  InvalidGrid,        ///< sizes, strides or axes that make no grid
+  InvalidIsovalue,    ///< NaN or infinite
+  EmptyResult,        ///< nothing at this isovalue or cut (raised by programs, not by `extract`)
+  FileNotFound,       ///< no such file, or not readable
+  MalformedFile,      ///< the file is damaged or contradicts itself
+  UnsupportedFormat,  ///< a format, or an extension, that nothing here reads or writes
+  UnsupportedData,    ///< a sound file whose content (dimension, value type) does not fit
+  VariableNotFound,   ///< a file with several variables, and none by that name
+  WriteFailed,        ///< the output could not be written; nothing is left behind
+  TooLarge,           ///< more vertices than the index type can number
+  Cancelled,          ///< the progress callback said stop
+};
+
+/// The name of a code as in the enumeration, for messages and JSON.
+const char* error_name(ErrorCode code) noexcept;
+
+/// The one exception type of the library. `what()` says the actual and the expected value.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+
+ private:
+  ErrorCode code_;
+};
+
+/// Called with a fraction in [0, 1] now and then by every long operation; returning false stops it,
+/// and the operation throws `Error{Cancelled}`.
+using Progress = std::function<bool(double fraction)>;
+
+}  // namespace tegl

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The coordinate function of an image: one axis per dimension (uniform or rectilinear), then an affine
+// map to the world.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "tegl/error.hpp"
+
+namespace tegl {
+
+/// Coordinates of the samples along one dimension: uniform (origin + i * step, step != 0) or rectilinear
+/// (finite, strictly monotone, ascending or descending). At least one sample.
+class Axis {
+ public:
+  Axis() = default;
+
+  /// `size` samples at origin + i * step. Throws InvalidGrid for size 0, a zero or non-finite step.
+  static Axis uniform(std::size_t size, double origin = 0.0, double step = 1.0);
+
+  /// Samples at the given coordinates. Throws InvalidGrid unless they are finite and strictly monotone.
+  static Axis rectilinear(std::vector<double> coordinates);
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] bool is_uniform() const noexcept { return coordinates_.empty(); }
+  [[nodiscard]] double origin() const noexcept { return (*this)[0]; }
+  /// Uniform axes: the step. Rectilinear axes: the mean step.
+  [[nodiscard]] double step() const noexcept;
+  /// True when coordinates fall with the index.
+  [[nodiscard]] bool is_descending() const noexcept { return step() < 0; }
+
+  /// Coordinate of sample i < size().
+  [[nodiscard]] double operator[](std::size_t i) const noexcept {
+    return coordinates_.empty() ? origin_ + static_cast<double>(i) * step_ : coordinates_[i];
+  }
+
+  /// Samples [first, first + count), with exactly the coordinates that they have here.
+  [[nodiscard]] Axis part(std::size_t first, std::size_t count) const;
+
+  std::string name;  ///< such as "lon", "t"; may be empty
+  std::string unit;  ///< such as "mm", "degrees_east", "s"; may be empty
+
+ private:
+  std::size_t size_ = 0;
+  double origin_ = 0.0;
+  double step_ = 1.0;
+  std::vector<double> coordinates_;
+};
+
+/// An N-dimensional grid: axis 0 runs fastest in memory by convention of the readers, time is last.
+/// World position of index i: linear * (axes[0][i_0], ..., axes[N-1][i_{N-1}]) + offset.
+template <int N>
+struct Grid {
+  std::array<Axis, N> axes;
+  Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();
+  Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();
+
+  /// A uniform grid of step 1 from the origin.
+  static Grid unit(const std::array<std::size_t, N>& sizes) {
+    Grid grid;
+    for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a]);
+    return grid;
+  }
+  [[nodiscard]] std::array<std::size_t, N> sizes() const {
+    std::array<std::size_t, N> result;
+    for (int a = 0; a < N; ++a) result[a] = axes[a].size();
+    return result;
+  }
+  /// True unless `linear` is the identity and `offset` zero.
+  [[nodiscard]] bool has_world_map() const { return !linear.isIdentity(0.0) || !offset.isZero(0.0); }
+};
+
+}  // namespace tegl

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images: a view of values over a grid, and one that owns its values.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "tegl/grid.hpp"
+
+namespace tegl {
+
+/// The value types that the library is built for.
+template <class T>
+concept Value = std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::int8_t> ||
+                std::is_same_v<T, std::uint16_t> || std::is_same_v<T, std::int16_t> ||
+                std::is_same_v<T, std::int32_t> || std::is_same_v<T, float> || std::is_same_v<T, double>;
+
+/// A view of an N-dimensional image; owns nothing but its grid. Value of index i:
+/// data[sum_a i_a * strides[a]]; strides count elements, may be negative or zero.
+/// A NaN is a missing value: no tile that touches one has a contour.
+template <Value T, int N>
+class Image {
+ public:
+  using value_type = T;
+  using Strides = std::array<std::ptrdiff_t, N>;
+
+  /// A dense view, axis 0 fastest. Throws InvalidGrid for a null pointer or an axis without samples.
+  Image(const T* data, Grid<N> grid);
+  /// A view by any strides.
+  Image(const T* data, Grid<N> grid, const Strides& strides);
+
+  [[nodiscard]] const T* data() const noexcept { return data_; }
+  [[nodiscard]] const Grid<N>& grid() const noexcept { return grid_; }
+  [[nodiscard]] const Strides& strides() const noexcept { return strides_; }
+  [[nodiscard]] std::size_t size(int axis) const noexcept { return grid_.axes[axis].size(); }
+
+  [[nodiscard]] T operator()(const std::array<std::size_t, N>& index) const noexcept {
+    std::ptrdiff_t at = 0;
+    for (int a = 0; a < N; ++a) at += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
+    return data_[at];
+  }
+
+  /// The layers [first, first + count) along `axis`, with unchanged coordinates. O(1) plus the axis.
+  [[nodiscard]] Image part(int axis, std::size_t first, std::size_t count) const;
+
+ private:
+  const T* data_;
+  Grid<N> grid_;
+  Strides strides_;
+};
+
+/// An image that owns its values, axis 0 fastest.
+template <Value T, int N>
+struct OwnedImage {
+  Grid<N> grid;
+  std::vector<T> values;
+
+  [[nodiscard]] Image<T, N> view() const { return Image<T, N>(values.data(), grid); }
+};
+
+}  // namespace tegl

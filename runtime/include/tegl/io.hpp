@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Files in, files out. Link with tegl::io.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tegl/contour.hpp"
+#include "tegl/image.hpp"
+
+namespace tegl {
+
+/// An image of any value type in N dimensions.
+template <int N>
+using AnyImageN = std::variant<OwnedImage<std::uint8_t, N>, OwnedImage<std::int8_t, N>, OwnedImage<std::uint16_t, N>,
+                               OwnedImage<std::int16_t, N>, OwnedImage<std::int32_t, N>, OwnedImage<float, N>,
+                               OwnedImage<double, N>>;
+/// An image of any value type in 2, 3 or 4 dimensions.
+using AnyImage = std::variant<AnyImageN<2>, AnyImageN<3>, AnyImageN<4>>;
+
+/// What a file says beyond values and grid.
+struct ImageInfo {
+  std::string format;                  ///< "NIfTI", "NRRD", "MetaImage", "netCDF"
+  std::string variable;                ///< netCDF: the variable read
+  std::vector<std::string> variables;  ///< netCDF: all that can be read as an image
+  std::string value_unit;              ///< such as "degC"; may be empty
+  std::string value_name;              ///< long name; may be empty
+  std::string world_frame;             ///< such as "RAS", "LPS", "" where there is none
+  std::string stored_type;             ///< value type in the file, before any conversion
+};
+
+struct ReadImageResult {
+  AnyImage image;
+  ImageInfo info;
+};
+
+struct ReadImageOptions {
+  std::string variable;  ///< netCDF: which; empty: the only one with at least two axes longer than 1
+  Progress progress;
+};
+
+/// Reads NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw and gzip), MetaImage (.mha, .mhd)
+/// and netCDF (.nc, .cdf, .nc4; also gzipped as a whole). Trailing axes of one sample are dropped;
+/// what is left must have 2, 3 or 4 axes. netCDF: scale_factor/add_offset applied, missing -> NaN.
+ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
+
+/// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.
+struct Mesh {
+  int dim = 2;
+  int space_dim = 3;
+  Buffer<double> coordinates;  ///< #V x space_dim, row = vertex
+  Buffer<Index> simplices;     ///< #S x (dim + 1), row = simplex
+  std::vector<std::string> axis_names;  ///< space_dim names, may be empty
+  std::vector<std::string> axis_units;
+};
+
+template <int N, class Real>
+Mesh to_mesh(const Contour<N, Real>& contour);
+/// The contour of a mesh with dim = N - 1 and space_dim = N (planar meshes read back from 3D files:
+/// dim 1 with all z = 0 become N = 2). Throws UnsupportedData otherwise.
+template <int N>
+Contour<N, double> to_contour(const Mesh& mesh);
+
+/// Writes by extension: .ply, .gltf/.glb (2D and 3D contours), .vtkhdf (3D surfaces; 4D contours as
+/// tetrahedra with t as a point array). Written beside the target first and renamed at the end: never half a file.
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
+Mesh read_mesh(const std::filesystem::path& path);
+
+}  // namespace tegl
