@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What `gen` does, one function per command. They belong to the program, not to the library: they print to
+// standard output. Each takes a checked command line, returns the exit status 0, and throws
+// tegl::gen::Error, whose code is the exit status, if it cannot do its work.
+#pragma once
+
+#include "tegl/gen/options.hpp"
+
+namespace tegl::gen {
+
+/// `--count`: orbits of the signatures by Burnside's lemma and, for dim <= 4, by enumeration.
+/// Errors: CountMismatch if the two disagree.
+int run_count(const Options& options);
+
+/// `--classes`: every class with its signature, orbit length, stabiliser, facets, components, Euler
+/// characteristics and ambiguous faces. Honours `alternative` and `json`.
+int run_classes(const Options& options);
+
+/// `--certify`: the certificate of every signature, and its figures. Honours `json`.
+/// Errors: CertificateFailed.
+int run_certify(const Options& options);
+
+/// `--out DIR`: certifies, then writes the tables into DIR. Honours `layout` and `triangulation`.
+/// Errors: CertificateFailed (nothing is written), WriteFailed.
+int run_out(const Options& options);
+
+}  // namespace tegl::gen

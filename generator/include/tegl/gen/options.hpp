@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the command line of `gen` asks for, as plain data. Filled and checked by parse() (cli.hpp), read by
+// the commands (commands.hpp). A member that its comment ties to certain commands cannot be given with
+// another one: the parser refuses it, so a command may rely on every option it gets being meant.
+#pragma once
+
+#include <string>
+
+#include "tegl/gen/symmetry.hpp"
+
+namespace tegl::gen {
+
+/// What to do. Exactly one is given.
+enum class Command {
+  Help,     ///< --help
+  Version,  ///< --version
+  Count,    ///< --count, dim 1 ... 8
+  Classes,  ///< --classes, dim 2 ... 4
+  Certify,  ///< --certify, dim 2 ... 4
+  Out,      ///< --out DIR, dim 2 ... 4
+};
+
+/// How ambiguous faces are resolved: low or high corners stay connected (theory: the consistent method).
+enum class AlternativeChoice { Low, High };
+
+/// How emitted tables are stored.
+enum class LayoutChoice {
+  Class,  ///< one list per symmetry class and a group element per signature
+  Flat,   ///< one list per signature
+  Auto,   ///< the one that measured faster for this dimension
+};
+
+/// Which triangulations are emitted.
+enum class TriangulationChoice { Barycentric, Compact, All };
+
+/// One checked command line. Defaults are those of the command line.
+struct Options {
+  Command command = Command::Help;
+  int dim = 0;                                                   ///< --dim; 0 for --help and --version
+  GroupKind group = GroupKind::Full;                             ///< --group; --count only
+  bool inversion = false;                                        ///< --inversion; --count only
+  bool json = false;                                             ///< --json; --count, --classes, --certify
+  AlternativeChoice alternative = AlternativeChoice::Low;        ///< --alternative; --classes only
+  std::string out;                                               ///< DIR of --out
+  LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
+  TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
+};
+
+}  // namespace tegl::gen
