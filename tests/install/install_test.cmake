@@ -1,0 +1,26 @@
+# Installs BUILD under PREFIX, into a folder that holds nothing else, and looks whether all is there.
+file(REMOVE_RECURSE ${PREFIX})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
+  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB_RECURSE installed RELATIVE ${PREFIX} ${PREFIX}/*)
+foreach(pattern "^include/tegl/extract.hpp$" "/cmake/tegl/teglConfig.cmake$" "/cmake/tegl/teglConfigVersion.cmake$"
+    "^bin/gen$" "/libtegl\\.(a|so)$" "/LICENSE$")
+  set(found ${installed})
+  list(FILTER found INCLUDE REGEX "${pattern}")
+  if(NOT found)
+    message(FATAL_ERROR "installed, but nothing matches '${pattern}' in: ${installed}")
+  endif()
+endforeach()
+# A header that includes one that is not installed would only fail for users.
+file(GLOB headers ${PREFIX}/include/tegl/*.hpp)
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} includes REGEX "^#include \"tegl/")
+  foreach(line IN LISTS includes)
+    string(REGEX REPLACE "^#include \"([^\"]*)\".*" "\\1" included "${line}")
+    if(NOT EXISTS ${PREFIX}/include/${included})
+      message(FATAL_ERROR "${header} includes ${included}, which is not installed")
+    endif()
+  endforeach()
+endforeach()
+list(LENGTH installed count)
+message(STATUS "${count} files installed")
