@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The classes of signatures by enumeration: one representative per orbit of the group, and for every signature its
+// class and a group element that leads there from the representative.
+//
+// Based on: thesis, algorithm 7.4.9.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tegl/gen/symmetry.hpp"
+
+namespace tegl::gen {
+
+/// Highest dimension whose signatures are enumerated (65 536 of them).
+inline constexpr int kMaxEnumeratedDim = 4;
+
+struct Transversal {
+  std::vector<std::uint32_t> representatives;  ///< per class: the smallest signature of the orbit; ascending
+  std::vector<std::uint32_t> orbit_length;     ///< per class; times the stabiliser's order it is the group's order
+  std::vector<std::uint32_t> class_of;         ///< per signature: index into representatives
+  std::vector<std::uint32_t> element_of;       ///< per signature s: smallest index of a g with s = g(representative)
+};
+
+/// The orbits of the 2^(2^n) signatures. `group` is closed under composition with the identity first, as group()
+/// returns it. O(classes |G| 2^n) time: a few milliseconds for n = 4.
+/// Errors: InvalidArgument unless 1 <= n <= 4; Internal if `group` is no group: an orbit reaches another one, or its
+/// length does not divide the group's order.
+[[nodiscard]] Transversal transversal(int n, std::span<const Element> group);
+
+}  // namespace tegl::gen

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The parser is one table of options: what each is called, whether it takes a value, which commands know it, and
+// what it does to Options. The generator links nothing but fmt, hence no parser library.
+#include "tegl/gen/cli.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tegl/gen/error.hpp"
+#include "tegl/gen/transversal.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::gen {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Error(ErrorCode::InvalidArgument, message + "; see gen --help");
+}
+
+/// The value among `choices` that has this name.
+template <typename Value, std::size_t Count>
+Value choose(std::string_view option, std::string_view given,
+             const std::array<std::pair<std::string_view, Value>, Count>& choices) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, value] : choices) {
+    if (name == given) {
+      return value;
+    }
+    names.push_back(name);
+  }
+  refuse(fmt::format("{} {}: expected {}", option, given, fmt::join(names, " or ")));
+}
+
+using Apply = void (*)(Options&, std::string_view);
+
+void set_dim(Options& options, std::string_view given) {
+  const char* const end = given.data() + given.size();
+  const auto [stop, error] = std::from_chars(given.data(), end, options.dim);
+  if (error != std::errc{} || stop != end) {
+    refuse(fmt::format("--dim {}: expected a whole number", given));
+  }
+}
+
+void set_group(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, GroupKind>;
+  options.group =
+      choose("--group", given, std::array{Pair{"full", GroupKind::Full}, Pair{"rotations", GroupKind::Rotations}});
+}
+
+void set_alternative(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, AlternativeChoice>;
+  options.alternative = choose("--alternative", given,
+                               std::array{Pair{"low", AlternativeChoice::Low}, Pair{"high", AlternativeChoice::High}});
+}
+
+void set_layout(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, LayoutChoice>;
+  options.layout = choose("--layout", given,
+                          std::array{Pair{"class", LayoutChoice::Class}, Pair{"flat", LayoutChoice::Flat},
+                                     Pair{"auto", LayoutChoice::Auto}});
+}
+
+void set_triangulation(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, TriangulationChoice>;
+  options.triangulation =
+      choose("--triangulation", given,
+             std::array{Pair{"barycentric", TriangulationChoice::Barycentric},
+                        Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}});
+}
+
+/// A set of commands, as bits.
+constexpr unsigned bit(Command command) { return 1U << static_cast<unsigned>(command); }
+constexpr unsigned kCount = bit(Command::Count);
+constexpr unsigned kClasses = bit(Command::Classes);
+constexpr unsigned kCertify = bit(Command::Certify);
+constexpr unsigned kOut = bit(Command::Out);
+
+struct OptionSpec {
+  std::string_view name;
+  bool takes_value;
+  std::optional<Command> command;  ///< set if the option is itself a command
+  unsigned known_to;               ///< otherwise: the commands that know it
+  Apply apply;                     ///< null where naming the command is all it does
+};
+
+constexpr std::array kOptions{
+    OptionSpec{"--version", false, Command::Version, 0, nullptr},
+    OptionSpec{"--count", false, Command::Count, 0, nullptr},
+    OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
+    OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
+    OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
+    OptionSpec{"--dim", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_dim},
+    OptionSpec{"--group", true, std::nullopt, kCount, set_group},
+    OptionSpec{"--inversion", false, std::nullopt, kCount, [](Options& o, std::string_view) { o.inversion = true; }},
+    OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
+    OptionSpec{"--json", false, std::nullopt, kCount | kClasses | kCertify,
+               [](Options& o, std::string_view) { o.json = true; }},
+    OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
+    OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
+};
+
+/// The names of the options for which `wanted` holds, for messages.
+template <typename Predicate>
+std::string names_of(Predicate wanted) {
+  std::vector<std::string_view> names;
+  for (const OptionSpec& spec : kOptions) {
+    if (wanted(spec)) {
+      names.push_back(spec.name);
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// An option as given, and its value if it takes one.
+struct Given {
+  const OptionSpec* spec;
+  std::string_view value;
+};
+
+std::vector<Given> split(std::span<const std::string_view> arguments) {
+  std::vector<Given> result;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::size_t equals = arguments[i].find('=');
+    const std::string_view name = arguments[i].substr(0, equals);
+    const auto* const spec = std::find_if(kOptions.begin(), kOptions.end(),
+                                          [name](const OptionSpec& candidate) { return candidate.name == name; });
+    if (spec == kOptions.end()) {
+      refuse(fmt::format("unknown option '{}': expected one of --help, {}", arguments[i],
+                         names_of([](const OptionSpec&) { return true; })));
+    }
+    std::string_view value;
+    if (equals != std::string_view::npos) {
+      value = arguments[i].substr(equals + 1);
+    } else if (spec->takes_value && i + 1 < arguments.size() && !arguments[i + 1].starts_with("--")) {
+      value = arguments[++i];
+    }
+    if (spec->takes_value && value.empty()) {
+      refuse(fmt::format("{} has no value: expected one after it", name));
+    }
+    if (!spec->takes_value && equals != std::string_view::npos) {
+      refuse(fmt::format("{} takes no value, but '{}' was given", name, value));
+    }
+    result.push_back({spec, value});
+  }
+  return result;
+}
+
+/// The one option that is a command. Refuses none and several.
+const OptionSpec& command_of(const std::vector<Given>& given) {
+  const OptionSpec* command = nullptr;
+  for (const Given& option : given) {
+    if (!option.spec->command) {
+      continue;
+    }
+    if (command != nullptr && command != option.spec) {
+      refuse(fmt::format("{} and {} were both given: expected one command", command->name, option.spec->name));
+    }
+    command = option.spec;
+  }
+  if (command == nullptr) {
+    refuse(fmt::format("no command was given: expected one of --help, {}",
+                       names_of([](const OptionSpec& spec) { return spec.command.has_value(); })));
+  }
+  return *command;
+}
+
+/// The dimensions that a command works in.
+void check_dim(const Options& options, std::string_view command) {
+  if (options.command == Command::Version) {
+    return;
+  }
+  const bool count = options.command == Command::Count;
+  const int lowest = count ? 1 : 2;
+  const int highest = count ? kMaxDim : kMaxEnumeratedDim;
+  if (options.dim < lowest || options.dim > highest) {
+    refuse(fmt::format("--dim {}: {} expects {} to {}", options.dim, command, lowest, highest));
+  }
+}
+
+}  // namespace
+
+Options parse(std::span<const std::string_view> arguments) {
+  Options options;
+  for (const std::string_view argument : arguments) {
+    if (argument == "--help" || argument == "-h") {
+      return options;
+    }
+  }
+  const std::vector<Given> given = split(arguments);
+  const OptionSpec& command = command_of(given);
+  options.command = *command.command;
+  std::vector<const OptionSpec*> seen;
+  for (const Given& option : given) {
+    if (std::find(seen.begin(), seen.end(), option.spec) != seen.end()) {
+      refuse(fmt::format("{} was given more than once", option.spec->name));
+    }
+    seen.push_back(option.spec);
+    if (!option.spec->command && (option.spec->known_to & bit(options.command)) == 0) {
+      const unsigned command_bit = bit(options.command);
+      const std::string known = names_of([=](const OptionSpec& spec) { return (spec.known_to & command_bit) != 0; });
+      refuse(fmt::format("{} does not go with {}: expected {}", option.spec->name, command.name,
+                         known.empty() ? "nothing else" : "only " + known));
+    }
+    if (option.spec->apply != nullptr) {
+      option.spec->apply(options, option.value);
+    }
+  }
+  const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
+  if (!has_dim && options.command != Command::Version) {
+    refuse(fmt::format("{} without --dim: expected --dim N", command.name));
+  }
+  check_dim(options, command.name);
+  return options;
+}
+
+std::string version_text() {
+  return fmt::format("gen {} (table contract {})\n", TEGL_VERSION, tables::kContractVersion);
+}
+
+std::string help_text() {
+  return R"(gen: counts, proves and writes the tables that contours of n-dimensional images are built from.
+
+usage: gen --dim N COMMAND [OPTIONS]
+
+commands (one of)
+  --count          orbits of the 2^(2^N) signatures under the cube's symmetries, by Burnside's lemma (N = 1 ... 8)
+                   and, for N up to 4, by enumeration too: the two must agree
+  --classes        every class of signatures under all 2^N N! symmetries (N = 2 ... 4): its smallest signature,
+                   orbit length, stabiliser order, facets, components, Euler characteristics, ambiguous faces
+  --certify        proves every signature of both alternatives (N = 2 ... 4): closed, manifold, oriented, matching
+                   its neighbours; prints the figures
+  --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
+  --help, -h       this text
+  --version        version of the program and of the tables' layout
+
+options of --count
+  --group full|rotations            all symmetries (default) or those of determinant +1
+  --inversion                       the exchange of high and low is a symmetry too
+  --json                            one object: dim, group, inversion, order, orbits. All numbers are plain JSON
+                                    integers; from N = 7 on orbits exceeds 2^53, so read it as a big integer
+
+options of --classes
+  --alternative low|high            which corners stay connected in an ambiguous face (default low)
+  --json                            for machines
+
+options of --certify
+  --json                            for machines
+
+options of --out
+  --layout class|flat|auto          one list of simplices per class or per signature; auto (default): the one that
+                                    measured faster for this dimension
+  --triangulation barycentric|compact|all
+                                    which triangulations to write (default all)
+
+Facets are cycles of edges, each written as a ternary number, axis N-1 first, with e for the axis along the edge: in 3D
+1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, where the
+right-hand normal points in 3D.
+
+examples
+  gen --dim 3 --count                                the 22 classes of marching cubes
+  gen --dim 3 --count --group rotations --inversion  its famous 15
+  gen --dim 8 --count --json
+  gen --dim 3 --classes
+  gen --dim 4 --certify
+  gen --dim 4 --out tables
+
+exit status
+  0  done
+  1  a fault in the generator itself, or memory exhausted
+  2  the command line: unknown, repeated, missing or contradictory options or values
+  3  the two counts disagree
+  4  a certificate failed; nothing was written
+  5  output could not be written
+)";
+}
+
+}  // namespace tegl::gen
