@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Example 4: a real 4D file. Reads a year of ocean temperatures (longitude, latitude, depth, month; depths are
+// not evenly spaced, land is missing) and cuts its 20 degC surface a third of the way from July to August.
+#include <tegl/check.hpp>
+#include <tegl/extract.hpp>
+#include <tegl/io.hpp>
+#include <tegl/slice.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <variant>
+
+namespace {
+
+/// The cut at `month` of the surface where the image is `temperature`; reads just the two months around it.
+tegl::Contour<3> surface_at(const tegl::AnyImage& any, double temperature, double month) {
+  // The file decides on the value type; `visit` gets the image as what it is.
+  return std::visit([&](const auto& owned) { return tegl::slice_image(owned.view(), temperature, month); },
+                    std::get<tegl::AnyImageN<4>>(any));
+}
+
+int run(const char* in, const char* out) {
+  const auto [image, info] = tegl::read_image(in);
+  const tegl::Contour<3> surface = surface_at(image, 20.0, 7.3);
+  tegl::write_mesh(tegl::to_mesh(surface), out);
+
+  float deepest = 0.0F;
+  for (const auto& vertex : surface.vertices) deepest = std::max(deepest, vertex[2]);
+  const tegl::MeshReport report = tegl::check(surface);
+  std::printf("%s: %s, '%s' in %s\n", in, info.format.c_str(), info.variable.c_str(), info.value_unit.c_str());
+  std::printf("%s: %zu triangles in %zu components, down to %.0f %s\n", out, surface.simplices.size(),
+              static_cast<std::size_t>(report.components), static_cast<double>(deepest), surface.axis_units[2].c_str());
+
+  // The surface ends at coasts and at the sea's surface, but it is a manifold everywhere.
+  const bool manifold = report.nonmanifold_simplices == 0 && report.bad_links == 0 && report.orientation_conflicts == 0;
+  return manifold && deepest > 200.0F && deepest <= 500.0F ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s ocean_temperature.nc OUT.ply\n", argv[0]);
+    return 2;
+  }
+  try {
+    return run(argv[1], argv[2]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
+  }
+}
