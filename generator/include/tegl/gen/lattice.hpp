@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tiles as face lattices. A tile knows its corners, its edges, and its faces of codimension one as tiles of
+// their own, each with its embedding and its sign in the boundary. The recursion over dimension in
+// facets.hpp and regions.hpp needs nothing else, so it serves any polytope that can be described so.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tegl::gen {
+
+/// Set of corners of a tile: bit v = corner v. Tiles of up to 32 corners.
+using Signature = std::uint32_t;
+
+struct Tile;
+
+/// A face of codimension one, as a tile with its embedding.
+struct SubTile {
+  const Tile* tile;                  ///< owned by the lattice
+  std::vector<std::uint8_t> corner;  ///< the face's corner -> the tile's corner
+  std::vector<std::uint8_t> edge;    ///< the face's edge -> the tile's edge, ends in the same order
+  int sign;                          ///< incidence number in the tile's boundary, outward normal first
+};
+
+struct Tile {
+  int dim;
+  std::vector<std::array<double, 4>> corners;      ///< coordinates; the first `dim` count
+  std::vector<std::array<std::uint8_t, 2>> edges;  ///< from the end with coordinate 0 to the one with 1
+  std::vector<std::string> edge_names;             ///< ternary: highest axis first, 'e' = free axis
+  std::vector<SubTile> faces;                      ///< codimension one; empty for dim 0
+
+  [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }
+  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }
+  /// All corners.
+  [[nodiscard]] Signature full() const { return ~Signature{0} >> (32 - corner_count()); }
+  /// The signature that `signature` leaves on face f.
+  [[nodiscard]] Signature restrict_to(std::uint32_t f, Signature signature) const;
+};
+
+/// The unit cubes of dimension 0 to n (n <= 4), numbered as the table contract says.
+class CubeLattice {
+ public:
+  explicit CubeLattice(int n);
+  CubeLattice(const CubeLattice&) = delete;
+  CubeLattice& operator=(const CubeLattice&) = delete;
+
+  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }
+  [[nodiscard]] const Tile& tile(int k) const { return tiles_[static_cast<std::size_t>(k)]; }
+
+ private:
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace tegl::gen

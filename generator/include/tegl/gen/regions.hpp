@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The high part of a tile, triangulated: what a contour bounds. Used to close contours at an image's
+// border, and, pushed inwards, to fill components of Sigma that are no spheres.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "tegl/gen/facets.hpp"
+
+namespace tegl::gen {
+
+/// cone: every region that is no simplex is coned from its barycentre; no chord ever joins two points of the
+/// contour. fan: regions of squares are fans from a corner instead.
+enum class RegionStyle { cone, fan };
+
+/// The high part of a k-tile (k <= 3): disjoint balls. Local vertices as in the table contract.
+struct TileRegions {
+  std::vector<Simplex> simplices;        ///< k + 1 vertices each, det > 0
+  std::vector<std::uint32_t> own_masks;  ///< one per own vertex: corners (bit v) and edges (bit 2^k + e)
+};
+
+/// Builds the regions of any signature of the k-cube, k = 1, 2, 3.
+class RegionBuilder {
+ public:
+  RegionBuilder(const CubeLattice& lattice, int k, Alternative alternative, Triangulation triangulation,
+                RegionStyle style);
+  ~RegionBuilder();
+  RegionBuilder(const RegionBuilder&) = delete;
+  RegionBuilder& operator=(const RegionBuilder&) = delete;
+
+  [[nodiscard]] const TileRegions& regions(Signature signature) const { return regions_[signature]; }
+  [[nodiscard]] const Tile& tile() const { return *tile_; }
+  [[nodiscard]] std::uint32_t own_base() const;
+  /// The corners (bit v) and edge points (bit 2^k + e) whose mean a local vertex is, for any but the barycentres of
+  /// the contour's facets.
+  [[nodiscard]] std::uint32_t mask_of(Signature signature, std::uint8_t vertex) const;
+
+ private:
+  [[nodiscard]] TileRegions build(Signature signature) const;
+  [[nodiscard]] std::vector<Simplex> boundary(Signature signature) const;
+  [[nodiscard]] std::uint8_t lift(std::uint32_t f, std::uint8_t vertex) const;
+
+  const Tile* tile_;
+  RegionStyle style_;
+  std::unique_ptr<ContourBuilder> contour_;
+  std::unique_ptr<RegionBuilder> face_builder_;
+  std::vector<TileRegions> regions_;
+};
+
+}  // namespace tegl::gen

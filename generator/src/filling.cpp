@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Filling Sigma, component by component. A sphere is coned, from its barycentre (barycentric) or from one of
+// its own vertices (compact); a component of higher genus is filled by a copy of one side of the tile's
+// boundary. A simplex that lies in the tile's boundary must belong to Sigma's own triangulation, because the
+// neighbour may draw it too: that is what restricts the choice of chords and apexes below.
+//
+// Based on: M. Liversage, thesis, 1994, sections 8.1.18 and 10.1.3 (cones).
+#include "filling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+
+#include "side_filling.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+struct Component {
+  std::vector<Simplex> boundary;
+  std::vector<std::uint8_t> vertices;  // ascending
+  int euler = 0;
+};
+
+/// Disjoint sets over local vertices.
+class VertexSets {
+ public:
+  VertexSets() { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(int a, int b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
+
+ private:
+  std::array<int, 256> parent_{};
+};
+
+int euler_of(int vertices_per_simplex, const Component& c) {
+  const int v = static_cast<int>(c.vertices.size());
+  const int f = static_cast<int>(c.boundary.size());
+  return vertices_per_simplex == 2 ? v - f : v - 3 * f / 2 + f;  // Sigma is closed: 3 F = 2 E
+}
+
+/// Components of Sigma by their smallest vertex; spheres first, so that cone vertices precede side vertices.
+std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary) {
+  VertexSets sets;
+  for (const Simplex& s : boundary)
+    for (int i = 1; i < n - 1; ++i) sets.join(s[0], s[i]);
+  std::array<int, 256> number;
+  number.fill(-1);
+  std::vector<Component> components;
+  std::vector<std::uint8_t> order;
+  for (const Simplex& s : boundary) order.push_back(static_cast<std::uint8_t>(sets.find(s[0])));
+  std::vector<std::uint8_t> roots(order);
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  for (const std::uint8_t r : roots) {
+    number[r] = static_cast<int>(components.size());
+    components.emplace_back();
+  }
+  for (std::size_t i = 0; i < boundary.size(); ++i) components[number[order[i]]].boundary.push_back(boundary[i]);
+  for (Component& c : components) {
+    std::set<std::uint8_t> vertices;
+    for (const Simplex& s : c.boundary) vertices.insert(s.begin(), s.begin() + (n - 1));
+    c.vertices.assign(vertices.begin(), vertices.end());
+    c.euler = euler_of(n - 1, c);
+  }
+  const int sphere = n == 3 ? 0 : 2;
+  std::stable_partition(components.begin(), components.end(), [&](const Component& c) { return c.euler == sphere; });
+  return components;
+}
+
+/// The closed polygon of a 3-tile's component, from its smallest vertex along its orientation.
+std::vector<std::uint8_t> cycle_of(const Component& c) {
+  std::array<std::uint8_t, 256> next{};
+  for (const Simplex& s : c.boundary) next[s[0]] = s[1];
+  std::vector<std::uint8_t> cycle{c.vertices.front()};
+  while (next[cycle.back()] != cycle.front()) cycle.push_back(next[cycle.back()]);
+  if (cycle.size() != c.boundary.size()) throw std::logic_error("a component of a 3-tile's Sigma is not one cycle");
+  return cycle;
+}
+
+/// Enumerates the triangulations of a convex polygon and keeps the one with the shortest chords (at the edges'
+/// midpoints); ties go to the first in lexicographic order, so the choice depends on the polygon alone.
+class ChordTriangulation {
+ public:
+  ChordTriangulation(const ContourBuilder& builder, std::vector<std::uint8_t> polygon)
+      : builder_(builder), polygon_(std::move(polygon)) {}
+
+  /// Triangles as positions in the polygon; empty if every triangulation has a forbidden chord.
+  std::vector<std::array<std::size_t, 3>> best() {
+    const auto result = solve(0, polygon_.size() - 1);
+    return result.cost < kForbidden ? result.triangles : std::vector<std::array<std::size_t, 3>>{};
+  }
+
+ private:
+  static constexpr double kForbidden = 1e9;
+  struct Result {
+    double cost;
+    std::vector<std::array<std::size_t, 3>> triangles;
+  };
+
+  double chord(std::size_t i, std::size_t j) const {
+    if (j == i + 1 || (i == 0 && j + 1 == polygon_.size())) return 0;  // a side
+    const std::uint8_t a = polygon_[i], b = polygon_[j];
+    if ((builder_.faces_of(a) & builder_.faces_of(b)) != 0) return kForbidden;  // it would lie in a face
+    const Tile& tile = builder_.tile();
+    double sum = 0;
+    for (int k = 0; k < tile.dim; ++k) {
+      const auto mid = [&](std::uint8_t e) {
+        return 0.5 * (tile.corners[tile.edges[e][0]][k] + tile.corners[tile.edges[e][1]][k]);
+      };
+      sum += (mid(a) - mid(b)) * (mid(a) - mid(b));
+    }
+    return sum;
+  }
+
+  Result solve(std::size_t i, std::size_t j) const {
+    if (j < i + 2) return {0, {}};
+    Result best{2 * kForbidden, {}};
+    for (std::size_t k = i + 1; k < j; ++k) {
+      const double own = chord(i, k) + chord(k, j);
+      if (own >= kForbidden) continue;
+      Result left = solve(i, k), right = solve(k, j);
+      const double cost = own + left.cost + right.cost;
+      if (cost >= best.cost) continue;
+      best.cost = cost;
+      best.triangles = {{i, k, j}};
+      best.triangles.insert(best.triangles.end(), left.triangles.begin(), left.triangles.end());
+      best.triangles.insert(best.triangles.end(), right.triangles.begin(), right.triangles.end());
+    }
+    return best;
+  }
+
+  const ContourBuilder& builder_;
+  std::vector<std::uint8_t> polygon_;
+};
+
+bool cut_by_chords(const ContourBuilder& builder, const std::vector<std::uint8_t>& cycle, Facet& facet) {
+  // Both orientations of a polygon must get the same triangles: start at the smallest vertex and walk
+  // towards the smaller neighbour; turn the triangles round where that was against the orientation.
+  std::vector<std::uint8_t> polygon(cycle);
+  const bool turned = polygon.back() < polygon[1];
+  if (turned) std::reverse(polygon.begin() + 1, polygon.end());
+  const auto triangles = ChordTriangulation(builder, polygon).best();
+  for (const auto& t : triangles) {
+    Simplex simplex{polygon[t[0]], polygon[t[1]], polygon[t[2]]};
+    if (turned) std::swap(simplex[1], simplex[2]);
+    facet.simplices.push_back(simplex);
+  }
+  return !triangles.empty();
+}
+
+/// The cone from one of the component's own vertices: over all simplices that do not contain it.
+std::vector<Simplex> pulled_cone(const Component& c, std::uint8_t apex) {
+  std::vector<Simplex> cone;
+  for (const Simplex& s : c.boundary)
+    if (s[0] != apex && s[1] != apex && s[2] != apex) cone.push_back({apex, s[0], s[1], s[2]});
+  return cone;
+}
+
+/// True if a pulled cone draws nothing in the tile's boundary that Sigma does not have there.
+bool stays_inside(const ContourBuilder& builder, const Component& c, std::uint8_t apex) {
+  std::set<std::array<std::uint8_t, 2>> edges;
+  std::set<std::array<std::uint8_t, 3>> triangles;
+  const auto edge = [](std::uint8_t a, std::uint8_t b) { return std::array{std::min(a, b), std::max(a, b)}; };
+  const auto triangle = [](std::uint8_t a, std::uint8_t b, std::uint8_t d) {
+    std::array t{a, b, d};
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  for (const Simplex& s : c.boundary) {
+    for (int i = 0; i < 3; ++i) edges.insert(edge(s[i], s[(i + 1) % 3]));
+    triangles.insert(triangle(s[0], s[1], s[2]));
+  }
+  const auto faces = [&](std::uint8_t v) { return builder.faces_of(v); };
+  for (const std::uint8_t v : c.vertices)
+    if (v != apex && (faces(v) & faces(apex)) != 0 && !edges.contains(edge(v, apex))) return false;
+  for (const auto& e : edges)
+    if (e[0] != apex && e[1] != apex && (faces(e[0]) & faces(e[1]) & faces(apex)) != 0 &&
+        !triangles.contains(triangle(e[0], e[1], apex)))
+      return false;
+  for (const auto& t : triangles)
+    if (t[0] != apex && t[1] != apex && t[2] != apex && (faces(t[0]) & faces(t[1]) & faces(t[2]) & faces(apex)) != 0)
+      return false;
+  return true;
+}
+
+bool pull(const ContourBuilder& builder, const Component& c, Facet& facet) {
+  for (const std::uint8_t apex : c.vertices) {
+    auto cone = pulled_cone(c, apex);
+    if (!facet.simplices.empty() && cone.size() >= facet.simplices.size()) continue;
+    if (stays_inside(builder, c, apex)) facet.simplices = std::move(cone);
+  }
+  return !facet.simplices.empty();
+}
+
+/// The cone from an added vertex.
+std::vector<Simplex> cone(int n, const Component& c, std::uint8_t apex) {
+  std::vector<Simplex> result;
+  for (const Simplex& s : c.boundary) {
+    Simplex simplex{apex};
+    std::copy_n(s.begin(), n - 1, simplex.begin() + 1);
+    result.push_back(simplex);
+  }
+  return result;
+}
+
+/// Number of facets of the tile's faces that lie in a component.
+std::uint32_t facets_around(const ContourBuilder& builder, Signature signature, const Component& c) {
+  std::uint32_t count = 0;
+  for (std::uint32_t f = 0; f < builder.tile().faces.size(); ++f)
+    for (const Facet& facet : builder.face_contour(f, signature).facets)
+      if (std::binary_search(c.vertices.begin(), c.vertices.end(), builder.lift(f, facet.points.front()))) ++count;
+  return count;
+}
+
+}  // namespace
+
+void fill(const ContourBuilder& builder, Signature signature, TileContour& contour) {
+  const int n = builder.dim();
+  const bool compact = builder.triangulation() == Triangulation::compact;
+  const std::size_t corners_of_simplex = static_cast<std::size_t>(n);
+  for (const Component& c : components_of(n, contour.boundary)) {
+    Facet facet;
+    facet.boundary_euler = c.euler;
+    facet.boundary_facets = facets_around(builder, signature, c);
+    for (const std::uint8_t v : c.vertices)
+      if (v < builder.tile().edge_count()) facet.points.push_back(v);
+    if (n == 3) facet.points = cycle_of(c);
+    if (c.vertices.size() == corners_of_simplex && c.boundary.size() == (n == 3 ? 3u : 4u)) {
+      const auto cycle = n == 3 ? facet.points : std::vector<std::uint8_t>{};
+      facet.simplices =
+          n == 3 ? std::vector{Simplex{cycle[0], cycle[1], cycle[2]}} : pulled_cone(c, c.vertices.front());
+    } else if (n == 4 && c.euler != 2) {
+      facet.filling = Filling::side;
+      fill_by_side(builder, signature, c.boundary, contour, facet);
+    } else if (compact && (n == 3 ? cut_by_chords(builder, facet.points, facet) : pull(builder, c, facet))) {
+      facet.filling = Filling::pulled;
+    } else {
+      facet.filling = Filling::cone;
+      facet.simplices = cone(n, c, static_cast<std::uint8_t>(builder.own_base() + contour.cone_vertices++));
+    }
+    contour.facets.push_back(std::move(facet));
+  }
+}
+
+}  // namespace tegl::gen
