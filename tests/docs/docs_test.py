@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What README.md and docs/ show is what works.
+
+    docs_test.py commands SOURCE BIN    runs every block marked ```sh in a scratch folder, BIN first in the PATH
+    docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
+    docs_test.py links SOURCE           every relative link leads to a file
+
+Blocks marked otherwise (```console, ```text) are for reading only.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+
+
+def pages(source):
+    return [source / "README.md", source / "CONTRIBUTING.md", source / "CHANGELOG.md",
+            source / "examples/data/README.md", *sorted((source / "docs").rglob("*.md"))]
+
+
+def blocks(page, languages):
+    """(line number, language, text) of each fenced block of one of these languages."""
+    found, start, language, lines = [], 0, None, []
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        if not line.lstrip().startswith("```"):
+            lines.append(line)
+        elif language is None:
+            start, language, lines = number, line.strip()[3:].strip(), []
+        else:
+            if language in languages:
+                found.append((start, language, textwrap.dedent("\n".join(lines)) + "\n"))
+            language, lines = None, []
+    assert language is None, f"{page}:{start}: a block without an end"
+    return found
+
+
+def commands(source, programs):
+    """Runs the blocks of each page one after the other, as a reader would, and reports the first that fails."""
+    count = 0
+    for page in pages(source):
+        with tempfile.TemporaryDirectory() as folder:
+            # Commands are written for the root of the checkout, but must not leave files there.
+            for name in ("examples",):
+                os.symlink(source / name, pathlib.Path(folder) / name)
+            environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+            for line, _, text in blocks(page, {"sh"}):
+                done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment, text=True,
+                                      capture_output=True, check=False)
+                if done.returncode != 0:
+                    sys.exit(f"{page}:{line}: exit status {done.returncode}\n{text}{done.stdout}{done.stderr}")
+                count += 1
+    assert count > 0, "no commands found: the pages have lost their blocks"
+    print(f"{count} blocks of commands ran")
+
+
+def snippets(source, _=None):
+    """Looks for each snippet, as it is but for its indentation, in the compiled sources."""
+    compiled = {"cpp": sorted((source / "examples").glob("*.cpp")),
+                "cmake": [source / "tests/install/consumer/CMakeLists.txt"]}
+    squeeze = lambda text: "\n".join(line.strip() for line in text.strip().splitlines())
+    texts = {language: [squeeze(file.read_text(encoding="utf-8")) for file in files]
+             for language, files in compiled.items()}
+    count = 0
+    for page in pages(source):
+        for line, language, text in blocks(page, compiled.keys()):
+            if not any(squeeze(text) in whole for whole in texts[language]):
+                sys.exit(f"{page}:{line}: this {language} block is in none of "
+                         f"{[str(file.relative_to(source)) for file in compiled[language]]}:\n{text}")
+            count += 1
+    assert count > 0, "no snippets found: the pages have lost their blocks"
+    print(f"{count} snippets are compiled elsewhere")
+
+
+def links(source, _=None):
+    count = 0
+    for page in pages(source):
+        for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
+            if re.match(r"[a-z]+:", target):
+                continue
+            if not (page.parent / target).exists():
+                sys.exit(f"{page}: links to {target}, which is not there")
+            count += 1
+    assert count > 0, "no links found"
+    print(f"{count} links lead somewhere")
+
+
+if __name__ == "__main__":
+    globals()[sys.argv[1]](pathlib.Path(sys.argv[2]).resolve(), *sys.argv[3:])
