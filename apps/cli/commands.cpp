@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands.hpp"
+
+#include <fmt/format.h>
+
+#include "output.hpp"
+
+namespace tegl::cli {
+
+Command::Command(CLI::App& program, const std::string& name, const std::string& description,
+                 const std::string& file_help)
+    : app_(program.add_subcommand(name, description)) {
+  app_->add_option("FILE", file_, file_help)->required();
+  json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
+}
+
+void Command::add_quiet() {
+  app_->add_flag("-q,--quiet", quiet_, "no report and no progress bar")->excludes(json_option_);
+}
+
+void Command::add_variable() {
+  app_->add_option("--var", variable_, "netCDF: the variable to read; needed where the file has several");
+}
+
+ReadImageResult Command::read(const Progress& progress) const {
+  require_input(file_);
+  ReadImageResult result = read_image(file_, {.variable = variable_, .progress = progress});
+  if (!variable_.empty() && result.info.variable != variable_) {
+    throw Error(ErrorCode::VariableNotFound,
+                fmt::format("{}: no variable '{}': {} files hold one unnamed image; expected no --var", file_,
+                            variable_, result.info.format));
+  }
+  return result;
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The commands of the program. Each adds its options to the command line, and runs when it was named.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "console.hpp"
+#include "exit_codes.hpp"
+#include "tegl/io.hpp"
+
+namespace tegl::cli {
+
+/// The two streams of the program.
+struct Streams {
+  Console out{stdout};
+  Console err{stderr};
+};
+
+/// A command of the program: `tegl NAME FILE ...`.
+class Command {
+ public:
+  /// Adds the command with its FILE argument and --json to the command line.
+  Command(CLI::App& program, const std::string& name, const std::string& description, const std::string& file_help);
+  virtual ~Command() = default;
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
+
+  /// Does the work. Throws tegl::Error.
+  virtual ExitCode run(const Streams& streams) = 0;
+
+  /// Whether this is the command that was named.
+  [[nodiscard]] bool named() const { return app_->parsed(); }
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] bool json() const { return json_; }
+
+ protected:
+  [[nodiscard]] CLI::App& app() { return *app_; }
+  [[nodiscard]] bool quiet() const { return quiet_; }
+  /// Progress bars are for people who wait.
+  [[nodiscard]] bool wants_progress() const { return !json_ && !quiet_; }
+  /// Adds --quiet.
+  void add_quiet();
+  /// Adds --var.
+  void add_variable();
+  [[nodiscard]] const std::string& variable() const { return variable_; }
+  /// Reads the image that FILE and --var name.
+  [[nodiscard]] ReadImageResult read(const Progress& progress) const;
+
+ private:
+  CLI::App* app_;
+  CLI::Option* json_option_;
+  std::string file_;
+  std::string variable_;
+  bool json_ = false;
+  bool quiet_ = false;
+};
+
+std::unique_ptr<Command> make_info_command(CLI::App& program);
+std::unique_ptr<Command> make_contour_command(CLI::App& program);
+std::unique_ptr<Command> make_slice_command(CLI::App& program);
+std::unique_ptr<Command> make_check_command(CLI::App& program);
+
+}  // namespace tegl::cli

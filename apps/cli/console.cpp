@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "console.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "numbers.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+std::string_view environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string_view() : std::string_view(value);
+}
+
+}  // namespace
+
+Console::Console(std::FILE* stream)
+    : stream_(stream),
+      terminal_(isatty(fileno(stream)) == 1),
+      colours_(terminal_ && environment("NO_COLOR").empty() && environment("TERM") != "dumb") {}
+
+int Console::width() const {
+  winsize size{};
+  if (terminal_ && ioctl(fileno(stream_), TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  constexpr double kMost = 1000;
+  const auto columns = parse_number(environment("COLUMNS"));
+  return columns && *columns >= 1 && *columns <= kMost ? static_cast<int>(*columns) : 80;
+}
+
+void Console::write(std::string_view text) const {
+  std::fwrite(text.data(), 1, text.size(), stream_);
+  std::fflush(stream_);
+}
+
+std::string Console::styled(std::string_view code, std::string_view text) const {
+  return colours_ ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : std::string(text);
+}
+
+}  // namespace tegl::cli

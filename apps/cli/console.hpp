@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the program writes: results to standard output, everything else to standard error. Colours only
+// on a terminal, and not where NO_COLOR (https://no-color.org) or TERM=dumb asks for none.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace tegl::cli {
+
+/// One stream of the program and what can be shown on it.
+class Console {
+ public:
+  /// Looks at the stream once: is it a terminal, are colours wanted. The stream must outlive this.
+  explicit Console(std::FILE* stream);
+
+  [[nodiscard]] bool is_terminal() const noexcept { return terminal_; }
+  /// Columns of the terminal now; elsewhere $COLUMNS, or 80.
+  [[nodiscard]] int width() const;
+
+  /// The text in bold, or in red, if the stream shows colours; else unchanged.
+  [[nodiscard]] std::string bold(std::string_view text) const { return styled("1", text); }
+  [[nodiscard]] std::string red(std::string_view text) const { return styled("31;1", text); }
+  [[nodiscard]] std::string green(std::string_view text) const { return styled("32", text); }
+
+  /// Writes the text at once.
+  void write(std::string_view text) const;
+
+ private:
+  [[nodiscard]] std::string styled(std::string_view code, std::string_view text) const;
+
+  std::FILE* stream_;
+  bool terminal_;
+  bool colours_;
+};
+
+}  // namespace tegl::cli

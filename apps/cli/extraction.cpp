@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "extraction.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "numbers.hpp"
+#include "output.hpp"
+#include "statistics.hpp"
+
+namespace tegl::cli {
+
+void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
+  options_ = {
+      app.add_option("--iso", iso_, "the isovalue: samples at or above it are inside")->type_name("NUMBER"),
+      app.add_option("--triangulation", triangulation_, "compact: few simplices; barycentric: even ones")
+          ->check(CLI::IsMember({"compact", "barycentric"}))
+          ->capture_default_str(),
+      app.add_option("--ambiguity", ambiguity_,
+                     "samples inside that meet across a diagonal: low parts, high joins them")
+          ->check(CLI::IsMember({"low", "high"}))
+          ->capture_default_str(),
+      app.add_flag("--close", close_, "close the contour at the image's border"),
+      app.add_option("--gradient-direction", direction_, "normals point to lower (descent) or higher values (ascent)")
+          ->check(CLI::IsMember({"descent", "ascent"}))
+          ->capture_default_str(),
+      app.add_option("--epsilon", epsilon_, "keep vertices this share of an edge away from the samples, in [0, 0.5)")
+          ->type_name("NUMBER")
+          ->capture_default_str(),
+      app.add_option("--precision", precision_, "arithmetic of the vertices")
+          ->check(CLI::IsMember({"float", "double"}))
+          ->capture_default_str(),
+  };
+  options_.front()->required(iso_required);
+}
+
+std::vector<std::string> ExtractionOptions::given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options_) {
+    if (option->count() > 0) names.push_back(option->get_name());
+  }
+  return names;
+}
+
+double ExtractionOptions::isovalue() const {
+  if (options_.front()->count() == 0) {
+    throw Error(ErrorCode::InvalidArgument, "--iso is missing; expected the isovalue, as in --iso 20");
+  }
+  return parse_finite("--iso", iso_);
+}
+
+ExtractOptions ExtractionOptions::library_options() const {
+  ExtractOptions options;
+  options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
+  options.ambiguity = ambiguity_ == "low" ? Ambiguity::low : Ambiguity::high;
+  options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
+  options.close = close_;
+  options.epsilon = parse_finite("--epsilon", epsilon_);
+  if (options.epsilon < 0 || options.epsilon >= 0.5) {
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--epsilon is {}; expected 0 <= epsilon < 0.5", epsilon_));
+  }
+  return options;
+}
+
+int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
+
+void require_contour(const ReadImageResult& input, double isovalue) {
+  const auto require_tiles = [](const auto& owned) {
+    for (std::size_t a = 0; a < owned.grid.axes.size(); ++a) {
+      if (owned.grid.axes[a].size() > 1) continue;
+      throw Error(ErrorCode::EmptyResult,
+                  fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
+                              axis_label(owned.grid.axes[a].name, a)));
+    }
+  };
+  std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
+  const ValueRange range = value_range(input.image);
+  if (std::isnan(range.min)) {
+    throw Error(ErrorCode::EmptyResult, "all samples are missing; a contour needs values on both sides of it");
+  }
+  if (isovalue > range.min && isovalue <= range.max) return;
+  const std::string unit = input.info.value_unit.empty() ? "" : " " + input.info.value_unit;
+  throw Error(ErrorCode::EmptyResult, fmt::format("the isovalue {} lies outside of the values, which are {} .. {}{}; "
+                                                  "expected {} < isovalue <= {}",
+                                                  number(isovalue), number(range.min), number(range.max), unit,
+                                                  number(range.min), number(range.max)));
+}
+
+void check_result(ContourResult& result, ProgressBar& bar) {
+  const Progress progress = bar.stage("check");
+  Stopwatch watch;
+  result.report = check_mesh(result.mesh);
+  result.seconds.check = watch.lap();
+  progress(1);
+}
+
+void write_result(ContourResult& result, ProgressBar& bar) {
+  const Progress progress = bar.stage("write");
+  Stopwatch watch;
+  result.output_bytes = write_output(result.mesh, result.output, progress);
+  result.seconds.write = watch.lap();
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The program `tegl`: parses the command line, runs the command that it names, and turns what goes wrong
+// into one message and an exit code.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "result.hpp"
+
+namespace {
+
+using tegl::cli::Command;
+using tegl::cli::ExitCode;
+using tegl::cli::Streams;
+
+constexpr const char* kDescription =
+    "Contours of images in 2, 3 and 4 dimensions: closed, manifold, oriented.\n"
+    "Reads NIfTI, NRRD, MetaImage and netCDF; writes PLY, glTF and VTKHDF.";
+
+/// Writes the one message of a failed run, as text or as JSON, to standard error.
+ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_view code, std::string_view message) {
+  if (json) {
+    tegl::cli::Json document;
+    document["error"] = {{"code", code}, {"exit", static_cast<int>(exit)}, {"message", message}};
+    streams.err.write(tegl::cli::dump(document));
+  } else {
+    streams.err.write(fmt::format("{} {}\n", streams.err.red("tegl:"), message));
+  }
+  return exit;
+}
+
+/// The message with the input's name in front where the library did not know it.
+std::string with_file(const tegl::Error& error, const std::string& file) {
+  using tegl::ErrorCode;
+  constexpr std::array kAboutInput = {
+      ErrorCode::InvalidGrid,     ErrorCode::EmptyResult,      ErrorCode::FileNotFound, ErrorCode::MalformedFile,
+      ErrorCode::UnsupportedData, ErrorCode::VariableNotFound, ErrorCode::TooLarge,     ErrorCode::UnsupportedFormat,
+  };
+  const std::string message = error.what();
+  const bool about_input = std::find(kAboutInput.begin(), kAboutInput.end(), error.code()) != kAboutInput.end();
+  return !about_input || message.find(file) != std::string::npos ? message : fmt::format("{}: {}", file, message);
+}
+
+ExitCode run(Command& command, const Streams& streams) {
+  const auto fail = [&](ExitCode exit, std::string_view code, std::string_view message) {
+    return report(streams, command.json(), exit, code, message);
+  };
+  try {
+    const tegl::cli::InterruptHandler handler;
+    return command.run(streams);
+  } catch (const tegl::Error& error) {
+    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command.file()));
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: memory ran out", command.file()));
+  } catch (const std::exception& error) {
+    return fail(ExitCode::Internal, "Internal", fmt::format("{}: internal error: {}", command.file(), error.what()));
+  }
+}
+
+/// A command line that CLI11 refused, or a request for help.
+ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+    program.exit(error);  // prints the help or the version to standard output
+    return ExitCode::Ok;
+  }
+  std::string help = "tegl";
+  for (const CLI::App* command : program.get_subcommands()) help += " " + command->get_name();
+  const std::string message = fmt::format("{} (see {} --help)", error.what(), help);
+  return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Streams streams;
+  CLI::App program(kDescription, "tegl");
+  program.set_version_flag("--version", "tegl " TEGL_VERSION);
+  program.require_subcommand(1);
+  program.footer(tegl::cli::exit_code_help());
+  std::vector<std::unique_ptr<Command>> commands;
+  commands.push_back(tegl::cli::make_info_command(program));
+  commands.push_back(tegl::cli::make_contour_command(program));
+  commands.push_back(tegl::cli::make_slice_command(program));
+  commands.push_back(tegl::cli::make_check_command(program));
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // Nothing was parsed, yet whoever asks for JSON wants errors in JSON too.
+    const bool json = std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
+    return static_cast<int>(refuse(program, error, streams, json));
+  }
+  const auto named =
+      std::find_if(commands.begin(), commands.end(), [](const auto& command) { return command->named(); });
+  return static_cast<int>(run(**named, streams));
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "tegl/error.hpp"
+
+namespace tegl::cli {
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+double parse_finite(std::string_view option, std::string_view text) {
+  const std::optional<double> value = parse_number(text);
+  if (!value) {
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected a number such as 7.3", option, text));
+  }
+  if (!std::isfinite(*value)) {
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected a finite number", option, text));
+  }
+  return *value;
+}
+
+std::string number(double value) {
+  std::string exact = fmt::format("{}", value);
+  constexpr std::size_t kShort = 10;
+  return exact.size() <= kShort ? exact : fmt::format("{:.6g}", value);
+}
+
+std::string grouped(std::uint64_t count) {
+  std::string text = fmt::format("{}", count);
+  for (std::ptrdiff_t at = std::ssize(text) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), 1, ' ');
+  return text;
+}
+
+std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural) {
+  return fmt::format("{} {}", grouped(count), count == 1 ? singular : plural);
+}
+
+std::string byte_size(std::uint64_t bytes) {
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  constexpr std::array<const char*, 4> kUnits = {"kB", "MB", "GB", "TB"};
+  double size = static_cast<double>(bytes) / 1000;
+  std::size_t unit = 0;
+  // 999.95 would print as "1000.0".
+  while (size >= 999.95 && unit + 1 < kUnits.size()) {
+    size /= 1000;
+    ++unit;
+  }
+  return fmt::format("{:.1f} {}", size, kUnits[unit]);
+}
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+}  // namespace tegl::cli

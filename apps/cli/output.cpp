@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+
+#include "numbers.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What each output format holds: simplices up to this dimension.
+struct OutputFormat {
+  std::string_view extension;
+  int most_dim;
+};
+constexpr std::array<OutputFormat, 4> kOutputs = {
+    {{".ply", 2}, {".gltf", 2}, {".glb", 2}, {".vtkhdf", 3}},
+};
+constexpr std::array<std::string_view, 2> kMoreMeshInputs = {".stl", ".obj"};
+constexpr std::string_view kExpectedExtensions = "expected .ply, .gltf or .glb (2D and 3D contours) or .vtkhdf";
+
+const OutputFormat* find_format(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  const auto match = [&](const OutputFormat& format) { return equal_ignoring_case(format.extension, extension); };
+  const auto* const found = std::find_if(kOutputs.begin(), kOutputs.end(), match);
+  return found == kOutputs.end() ? nullptr : found;
+}
+
+[[noreturn]] void fail(const fs::path& output, std::string_view why) {
+  throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", output.string(), why));
+}
+
+}  // namespace
+
+void require_input(const fs::path& path) {
+  const auto fail_input = [&](std::string_view why) {
+    throw Error(ErrorCode::FileNotFound, fmt::format("{}: {}", path.string(), why));
+  };
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) fail_input("no such file");
+  if (fs::is_directory(status)) fail_input("is a directory; expected a file");
+  if (access(path.c_str(), R_OK) != 0) fail_input(fmt::format("cannot be read: {}", std::strerror(errno)));
+}
+
+void require_output(const fs::path& output, const fs::path& input) {
+  std::error_code error;
+  if (find_format(output) == nullptr) {
+    const std::string extension = output.extension().string();
+    fail(output, fmt::format("{}; {}",
+                             extension.empty() ? "the name has no extension"
+                                               : fmt::format("the extension '{}' is not known", extension),
+                             kExpectedExtensions));
+  }
+  if (fs::is_directory(output, error)) fail(output, "is a directory; expected the name of a file");
+  if (fs::equivalent(output, input, error)) fail(output, "is the input itself; expected another file");
+  const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
+  if (!fs::exists(folder, error)) {
+    fail(output, fmt::format("the folder '{}' does not exist; expected one that does", folder.string()));
+  }
+  if (!fs::is_directory(folder, error)) fail(output, fmt::format("'{}' is not a folder", folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    fail(output, fmt::format("the folder '{}' cannot be written to: {}", folder.string(), std::strerror(errno)));
+  }
+}
+
+void require_output_holds(const fs::path& output, int simplex_dim) {
+  const OutputFormat* const format = find_format(output);
+  if (format != nullptr && simplex_dim <= format->most_dim) return;
+  fail(output,
+       fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf", output.extension().string(),
+                   simplex_dim + 1, simplex_dim == 3 ? "tetrahedra" : "simplices", simplex_dim + 1));
+}
+
+std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progress& progress) {
+  try {
+    write_mesh(mesh, output, progress);
+  } catch (const Error& error) {
+    // Whatever is wrong here is wrong with the output: scripts tell the two files apart by the exit code.
+    if (error.code() == ErrorCode::Cancelled) throw;
+    const std::string message = error.what();
+    const bool named = message.find(output.string()) != std::string::npos;
+    throw Error(ErrorCode::WriteFailed, named ? message : fmt::format("{}: {}", output.string(), message));
+  }
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(output, error);
+  return error ? 0 : size;
+}
+
+bool has_mesh_extension(const fs::path& path) {
+  if (find_format(path) != nullptr) return true;
+  const std::string extension = path.extension().string();
+  return std::any_of(kMoreMeshInputs.begin(), kMoreMeshInputs.end(),
+                     [&](std::string_view known) { return equal_ignoring_case(known, extension); });
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The files that a command line names, looked at before the long work starts, and the writing of results.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "tegl/io.hpp"
+
+namespace tegl::cli {
+
+/// Throws FileNotFound unless `path` is a file that can be read.
+void require_input(const std::filesystem::path& path);
+
+/// Throws WriteFailed unless `output` can be expected to be written: a known extension, a folder that
+/// exists and can be written to, no directory, not the input itself.
+void require_output(const std::filesystem::path& output, const std::filesystem::path& input);
+
+/// Throws WriteFailed unless the format of `output` holds simplices of this dimension.
+void require_output_holds(const std::filesystem::path& output, int simplex_dim);
+
+/// Writes the mesh and returns the file's size in bytes. Errors: WriteFailed, Cancelled.
+std::uint64_t write_output(const Mesh& mesh, const std::filesystem::path& output, const Progress& progress);
+
+/// True for the extensions of files that hold meshes: .ply, .gltf, .glb, .vtkhdf, .stl, .obj.
+bool has_mesh_extension(const std::filesystem::path& path);
+
+}  // namespace tegl::cli

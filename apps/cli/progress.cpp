@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+
+namespace tegl::cli {
+
+namespace {
+
+// A signal handler can reach static storage only; lock-free, so safe inside of it and from any thread.
+std::atomic<bool> interrupt_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+extern "C" void request_interrupt(int /*signal*/) { interrupt_requested.store(true); }
+
+void handle(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  // The second signal finds the default action: a way out if a stage never asks.
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+InterruptHandler::InterruptHandler() {
+  interrupt_requested.store(false);
+  handle(SIGINT, request_interrupt);
+  handle(SIGTERM, request_interrupt);
+}
+
+InterruptHandler::~InterruptHandler() {
+  handle(SIGINT, SIG_DFL);
+  handle(SIGTERM, SIG_DFL);
+}
+
+bool InterruptHandler::requested() noexcept { return interrupt_requested.load(); }
+
+void InterruptHandler::throw_if_requested() {
+  if (requested()) throw Error(ErrorCode::Cancelled, "cancelled; nothing was written");
+}
+
+Progress ProgressBar::stage(std::string name) {
+  InterruptHandler::throw_if_requested();
+  {
+    const std::lock_guard lock(mutex_);
+    name_ = std::move(name);
+    last_ = {};
+  }
+  if (draw_) draw(0);
+  return [this](double fraction) {
+    if (draw_) draw(fraction);
+    return !InterruptHandler::requested();
+  };
+}
+
+void ProgressBar::draw(double fraction) {
+  constexpr auto kInterval = std::chrono::milliseconds(50);
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) return;  // another thread is drawing just now
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < kInterval) return;
+  last_ = now;
+  visible_ = true;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const auto cells = static_cast<std::size_t>(std::clamp(console_->width() - 24, 4, 60));
+  const auto full = static_cast<std::size_t>(fraction * static_cast<double>(cells));
+  console_->write(fmt::format("\r\x1b[K{:<10} [{}{}] {:3.0f} %", name_, std::string(full, '#'),
+                              std::string(cells - full, '.'), 100 * fraction));
+}
+
+void ProgressBar::clear() {
+  const std::lock_guard lock(mutex_);
+  if (visible_) console_->write("\r\x1b[K");
+  visible_ = false;
+}
+
+double Stopwatch::lap() {
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  start_ = now;
+  return seconds;
+}
+
+}  // namespace tegl::cli

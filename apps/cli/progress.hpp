@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Progress on a terminal, and Ctrl-C: the two halves of the callback that every long operation takes.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+#include "console.hpp"
+#include "tegl/error.hpp"
+
+namespace tegl::cli {
+
+/// While one of these lives, the first SIGINT or SIGTERM asks the program to stop, which it does at the
+/// next progress call, with its files cleaned up; the second one ends it at once. One at a time.
+class InterruptHandler {
+ public:
+  InterruptHandler();
+  ~InterruptHandler();
+  InterruptHandler(const InterruptHandler&) = delete;
+  InterruptHandler& operator=(const InterruptHandler&) = delete;
+
+  /// Whether a signal has arrived since the handler was made. Safe from any thread.
+  [[nodiscard]] static bool requested() noexcept;
+  /// Throws Cancelled if one has.
+  static void throw_if_requested();
+};
+
+/// A bar on a terminal, one stage of the work after the other; draws nothing elsewhere.
+class ProgressBar {
+ public:
+  ProgressBar(const Console& console, bool wanted) : console_(&console), draw_(wanted && console.is_terminal()) {}
+  ~ProgressBar() { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// Starts a stage, and returns the callback for it: draws at most 20 times a second, and returns false
+  /// once an interrupt was requested. Throws Cancelled if one is already. The callback may come from any
+  /// thread and must not outlive the bar.
+  Progress stage(std::string name);
+
+  /// Removes the bar from the terminal.
+  void clear();
+
+ private:
+  void draw(double fraction);
+
+  const Console* console_;
+  bool draw_;
+  bool visible_ = false;
+  std::string name_;
+  std::chrono::steady_clock::time_point last_{};
+  std::mutex mutex_;
+};
+
+/// Seconds since it was made, or since the last lap.
+class Stopwatch {
+ public:
+  double lap();
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace tegl::cli

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "result.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "numbers.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+std::uint64_t vertex_count(const Mesh& mesh) {
+  return mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim);
+}
+
+std::uint64_t simplex_count(const Mesh& mesh) {
+  return mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1);
+}
+
+std::array<std::pair<const char*, double>, 8> stages(const StageSeconds& seconds) {
+  return {{{"read", seconds.read},
+           {"classify", seconds.classify},
+           {"find", seconds.find},
+           {"generate", seconds.generate},
+           {"close", seconds.close},
+           {"slice", seconds.slice},
+           {"check", seconds.check},
+           {"write", seconds.write}}};
+}
+
+std::string seconds_text(const StageSeconds& seconds) {
+  std::string text = fmt::format("{:.3f}", seconds.total());
+  const char* separator = " = ";
+  for (const auto& [name, value] : stages(seconds)) {
+    if (value < 0.0005) continue;
+    text += fmt::format("{}{} {:.3f}", separator, name, value);
+    separator = " + ";
+  }
+  return text;
+}
+
+/// What is wrong, in words; empty when nothing is.
+std::string fault_text(const MeshReport& report) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, std::string_view singular, std::string_view plural) {
+    if (count > 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", counted(count, singular, plural));
+  };
+  add(report.nonmanifold_simplices, "face in more than two simplices", "faces in more than two simplices");
+  add(report.bad_links, "vertex with a bad link", "vertices with a bad link");
+  add(report.orientation_conflicts, "orientation conflict", "orientation conflicts");
+  return text;
+}
+
+}  // namespace
+
+std::string report_line(std::string_view label, std::string_view value) {
+  return fmt::format("  {:<12} {}\n", label, value);
+}
+
+std::string axis_label(const std::string& name, std::size_t axis) {
+  return name.empty() ? std::string(1, "xyzt"[axis]) : name;
+}
+
+std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+void add_check_keys(Json& json, const Mesh& mesh, const std::optional<MeshReport>& report) {
+  const auto of = [&](auto member) { return report ? Json((*report).*member) : Json(nullptr); };
+  json["dim"] = mesh.dim;
+  json["vertices"] = report ? report->vertices : vertex_count(mesh);
+  json["simplices"] = simplex_count(mesh);
+  json["components"] = of(&MeshReport::components);
+  json["euler"] = of(&MeshReport::euler);
+  json["boundary_simplices"] = of(&MeshReport::boundary_simplices);
+  json["nonmanifold_simplices"] = of(&MeshReport::nonmanifold_simplices);
+  json["bad_links"] = of(&MeshReport::bad_links);
+  json["orientation_conflicts"] = of(&MeshReport::orientation_conflicts);
+  json["degenerate_simplices"] = of(&MeshReport::degenerate_simplices);
+}
+
+bool has_faults(const MeshReport& report) {
+  return report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts > 0;
+}
+
+std::string counted_simplices(int dim, std::uint64_t count) {
+  constexpr std::array<std::pair<const char*, const char*>, 4> kNames = {
+      {{"point", "points"}, {"segment", "segments"}, {"triangle", "triangles"}, {"tetrahedron", "tetrahedra"}}};
+  const auto& [singular, plural] = kNames.at(static_cast<std::size_t>(dim));
+  return counted(count, singular, plural);
+}
+
+std::string check_text(const Console& console, const Mesh& mesh, const std::optional<MeshReport>& report) {
+  std::string text = report_line("size", fmt::format("{}, {}", counted(vertex_count(mesh), "vertex", "vertices"),
+                                                     counted_simplices(mesh.dim, simplex_count(mesh))));
+  if (!report) return text + report_line("check", "left out (--no-check)");
+  if (report->unused_vertices > 0) {
+    text += report_line("unused", counted(report->unused_vertices, "vertex in no simplex", "vertices in no simplex"));
+  }
+  text += report_line("components", grouped(report->components));
+  text += report_line("Euler", fmt::format("{}", report->euler));
+  text += report_line("border", report->boundary_simplices == 0
+                                    ? "none: closed"
+                                    : counted_simplices(report->dim - 1, report->boundary_simplices));
+  const std::string faults = fault_text(*report);
+  text += report_line("check", faults.empty() ? console.green("an oriented manifold") : console.red(faults));
+  if (report->degenerate_simplices > 0) {
+    text +=
+        report_line("", fmt::format("{} of zero size (samples equal to the isovalue make them; --epsilon avoids them)",
+                                    counted_simplices(report->dim, report->degenerate_simplices)));
+  }
+  return text;
+}
+
+MeshReport check_mesh(const Mesh& mesh) { return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates); }
+
+void StageSeconds::add(const ExtractStats& stats) {
+  classify += stats.classify_seconds;
+  find += stats.find_seconds;
+  generate += stats.generate_seconds;
+  close += stats.close_seconds;
+}
+
+Json to_json(const ContourResult& result) {
+  Json json;
+  json["input"] = result.input;
+  if (!result.variable.empty()) json["variable"] = result.variable;
+  json["output"] = result.output;
+  json["image_dim"] = result.image_dim;
+  json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
+  if (result.cut) json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
+  add_check_keys(json, result.mesh, result.report);
+  json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
+  json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);
+  Json& seconds = json["seconds"];
+  for (const auto& [name, value] : stages(result.seconds)) seconds[name] = value;
+  seconds["total"] = result.seconds.total();
+  return json;
+}
+
+std::string to_text(const Console& console, const ContourResult& result) {
+  std::string what = result.cut ? fmt::format("Cut at {} = {}", result.cut->axis, number(result.cut->value))
+                                : fmt::format("Contour in {}D", result.image_dim);
+  if (result.isovalue) what += fmt::format(" of the isovalue {}", number(*result.isovalue));
+  std::string text = fmt::format("{}\n", console.bold(what));
+  text += report_line("input",
+                      result.variable.empty() ? result.input : fmt::format("{} ({})", result.input, result.variable));
+  if (result.stats) {
+    text += report_line(
+        "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
+  }
+  text += check_text(console, result.mesh, result.report);
+  text += report_line("seconds", seconds_text(result.seconds));
+  text += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
+  return text;
+}
+
+}  // namespace tegl::cli

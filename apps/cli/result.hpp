@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a command found and did, as text for people and as JSON for machines. README.md lists the keys.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "console.hpp"
+#include "exit_codes.hpp"
+#include "tegl/check.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/io.hpp"
+
+namespace tegl::cli {
+
+/// JSON whose keys stay in the order in which they are set.
+using Json = nlohmann::ordered_json;
+
+/// A line of a report: "  label        value".
+std::string report_line(std::string_view label, std::string_view value);
+
+/// The name of an axis, or the customary letter x, y, z, t for one without.
+std::string axis_label(const std::string& name, std::size_t axis);
+
+/// The document as text with a newline at its end. Bytes that are no UTF-8 (units in old files) are replaced.
+std::string dump(const Json& json);
+
+/// Adds the ten keys of a mesh check; all but the sizes are null without a report.
+void add_check_keys(Json& json, const Mesh& mesh, const std::optional<MeshReport>& report);
+
+/// True when the complex is no oriented manifold. A border is no fault, nor are simplices of zero size.
+bool has_faults(const MeshReport& report);
+
+/// The lines of a mesh check: sizes, components, border, verdict.
+std::string check_text(const Console& console, const Mesh& mesh, const std::optional<MeshReport>& report);
+
+/// "segments", "triangles", "tetrahedra" for simplices of dimension 1, 2, 3; the singular for a count of 1.
+std::string counted_simplices(int dim, std::uint64_t count);
+
+/// Checks a mesh (tegl/check.hpp).
+MeshReport check_mesh(const Mesh& mesh);
+
+/// Where a cut was made: the last axis, and the value as a number and as it was typed.
+struct Cut {
+  std::string axis;
+  double value = 0;
+  std::string text;
+};
+
+/// Wall-clock seconds of each stage; what did not happen took 0.
+struct StageSeconds {
+  double read = 0;
+  double classify = 0;
+  double find = 0;
+  double generate = 0;
+  double close = 0;
+  double slice = 0;
+  double check = 0;
+  double write = 0;
+
+  void add(const ExtractStats& stats);
+  [[nodiscard]] double total() const { return read + classify + find + generate + close + slice + check + write; }
+};
+
+/// A contour, or a cut of one, made and written.
+struct ContourResult {
+  std::string input;
+  std::string variable;
+  std::string output;
+  std::uint64_t output_bytes = 0;
+  int image_dim = 0;
+  std::optional<double> isovalue;  ///< none for cuts of a saved contour
+  std::optional<Cut> cut;
+  std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour
+  std::optional<MeshReport> report;   ///< none with --no-check
+  Mesh mesh;
+  StageSeconds seconds;
+
+  [[nodiscard]] ExitCode exit_code() const { return report && has_faults(*report) ? ExitCode::Faults : ExitCode::Ok; }
+};
+
+Json to_json(const ContourResult& result);
+std::string to_text(const Console& console, const ContourResult& result);
+
+}  // namespace tegl::cli
