@@ -10,26 +10,37 @@
 
 namespace tegl {
 
-/// What `check` found. A closed oriented manifold without degenerate simplices has zeros in the last six.
+/// What `check` found. A closed oriented manifold without degenerate simplices has zeros in the last five
+/// and in `unused_vertices`. Simplices that repeat a vertex ("collapsed") span no d-dimensional piece: they are counted
+/// in `simplices` and `degenerate_simplices` and left out of all other counts.
 struct MeshReport {
-  int dim = 0;                             ///< dimension of the simplices (2 for triangles)
-  std::uint64_t vertices = 0;              ///< vertices used by at least one simplex
+  int dim = 0;                 ///< dimension d of the simplices (2 for triangles)
+  std::uint64_t vertices = 0;  ///< vertices used by at least one simplex that is not collapsed
   std::uint64_t unused_vertices = 0;
-  std::uint64_t simplices = 0;
-  std::uint64_t components = 0;            ///< connected components (vertices used)
-  std::int64_t euler = 0;                  ///< Euler characteristic
-  std::uint64_t boundary_simplices = 0;    ///< (dim-1)-faces in exactly one simplex
-  std::uint64_t nonmanifold_simplices = 0; ///< (dim-1)-faces in more than two simplices
-  std::uint64_t bad_links = 0;             ///< vertices whose link is neither a sphere nor a ball
-  std::uint64_t orientation_conflicts = 0; ///< (dim-1)-faces that two simplices run through the same way
-  std::uint64_t degenerate_simplices = 0;  ///< repeated vertices, or zero measure
+  std::uint64_t simplices = 0;              ///< as listed; one listed twice counts twice, here and in `euler`
+  std::uint64_t components = 0;             ///< connected components of the used vertices
+  std::int64_t euler = 0;                   ///< Euler characteristic: the alternating sum of the numbers of k-faces
+  std::uint64_t boundary_simplices = 0;     ///< (d-1)-faces in exactly one simplex
+  std::uint64_t nonmanifold_simplices = 0;  ///< (d-1)-faces in more than two simplices
+  std::uint64_t bad_links = 0;              ///< vertices whose link is neither a (d-1)-sphere nor a (d-1)-ball
+  std::uint64_t orientation_conflicts = 0;  ///< (d-1)-faces that exactly two simplices run through the same way
+  std::uint64_t degenerate_simplices = 0;   ///< collapsed, of measure zero, or with a coordinate that is not finite
 };
 
 /// Counts the invariants of a complex of d-simplices (d = 1, 2, 3) with d + 1 vertex numbers each in
-/// `simplices` (#S x (d+1), row = simplex); coordinates #V x space_dim, row = vertex.
-/// Errors: InvalidArgument (sizes, a vertex number out of range). O(S log S) time, O(S) memory.
+/// `simplices` (#S x (d+1), row = simplex); coordinates #V x space_dim, row = vertex, in any unit.
+///
+/// A link is tested whole: no face of it in more than two of its simplices, no pinched vertex, connected, and the Euler
+/// characteristic of a sphere (closed) or a ball. For d = 3 that decides sphere and disc by the classification of
+/// surfaces. A simplex has measure zero when one of its heights is at most 1e-14 of its longest edge: differences
+/// of coordinates and the orthogonalisation carry a rounding error of a few 1e-16 of that edge, while simplices that
+/// are merely thin are, for coordinates of float precision, orders of magnitude thicker.
+///
+/// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit).
+/// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input; no state, so thread-safe.
 MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates);
 
+/// The same for a contour: d = N - 1, space_dim = N. Real: float or double.
 template <int N, class Real>
 MeshReport check(const Contour<N, Real>& contour);
 

@@ -7,15 +7,36 @@
 
 namespace tegl {
 
-/// The cut of an N-dimensional contour by x_{N-1} = at: a contour in one dimension less, with the last
-/// coordinate left out. N = 4: triangles at time `at`; N = 3: segments.
-/// (Details: see the definition; theory: a vertex exactly on the hyperplane counts as above it.)
+/// The cut of an N-dimensional contour (N = 3, 4) by x_{N-1} = at: a contour in one dimension less, with the last
+/// coordinate left out. N = 4: triangles at time `at`; N = 3: segments. Names, units and direction are taken over; the
+/// cut's normals point to the same side, low or high, as the contour's.
+///
+/// Points. The cut's vertices lie on the edges between a vertex below and one above the hyperplane, interpolated in
+/// double from the one below. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above, and is
+/// itself the point of every cut edge that ends in it; simplices that collapse thereby are dropped. Faces that lie
+/// in the hyperplane and bound the contour, or its flat part in the hyperplane, from above alone belong to the cut too.
+/// So
+///  - at a sample's coordinate t = k the cut has the vertices and simplices of the contour of layer k of the image,
+///    bit by bit: also at the first layer, and where the layer below is missing. (Where samples equal the isovalue,
+///    whole pieces of a 4D contour may be flat in t = k, and the cut shows how the contour comes up to it from below.
+///    Extracting with a positive ExtractOptions::epsilon keeps such pieces out of the hyperplane.)
+///  - at any other t the cut of a closed manifold is a closed manifold, oriented alike.
+///
+/// Quadrilaterals are split by the shorter diagonal. The result's order depends on the contour's alone.
+/// Errors: InvalidArgument (`at` not finite). An `at` beyond the contour gives an empty cut.
+/// O(#S + #V) time plus O(c log c) for a cut of c simplices; #V bytes and O(c) of memory. Thread-safe.
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
-/// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes.
-/// Equals slice(extract(image, ...), at) up to the numbering.
-/// Errors: those of `extract`; InvalidArgument when `at` lies outside of the last axis.
+/// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
+/// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
+/// Equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit. `options.close` closes
+/// the cut at the borders of the other axes, as the cut of the closed contour is.
+///
+/// An image with one sample along the last axis has no tiles, hence an empty cut, at the one `at` that lies inside.
+/// Errors: those of `extract`; InvalidArgument when `at` is not finite or outside of the last axis, and when
+/// the grid's world map mixes the last axis with others, so that "last world coordinate = at" is not a layer.
+/// Cost: that of extracting one or two slabs, whatever the length of the last axis.
 template <class Real = float, Value T, int N>
 Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, double at,
                                  const ExtractOptions& options = {}, ExtractStats* stats = nullptr);

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The invariants of a simplicial complex, vertex by vertex. All that `check` counts can be seen in the star of a
+// vertex (the simplices around it) and is counted at the smallest vertex of the face concerned; so it takes one
+// table, from vertices to their simplices, and small sorts inside each star, never a sort of all faces at once.
+//
+// Based on: H. Seifert and W. Threlfall, Lehrbuch der Topologie, 1934, chapters 3, 6 and 7 (a complex is a manifold iff
+// all links are spheres or balls; surfaces are told apart by boundary, orientability and Euler characteristic).
+#include "tegl/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tegl/error.hpp"
+
+namespace tegl {
+namespace {
+
+/// Disjoint sets of 0 … n-1 with path halving; the smaller number leads, so results do not depend on the order of
+/// joins.
+class DisjointSets {
+ public:
+  void reset(std::size_t n) {
+    parent_.resize(n);
+    std::iota(parent_.begin(), parent_.end(), Index{0});
+  }
+  Index find(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// True if the two were in different sets.
+  bool join(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return false;
+    if (a > b) std::swap(a, b);
+    parent_[b] = a;
+    return true;
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+/// A complex of D-simplices, valid vertex numbers only.
+template <int D>
+struct Complex {
+  std::span<const Index> rows;  // #S x (D + 1)
+  std::size_t vertex_count = 0;
+
+  [[nodiscard]] std::size_t size() const { return rows.size() / (D + 1); }
+  [[nodiscard]] const Index* operator[](std::size_t s) const { return rows.data() + s * (D + 1); }
+  /// Whether a simplex repeats a vertex.
+  [[nodiscard]] bool is_collapsed(std::size_t s) const {
+    const Index* row = (*this)[s];
+    for (int i = 0; i < D; ++i)
+      for (int j = i + 1; j <= D; ++j)
+        if (row[i] == row[j]) return true;
+    return false;
+  }
+};
+
+/// The simplices around each vertex: numbers members[first[v] … first[v + 1]), ascending. Collapsed simplices are left
+/// out.
+struct Stars {
+  std::vector<std::size_t> first;
+  Buffer<Index> members;
+};
+
+template <int D>
+Stars make_stars(const Complex<D>& complex) {
+  Stars stars;
+  stars.first.assign(complex.vertex_count + 2, 0);  // counted two places up, so that filling leaves it right
+  for (std::size_t s = 0; s < complex.size(); ++s)
+    if (!complex.is_collapsed(s))
+      for (int i = 0; i <= D; ++i) ++stars.first[complex[s][i] + std::size_t{2}];
+  std::partial_sum(stars.first.begin(), stars.first.end(), stars.first.begin());
+  stars.members.resize(stars.first.back());
+  for (std::size_t s = 0; s < complex.size(); ++s)
+    if (!complex.is_collapsed(s))
+      for (int i = 0; i <= D; ++i) stars.members[stars.first[complex[s][i] + std::size_t{1}]++] = static_cast<Index>(s);
+  stars.first.pop_back();
+  return stars;
+}
+
+/// The link of one vertex at a time: a complex of (D-1)-simplices ("pieces"), oriented so that the vertex followed by a
+/// piece is the simplex that it comes from.
+template <int D>
+class LinkChecker {
+ public:
+  explicit LinkChecker(const Complex<D>& complex) : complex_(complex), seen_(complex.vertex_count, kNever) {}
+
+  /// Adds what the star of `v` says to the report.
+  void visit(Index v, std::span<const Index> star, MeshReport& report) {
+    load(v, star);
+    const std::uint64_t link_vertices = count_link_vertices(v);
+    sets_.reset(pieces_.size() * D);  // a set per corner of a piece; joined round the vertex of the link
+    scan_ridges(v, report);
+    if (!is_sphere_or_ball(link_vertices)) ++report.bad_links;
+    if constexpr (D >= 2) edges_ += edges_above_;
+  }
+  [[nodiscard]] std::uint64_t edges() const { return edges_; }          ///< 1-faces met so far, D >= 2
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }  ///< 2-faces met so far, D = 3
+
+ private:
+  static constexpr Index kNever = std::numeric_limits<Index>::max();
+  using Piece = std::array<Index, D>;
+
+  /// A (D-2)-face of the link in one of its pieces. Ridges with equal keys are the same face.
+  struct Ridge {
+    std::uint64_t key;
+    Index piece;
+    std::uint8_t omitted;  // the piece's corner that is not in the ridge
+    bool reversed;         // the orientation that the piece induces
+    bool operator<(const Ridge& other) const { return key < other.key; }
+  };
+
+  void load(Index v, std::span<const Index> star) {
+    pieces_.clear();
+    ridges_.clear();
+    for (const Index s : star) {
+      const Index* row = complex_[s];
+      Piece piece;
+      bool odd = false;  // parity of moving v to the front
+      for (int i = 0, k = 0; i <= D; ++i) {
+        if (row[i] == v)
+          odd = (i & 1) != 0;
+        else
+          piece[k++] = row[i];
+      }
+      const auto number = static_cast<Index>(pieces_.size());
+      pieces_.push_back(piece);
+      for (int j = 0; j < D; ++j) ridges_.push_back(make_ridge(piece, number, j, odd));
+    }
+    std::sort(ridges_.begin(), ridges_.end());
+  }
+
+  /// D = 3: the key is the two vertices; D = 2: the one vertex; D = 1: the empty face.
+  static Ridge make_ridge(const Piece& piece, Index number, int omitted, bool odd) {
+    bool reversed = odd != ((omitted & 1) != 0);
+    std::uint64_t key = 0;
+    if constexpr (D == 2) key = piece[1 - omitted];
+    if constexpr (D == 3) {
+      Index a = piece[omitted == 0 ? 1 : 0];
+      Index b = piece[omitted == 2 ? 1 : 2];
+      if (a > b) {
+        std::swap(a, b);
+        reversed = !reversed;
+      }
+      key = (std::uint64_t{a} << 32) | b;
+    }
+    return {key, number, static_cast<std::uint8_t>(omitted), reversed};
+  }
+
+  std::uint64_t count_link_vertices(Index v) {
+    std::uint64_t count = 0;
+    edges_above_ = 0;
+    for (const Piece& piece : pieces_)
+      for (const Index a : piece) {
+        if (seen_[a] == v) continue;
+        seen_[a] = v;
+        ++count;
+        if (a > v) ++edges_above_;
+      }
+    return count;
+  }
+
+  /// Whether v is the smallest vertex of the face "v and this ridge", which is then counted here.
+  static bool is_counted_at(Index v, std::uint64_t key) {
+    if constexpr (D == 1) return true;
+    if constexpr (D == 2) return key > v;
+    if constexpr (D == 3) return (key >> 32) > v;
+  }
+
+  void scan_ridges(Index v, MeshReport& report) {
+    ridge_count_ = 0;
+    fans_ = pieces_.size() * D;
+    connections_ = 0;
+    closed_ = true;
+    branching_ = false;
+    whole_.reset(pieces_.size());
+    for (std::size_t i = 0, j = 0; i < ridges_.size(); i = j) {
+      while (j < ridges_.size() && ridges_[j].key == ridges_[i].key) ++j;
+      ++ridge_count_;
+      const std::size_t cofaces = j - i;
+      closed_ = closed_ && cofaces != 1;
+      branching_ = branching_ || cofaces > 2;
+      if (cofaces == 2) join_across(ridges_[i], ridges_[i + 1]);
+      if (is_counted_at(v, ridges_[i].key)) count_face(std::span(ridges_).subspan(i, cofaces), report);
+    }
+  }
+
+  void count_face(std::span<const Ridge> cofaces, MeshReport& report) {
+    if constexpr (D == 3) ++triangles_;
+    if (cofaces.size() == 1) ++report.boundary_simplices;
+    if (cofaces.size() > 2) ++report.nonmanifold_simplices;
+    if (cofaces.size() == 2 && cofaces[0].reversed == cofaces[1].reversed) ++report.orientation_conflicts;
+  }
+
+  /// Two pieces that share a ridge: connected, and around each of the ridge's vertices they belong to one fan.
+  void join_across(const Ridge& a, const Ridge& b) {
+    if (whole_.join(a.piece, b.piece)) ++connections_;
+    for (int i = 0; i < D; ++i) {
+      if (i == a.omitted) continue;
+      for (int j = 0; j < D; ++j)
+        if (j != b.omitted && pieces_[a.piece][i] == pieces_[b.piece][j] &&
+            sets_.join(a.piece * D + static_cast<Index>(i), b.piece * D + static_cast<Index>(j)))
+          --fans_;
+    }
+  }
+
+  [[nodiscard]] bool is_sphere_or_ball(std::uint64_t link_vertices) const {
+    if (branching_) return false;                            // a ridge in three pieces
+    if (connections_ + 1 != pieces_.size()) return false;    // several parts
+    if (D >= 2 && fans_ != link_vertices) return false;      // a vertex of the link with several fans: pinched
+    auto euler = static_cast<std::int64_t>(pieces_.size());  // of the link
+    if constexpr (D == 2) euler = static_cast<std::int64_t>(link_vertices) - euler;
+    if constexpr (D == 3) euler += static_cast<std::int64_t>(link_vertices) - static_cast<std::int64_t>(ridge_count_);
+    constexpr std::int64_t kSphere = D % 2 == 1 ? 2 : 0;  // S^0, S^1, S^2: 2, 0, 2
+    return euler == (closed_ ? kSphere : 1);
+  }
+
+  const Complex<D>& complex_;
+  std::vector<Index> seen_;  // the last vertex in whose link each vertex was met
+  std::vector<Piece> pieces_;
+  std::vector<Ridge> ridges_;
+  DisjointSets sets_;
+  DisjointSets whole_;
+  std::uint64_t ridge_count_ = 0;
+  std::uint64_t fans_ = 0;
+  std::uint64_t connections_ = 0;
+  std::uint64_t edges_above_ = 0;
+  std::uint64_t edges_ = 0;
+  std::uint64_t triangles_ = 0;
+  bool closed_ = true;
+  bool branching_ = false;
+};
+
+/// Whether D edge vectors from one corner span less than D dimensions, up to rounding: Gram–Schmidt with the longest
+/// remainder first; its remainders are heights of the simplex, in falling order.
+template <int D, class Real>
+bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
+  constexpr int kMaxSpace = 8;
+  constexpr double kFlat = 1e-14;
+  std::array<std::array<double, kMaxSpace>, D> edges;
+  for (int j = 0; j < D; ++j)
+    for (int a = 0; a < space_dim; ++a)
+      edges[j][a] = static_cast<double>(coordinates[std::size_t{row[j + 1]} * space_dim + a]) -
+                    static_cast<double>(coordinates[std::size_t{row[0]} * space_dim + a]);
+  const auto dot = [space_dim](const auto& x, const auto& y) {
+    double sum = 0.0;
+    for (int a = 0; a < space_dim; ++a) sum += x[a] * y[a];
+    return sum;
+  };
+  double longest = 0.0;
+  for (int step = 0; step < D; ++step) {
+    int pivot = step;
+    double best = -1.0;
+    for (int j = step; j < D; ++j) {
+      const double square = dot(edges[j], edges[j]);
+      if (!std::isfinite(square)) return true;
+      if (square > best) {
+        best = square;
+        pivot = j;
+      }
+    }
+    std::swap(edges[step], edges[pivot]);
+    longest = std::max(longest, best);
+    if (best <= kFlat * kFlat * longest) return true;
+    for (int j = step + 1; j < D; ++j) {
+      const double along = dot(edges[j], edges[step]) / best;
+      for (int a = 0; a < space_dim; ++a) edges[j][a] -= along * edges[step][a];
+    }
+  }
+  return false;
+}
+
+template <int D, class Real>
+MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<const Real> coordinates) {
+  const Complex<D> complex{rows, coordinates.size() / static_cast<std::size_t>(space_dim)};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i] >= complex.vertex_count)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
+                              i / (D + 1), rows[i], complex.vertex_count));
+  MeshReport report;
+  report.dim = D;
+  report.simplices = complex.size();
+  const Stars stars = make_stars(complex);
+  LinkChecker<D> links(complex);
+  DisjointSets connected;
+  connected.reset(complex.vertex_count);
+  std::uint64_t sound = 0;
+  std::uint64_t joins = 0;
+  for (std::size_t s = 0; s < complex.size(); ++s) {
+    if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data())) ++report.degenerate_simplices;
+    if (complex.is_collapsed(s)) continue;
+    ++sound;
+    for (int i = 1; i <= D; ++i)
+      if (connected.join(complex[s][0], complex[s][i])) ++joins;
+  }
+  for (std::size_t v = 0; v < complex.vertex_count; ++v) {
+    if (stars.first[v] == stars.first[v + 1]) continue;
+    ++report.vertices;
+    links.visit(static_cast<Index>(v),
+                std::span(stars.members).subspan(stars.first[v], stars.first[v + 1] - stars.first[v]), report);
+  }
+  report.unused_vertices = complex.vertex_count - report.vertices;
+  report.components = report.vertices - joins;
+  // V - E + F - …, the simplices themselves last; below D = 2 and 3 the counts of edges and triangles are zero.
+  report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges()) +
+                 static_cast<std::int64_t>(links.triangles()) +
+                 (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(sound);
+  return report;
+}
+
+template <class Real>
+MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std::span<const Real> coordinates) {
+  if (d < 1 || d > 3)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2 or 3", d));
+  if (space_dim < d || space_dim > 8)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("coordinates of {} numbers each for simplices of dimension {}; expected {} to 8", space_dim, d, d));
+  const auto width = static_cast<std::size_t>(d + 1);
+  if (simplices.size() % width != 0)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} vertex numbers; expected a multiple of {}, so many to a simplex", simplices.size(), width));
+  if (coordinates.size() % static_cast<std::size_t>(space_dim) != 0)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} coordinates; expected a multiple of {}, so many to a vertex", coordinates.size(), space_dim));
+  constexpr std::size_t kLimit = std::numeric_limits<Index>::max();
+  if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
+    throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",
+                                                 simplices.size() / width, coordinates.size() / space_dim, kLimit));
+  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates);
+  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates);
+  return check_complex<3>(simplices, space_dim, coordinates);
+}
+
+}  // namespace
+
+MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates) {
+  return check_any<double>(d, simplices, space_dim, coordinates);
+}
+
+template <int N, class Real>
+MeshReport check(const Contour<N, Real>& contour) {
+  const std::span<const Index> rows(contour.simplices.empty() ? nullptr : contour.simplices.data()->data(),
+                                    contour.simplices.size() * N);
+  const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
+                                          contour.vertices.size() * N);
+  return check_any<Real>(N - 1, rows, N, coordinates);
+}
+
+template MeshReport check(const Contour<2, float>&);
+template MeshReport check(const Contour<2, double>&);
+template MeshReport check(const Contour<3, float>&);
+template MeshReport check(const Contour<3, double>&);
+template MeshReport check(const Contour<4, float>&);
+template MeshReport check(const Contour<4, double>&);
+
+}  // namespace tegl
