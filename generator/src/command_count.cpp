@@ -4,12 +4,8 @@
 // lemma over pairs of partitions, and orbits of all signatures under the closed group.
 #include <fmt/format.h>
 
-#include <string>
-#include <vector>
-
 #include "tegl/gen/commands.hpp"
 #include "tegl/gen/counting.hpp"
-#include "tegl/gen/error.hpp"
 #include "tegl/gen/transversal.hpp"
 
 namespace tegl::gen {
@@ -18,13 +14,8 @@ int run_count(const Options& options) {
   const WideUint orbits = burnside_orbits(options.dim, options.group, options.inversion);
   const bool enumerated = options.dim <= kMaxEnumeratedDim;
   if (enumerated) {
-    const std::vector<Element> elements = group(options.dim, options.group, options.inversion);
-    const std::size_t classes = transversal(options.dim, elements).representatives.size();
-    if (!(WideUint{classes} == orbits)) {
-      throw Error(ErrorCode::CountMismatch,
-                  fmt::format("dimension {}: {} orbits by Burnside's lemma, {} by enumeration", options.dim,
-                              orbits.to_decimal(), classes));
-    }
+    const Transversal classes = transversal(options.dim, group(options.dim, options.group, options.inversion));
+    require_burnside_count(classes, options.dim, options.group, options.inversion);
   }
   const std::size_t order = group_order(options.dim, options.group, options.inversion);
   const char* const group_name = options.group == GroupKind::Full ? "full" : "rotations";

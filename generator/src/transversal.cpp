@@ -9,6 +9,7 @@
 
 #include <limits>
 
+#include "tegl/gen/counting.hpp"
 #include "tegl/gen/error.hpp"
 
 namespace tegl::gen {
@@ -50,7 +51,7 @@ Transversal transversal(int n, std::span<const Element> group) {
                                 result.representatives[result.class_of[s]], representative));
       }
     }
-    if (result.class_of[representative] != index || group.size() % length != 0) {
+    if (length == 0 || result.class_of[representative] != index || group.size() % length != 0) {
       throw Error(
           ErrorCode::Internal,
           fmt::format("the orbit of {} has {} signatures: expected itself among them and a divisor of the order {}",
@@ -60,6 +61,16 @@ Transversal transversal(int n, std::span<const Element> group) {
     result.orbit_length.push_back(length);
   }
   return result;
+}
+
+void require_burnside_count(const Transversal& classes, int n, GroupKind kind, bool inversion) {
+  const WideUint expected = burnside_orbits(n, kind, inversion);
+  const std::size_t found = classes.representatives.size();
+  if (!(WideUint{found} == expected)) {
+    throw Error(ErrorCode::CountMismatch,
+                fmt::format("dimension {}: {} classes by enumeration, {} by Burnside's lemma: expected the same", n,
+                            found, expected.to_decimal()));
+  }
 }
 
 }  // namespace tegl::gen

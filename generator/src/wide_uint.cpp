@@ -14,6 +14,7 @@ namespace tegl::gen {
 namespace {
 
 constexpr int kLimbBits = 32;
+constexpr std::uint64_t kNineDigits = 1'000'000'000;  ///< the largest power of ten that divide() takes
 
 [[noreturn]] void overflow(const char* operation) {
   throw Error(ErrorCode::Internal,
@@ -97,7 +98,6 @@ WideUint WideUint::exactly_divided_by(std::uint64_t divisor) const {
 }
 
 std::string WideUint::to_decimal() const {
-  constexpr std::uint64_t kNineDigits = 1'000'000'000;
   std::vector<std::uint64_t> groups;  // of nine digits, least significant first
   WideUint rest = *this;
   do {

@@ -54,9 +54,10 @@ TEST(Counting, EnumerationGivesTheSameNumbers) {
   for (int n = 1; n <= kMaxEnumeratedDim; ++n) {
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
       const std::vector<Element> elements = group(n, kKinds[k].group, kKinds[k].inversion);
-      EXPECT_EQ(std::to_string(transversal(n, elements).representatives.size()),
-                kOrbits[static_cast<std::size_t>(n) - 1][k])
+      const Transversal classes = transversal(n, elements);
+      EXPECT_EQ(std::to_string(classes.representatives.size()), kOrbits[static_cast<std::size_t>(n) - 1][k])
           << "n = " << n << ", group " << k;
+      EXPECT_NO_THROW(require_burnside_count(classes, n, kKinds[k].group, kKinds[k].inversion));
     }
   }
 }
@@ -146,8 +147,15 @@ TEST(Counting, TheWrongGroupOf192ElementsAnd479ClassesIsFoundOut) {
   });
   ASSERT_EQ(wrong.size(), group_order(4, GroupKind::Rotations, false));
   EXPECT_TRUE(std::any_of(wrong.begin(), wrong.end(), [](const Element& g) { return g.det != 1; }));
-  const WideUint classes{transversal(4, wrong).representatives.size()};
-  EXPECT_EQ(classes, WideUint{479});
+  const Transversal classes = transversal(4, wrong);
+  EXPECT_EQ(classes.representatives.size(), 479U);
+  try {
+    require_burnside_count(classes, 4, GroupKind::Rotations, false);
+    FAIL() << "479 classes were accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::CountMismatch);
+    EXPECT_NE(std::string(error.what()).find("479 classes by enumeration, 496 by"), std::string::npos) << error.what();
+  }
   EXPECT_EQ(burnside_orbits(4, GroupKind::Rotations, false), WideUint{496});
   EXPECT_EQ(burnside_orbits(4, GroupKind::Full, false), WideUint{402});
 }

@@ -30,4 +30,8 @@ struct Transversal {
 /// length does not divide the group's order.
 [[nodiscard]] Transversal transversal(int n, std::span<const Element> group);
 
+/// Counts the classes a second time, by Burnside's lemma, which knows nothing of the elements that made `classes`: a
+/// group that is a wrong one shows here. Errors: CountMismatch if the two numbers differ.
+void require_burnside_count(const Transversal& classes, int n, GroupKind kind, bool inversion);
+
 }  // namespace tegl::gen
