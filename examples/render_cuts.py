@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws cuts of a 4D contour of the ocean side by side: one oblique view of the surface for each time.
+"""Draws cuts of a 4D contour of the ocean below each other: one oblique view of the surface for each time.
 
     examples/render_cuts.py --land examples/data/ocean_temperature.nc -o ocean.png 1.5=a.ply 7.3=b.ply
 
@@ -11,6 +11,7 @@ orthographic view towards the north, polygons painted from the far to the near.
 """
 
 import argparse
+import io
 import pathlib
 import sys
 
@@ -22,14 +23,15 @@ import netCDF4
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
+from PIL import Image
 
 ELEVATION = np.radians(48.0)  # of the eye above the horizon
 DEGREES_PER_METRE = 0.085  # the exaggeration of depth
 FLOOR = 300.0  # metres; where the drawn block of ocean ends
 SOUTH, NORTH = -48.0, 52.0  # the 20 degC surface lies between
 LIGHT = np.array([-0.45, -0.35, 0.82]) / np.linalg.norm([-0.45, -0.35, 0.82])
-LAND, LAND_WALL = np.array([0.905, 0.885, 0.845]), np.array([0.70, 0.675, 0.63])
-BASE, BASE_EDGE = np.array([0.925, 0.945, 0.96]), "#b9c6d0"
+LAND, DEEP, BASE = np.array([0.905, 0.885, 0.845]), np.array([0.77, 0.81, 0.83]), np.array([0.925, 0.945, 0.96])
+BACK_WALL, EDGE = np.array([0.955, 0.967, 0.976]), "#b9c6d0"
 MONTHS = "Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec".split()
 
 PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
@@ -105,22 +107,38 @@ def wall(west, east, south, top, bottom):
     return [[west, south, top], [east, south, top], [east, south, bottom], [west, south, bottom]]
 
 
-def land_polygons(path):
-    """Land as blocks, from the values that are missing at the surface: tops, and the walls that face south."""
+def runs(keys):
+    """The runs of equal entries of a sequence: (first, end) of each."""
+    edges = [0, *(np.flatnonzero(keys[1:] != keys[:-1]) + 1), len(keys)]
+    return zip(edges[:-1], edges[1:])
+
+
+def ground_polygons(path):
+    """Land and sea floor as steps, from the depth at which values begin to be missing: the tops of the steps, and
+    their walls to the south (no other side can be seen)."""
     with netCDF4.Dataset(path) as data:
-        lon, lat = data["lon"][:].data, data["lat"][:].data
-        land = np.ma.getmaskarray(data["temperature"][0, 0])
+        lon, lat, depth = (data[name][:].data for name in ("lon", "lat", "depth"))
+        missing = np.ma.getmaskarray(data["temperature"][0])
+    top = np.where(missing.any(axis=0), depth[missing.argmax(axis=0)], FLOOR).clip(max=FLOOR)
+    rows = np.flatnonzero((lat > SOUTH) & (lat < NORTH))
     half = (lon[1] - lon[0]) / 2
     polygons, colours = [], []
-    for j in np.nonzero((lat > SOUTH) & (lat < NORTH))[0]:
+
+    def add(polygon, shallow, brightness):
+        polygons.append(polygon)
+        share = shallow / FLOOR
+        colours.append(((1 - share) * LAND + share * DEEP) * brightness)
+
+    for j in rows:
         south, north = max(lat[j] - half, SOUTH), min(lat[j] + half, NORTH)
-        for mask, make, colour in ((land[j], lambda w, e: box(w, e, south, north, 0.0), LAND),
-                                   (land[j] & ~(land[j - 1] & (lat[j - 1] > SOUTH)),
-                                    lambda w, e: wall(w, e, south, 0.0, FLOOR), LAND_WALL)):
-            change = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-            for first, last in change.reshape(-1, 2):
-                polygons.append(make(lon[first] - half, lon[last - 1] + half))
-                colours.append(colour)
+        in_front = top[j - 1] if j > rows[0] else np.full_like(top[j], FLOOR)
+        for first, end in runs(top[j]):
+            if top[j, first] < FLOOR:
+                add(box(lon[first] - half, lon[end - 1] + half, south, north, top[j, first]), top[j, first], 1.0)
+        for first, end in runs(top[j] * 1e4 + in_front):
+            if top[j, first] < in_front[first]:
+                add(wall(lon[first] - half, lon[end - 1] + half, south, top[j, first], in_front[first]),
+                    top[j, first], 0.78)
     return np.array(polygons), np.array(colours), (lon[0] - half, lon[-1] + half)
 
 
@@ -138,27 +156,48 @@ def caption(time):
     return f"t = {time:g}", name if share == 0 else f"{share:.0%} of the way from {name} to mid-{MONTHS[month % 12]}"
 
 
-def panel(axes, time, path, land, colours, scale):
-    land_shapes, land_colours, (west, east) = land
+def draw_box(axes, west, east):
+    """The block of ocean behind the surface: its floor and the wall to the north."""
+    floor = np.array(box(west, east, SOUTH, NORTH, FLOOR))
+    back = np.array(wall(west, east, NORTH, 0.0, FLOOR))
+    for polygon, colour in ((floor, BASE), (back, BACK_WALL)):
+        axes.add_patch(plt.Polygon(project(polygon), facecolor=colour, edgecolor=EDGE, linewidth=0.6))
+
+
+def draw_rim(axes, west, east):
+    """The edges of the block that are nearest to the eye."""
+    for line in (box(west, east, SOUTH, NORTH, 0.0)[:2], wall(west, west, SOUTH, 0.0, FLOOR)[1:3],
+                 wall(east, east, SOUTH, 0.0, FLOOR)[1:3], box(west, west, SOUTH, NORTH, 0.0)[1:3],
+                 box(east, east, SOUTH, NORTH, 0.0)[1:3]):
+        axes.plot(*project(np.array(line)).T, color=EDGE, linewidth=0.6)
+
+
+def panel(axes, time, path, ground, colours, scale):
+    ground_shapes, ground_colours, (west, east) = ground
     vertices, triangles = read_ply(path)
     shapes, faces = surface_polygons(vertices, triangles, colours, scale)
-    base = project(np.array(box(west, east, SOUTH, NORTH, FLOOR)))
-    axes.add_patch(plt.Polygon(base, facecolor=BASE, edgecolor=BASE_EDGE, linewidth=0.6))
     # Triangles as quadrilaterals with a doubled corner: one collection, one order of painting.
     shapes = np.concatenate([shapes, shapes[:, 2:]], axis=1)
-    draw(axes, np.concatenate([land_shapes, shapes]), np.concatenate([land_colours, faces]))
-    rim = project(np.array(box(west, east, SOUTH, NORTH, 0.0) + box(west, west, SOUTH, SOUTH, FLOOR)))
-    axes.plot(*rim[[0, 1, 2, 3, 0]].T, color=BASE_EDGE, linewidth=0.6)
-    low = project(np.array(box(west, east, SOUTH, NORTH, FLOOR)))
-    for k in range(4):
-        axes.plot(*np.stack([rim[k], low[k]]).T, color=BASE_EDGE, linewidth=0.6)
-    title, detail = caption(time)
-    axes.set_xlim(west - 2, east + 2)
-    axes.set_ylim(low[0, 1] - 2, rim[3, 1] + 2)
+    draw_box(axes, west, east)
+    draw(axes, np.concatenate([ground_shapes, shapes]), np.concatenate([ground_colours, faces]))
+    draw_rim(axes, west, east)
+    lowest, highest = (project(np.array([west, *corner]))[1] for corner in ((SOUTH, FLOOR), (NORTH, 0.0)))
+    axes.set_xlim(west - 1, east + 1)
+    axes.set_ylim(lowest - 1, highest + 1)
     axes.set_aspect("equal")
     axes.axis("off")
-    axes.text(0.0, 1.0, title, transform=axes.transAxes, fontsize=15, fontweight="bold", va="bottom", color="#222222")
-    axes.text(0.105, 1.004, detail, transform=axes.transAxes, fontsize=11, va="bottom", color="#666666")
+    title, detail = caption(time)
+    axes.text(0.003, 1.01, title, transform=axes.transAxes, fontsize=15, fontweight="bold", va="bottom",
+              color="#222222")
+    axes.text(0.115, 1.018, detail, transform=axes.transAxes, fontsize=11.5, va="bottom", color="#666666")
+
+
+def save(figure, path):
+    """As a PNG of 256 colours: a third of the size, and hardly a difference to be seen."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, dpi=100, facecolor="white")
+    image = Image.open(buffer).convert("RGB").quantize(256, kmeans=4, dither=Image.Dither.NONE)
+    image.save(path, format="PNG", optimize=True)
 
 
 def main():
@@ -166,21 +205,20 @@ def main():
     parser.add_argument("cuts", nargs="+", metavar="TIME=PLY")
     parser.add_argument("--land", required=True, help="the image, a netCDF file")
     parser.add_argument("-o", "--output", required=True, help="the picture, a PNG file")
-    parser.add_argument("--title", default="")
     arguments = parser.parse_args()
 
     cuts = [(float(time), path) for time, _, path in (cut.partition("=") for cut in arguments.cuts)]
     colours, scale = plt.get_cmap("viridis_r"), Normalize(0.0, 250.0)
-    land = land_polygons(arguments.land)
-    figure, panels = plt.subplots(len(cuts), 1, figsize=(11, 0.4 + 3.15 * len(cuts)), squeeze=False)
+    ground = ground_polygons(arguments.land)
+    figure, panels = plt.subplots(len(cuts), 1, figsize=(11, 2.95 * len(cuts)), squeeze=False)
+    figure.subplots_adjust(left=0.005, right=0.915, top=1 - 0.11 / len(cuts), bottom=0.01, hspace=0.12)
     for axes, (time, path) in zip(panels[:, 0], cuts):
-        panel(axes, time, path, land, colours, scale)
-    figure.subplots_adjust(left=0.01, right=0.9, top=0.955, bottom=0.01, hspace=0.1)
-    bar = figure.colorbar(plt.cm.ScalarMappable(scale, colours), cax=figure.add_axes([0.915, 0.25, 0.014, 0.5]))
+        panel(axes, time, path, ground, colours, scale)
+    bar = figure.colorbar(plt.cm.ScalarMappable(scale, colours), cax=figure.add_axes([0.93, 0.25, 0.014, 0.5]))
     bar.ax.invert_yaxis()
-    bar.set_label("depth of the 20 °C surface (m)", fontsize=11)
+    bar.set_label("depth of the 20 °C surface (m)", fontsize=11.5)
     bar.outline.set_visible(False)
-    figure.savefig(arguments.output, dpi=100, facecolor="white")
+    save(figure, arguments.output)
 
 
 if __name__ == "__main__":
