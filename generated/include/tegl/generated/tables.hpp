@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The generated tables, by name and by dimension. The definitions are written by `gen` into the build tree.
+#pragma once
+
+#include "tegl/table_contract.hpp"
+
+namespace tegl::tables {
+
+extern const TileTable kTile2Barycentric, kTile2Compact;
+extern const TileTable kTile3Barycentric, kTile3Compact;
+extern const TileTable kTile4Barycentric, kTile4Compact;
+
+extern const RegionTable kRegion1BarycentricLow, kRegion1BarycentricHigh, kRegion1CompactLow, kRegion1CompactHigh;
+extern const RegionTable kRegion2BarycentricLow, kRegion2BarycentricHigh, kRegion2CompactLow, kRegion2CompactHigh;
+extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegion3CompactLow, kRegion3CompactHigh;
+
+/// The contours of the dim-tile, dim = 2, 3, 4; triangulation 0: barycentric, 1: compact.
+const TileTable& tile_table(int dim, int triangulation) noexcept;
+
+/// The high regions of the k-tile, k = 1, 2, 3; alternative 0: low-connected, 1: high-connected.
+const RegionTable& region_table(int k, int triangulation, int alternative) noexcept;
+
+}  // namespace tegl::tables

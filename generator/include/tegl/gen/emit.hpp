@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Emitters: plain data in, text out. The text depends on the arguments alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tegl/gen/tile_tables.hpp"
+
+namespace tegl::gen {
+
+/// Everything that one run of `gen --dim N --out DIR` writes.
+struct TableSet {
+  int dim = 0;
+  std::string command;  ///< the command line, for the banner
+  std::uint64_t group_order = 0;
+  std::uint64_t orbits = 0;
+  std::vector<CertifiedFigures> figures;  ///< one per certified alternative and triangulation
+  std::vector<TileTables> tiles;
+  std::vector<RegionTables> regions;  ///< of the (dim - 1)-tile
+};
+
+struct EmittedFile {
+  std::string name;  ///< relative to the output folder
+  std::string text;
+};
+
+/// C++ sources that define kTile<N><Triangulation> and kRegion<N-1><Triangulation><Alternative> in
+/// tegl::tables (declared in tegl/generated/tables.hpp), one file per tile table and one for the regions.
+std::vector<EmittedFile> emit_cpp(const TableSet& set);
+
+/// The reviewable face of the tables: counts, facet statistics, the certificate's figures and a digest of each table.
+EmittedFile emit_manifest(const TableSet& set);
+
+const char* triangulation_name(Triangulation t) noexcept;  ///< "barycentric", "compact"
+const char* alternative_name(Alternative a) noexcept;      ///< "low", "high"
+const char* layout_name(Layout l) noexcept;                ///< "class", "flat"
+
+}  // namespace tegl::gen

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tables as plain data: what the emitters write, whatever the language. Built from contours and regions,
+// certified, and checked against each other before anything is written.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tegl/gen/facets.hpp"
+#include "tegl/gen/regions.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::gen {
+
+enum class Layout { by_class, flat };
+
+/// The owning form of tables::TileTable; see there for every member's meaning.
+struct TileTables {
+  int dim = 0;
+  Triangulation triangulation = Triangulation::barycentric;
+  Layout layout = Layout::flat;
+  std::uint32_t permutation_stride = 0;
+  std::uint32_t max_simplices = 0;
+  std::uint32_t max_tile_vertices = 0;
+  std::uint64_t total_simplices = 0;  ///< over all signatures, whatever the layout
+  std::vector<std::uint16_t> list_of, element_of;
+  std::vector<std::uint8_t> slot_swaps, permutations, reverses;
+  std::vector<tables::List> lists;
+  std::vector<std::uint8_t> simplices;
+  std::vector<std::uint64_t> side_masks;
+
+  [[nodiscard]] tables::TileTable view() const;
+};
+
+/// The owning form of tables::RegionTable.
+struct RegionTables {
+  int dim = 0;
+  Triangulation triangulation = Triangulation::barycentric;
+  Alternative alternative = Alternative::low;
+  std::uint32_t max_own_vertices = 0;
+  std::vector<tables::RegionList> lists;
+  std::vector<std::uint8_t> simplices;
+  std::vector<std::uint32_t> masks;
+};
+
+/// What was counted while certifying one triangulation of one alternative.
+struct CertifiedFigures {
+  Alternative alternative = Alternative::low;
+  Triangulation triangulation = Triangulation::barycentric;
+  std::uint64_t signatures = 0;  ///< certified, all of them
+  std::uint64_t simplices = 0;
+  std::uint32_t max_simplices = 0;
+  std::uint64_t facets = 0;
+  std::uint32_t max_facets = 0;
+  std::uint64_t spheres = 0;        ///< components of Sigma
+  std::uint64_t others = 0;         ///< components of Sigma that are no spheres
+  std::uint32_t highest_genus = 0;  ///< n = 4
+  std::uint64_t signatures_with_others = 0;
+  std::vector<Signature> classes_with_others;  ///< representatives, ascending
+  std::uint64_t by_filling[5] = {};            ///< facets by Filling
+};
+
+/// The contours of all signatures of one builder, each with its certificate. Uses all processors; the result does
+/// not depend on their number. Throws Error{CertificateFailed} naming the first signature that fails.
+std::vector<TileContour> certified_contours(const ContourBuilder& builder, CertifiedFigures& figures);
+
+/// Throws Error{Internal} unless, for every signature s, the contour `high[s]` is `low[~s]` with the orientation
+/// reversed, vertex by vertex: what lets one table serve both alternatives.
+void check_inversion(int dim, const std::vector<TileContour>& low, const std::vector<TileContour>& high);
+
+/// Packs contours. By class: checks that the symmetry group carries the representative's list to every signature's,
+/// orientation included, and throws Error{Internal} if not (compact tables are not equivariant).
+TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout);
+
+/// Regions of the k-tile for closing the contours of (k+1)-dimensional images.
+RegionTables make_region_tables(const RegionBuilder& builder, Triangulation triangulation, Alternative alternative);
+
+/// FNV-1a (64 bit) over all entries of a table: what MANIFEST.json records.
+std::uint64_t digest(const TileTables& table);
+std::uint64_t digest(const RegionTables& table);
+
+}  // namespace tegl::gen

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// `gen --classes`, `--certify` and `--out`.
+#include "tegl/gen/commands.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "tegl/gen/error.hpp"
+#include "tegl/gen/table_set.hpp"
+#include "tegl/gen/transversal.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+std::vector<std::string> edge_names(const Tile& tile, const std::vector<std::uint8_t>& points) {
+  std::vector<std::string> names;
+  for (const std::uint8_t e : points) names.push_back(tile.edge_names[e]);
+  return names;
+}
+
+struct ClassReport {
+  Signature signature;
+  std::uint32_t orbit, stabiliser;
+  TileContour contour;
+  std::vector<std::uint32_t> ambiguous;
+};
+
+std::string json_of(const Tile& tile, const ClassReport& c) {
+  std::vector<std::string> facets, euler;
+  for (const Facet& facet : c.contour.facets) {
+    facets.push_back(fmt::format("[\"{}\"]", fmt::join(edge_names(tile, facet.points), "\", \"")));
+    euler.push_back(fmt::format("{}", facet.boundary_euler));
+  }
+  std::vector<std::string> ambiguous;
+  for (std::size_t k = 2; k < c.ambiguous.size(); ++k)
+    ambiguous.push_back(fmt::format("\"{}\": {}", k, c.ambiguous[k]));
+  return fmt::format(
+      "{{\"signature\": {}, \"orbit_length\": {}, \"stabiliser\": {}, \"components\": {}, \"facets\": [{}], "
+      "\"boundary_euler\": [{}], \"ambiguous_faces\": {{{}}}}}",
+      c.signature, c.orbit, c.stabiliser, c.contour.facets.size(), fmt::join(facets, ", "), fmt::join(euler, ", "),
+      fmt::join(ambiguous, ", "));
+}
+
+std::string text_of(const Tile& tile, const ClassReport& c) {
+  std::vector<std::string> facets, euler;
+  for (const Facet& facet : c.contour.facets) {
+    facets.push_back(fmt::format("({})", fmt::join(edge_names(tile, facet.points), " ")));
+    euler.push_back(fmt::format("{}", facet.boundary_euler));
+  }
+  std::vector<std::string> ambiguous;
+  for (std::size_t k = 2; k < c.ambiguous.size(); ++k) ambiguous.push_back(fmt::format("{}", c.ambiguous[k]));
+  return fmt::format("{:>9} {:>6} {:>10} {:>10}  {:<10} {:<10} {}", c.signature, c.orbit, c.stabiliser,
+                     c.contour.facets.size(), euler.empty() ? "-" : fmt::format("{}", fmt::join(euler, " ")),
+                     fmt::format("{}", fmt::join(ambiguous, " ")), fmt::join(facets, " "));
+}
+
+std::string figures_json(const CertifiedFigures& f) {
+  return fmt::format(
+      "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
+      "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
+      "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
+      "\"mean_simplices\": {:.4f}}}",
+      alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
+      f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
+      f.highest_genus, f.simplices, f.max_simplices,
+      static_cast<double>(f.simplices) / static_cast<double>(f.signatures));
+}
+
+void print_figures(int dim, const CertifiedFigures& f) {
+  fmt::print("{}-tile, {} alternative, {} triangulation\n", dim, alternative_name(f.alternative),
+             triangulation_name(f.triangulation));
+  fmt::print("  certified    {} of {} signatures\n", f.signatures, f.signatures);
+  fmt::print("  facets       {} (at most {} in a tile): {} around spheres, {} around others", f.facets, f.max_facets,
+             f.spheres, f.others);
+  if (f.others != 0)
+    fmt::print(" (genus up to {}) in {} signatures, {} classes: {}", f.highest_genus, f.signatures_with_others,
+               f.classes_with_others.size(), fmt::join(f.classes_with_others, " "));
+  fmt::print("\n  filled by    simplex {}, cone {}, own vertices {}, side {}\n", f.by_filling[1], f.by_filling[2],
+             f.by_filling[3], f.by_filling[4]);
+  fmt::print("  simplices    {}: {:.2f} per signature, at most {}\n", f.simplices,
+             static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.max_simplices);
+}
+
+/// Writes every file beside its target first and renames at the end: a failure leaves no half-written table.
+void write_files(const std::filesystem::path& folder, const std::vector<EmittedFile>& files) {
+  const auto fail = [&](const std::filesystem::path& path, const std::string& why) {
+    for (const EmittedFile& file : files) {
+      std::error_code ignored;
+      std::filesystem::remove(folder / (file.name + ".part"), ignored);
+    }
+    throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", path.string(), why));
+  };
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(folder, "cannot make the folder: " + error.message());
+  for (const EmittedFile& file : files) {
+    std::ofstream out(folder / (file.name + ".part"), std::ios::binary);
+    out.write(file.text.data(), static_cast<std::streamsize>(file.text.size()));
+    out.close();
+    if (!out) fail(folder / file.name, "cannot be written");
+  }
+  for (const EmittedFile& file : files) {
+    std::filesystem::rename(folder / (file.name + ".part"), folder / file.name, error);
+    if (error) fail(folder / file.name, error.message());
+  }
+}
+
+}  // namespace
+
+int run_classes(const Options& options) {
+  const CubeLattice lattice(options.dim);
+  const Alternative alternative = options.alternative == AlternativeChoice::Low ? Alternative::low : Alternative::high;
+  const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
+  const auto elements = group(options.dim, GroupKind::Full, false);
+  const Transversal classes = transversal(options.dim, elements);
+  if (options.json)
+    fmt::print("{{\"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
+               options.dim, alternative_name(alternative), elements.size());
+  else
+    fmt::print("signature  orbit stabiliser components  Euler      ambiguous  facets\n");
+  for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
+    const Signature s = classes.representatives[c];
+    const ClassReport report{s, classes.orbit_length[c],
+                             static_cast<std::uint32_t>(elements.size() / classes.orbit_length[c]), builder.build(s),
+                             ambiguous_faces(lattice, options.dim, alternative, s)};
+    if (options.json)
+      fmt::print("{}\n  {}", c == 0 ? "" : ",", json_of(builder.tile(), report));
+    else
+      fmt::print("{}\n", text_of(builder.tile(), report));
+  }
+  if (options.json) fmt::print("\n]}}\n");
+  return 0;
+}
+
+int run_certify(const Options& options) {
+  const auto figures = certify_all(options.dim);
+  if (!options.json) {
+    for (const CertifiedFigures& f : figures) print_figures(options.dim, f);
+    return 0;
+  }
+  std::vector<std::string> parts;
+  for (const CertifiedFigures& f : figures) parts.push_back(figures_json(f));
+  fmt::print("{{\"dim\": {}, \"certified\": [\n  {}\n]}}\n", options.dim, fmt::join(parts, ",\n  "));
+  return 0;
+}
+
+int run_out(const Options& options) {
+  TableRequest request;
+  request.dim = options.dim;
+  request.command = fmt::format("gen --dim {}", options.dim);
+  if (options.triangulation != TriangulationChoice::All)
+    request.triangulations = {options.triangulation == TriangulationChoice::Compact ? Triangulation::compact
+                                                                                    : Triangulation::barycentric};
+  if (options.triangulation != TriangulationChoice::All)
+    request.command += fmt::format(" --triangulation {}", triangulation_name(request.triangulations.front()));
+  if (options.layout != LayoutChoice::Auto) {
+    const Layout layout = options.layout == LayoutChoice::Class ? Layout::by_class : Layout::flat;
+    request.layout = [layout](Triangulation) { return layout; };
+    request.command += fmt::format(" --layout {}", layout_name(layout));
+  }
+  const TableSet set = make_table_set(request);
+  for (const CertifiedFigures& f : set.figures) print_figures(options.dim, f);
+  auto files = emit_cpp(set);
+  files.push_back(emit_manifest(set));
+  write_files(options.out, files);
+  for (const EmittedFile& file : files) fmt::print("wrote {}: {} bytes\n", file.name, file.text.size());
+  return 0;
+}
+
+}  // namespace tegl::gen
