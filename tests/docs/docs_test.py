@@ -5,6 +5,7 @@
     docs_test.py commands SOURCE BIN    runs every block marked ```sh in a scratch folder, BIN first in the PATH
     docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
     docs_test.py links SOURCE           every relative link leads to a file
+    docs_test.py options SOURCE BIN     docs/command-line.md names every option that the programs' help names
 
 Blocks marked otherwise (```console, ```text) are for reading only.
 """
@@ -87,6 +88,20 @@ def links(source, _=None):
             count += 1
     assert count > 0, "no links found"
     print(f"{count} links lead somewhere")
+
+
+def options(source, programs):
+    page = (source / "docs/command-line.md").read_text(encoding="utf-8")
+    count = 0
+    for program in (["tegl"], *(["tegl", command] for command in ("info", "contour", "slice", "check")), ["gen"]):
+        call = [f"{programs}/{program[0]}", *program[1:], "--help"]
+        text = subprocess.run(call, text=True, capture_output=True, check=True).stdout
+        for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", text))):
+            if f"`{option}" not in page and f" {option}" not in page:
+                sys.exit(f"docs/command-line.md does not mention {option} of {' '.join(program)}")
+            count += 1
+    assert count > 10, "the programs' help has lost its options"
+    print(f"{count} options are documented")
 
 
 if __name__ == "__main__":
