@@ -29,17 +29,12 @@ int dispatch(const Options& options) {
       return 0;
     case Command::Count:
       return tegl::gen::run_count(options);
-#ifdef TEGL_GEN_TABLE_COMMANDS
     case Command::Classes:
       return tegl::gen::run_classes(options);
     case Command::Certify:
       return tegl::gen::run_certify(options);
     case Command::Out:
       return tegl::gen::run_out(options);
-#else
-    default:
-      throw Error(ErrorCode::InvalidArgument, "this build of gen knows only --count");
-#endif
   }
   throw Error(ErrorCode::Internal, fmt::format("command {} is not dispatched", static_cast<int>(options.command)));
 }

@@ -5,15 +5,21 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -189,6 +195,157 @@ TEST(GenCli, FailsWhenItsOutputCannotBeWritten) {
   const Outcome run = gen({"--dim", "3", "--count"}, ">/dev/full");
   EXPECT_EQ(run.status, 5);
   EXPECT_THAT(run.err, HasSubstr("standard output"));
+}
+
+/// Polygon sizes, largest first.
+std::vector<std::size_t> sizes_of(const json& facets) {
+  std::vector<std::size_t> sizes;
+  for (const json& facet : facets) {
+    sizes.push_back(facet.size());
+  }
+  std::sort(sizes.rbegin(), sizes.rend());
+  return sizes;
+}
+
+TEST(GenCli, ClassesOfTheCubeHaveTheKnownOrbitsAndPolygons) {
+  struct Expected {
+    int orbit;
+    std::vector<std::size_t> low;
+    std::vector<std::size_t> high;
+    int ambiguous_squares;
+  };
+  const std::map<int, Expected> cube{
+      {0, {1, {}, {}, 0}},
+      {1, {8, {3}, {3}, 0}},
+      {3, {12, {4}, {4}, 0}},
+      {6, {12, {3, 3}, {6}, 1}},
+      {7, {24, {5}, {5}, 0}},
+      {15, {6, {4}, {4}, 0}},
+      {22, {8, {3, 3, 3}, {6, 3}, 3}},
+      {23, {8, {6}, {6}, 0}},
+      {24, {4, {3, 3}, {3, 3}, 0}},
+      {25, {24, {4, 3}, {7}, 1}},
+      {27, {24, {6}, {6}, 0}},
+      {30, {24, {5, 3}, {5, 3}, 2}},
+      {31, {24, {5}, {5}, 0}},
+      {60, {6, {4, 4}, {4, 4}, 2}},
+      {61, {24, {7}, {4, 3}, 1}},
+      {63, {12, {4}, {4}, 0}},
+      {105, {2, {3, 3, 3, 3}, {3, 3, 3, 3}, 6}},
+      {107, {8, {6, 3}, {3, 3, 3}, 3}},
+      {111, {12, {6}, {3, 3}, 1}},
+      {126, {4, {3, 3}, {3, 3}, 0}},
+      {127, {8, {3}, {3}, 0}},
+      {255, {1, {}, {}, 0}},
+  };
+  for (const char* const alternative : {"low", "high"}) {
+    const Outcome run = gen({"--dim", "3", "--classes", "--json", "--alternative", alternative});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json classes = json::parse(run.out).at("classes");
+    ASSERT_EQ(classes.size(), cube.size());
+    for (const json& found : classes) {
+      const Expected& expected = cube.at(found.at("signature"));
+      EXPECT_EQ(found.at("orbit_length"), expected.orbit) << found;
+      EXPECT_EQ(found.at("stabiliser"), 48 / expected.orbit) << found;
+      EXPECT_EQ(sizes_of(found.at("facets")), alternative[0] == 'l' ? expected.low : expected.high) << found;
+      EXPECT_EQ(found.at("components"), found.at("facets").size()) << found;
+      EXPECT_EQ(found.at("ambiguous_faces").at("2"), expected.ambiguous_squares) << found;
+    }
+  }
+}
+
+TEST(GenCli, ClassesForPeopleHasALineForEachClass) {
+  for (const auto& [dim, classes] : {std::pair{"2", 6}, std::pair{"3", 22}, std::pair{"4", 402}}) {
+    const Outcome run = gen({"--dim", dim, "--classes"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(std::count(run.out.begin(), run.out.end(), '\n'), classes + 1) << "and one of headings";
+  }
+}
+
+TEST(GenCli, CertifiesEverySignatureOfBothAlternativesAndTriangulations) {
+  for (const auto& [dim, signatures] : {std::pair{"2", 16}, std::pair{"3", 256}}) {
+    const Outcome run = gen({"--dim", dim, "--certify", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json certified = json::parse(run.out).at("certified");
+    std::set<std::pair<std::string, std::string>> covered;
+    for (const json& figures : certified) {
+      covered.emplace(figures.at("alternative"), figures.at("triangulation"));
+      EXPECT_EQ(figures.at("signatures"), signatures);
+      EXPECT_EQ(figures.at("passed"), signatures);
+      EXPECT_EQ(figures.at("non_spherical"), 0);
+    }
+    EXPECT_EQ(covered.size(), 4U);
+  }
+}
+
+/// A new, empty folder, removed at the end.
+class Folder {
+ public:
+  Folder() : path_(testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The regular files in a folder and their bytes.
+std::map<std::string, std::string> contents(const std::string& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      files[entry.path().filename().string()].assign(std::istreambuf_iterator<char>(file), {});
+    }
+  }
+  return files;
+}
+
+TEST(GenCli, OutWritesTheSameBytesWhereverAndHoweverOften) {
+  const Folder folder;
+  ASSERT_EQ(gen({"--dim", "3", "--out", folder.file("first")}).status, 0);
+  ASSERT_EQ(gen({"--out", folder.file("a/second"), "--dim", "3"}).status, 0);
+  ASSERT_EQ(gen({"--out", folder.file("a/second"), "--dim", "3"}).status, 0) << "over the first ones";
+  const auto first = contents(folder.file("first"));
+  EXPECT_EQ(first.size(), 4U);
+  for (const auto& [name, text] : first) {
+    EXPECT_EQ(text.find(folder.file("")), std::string::npos) << name << " names the folder";
+  }
+  EXPECT_EQ(first, contents(folder.file("a/second")));
+}
+
+TEST(GenCli, OutHonoursTriangulationAndLayout) {
+  const Folder folder;
+  ASSERT_EQ(gen({"--dim", "2", "--out", folder.file("compact"), "--triangulation", "compact"}).status, 0);
+  const auto compact = contents(folder.file("compact"));
+  EXPECT_TRUE(compact.contains("tile2_compact.cpp"));
+  EXPECT_FALSE(compact.contains("tile2_barycentric.cpp"));
+  for (const char* const layout : {"class", "flat"}) {
+    ASSERT_EQ(gen({"--dim", "2", "--out", folder.file(layout), "--layout", layout}).status, 0);
+    EXPECT_THAT(contents(folder.file(layout)).at("tile2_barycentric.cpp"), HasSubstr(std::string(layout) + " layout"));
+  }
+}
+
+TEST(GenCli, OutThatCannotBeWrittenFailsAndLeavesNothingHalfWritten) {
+  const Folder folder;
+  std::ofstream(folder.file("file")) << "in the way";
+  const Outcome not_a_folder = gen({"--dim", "2", "--out", folder.file("file")});
+  EXPECT_EQ(not_a_folder.status, 5);
+  EXPECT_THAT(not_a_folder.err, HasSubstr(folder.file("file")));
+
+  std::filesystem::create_directories(folder.file("tables/region1.cpp"));
+  const Outcome blocked = gen({"--dim", "2", "--out", folder.file("tables")});
+  EXPECT_EQ(blocked.status, 5);
+  EXPECT_THAT(blocked.err, HasSubstr("region1.cpp"));
+  for (const auto& [name, text] : contents(folder.file("tables"))) {
+    EXPECT_THAT(name, testing::Not(HasSubstr(".part")));
+  }
 }
 
 }  // namespace
