@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Caps of a contour at the image's border; see close.hpp. A border face of an N-dimensional image is an
+// image of dimension N - 1, and the cap its high set, tile by tile from the region tables.
+#include "close.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "extract_generate.hpp"
+#include "extract_kernel.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// Place in CapPlanes::squares of the pair of axes in `axes`.
+constexpr std::size_t square_plane(unsigned axes) noexcept {
+  switch (axes) {
+    case 3:
+    case 9:
+      return 0;  // 01, 03
+    case 5:
+    case 10:
+      return 1;  // 02, 13
+    default:
+      return 2;  // 12, 23
+  }
+}
+
+/// The mean of the corners and edge points in a region's mask, in the frame of the cell.
+template <int N, unsigned Axes>
+TilePoint<std::popcount(Axes)> region_place(const SlabView<N>& view, std::uint32_t mask,
+                                            const Index* edge_ids) noexcept {
+  constexpr int kDim = std::popcount(Axes);
+  Weighted<kDim> sum;
+  for (; mask != 0; mask &= mask - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(mask));
+    const unsigned e = v - (1u << kDim);
+    sum.add(v < (1u << kDim) ? corner_point<kDim>(v) : edge_place<N, Axes>(view, e, edge_ids[e]), 1.0);
+  }
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
+}  // namespace
+
+template <int N, class Real>
+Caps<N, Real>::Caps(const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
+                    const Placement<N, Real>& placement, bool inverted, bool flip)
+    : shape_(shape),
+      tables_(tables),
+      counter_(counter),
+      placement_(placement),
+      inverted_(inverted),
+      flip_(flip),
+      border_(shape.words()),
+      valid_(shape.words()) {
+  for (CapPlanes* planes : {&layers_[0], &layers_[1], &slab_}) {
+    planes->corners.allocate(shape_.rows(), shape_.pitch());
+    if constexpr (N == 4)
+      for (EdgePlane& plane : planes->squares) plane.allocate(shape_.rows(), shape_.pitch());
+  }
+}
+
+template <int N, class Real>
+const Word* Caps<N, Real>::border_cells(unsigned axes, const Row& at) {
+  const auto index = shape_.index_of(at.row);
+  bool all = (axes >> (N - 1) & 1u) == 0 && (at.layer == 0 || at.layer + 1 == shape_.layers());
+  for (int a = 1; a < N - 1; ++a)
+    all = all || ((axes >> a & 1u) == 0 && (index[a] == 0 || index[a] + 1 == shape_.size(a)));
+  const bool along_row = (axes & 1u) != 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) border_[w] = all ? shape_.mask(w, along_row) : 0;
+  if (!along_row) {
+    const std::size_t last = shape_.size(0) - 1;
+    border_[0] |= 1;
+    border_[last / kWordBits] |= Word{1} << (last % kWordBits);
+  }
+  if (counter_.cells_of_valid_tiles(axes, at.row, at.below, at.above, valid_.data()))
+    for (std::size_t w = 0; w < shape_.words(); ++w) border_[w] &= valid_[w];
+  return border_.data();
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at) {
+  const Word* const border = border_cells(0, at);
+  const std::size_t first = at.row * shape_.pitch();
+  auto index = shape_.index_of(at.row);
+  index[N - 1] = at.layer;
+  plane.base[at.row] = static_cast<Index>(vertices_.size());
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    plane.prefix[first + w] = static_cast<std::uint32_t>(vertices_.size()) - plane.base[at.row];
+    plane.bits[0][first + w] = (inverted_ ? ~layer.high[first + w] : layer.high[first + w]) & border[w];
+    for (Word rest = plane.bits[0][first + w]; rest != 0; rest &= rest - 1) {
+      index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+      vertices_.push_back(placement_.template in_cell<CellFrame<N, 0>>(index, {}));
+    }
+  }
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at) {
+  plane.base[at.row] = static_cast<Index>(vertices_.size());
+  auto index = shape_.index_of(at.row);
+  index[N - 1] = at.layer;
+  if (!shape_.has_cells(index, Axes)) return;
+  const Word* const border = border_cells(Axes, at);
+  CellBits<N, Axes> cells(view, at.row);
+  CellEdges<N, Axes> edges(view, at.row);
+  std::array<Index, tables::edge_count(2)> ids;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    const std::size_t word = at.row * shape_.pitch() + w;
+    plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.base[at.row];
+    plane.bits[0][word] = 0;
+    if (border[w] == 0) continue;
+    cells.load(w);
+    edges.load(w);
+    for (Word rest = border[w]; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      const tables::RegionList& list = tables_.square->lists[original(cells.signature(bit), 4)];
+      if (list.own_vertices == 0) continue;
+      plane.bits[0][word] |= Word{1} << bit;
+      edges.ids(bit, ids.data());
+      index[0] = w * kWordBits + bit;
+      const auto place = region_place<N, Axes>(view, tables_.square->masks[list.first_mask], ids.data());
+      vertices_.push_back(placement_.template in_cell<CellFrame<N, Axes>>(index, place));
+    }
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) {
+  CapPlanes& planes = layers_[k % 2];
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    const Row at{row, k, below, above};
+    add_corners(planes.corners, layer, at);
+    if constexpr (N == 4) {
+      const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr};
+      add_squares<3>(planes.squares[square_plane(3)], view, at);
+      add_squares<5>(planes.squares[square_plane(5)], view, at);
+      add_squares<6>(planes.squares[square_plane(6)], view, at);
+    }
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
+                               Index* out) const {
+  using Frame = CellFrame<N, kAll ^ 1u << Omitted>;
+  for (unsigned corner = 0; corner < 1u << (N - 1); ++corner) {
+    if ((signature >> corner & 1u) == 0) continue;
+    const unsigned mask = Frame::spread(corner);
+    const EdgePlane& plane = layers_[(layer + (mask >> (N - 1) & 1u)) % 2].corners;
+    out[corner] = ~plane.id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  constexpr auto kList = CellFrame<N, kAxes>::axes();
+  for (unsigned square = 0; square < 2 * kList.size(); ++square) {
+    const unsigned away = 1u << kList[square / 2];
+    const unsigned mask = square % 2 != 0 ? away : 0;
+    const unsigned pair = kAxes ^ away;
+    const CapPlanes& planes = (pair >> (N - 1) & 1u) != 0 ? slab_ : layers_[(layer + (mask >> (N - 1))) % 2];
+    out[square] = ~planes.squares[square_plane(pair)].id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_face_row(const SlabView<N>& view, std::size_t k, unsigned side, std::size_t row) {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  constexpr int kDim = N - 1;
+  constexpr unsigned kCorners = 1u << kDim;
+  using Frame = CellFrame<N, kAxes>;
+  // Inwards is where the contour's positive side looks; the sign of (face's frame, inwards) in the image's frame.
+  const bool flip = flip_ != (((N - 1 - Omitted) % 2 != 0) != (side != 0));
+  const Slab<N>& slab = *view.slab;
+  // A face across the last axis lies in one layer, which then is its lower one.
+  const SlabView<N> face = Omitted == N - 1 ? SlabView<N>{&shape_, {view.layers[side], nullptr}, &slab} : view;
+  const std::size_t layer = Omitted == N - 1 ? k + side : k;
+  const std::size_t tile_row = shape_.unshifted(row, side << Omitted);
+  auto index = shape_.index_of(row);
+  index[N - 1] = layer;
+  CellBits<N, kAxes> cells(face, row);
+  CellEdges<N, kAxes> edges(face, row);
+  Ids ids;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    Word rest = shape_.mask(w, Frame::kAlongRow);
+    if constexpr (Omitted == 0) {
+      const std::size_t at = side == 0 ? 0 : shape_.size(0) - 1;
+      rest = w == at / kWordBits ? Word{1} << (at % kWordBits) : 0;
+    }
+    if (rest == 0) continue;
+    cells.load(w);
+    edges.load(w);
+    for (; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      index[0] = w * kWordBits + bit;
+      const std::size_t tile = index[0] - (Omitted == 0 ? side : 0);
+      if (!slab.all_valid && (slab.valid[tile_row * shape_.pitch() + tile / kWordBits] >> (tile % kWordBits) & 1u) == 0)
+        continue;
+      const unsigned signature = original(cells.signature(bit), kCorners);
+      const tables::RegionList& list = tables_.face->lists[signature];
+      if (list.simplex_count == 0) continue;
+      corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
+      edges.ids(bit, ids.data() + kCorners);
+      if constexpr (N == 4) {
+        Index* const cubes = ids.data() + kCorners + tables::edge_count(kDim);
+        if (counter_.has_cubes())
+          for (unsigned j = 0; j < tables::kFaceSlots; ++j)
+            cubes[j] = face.cubes(Omitted, 0).id(row, shape_.pitch(), index[0]) + j;
+        square_ids<Omitted>(row, layer, index[0], cubes + tables::kFaceSlots);
+      }
+      for (unsigned j = 0; j < list.own_vertices; ++j) {
+        ids[tables::first_region_vertex(kDim) + j] = ~static_cast<Index>(vertices_.size());
+        const auto place =
+            region_place<N, kAxes>(face, tables_.face->masks[list.first_mask + j], ids.data() + kCorners);
+        vertices_.push_back(placement_.template in_cell<Frame>(index, place));
+      }
+      const std::uint8_t* stored = tables_.face->simplices + std::size_t{list.first_simplex} * N;
+      for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
+        Simplex simplex;
+        for (int j = 0; j < N; ++j) simplex[j] = ids[stored[j]];
+        if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
+        simplices_.push_back(simplex);
+      }
+    }
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned side) {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  if (Omitted == N - 1 && k != (side == 0 ? 0 : shape_.layers() - 2)) return;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    const auto index = shape_.index_of(row);
+    const bool across_rows = Omitted > 0 && Omitted < N - 1;
+    if (across_rows && index[Omitted] != (side == 0 ? 0 : shape_.size(Omitted) - 1)) continue;
+    if (shape_.has_cells(index, kAxes)) add_face_row<Omitted>(view, k, side, row);
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
+  if constexpr (N == 4)
+    for (std::size_t row = 0; row < shape_.rows(); ++row) {
+      const Row at{row, k, nullptr, view.slab};
+      add_squares<9>(slab_.squares[square_plane(9)], view, at);
+      add_squares<10>(slab_.squares[square_plane(10)], view, at);
+      add_squares<12>(slab_.squares[square_plane(12)], view, at);
+    }
+  for (unsigned side = 0; side < 2; ++side) {
+    add_face<0>(view, k, side);
+    add_face<1>(view, k, side);
+    if constexpr (N > 2) add_face<2>(view, k, side);
+    if constexpr (N > 3) add_face<3>(view, k, side);
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::finish(Contour<N, Real>& contour, std::uint64_t max_vertices) const {
+  const std::uint64_t first = contour.vertices.size();
+  check_vertex_count(first + vertices_.size(), max_vertices);
+  contour.vertices.insert(contour.vertices.end(), vertices_.begin(), vertices_.end());
+  contour.simplices.reserve(contour.simplices.size() + simplices_.size());
+  for (Simplex simplex : simplices_) {
+    // Numbers of the contour are below `first`; complements of cap numbers are not, by the limit.
+    for (Index& v : simplex)
+      if (v >= first) v = static_cast<Index>(first + static_cast<Index>(~v));
+    contour.simplices.push_back(simplex);
+  }
+}
+
+template class Caps<2, float>;
+template class Caps<2, double>;
+template class Caps<3, float>;
+template class Caps<3, double>;
+template class Caps<4, float>;
+template class Caps<4, double>;
+
+}  // namespace tegl::detail

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Caps: the high part of the image's border, which closes a contour there. Gathered slab by slab
+// beside the extraction, by the same bit planes and ranks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "extract_count.hpp"
+#include "extract_place.hpp"
+#include "extract_tables.hpp"
+
+namespace tegl::detail {
+
+/// Vertices of the caps that are not on the contour: high samples on the border, and (N = 4) squares
+/// whose high region has a barycentre. Of one layer, or of one slab. Numbers count caps' vertices alone.
+struct CapPlanes {
+  EdgePlane corners;                 ///< layers only
+  std::array<EdgePlane, 3> squares;  ///< layers: axes 01, 02, 12; slabs: axes 03, 13, 23
+};
+
+template <int N, class Real>
+class Caps {
+ public:
+  using Vertex = std::array<Real, N>;
+  using Simplex = std::array<Index, N>;
+
+  /// `inverted`: the layers' bits are. `flip`: against the orientation "positive side faces high".
+  Caps(const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
+       const Placement<N, Real>& placement, bool inverted, bool flip);
+
+  /// The cap vertices of layer k, between its slabs (or null); after its contour points are known.
+  void add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above);
+  /// The caps between layers k and k + 1; after add_layer of both.
+  void add_slab(std::size_t k, const SlabView<N>& view);
+  /// Appends the caps to the contour. Throws TooLarge.
+  void finish(Contour<N, Real>& contour, std::uint64_t max_vertices) const;
+
+ private:
+  static constexpr unsigned kAll = (1u << N) - 1;
+  /// What the passes over one kind of cell in one row share.
+  struct Row {
+    std::size_t row;
+    std::size_t layer;
+    const Slab<N>* below;
+    const Slab<N>* above;
+  };
+  using Ids = std::array<Index, 256>;
+
+  /// Cells along `axes` based in this row that lie in the border and belong to a valid tile.
+  const Word* border_cells(unsigned axes, const Row& at);
+  void add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at);
+  template <unsigned Axes>
+  void add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at);
+  template <int Omitted>
+  void add_face(const SlabView<N>& view, std::size_t k, unsigned side);
+  template <int Omitted>
+  void add_face_row(const SlabView<N>& view, std::size_t k, unsigned side, std::size_t row);
+  template <int Omitted>
+  void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
+  template <int Omitted>
+  void square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const;
+  [[nodiscard]] unsigned original(unsigned signature, unsigned corners) const noexcept {
+    return inverted_ ? ~signature & ((1u << corners) - 1) : signature;
+  }
+
+  const RowShape<N>& shape_;
+  TableSet<N> tables_;
+  const Counter<N>& counter_;
+  const Placement<N, Real>& placement_;
+  bool inverted_;
+  bool flip_;
+  std::array<CapPlanes, 2> layers_;  ///< by k % 2
+  CapPlanes slab_;
+  std::vector<Word> border_;
+  std::vector<Word> valid_;
+  Buffer<Vertex> vertices_;
+  Buffer<Simplex> simplices_;  ///< cap vertex v is stored as ~v
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sweeps along a row of cells: tiles, or (for the barycentres of a 4D contour) the cubes of tiles.
+// Compiled for each set of axes that a cell may span, so all loops over corners and edges unroll.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "extract_layers.hpp"
+
+namespace tegl::detail {
+
+/// The frame of a cell along the axes of the bit mask `Axes` of N-space: local axis j is the j-th of them.
+template <int N, unsigned Axes>
+struct CellFrame {
+  static constexpr int kDim = std::popcount(Axes);
+  static constexpr bool kAlongRow = (Axes & 1u) != 0;
+  static constexpr unsigned kRows = 1u << (kDim - (kAlongRow ? 1 : 0));
+  static constexpr unsigned kEdges = tables::edge_count(kDim);
+
+  /// Axis of N-space of each local axis.
+  static constexpr std::array<int, kDim> axes() noexcept {
+    std::array<int, kDim> result{};
+    std::size_t j = 0;
+    for (int a = 0; a < N; ++a)
+      if ((Axes >> a & 1u) != 0) result[j++] = a;
+    return result;
+  }
+  /// Local corner number to the set of axes of N-space along which it is displaced.
+  static constexpr unsigned spread(unsigned corner) noexcept {
+    unsigned mask = 0;
+    for (int j = 0; j < kDim; ++j) mask |= (corner >> j & 1u) << axes()[static_cast<std::size_t>(j)];
+    return mask;
+  }
+  /// First corner of the r-th row of corners.
+  static constexpr unsigned row_corner(unsigned r) noexcept { return kAlongRow ? 2 * r : r; }
+};
+
+/// Base corner of edge `e` of a k-cube: undoes squeeze (table contract).
+constexpr unsigned edge_base(unsigned k, unsigned e) noexcept {
+  const unsigned axis = e >> (k - 1);
+  const unsigned squeezed = e & ((1u << (k - 1)) - 1);
+  const unsigned low = squeezed & ((1u << axis) - 1);
+  return low | (squeezed >> axis) << (axis + 1);
+}
+
+/// The corners' bits of 64 cells of a row at a time.
+template <int N, unsigned Axes>
+class CellBits {
+ public:
+  using Frame = CellFrame<N, Axes>;
+
+  CellBits(const SlabView<N>& view, std::size_t row) noexcept {
+    for (unsigned r = 0; r < Frame::kRows; ++r) {
+      const unsigned mask = Frame::spread(Frame::row_corner(r));
+      const Layer<N>& layer = *view.layers[mask >> (N - 1) & 1u];
+      rows_[r] = layer.high.data() + view.shape->shifted(row, mask) * view.shape->pitch();
+    }
+  }
+
+  void load(std::size_t w) noexcept {
+    for (unsigned r = 0; r < Frame::kRows; ++r) {
+      low_[r] = rows_[r][w];
+      if constexpr (Frame::kAlongRow) high_[r] = rows_[r][w] >> 1 | rows_[r][w + 1] << (kWordBits - 1);
+    }
+  }
+  /// The cells with both high and low corners.
+  [[nodiscard]] Word mixed() const noexcept {
+    Word any = 0;
+    Word all = ~Word{0};
+    for (unsigned r = 0; r < Frame::kRows; ++r) {
+      any |= low_[r];
+      all &= low_[r];
+      if constexpr (Frame::kAlongRow) {
+        any |= high_[r];
+        all &= high_[r];
+      }
+    }
+    return any & ~all;
+  }
+  [[nodiscard]] unsigned signature(unsigned bit) const noexcept {
+    unsigned signature = 0;
+    for (unsigned r = 0; r < Frame::kRows; ++r) {
+      if constexpr (Frame::kAlongRow) {
+        signature |= static_cast<unsigned>(low_[r] >> bit & 1u) << (2 * r);
+        signature |= static_cast<unsigned>(high_[r] >> bit & 1u) << (2 * r + 1);
+      } else {
+        signature |= static_cast<unsigned>(low_[r] >> bit & 1u) << r;
+      }
+    }
+    return signature;
+  }
+
+ private:
+  std::array<const Word*, Frame::kRows> rows_;
+  std::array<Word, Frame::kRows> low_;
+  std::array<Word, Frame::kRows> high_;
+};
+
+/// The vertex numbers of the edges of 64 cells of a row at a time.
+template <int N, unsigned Axes>
+class CellEdges {
+ public:
+  using Frame = CellFrame<N, Axes>;
+
+  CellEdges(const SlabView<N>& view, std::size_t row) noexcept {
+    constexpr auto kStreams = streams();
+    for (unsigned s = 0; s < kStreamCount; ++s) {
+      const unsigned mask = kStreams[s].mask;
+      const EdgePlane& plane = view.edges(kStreams[s].axis, mask >> (N - 1) & 1u);
+      const std::size_t at = view.shape->shifted(row, mask);
+      base_[s] = plane.base[at];
+      prefix_[s] = plane.prefix.data() + at * view.shape->pitch();
+      bits_[s] = plane.bits[0].data() + at * view.shape->pitch();
+    }
+  }
+
+  void load(std::size_t w) noexcept {
+    for (unsigned s = 0; s < kStreamCount; ++s) {
+      first_[s] = base_[s] + prefix_[s][w];
+      word_[s] = bits_[s][w];
+    }
+  }
+  /// Numbers of all edges of cell `bit`; those of edges that are not critical mean nothing.
+  void ids(unsigned bit, Index* out) const noexcept {
+    constexpr auto kPlaces = places();
+    const Word below = (Word{1} << bit) - 1;
+    std::array<Index, kStreamCount> rank;
+    for (unsigned s = 0; s < kStreamCount; ++s)
+      rank[s] = first_[s] + static_cast<Index>(std::popcount(word_[s] & below));
+    for (unsigned e = 0; e < Frame::kEdges; ++e) {
+      const unsigned s = kPlaces[e].stream;
+      out[e] = rank[s] + (kPlaces[e].next ? static_cast<Index>(word_[s] >> bit & 1u) : 0);
+    }
+  }
+
+ private:
+  struct Stream {
+    int axis = 0;       ///< of N-space
+    unsigned mask = 0;  ///< displacement of its row
+  };
+  struct Place {
+    unsigned stream = 0;
+    bool next = false;  ///< at the next sample of the row
+  };
+  static constexpr bool is_stream(unsigned e) noexcept {
+    const unsigned axis = e >> (Frame::kDim - 1);
+    return !Frame::kAlongRow || axis == 0 || (edge_base(Frame::kDim, e) & 1u) == 0;
+  }
+  static constexpr unsigned kStreamCount = [] {
+    unsigned count = 0;
+    for (unsigned e = 0; e < Frame::kEdges; ++e) count += is_stream(e) ? 1 : 0;
+    return count;
+  }();
+  static constexpr std::array<Stream, kStreamCount> streams() noexcept {
+    std::array<Stream, kStreamCount> result{};
+    unsigned count = 0;
+    for (unsigned e = 0; e < Frame::kEdges; ++e)
+      if (is_stream(e))
+        result[count++] = {Frame::axes()[e >> (Frame::kDim - 1)], Frame::spread(edge_base(Frame::kDim, e)) & ~1u};
+    return result;
+  }
+  static constexpr std::array<Place, Frame::kEdges> places() noexcept {
+    std::array<Place, Frame::kEdges> result{};
+    for (unsigned e = 0; e < Frame::kEdges; ++e) {
+      const unsigned mask = Frame::spread(edge_base(Frame::kDim, e));
+      for (unsigned s = 0; s < kStreamCount; ++s)
+        if (streams()[s].axis == Frame::axes()[e >> (Frame::kDim - 1)] && streams()[s].mask == (mask & ~1u))
+          result[e] = {s, (mask & 1u) != 0};
+    }
+    return result;
+  }
+
+  std::array<Index, kStreamCount> base_;
+  std::array<const std::uint32_t*, kStreamCount> prefix_;
+  std::array<const Word*, kStreamCount> bits_;
+  std::array<Index, kStreamCount> first_;
+  std::array<Word, kStreamCount> word_;
+};
+
+}  // namespace tegl::detail

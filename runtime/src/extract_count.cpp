@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Counting by popcount; see extract_count.hpp.
+// Based on: W. Schroeder, R. Maynard, B. Geveci, Flying Edges, 2015 (count, prefix sum, generate by
+// rows), here on bit planes and in any dimension.
+#include "extract_count.hpp"
+
+#include <algorithm>
+
+namespace tegl::detail {
+
+template <int N>
+Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables) : shape_(shape), tile_(*tables.tile) {
+  if constexpr (N == 4)
+    for (unsigned s = 0; s < 256; ++s) {
+      cube_vertices_[s] = tables.cube->lists[tables.cube->list_of[s]].cone_vertices;
+      has_cubes_ = has_cubes_ || cube_vertices_[s] != 0;
+    }
+}
+
+template <int N>
+void Counter<N>::allocate(Layer<N>& layer) const {
+  layer.high.assign(shape_.rows() * shape_.pitch(), 0);
+  layer.missing.assign(shape_.rows() * shape_.pitch(), 0);
+  for (EdgePlane& plane : layer.edges) plane.allocate(shape_.rows(), shape_.pitch());
+  if (has_cubes_) layer.cubes.allocate(shape_.rows(), shape_.pitch());
+}
+
+template <int N>
+void Counter<N>::allocate(Slab<N>& slab) const {
+  slab.valid.assign(shape_.rows() * shape_.pitch(), 0);
+  slab.active.assign(shape_.rows() * shape_.pitch(), 0);
+  slab.edges.allocate(shape_.rows(), shape_.pitch());
+  if (has_cubes_)
+    for (CubePlane& plane : slab.cubes) plane.allocate(shape_.rows(), shape_.pitch());
+  slab.tile_base.assign(shape_.rows(), 0);
+  slab.simplex_base.assign(shape_.rows(), 0);
+}
+
+template <int N>
+void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, Layer<N>& layer) const {
+  layer.any_missing = false;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    auto start = shape_.index_of(row);
+    start[N - 1] = k;
+    Word* const high = layer.high.data() + row * shape_.pitch();
+    Word* const missing = layer.missing.data() + row * shape_.pitch();
+    if (source.classify(start, high, missing)) {
+      if (!layer.any_missing) std::fill(layer.missing.data(), missing, Word{0});
+      layer.any_missing = true;
+    } else if (layer.any_missing) {
+      std::fill(missing, missing + shape_.words(), Word{0});
+    }
+    if (invert)
+      for (std::size_t w = 0; w < shape_.words(); ++w) high[w] = ~high[w] & shape_.mask(w, false);
+  }
+}
+
+template <int N>
+void Counter<N>::find_valid(const Layer<N>& lower, const Layer<N>& upper, Slab<N>& slab) const {
+  slab.all_valid = !lower.any_missing && !upper.any_missing;
+  if (slab.all_valid) return;
+  constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    Word* const valid = slab.valid.data() + row * shape_.pitch();
+    std::fill(valid, valid + shape_.words(), Word{0});
+    if (!shape_.has_cells(shape_.index_of(row), kMiddle)) continue;
+    for (const Layer<N>* layer : {&lower, &upper}) {
+      if (!layer->any_missing) continue;
+      for (unsigned corner = 0; corner <= kMiddle; corner += 2) {
+        const Word* const missing = layer->missing.data() + shape_.shifted(row, corner) * shape_.pitch();
+        for (std::size_t w = 0; w < shape_.words(); ++w)
+          valid[w] |= missing[w] | missing[w] >> 1 | missing[w + 1] << (kWordBits - 1);
+      }
+    }
+    for (std::size_t w = 0; w < shape_.words(); ++w) valid[w] = ~valid[w] & shape_.mask(w, true);
+  }
+}
+
+template <int N>
+bool Counter<N>::cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab<N>* below, const Slab<N>* above,
+                                      Word* out) const {
+  if ((below != nullptr && below->all_valid) || (above != nullptr && above->all_valid)) return false;
+  const auto index = shape_.index_of(row);
+  std::fill(out, out + shape_.words(), Word{0});
+  // The tiles around a cell: displaced backwards along any of the axes that the cell does not span.
+  for (unsigned back = 0; back < 1u << (N - 1); back += 2) {
+    bool exists = (back & axes) == 0;
+    for (int a = 1; a < N - 1; ++a) exists = exists && ((back >> a & 1u) == 0 || index[a] > 0);
+    if (!exists) continue;
+    for (const Slab<N>* slab : {below, above}) {
+      if (slab == nullptr) continue;
+      const Word* const valid = slab->valid.data() + shape_.unshifted(row, back) * shape_.pitch();
+      Word carry = 0;
+      for (std::size_t w = 0; w < shape_.words(); ++w) {
+        out[w] |= valid[w];
+        if ((axes & 1u) == 0) out[w] |= valid[w] << 1 | carry;
+        carry = valid[w] >> (kWordBits - 1);
+      }
+    }
+  }
+  return true;
+}
+
+template <int N>
+void Counter<N>::count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
+                             const Word* valid) const {
+  Word* const bits = plane.bits[0].data() + row * shape_.pitch();
+  std::uint32_t* const prefix = plane.prefix.data() + row * shape_.pitch();
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    Word critical = a[w] ^ (along_row ? a[w] >> 1 | a[w + 1] << (kWordBits - 1) : b[w]);
+    if (along_row) critical &= shape_.mask(w, true);
+    if (valid != nullptr) critical &= valid[w];
+    bits[w] = critical;
+    prefix[w] = count;
+    if (critical != 0) count += static_cast<std::uint32_t>(std::popcount(critical));
+  }
+  plane.base[row] = count;
+}
+
+template <int N>
+template <unsigned Axes>
+void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
+  const std::size_t pitch = shape_.pitch();
+  plane.base[row] = 0;
+  if (!shape_.has_cells(shape_.index_of(row), Axes)) return;  // its bits have been 0 from the start
+  CellBits<N, Axes> cells(view, row);
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    cells.load(w);
+    std::array<Word, tables::kFaceSlots> bits{};
+    Word mixed = cells.mixed() & shape_.mask(w, (Axes & 1u) != 0);
+    if (valid != nullptr) mixed &= valid[w];
+    plane.prefix[row * pitch + w] = count;
+    for (; mixed != 0; mixed &= mixed - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+      const unsigned vertices = cube_vertices_[cells.signature(bit)];
+      for (unsigned slot = 0; slot < vertices; ++slot) bits[slot] |= Word{1} << bit;
+      count += vertices;
+    }
+    for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) plane.bits[slot][row * pitch + w] = bits[slot];
+  }
+  plane.base[row] = count;
+}
+
+template <int N>
+void Counter<N>::count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) const {
+  std::vector<Word> buffer(shape_.pitch());
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    const auto index = shape_.index_of(row);
+    const Word* const high = layer.high.data() + row * shape_.pitch();
+    for (int axis = 0; axis < N - 1; ++axis) {
+      const unsigned mask = 1u << axis;
+      layer.edges[axis].base[row] = 0;
+      if (!shape_.has_cells(index, mask)) continue;  // its bits have been 0 from the start
+      const bool masked = cells_of_valid_tiles(mask, row, below, above, buffer.data());
+      const Word* const next = layer.high.data() + shape_.shifted(row, mask) * shape_.pitch();
+      count_edges(layer.edges[axis], row, high, next, axis == 0, masked ? buffer.data() : nullptr);
+    }
+    if constexpr (N == 4)
+      if (has_cubes_) {
+        const bool masked = cells_of_valid_tiles(7u, row, below, above, buffer.data());
+        count_cubes<7u>(layer.cubes, {&shape_, {&layer, nullptr}, nullptr}, row, masked ? buffer.data() : nullptr);
+      }
+  }
+}
+
+template <int N>
+std::uint64_t Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const {
+  constexpr unsigned kAll = (1u << N) - 1;
+  Word* const active = slab.active.data() + row * shape_.pitch();
+  slab.tile_base[row] = 0;
+  slab.simplex_base[row] = 0;
+  std::fill(active, active + shape_.words(), Word{0});
+  if (!shape_.has_cells(shape_.index_of(row), kAll)) return 0;
+  CellBits<N, kAll> cells(view, row);
+  std::uint64_t tiles = 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    cells.load(w);
+    Word mixed = cells.mixed() & shape_.mask(w, true);
+    if (!slab.all_valid) mixed &= slab.valid[row * shape_.pitch() + w];
+    active[w] = mixed;
+    for (; mixed != 0; mixed &= mixed - 1) {
+      const unsigned signature = cells.signature(static_cast<unsigned>(std::countr_zero(mixed)));
+      const tables::List& list = tile_.lists[tile_.list_of[signature]];
+      slab.tile_base[row] += Index{list.cone_vertices} + list.side_vertices;
+      slab.simplex_base[row] += list.simplex_count;
+      ++tiles;
+    }
+  }
+  return tiles;
+}
+
+template <int N>
+std::uint64_t Counter<N>::count_slab(const SlabView<N>& view, Slab<N>& slab) const {
+  std::vector<Word> buffer(shape_.pitch());
+  std::uint64_t tiles = 0;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    const Word* const lower = view.layers[0]->high.data() + row * shape_.pitch();
+    const Word* const upper = view.layers[1]->high.data() + row * shape_.pitch();
+    const bool masked = cells_of_valid_tiles(1u << (N - 1), row, nullptr, &slab, buffer.data());
+    count_edges(slab.edges, row, lower, upper, false, masked ? buffer.data() : nullptr);
+    if constexpr (N == 4)
+      if (has_cubes_) {
+        const auto valid = [&](unsigned axes) {
+          return cells_of_valid_tiles(axes, row, nullptr, &slab, buffer.data()) ? buffer.data() : nullptr;
+        };
+        count_cubes<14u>(slab.cubes[0], view, row, valid(14u));
+        count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
+        count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+      }
+    tiles += count_tiles(view, slab, row);
+  }
+  return tiles;
+}
+
+namespace {
+
+/// Replaces a row's count by the number of vertices before it.
+void place(Index& base, std::uint64_t& next) {
+  const std::uint64_t count = base;
+  base = static_cast<Index>(next);
+  next += count;
+}
+
+}  // namespace
+
+template <int N>
+std::uint64_t Counter<N>::place_layer(Layer<N>& layer, std::uint64_t first) const {
+  std::uint64_t next = first;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    for (EdgePlane& plane : layer.edges) place(plane.base[row], next);
+    if (has_cubes_) place(layer.cubes.base[row], next);
+  }
+  layer.local.first = static_cast<Index>(first);
+  return next;
+}
+
+template <int N>
+std::uint64_t Counter<N>::place_slab(Slab<N>& slab, std::uint64_t first, std::uint64_t& first_simplex) const {
+  std::uint64_t next = first;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    place(slab.edges.base[row], next);
+    if (has_cubes_)
+      for (CubePlane& plane : slab.cubes) place(plane.base[row], next);
+    place(slab.tile_base[row], next);
+    const std::uint64_t simplices = slab.simplex_base[row];
+    slab.simplex_base[row] = first_simplex;
+    first_simplex += simplices;
+  }
+  slab.local.first = static_cast<Index>(first);
+  return next;
+}
+
+template class Counter<2>;
+template class Counter<3>;
+template class Counter<4>;
+
+}  // namespace tegl::detail

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Passes 1 to 3 of the extraction: which cells are critical, how many vertices and simplices each row
+// has, and where they go. Works on bits alone: independent of the value type and of coordinates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "extract_cell.hpp"
+#include "extract_layers.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+/// Tables that one extraction uses. All of one triangulation.
+template <int N>
+struct TableSet {
+  const tables::TileTable* tile = nullptr;      ///< of N
+  const tables::TileTable* cube = nullptr;      ///< of 3; N = 4 only
+  const tables::RegionTable* face = nullptr;    ///< of N - 1; for closed borders
+  const tables::RegionTable* square = nullptr;  ///< of 2; N = 4, for closed borders
+};
+
+template <int N>
+class Counter {
+ public:
+  Counter(const RowShape<N>& shape, const TableSet<N>& tables);
+
+  /// Storage for a layer or a slab; once.
+  void allocate(Layer<N>& layer) const;
+  void allocate(Slab<N>& slab) const;
+
+  /// Classifies layer `k`; `invert` for the high-connected alternative.
+  void classify(const SampleSource<N>& source, std::size_t k, bool invert, Layer<N>& layer) const;
+  /// Tiles without a missing corner, between two layers.
+  void find_valid(const Layer<N>& lower, const Layer<N>& upper, Slab<N>& slab) const;
+
+  /// Critical edges (and cubes) in a layer; `below` and `above` are its slabs, or null at the border.
+  void count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) const;
+  /// Critical edges (and cubes) along the last axis, active tiles and what they own. Returns the number
+  /// of active tiles.
+  std::uint64_t count_slab(const SlabView<N>& view, Slab<N>& slab) const;
+
+  /// Turn counts into places, starting with vertex `first` (and simplex `first_simplex`); return the end.
+  std::uint64_t place_layer(Layer<N>& layer, std::uint64_t first) const;
+  std::uint64_t place_slab(Slab<N>& slab, std::uint64_t first, std::uint64_t& first_simplex) const;
+
+  /// Whether any cube has vertices of its own.
+  [[nodiscard]] bool has_cubes() const noexcept { return has_cubes_; }
+
+  /// In `out` (words): the cells along `axes` based in this row that belong to a valid tile of one of
+  /// the slabs (null: none). Returns false, and writes nothing, if that is all of them.
+  bool cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab<N>* below, const Slab<N>* above,
+                            Word* out) const;
+
+ private:
+  void count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
+                   const Word* valid) const;
+  template <unsigned Axes>
+  void count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
+  std::uint64_t count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const;
+
+  const RowShape<N>& shape_;
+  const tables::TileTable& tile_;
+  std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
+  bool has_cubes_ = false;
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pass 4 of the extraction: vertices and simplices of one row, written to the row's own places.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "extract_cell.hpp"
+#include "extract_count.hpp"
+#include "extract_place.hpp"
+#include "extract_tables.hpp"
+
+namespace tegl::detail {
+
+/// The place of edge `e` of a cell in its frame; `id` is its vertex.
+template <int N, unsigned Axes>
+TilePoint<std::popcount(Axes)> edge_place(const SlabView<N>& view, unsigned e, Index id) noexcept {
+  using Frame = CellFrame<N, Axes>;
+  const int axis = Frame::axes()[e >> (Frame::kDim - 1)];
+  const unsigned up = Frame::spread(edge_base(Frame::kDim, e)) >> (N - 1) & 1u;
+  return edge_point<Frame::kDim>(e, view.edge_places(axis, up)[id][0]);
+}
+
+/// Writes the points on a row's edges of one axis.
+template <int N, class Real>
+void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape,
+                    const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, LocalRun<N>& local,
+                    typename Placement<N, Real>::Vertex* vertices) noexcept {
+  const Word* const bits = plane.bits[0].data() + row * shape.pitch();
+  auto start = shape.index_of(row);
+  start[N - 1] = layer;
+  LocalPoint<N>* const places = local.points.data() + (plane.base[row] - local.first);
+  source.edge_alphas(start, axis, bits, shape.words(), places);
+  placement.edges(start, axis, bits, shape.words(), places, vertices + plane.base[row]);
+}
+
+/// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers and slab of the edges.
+template <unsigned Axes, class Real>
+void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& placement, const SlabView<4>& view,
+                    const CubePlane& plane, std::size_t row, std::size_t layer, LocalRun<4>& local,
+                    typename Placement<4, Real>::Vertex* vertices) noexcept {
+  const RowShape<4>& shape = *view.shape;
+  auto index = shape.index_of(row);
+  if (!shape.has_cells(index, Axes)) return;
+  index[3] = layer;
+  CellBits<4, Axes> cells(view, row);
+  CellEdges<4, Axes> edges(view, row);
+  std::array<Index, tables::edge_count(3)> ids;
+  std::array<TilePoint<3>, tables::kFaceSlots> points;
+  Index next = plane.base[row];
+  for (std::size_t w = 0; w < shape.words(); ++w) {
+    Word rest = plane.bits[0][row * shape.pitch() + w];
+    if (rest == 0) continue;
+    cells.load(w);
+    edges.load(w);
+    for (; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      edges.ids(bit, ids.data());
+      const SimplexList<3> list(table, cells.signature(bit));
+      own_places<3>(
+          list, [&](unsigned v) { return edge_place<4, Axes>(view, v, ids[v]); }, points.data());
+      index[0] = w * kWordBits + bit;
+      for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
+        local.points[next - local.first] = points[j];
+        vertices[next] = placement.template in_cell<CellFrame<4, Axes>>(index, points[j]);
+      }
+    }
+  }
+}
+
+/// Writes the tiles of a row: their own vertices and their simplices.
+template <int N, class Real>
+class TileWriter {
+ public:
+  using Vertex = std::array<Real, N>;
+  using Simplex = std::array<Index, N>;
+  static constexpr unsigned kAll = (1u << N) - 1;
+
+  /// `flip`: against the orientation of the tables.
+  TileWriter(const tables::TileTable& table, const Placement<N, Real>& placement, bool flip, bool has_cubes)
+      : table_(table), placement_(placement), flip_(flip), has_cubes_(has_cubes) {}
+
+  void write(const SlabView<N>& view, std::size_t row, std::size_t layer, Vertex* vertices,
+             Simplex* simplices) const noexcept {
+    if (table_.element_of != nullptr)
+      write_row<true>(view, row, layer, vertices, simplices);
+    else
+      write_row<false>(view, row, layer, vertices, simplices);
+  }
+
+ private:
+  using Ids = std::array<Index, 256>;  // by local vertex
+
+  template <bool Classes>
+  void write_row(const SlabView<N>& view, std::size_t row, std::size_t layer, Vertex* vertices,
+                 Simplex* simplices) const noexcept {
+    const RowShape<N>& shape = *view.shape;
+    auto index = shape.index_of(row);
+    if (!shape.has_cells(index, kAll)) return;
+    index[N - 1] = layer;
+    CellBits<N, kAll> cells(view, row);
+    CellEdges<N, kAll> edges(view, row);
+    Ids ids;
+    Index own = view.slab->tile_base[row];
+    Simplex* out = simplices + view.slab->simplex_base[row];
+    for (std::size_t w = 0; w < shape.words(); ++w) {
+      Word rest = view.slab->active[row * shape.pitch() + w];
+      if (rest == 0) continue;
+      cells.load(w);
+      edges.load(w);
+      for (; rest != 0; rest &= rest - 1) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+        const SimplexList<N> list(table_, cells.signature(bit));
+        edges.ids(bit, ids.data());
+        index[0] = w * kWordBits + bit;
+        if constexpr (N == 4)
+          if (has_cubes_) cube_ids(view, row, index[0], ids);
+        if (list.own_vertices() != 0) {
+          write_own(view, list, ids, index, own, vertices);
+          for (unsigned j = 0; j < list.own_vertices(); ++j) ids[tables::first_tile_vertex(N) + j] = own++;
+        }
+        out = write_simplices<Classes>(list, ids, out);
+      }
+    }
+  }
+
+  template <bool Classes>
+  Simplex* write_simplices(const SimplexList<N>& list, const Ids& ids, Simplex* out) const noexcept {
+    const unsigned last = flip_ != list.reversed() ? N - 2 : N - 1;
+    const unsigned before = (N - 2) + (N - 1) - last;
+    for (unsigned q = 0; q < list.size(); ++q, ++out) {
+      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = ids[list.template mapped<Classes>(list.stored(q, j))];
+      (*out)[before] = ids[list.template mapped<Classes>(list.stored(q, N - 2))];
+      (*out)[last] = ids[list.template mapped<Classes>(list.stored(q, N - 1))];
+    }
+    return out;
+  }
+
+  /// Numbers of the vertices that the tile's cubes own.
+  static void cube_ids(const SlabView<N>& view, std::size_t row, std::size_t i, Ids& ids) noexcept {
+    const RowShape<N>& shape = *view.shape;
+    for (unsigned cube = 0; cube < 2 * N; ++cube) {
+      const unsigned side = cube % 2;
+      const unsigned omitted = cube / 2;
+      const CubePlane& plane = view.cubes(static_cast<int>(omitted), omitted == N - 1 ? side : 0);
+      const Index first = plane.id(shape.shifted(row, side << omitted), shape.pitch(), i + (omitted == 0 ? side : 0));
+      for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
+        ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first + slot;
+    }
+  }
+
+  void write_own(const SlabView<N>& view, const SimplexList<N>& list, const Ids& ids,
+                 const typename RowShape<N>::Index& index, Index own, Vertex* vertices) const noexcept {
+    constexpr unsigned kEdges = tables::edge_count(N);
+    std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
+    const auto place = [&](unsigned v) {
+      if constexpr (N == 4)
+        if (v >= kEdges) {
+          const unsigned cube = (v - kEdges) / tables::kFaceSlots;
+          return cube_point(cube, view.cube_places(static_cast<int>(cube / 2), cube % 2)[ids[v]]);
+        }
+      return edge_place<N, kAll>(view, v, ids[v]);
+    };
+    own_places<N>(list, place, points.data());
+    for (unsigned j = 0; j < list.own_vertices(); ++j)
+      vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
+  }
+
+  const tables::TileTable& table_;
+  const Placement<N, Real>& placement_;
+  bool flip_;
+  bool has_cubes_;
+};
+
+}  // namespace tegl::detail

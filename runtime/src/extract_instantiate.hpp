@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The public function: its arguments, and the hand-over to the kernel, which knows no value type.
+// Included by the sources that instantiate it, a few value types each, so that they compile side by side.
+#pragma once
+
+#include "extract_kernel.hpp"
+
+namespace tegl {
+
+template <class Real, Value T, int N>
+Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                         ExtractStats* stats) {
+  detail::check_arguments(isovalue, options);
+  const detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+  return detail::extract_source<N, Real>(source, image.grid(), detail::generated_tables<N>(options), options, stats);
+}
+
+}  // namespace tegl
+
+#define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                       \
+  template tegl::Contour<N, Real> tegl::extract<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
+                                                            ExtractStats*);
+#define TEGL_INSTANTIATE_EXTRACT(T)  \
+  TEGL_INSTANTIATE_ONE(T, 2, float)  \
+  TEGL_INSTANTIATE_ONE(T, 2, double) \
+  TEGL_INSTANTIATE_ONE(T, 3, float)  \
+  TEGL_INSTANTIATE_ONE(T, 3, double) \
+  TEGL_INSTANTIATE_ONE(T, 4, float)  \
+  TEGL_INSTANTIATE_ONE(T, 4, double)

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The working storage of the extraction: bit planes of the layers along the last axis, with the ranks
+// that turn "bit i of row r" into a vertex number.
+//
+// Words used here: a *row* is a line of samples along axis 0; a *layer* is all rows with the same index
+// on the last axis; a *slab* is what lies between two layers. A layer owns the edges and cubes that lie
+// in it; a slab owns the edges and cubes along the last axis, and the tiles. Vertices are numbered
+// layer 0, slab 0, layer 1, slab 1, ...; within a layer or slab row by row; within a row category by
+// category; within a category by bits. So every number is base[row] + prefix[word] + popcount: rows are
+// independent of each other, and no two passes can disagree.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bitplanes.hpp"
+#include "extract_source.hpp"
+#include "tegl/contour.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+/// Sizes of an image in rows and words.
+template <int N>
+class RowShape {
+ public:
+  using Index = std::array<std::size_t, N>;
+
+  explicit RowShape(const Index& size) : size_(size), words_((size[0] + kWordBits - 1) / kWordBits) {
+    for (int a = 1; a < N - 1; ++a) {
+      stride_[a] = rows_;
+      rows_ *= size[a];
+    }
+  }
+  [[nodiscard]] std::size_t size(int axis) const noexcept { return size_[axis]; }
+  [[nodiscard]] std::size_t layers() const noexcept { return size_[N - 1]; }
+  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::size_t words() const noexcept { return words_; }
+  /// Words from row to row: one more, always 0, so that a row may be read shifted.
+  [[nodiscard]] std::size_t pitch() const noexcept { return words_ + 1; }
+
+  /// The row's index on the axes 1 ... N-2; 0 elsewhere.
+  [[nodiscard]] Index index_of(std::size_t row) const noexcept {
+    Index index{};
+    for (int a = 1; a < N - 1; ++a) {
+      index[a] = row % size_[a];
+      row /= size_[a];
+    }
+    return index;
+  }
+  /// Row of the sample that lies one step further along the axes in `mask` (axes 0 and N-1 don't count).
+  [[nodiscard]] std::size_t shifted(std::size_t row, unsigned mask) const noexcept {
+    for (int a = 1; a < N - 1; ++a) row += (mask >> a & 1u) * stride_[a];
+    return row;
+  }
+  [[nodiscard]] std::size_t unshifted(std::size_t row, unsigned mask) const noexcept {
+    for (int a = 1; a < N - 1; ++a) row -= (mask >> a & 1u) * stride_[a];
+    return row;
+  }
+  /// Whether cells along the axes in `mask` start in a row with this index (axes 0 and N-1 don't count).
+  [[nodiscard]] bool has_cells(const Index& index, unsigned mask) const noexcept {
+    for (int a = 1; a < N - 1; ++a)
+      if ((mask >> a & 1u) != 0 && index[a] + 1 >= size_[a]) return false;
+    return true;
+  }
+  /// Bits of word w that are samples (along_row = false), or edges along the row.
+  [[nodiscard]] Word mask(std::size_t w, bool along_row) const noexcept {
+    const std::size_t count = size_[0] - (along_row ? 1 : 0);
+    if (count >= (w + 1) * kWordBits) return ~Word{0};
+    return count <= w * kWordBits ? 0 : (Word{1} << (count - w * kWordBits)) - 1;
+  }
+
+ private:
+  Index size_;
+  std::array<std::size_t, N> stride_{};
+  std::size_t rows_ = 1;
+  std::size_t words_;
+};
+
+/// Cells of one kind that own up to `Slots` vertices each: bit i of plane j in a row says that cell i
+/// has more than j vertices.
+template <unsigned Slots>
+struct RankPlane {
+  std::array<std::vector<Word>, Slots> bits;
+  std::vector<std::uint32_t> prefix;  ///< vertices of the row before this word
+  std::vector<Index> base;            ///< first vertex of the row; while counting: their number
+
+  void allocate(std::size_t rows, std::size_t pitch) {
+    for (auto& plane : bits) plane.assign(rows * pitch, 0);
+    prefix.assign(rows * pitch, 0);
+    base.assign(rows, 0);
+  }
+  /// The first vertex of cell i of a row (of the next cell that has one, if it has none).
+  [[nodiscard]] Index id(std::size_t row, std::size_t pitch, std::size_t i) const noexcept {
+    const std::size_t w = row * pitch + i / kWordBits;
+    const Word below = (Word{1} << (i % kWordBits)) - 1;
+    Index id = base[row] + prefix[w];
+    for (const auto& plane : bits) id += static_cast<Index>(std::popcount(plane[w] & below));
+    return id;
+  }
+};
+using EdgePlane = RankPlane<1>;
+using CubePlane = RankPlane<tables::kFaceSlots>;
+
+/// A run of vertices with the places that later passes need, by vertex number - first.
+template <int N>
+struct LocalRun {
+  Index first = 0;
+  Buffer<LocalPoint<N>> points;
+  [[nodiscard]] const LocalPoint<N>& operator[](Index id) const noexcept { return points[id - first]; }
+};
+
+template <int N>
+struct Layer {
+  std::vector<Word> high;     ///< rows x pitch; inverted for the high-connected alternative
+  std::vector<Word> missing;  ///< rows x pitch, meaningful if any_missing
+  bool any_missing = false;
+  std::array<EdgePlane, N - 1> edges;  ///< by axis
+  CubePlane cubes;                     ///< N = 4: the cubes in the layer
+  LocalRun<N> local;
+};
+
+template <int N>
+struct Slab {
+  std::vector<Word> valid;  ///< rows x pitch: tiles without a missing corner; meaningful unless all_valid
+  bool all_valid = true;
+  std::vector<Word> active;                 ///< rows x pitch: valid tiles with high and low corners
+  EdgePlane edges;                          ///< along the last axis
+  std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
+  std::vector<Index> tile_base;             ///< first vertex of each row's tiles; while counting: their number
+  std::vector<std::uint64_t> simplex_base;  ///< first simplex of each row; while counting: their number
+  LocalRun<N> local;
+};
+
+/// A slab with the two layers around it: where cells find the numbers of what they share.
+template <int N>
+struct SlabView {
+  const RowShape<N>* shape;
+  std::array<const Layer<N>*, 2> layers;
+  const Slab<N>* slab;
+
+  [[nodiscard]] const EdgePlane& edges(int axis, unsigned up) const noexcept {
+    return axis == N - 1 ? slab->edges : layers[up]->edges[static_cast<std::size_t>(axis)];
+  }
+  [[nodiscard]] const LocalRun<N>& edge_places(int axis, unsigned up) const noexcept {
+    return axis == N - 1 ? slab->local : layers[up]->local;
+  }
+  [[nodiscard]] const CubePlane& cubes(int omitted, unsigned up) const noexcept {
+    return omitted == N - 1 ? layers[up]->cubes : slab->cubes[static_cast<std::size_t>(omitted)];
+  }
+  [[nodiscard]] const LocalRun<N>& cube_places(int omitted, unsigned up) const noexcept {
+    return omitted == N - 1 ? layers[up]->local : slab->local;
+  }
+};
+
+}  // namespace tegl::detail

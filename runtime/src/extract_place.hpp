@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From places in the grid to the world: axis coordinates, then the affine map, then the output's type.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <vector>
+
+#include "extract_layers.hpp"
+#include "tegl/grid.hpp"
+
+namespace tegl::detail {
+
+/// Writes vertices. The same arithmetic in the same order for every vertex, whichever pass it comes
+/// from and in whichever dimension: see the build's -ffp-contract=off.
+template <int N, class Real>
+class Placement {
+ public:
+  using Index = std::array<std::size_t, N>;
+  using Vertex = std::array<Real, N>;
+
+  explicit Placement(const Grid<N>& grid) : linear_(grid.linear), offset_(grid.offset), mapped_(grid.has_world_map()) {
+    for (int a = 0; a < N; ++a) {
+      coordinates_[a].resize(grid.axes[a].size());
+      for (std::size_t i = 0; i < coordinates_[a].size(); ++i) coordinates_[a][i] = grid.axes[a][i];
+    }
+  }
+
+  [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }
+
+  /// The coordinate at the share x of the way from sample i to i + 1; exact at both ends, never outside.
+  [[nodiscard]] double between(int axis, std::size_t i, double x) const noexcept {
+    const double a = coordinates_[axis][i];
+    const double b = coordinates_[axis][i + 1];
+    const double p = a + x * (b - a);
+    return x >= 1.0 ? b : std::clamp(p, std::min(a, b), std::max(a, b));
+  }
+
+  /// A point given by its axis coordinates.
+  [[nodiscard]] Vertex world(const std::array<double, N>& point) const noexcept {
+    Vertex vertex;
+    if (!mapped_) {
+      for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(point[a]);
+      return vertex;
+    }
+    for (int a = 0; a < N; ++a) {
+      double sum = 0;
+      for (int b = 0; b < N; ++b) sum += linear_(a, b) * point[b];
+      vertex[a] = static_cast<Real>(sum + offset_(a));
+    }
+    return vertex;
+  }
+
+  /// A point of a cell along the axes of `frame`'s mask, based at `base`, from its place in the cell.
+  template <class Frame>
+  [[nodiscard]] Vertex in_cell(const Index& base, const std::array<double, Frame::kDim>& place) const noexcept {
+    std::array<double, N> point;
+    for (int a = 0; a < N; ++a) point[a] = place_or_sample<Frame>(a, base[a], place);
+    return world(point);
+  }
+
+  /// The points on the edges along `axis` from the samples of a row that are set in `edges`.
+  void edges(Index start, int axis, const Word* edges, std::size_t words, const LocalPoint<N>* alphas,
+             Vertex* out) const noexcept {
+    std::array<double, N> point;
+    for (int a = 1; a < N; ++a) point[a] = sample(a, start[a]);
+    for (std::size_t w = 0; w < words; ++w)
+      for (Word rest = edges[w]; rest != 0; rest &= rest - 1) {
+        start[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+        point[0] = sample(0, start[0]);
+        point[axis] = between(axis, start[axis], (*alphas++)[0]);
+        *out++ = world(point);
+      }
+  }
+
+ private:
+  template <class Frame>
+  double place_or_sample(int axis, std::size_t i, const std::array<double, Frame::kDim>& place) const noexcept {
+    constexpr auto kAxes = Frame::axes();
+    for (std::size_t j = 0; j < kAxes.size(); ++j)
+      if (kAxes[j] == axis) return between(axis, i, place[j]);
+    return sample(axis, i);
+  }
+
+  std::array<std::vector<double>, N> coordinates_;
+  Eigen::Matrix<double, N, N> linear_;
+  Eigen::Matrix<double, N, 1> offset_;
+  bool mapped_;
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Choice of the generated tables.
+#include "extract_kernel.hpp"
+#include "tegl/generated/tables.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+TableSet<N> generated_tables(const ExtractOptions& options) {
+  const int triangulation = options.triangulation == Triangulation::barycentric ? 0 : 1;
+  const int alternative = options.ambiguity == Ambiguity::low ? 0 : 1;
+  TableSet<N> set;
+  set.tile = &tables::tile_table(N, triangulation);
+  if (N == 4) set.cube = &tables::tile_table(3, triangulation);
+  if (options.close) set.face = &tables::region_table(N - 1, triangulation, alternative);
+  if (options.close && N == 4) set.square = &tables::region_table(2, triangulation, alternative);
+  return set;
+}
+
+template TableSet<2> generated_tables<2>(const ExtractOptions&);
+template TableSet<3> generated_tables<3>(const ExtractOptions&);
+template TableSet<4> generated_tables<4>(const ExtractOptions&);
+
+}  // namespace tegl::detail

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Reading of the generated tables: simplices of a signature in either layout, and the places of the
+// vertices that a cell owns (table contract: "Positions").
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "extract_cell.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+/// The simplices of one signature of a k-tile.
+template <int K>
+class SimplexList {
+ public:
+  SimplexList(const tables::TileTable& table, unsigned signature) noexcept
+      : list_(&table.lists[table.list_of[signature]]),
+        simplices_(table.simplices + std::size_t{list_->first_simplex} * K),
+        side_masks_(table.side_masks + list_->first_side) {
+    if (table.element_of != nullptr) {
+      const std::uint16_t element = table.element_of[signature];
+      permutation_ = table.permutations + std::size_t{element} * table.permutation_stride;
+      reversed_ = table.reverses[element] != 0;
+      if constexpr (K == 4) swaps_ = table.slot_swaps[signature];
+    }
+  }
+  [[nodiscard]] const tables::List& list() const noexcept { return *list_; }
+  [[nodiscard]] unsigned size() const noexcept { return list_->simplex_count; }
+  [[nodiscard]] unsigned own_vertices() const noexcept { return list_->cone_vertices + unsigned{list_->side_vertices}; }
+  [[nodiscard]] bool reversed() const noexcept { return reversed_; }
+
+  /// Vertex j of simplex q, as stored: ids from first_tile_vertex(K) on are as they are.
+  [[nodiscard]] unsigned stored(unsigned q, unsigned j) const noexcept { return simplices_[q * K + j]; }
+  /// A stored vertex in the frame of the signature.
+  template <bool Classes>
+  [[nodiscard]] unsigned mapped(unsigned v) const noexcept {
+    if constexpr (Classes) {
+      if (v >= tables::first_tile_vertex(K)) return v;
+      v = permutation_[(1u << K) + v];
+      if constexpr (K == 4) {
+        static_assert(tables::kFaceSlots == 2);
+        if (v >= tables::edge_count(K)) v ^= swaps_ >> ((v - tables::edge_count(K)) / 2) & 1u;
+      }
+    }
+    return v;
+  }
+  [[nodiscard]] unsigned mapped(unsigned v) const noexcept {
+    return permutation_ != nullptr ? mapped<true>(v) : mapped<false>(v);
+  }
+  /// The mask of side vertex j: bit v a corner, bit 2^K + e an edge point, in the frame of the signature.
+  [[nodiscard]] std::uint64_t side_mask(unsigned j) const noexcept {
+    const std::uint64_t stored_mask = side_masks_[j];
+    if (permutation_ == nullptr) return stored_mask;
+    std::uint64_t mask = 0;
+    for (std::uint64_t rest = stored_mask; rest != 0; rest &= rest - 1) {
+      const unsigned v = static_cast<unsigned>(std::countr_zero(rest));
+      const unsigned corners = 1u << K;
+      mask |= std::uint64_t{1} << (v < corners ? permutation_[v] : corners + permutation_[v]);
+    }
+    return mask;
+  }
+
+ private:
+  const tables::List* list_;
+  const std::uint8_t* simplices_;
+  const std::uint64_t* side_masks_;
+  const std::uint8_t* permutation_ = nullptr;
+  unsigned swaps_ = 0;
+  bool reversed_ = false;
+};
+
+/// A point in the frame of a k-tile, in [0, 1]^k.
+template <int K>
+using TilePoint = std::array<double, K>;
+
+template <int K>
+TilePoint<K> corner_point(unsigned corner) noexcept {
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) point[a] = static_cast<double>(corner >> a & 1u);
+  return point;
+}
+
+template <int K>
+TilePoint<K> edge_point(unsigned edge, double alpha) noexcept {
+  TilePoint<K> point = corner_point<K>(edge_base(K, edge));
+  point[edge >> (K - 1)] = alpha;
+  return point;
+}
+
+/// A point of the 3-face `cube` in the frame of its 4-tile.
+inline TilePoint<4> cube_point(unsigned cube, const TilePoint<3>& inside) noexcept {
+  TilePoint<4> point;
+  for (unsigned a = 0, j = 0; a < 4; ++a) point[a] = a == cube / 2 ? static_cast<double>(cube % 2) : inside[j++];
+  return point;
+}
+
+template <std::size_t K>
+double distance(const std::array<double, K>& p, const std::array<double, K>& q) noexcept {
+  double sum = 0;
+  for (std::size_t a = 0; a < K; ++a) sum += (q[a] - p[a]) * (q[a] - p[a]);
+  return std::sqrt(sum);
+}
+
+/// A point with a weight: measure and barycentre of a piece of a facet.
+template <int K>
+struct Weighted {
+  TilePoint<K> point{};
+  double weight = 0;
+
+  void add(const TilePoint<K>& p, double w) noexcept {
+    for (int a = 0; a < K; ++a) point[a] += w * p[a];
+    weight += w;
+  }
+};
+
+/// Area of a triangle by the Gram determinant.
+template <std::size_t K>
+double triangle_area(const std::array<double, K>& p, const std::array<double, K>& q,
+                     const std::array<double, K>& r) noexcept {
+  double uu = 0, uv = 0, vv = 0;
+  for (std::size_t a = 0; a < K; ++a) {
+    const double u = q[a] - p[a];
+    const double v = r[a] - p[a];
+    uu += u * u;
+    uv += u * v;
+    vv += v * v;
+  }
+  return 0.5 * std::sqrt(std::max(0.0, uu * vv - uv * uv));
+}
+
+template <int K>
+TilePoint<K> midpoint(const TilePoint<K>& p, const TilePoint<K>& q) noexcept {
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) point[a] = 0.5 * (p[a] + q[a]);
+  return point;
+}
+
+/// Measure and barycentre of the face of a cone that lies opposite of the apex (table contract:
+/// "Positions"). `barycentred`: its first vertex is a cube's barycentre.
+template <int K>
+Weighted<K> opposite_face(const std::array<TilePoint<K>, K - 1>& face, bool barycentred) noexcept {
+  if constexpr (K == 2) return {face[0], 1.0};
+  if constexpr (K == 3) return {midpoint<3>(face[0], face[1]), distance(face[0], face[1])};
+  if constexpr (K == 4) {
+    const double area = triangle_area(face[0], face[1], face[2]);
+    if (barycentred) return {face[0], area};
+    Weighted<4> outline;
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto& p = face[i];
+      const auto& q = face[(i + 1) % 3];
+      outline.add(midpoint<4>(p, q), distance(p, q));
+    }
+    if (!(outline.weight > 0)) return {face[0], area};
+    for (double& x : outline.point) x /= outline.weight;
+    return {outline.point, area};
+  }
+}
+
+/// The barycentre of the facet that is the cone from `apex`.
+template <int K, class Place>
+TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
+  Weighted<K> sum;
+  Weighted<K> plain;  // for a facet that has shrunk to a point: all weights equal
+  for (unsigned q = 0; q < list.size(); ++q) {
+    if (list.stored(q, 0) != apex) continue;
+    std::array<TilePoint<K>, K - 1> face;
+    for (unsigned j = 1; j < K; ++j) face[j - 1] = place(list.mapped(list.stored(q, j)));
+    const Weighted<K> part = opposite_face<K>(face, list.stored(q, 1) >= tables::edge_count(K));
+    sum.add(part.point, part.weight);
+    plain.add(part.point, 1.0);
+  }
+  const Weighted<K>& chosen = sum.weight > 0 ? sum : plain;
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) point[a] = chosen.point[a] / chosen.weight;
+  return point;
+}
+
+/// The places of a tile's cone vertices and side vertices, in the unit tile: so they don't depend on the
+/// units of the axes. `place(v)` is the place of local vertex v < first_tile_vertex(K), in the frame of
+/// the signature. out: list.own_vertices() points.
+///
+/// One function for the tiles of a 3D image and the cubes of a 4D image: their barycentres agree bit by
+/// bit, so that a 4D contour contains the 3D contours of its steps.
+template <int K, class Place>
+void own_places(const SimplexList<K>& list, const Place& place, TilePoint<K>* out) noexcept {
+  const unsigned cones = list.list().cone_vertices;
+  for (unsigned j = 0; j < cones; ++j) out[j] = cone_place(list, tables::first_tile_vertex(K) + j, place);
+  for (unsigned j = 0; j < list.list().side_vertices; ++j) {
+    Weighted<K> sum;
+    for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {
+      const unsigned v = static_cast<unsigned>(std::countr_zero(rest));
+      sum.add(v < (1u << K) ? corner_point<K>(v) : place(v - (1u << K)), 1.0);
+    }
+    for (int a = 0; a < K; ++a) out[cones + j][a] = 0.5 * (0.5 + sum.point[a] / sum.weight);
+  }
+}
+
+}  // namespace tegl::detail
