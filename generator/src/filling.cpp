@@ -15,6 +15,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "contraction.hpp"
 #include "side_filling.hpp"
 
 namespace tegl::gen {
@@ -86,8 +87,9 @@ std::vector<std::uint8_t> cycle_of(const Component& c) {
   return cycle;
 }
 
-/// Enumerates the triangulations of a convex polygon and keeps the one with the shortest chords (at the edges'
-/// midpoints); ties go to the first in lexicographic order, so the choice depends on the polygon alone.
+/// Cuts a polygon by chords that do not lie in the tile's boundary: as a fan from its smallest vertex if that can be,
+/// else with the shortest chords (at the edges' midpoints; ties go to the first). A fan from the smallest vertex in
+/// every cube is what lets a convex facet of a 4-tile be coned from its own smallest vertex in turn.
 class ChordTriangulation {
  public:
   ChordTriangulation(const ContourBuilder& builder, std::vector<std::uint8_t> polygon)
@@ -95,6 +97,13 @@ class ChordTriangulation {
 
   /// Triangles as positions in the polygon; empty if every triangulation has a forbidden chord.
   std::vector<std::array<std::size_t, 3>> best() {
+    std::vector<std::array<std::size_t, 3>> fan;
+    double cost = 0;
+    for (std::size_t k = 1; k + 1 < polygon_.size(); ++k) {
+      fan.push_back({0, k, k + 1});
+      cost += chord(0, k);
+    }
+    if (cost < kForbidden) return fan;
     const auto result = solve(0, polygon_.size() - 1);
     return result.cost < kForbidden ? result.triangles : std::vector<std::array<std::size_t, 3>>{};
   }
@@ -165,38 +174,13 @@ std::vector<Simplex> pulled_cone(const Component& c, std::uint8_t apex) {
   return cone;
 }
 
-/// True if a pulled cone draws nothing in the tile's boundary that Sigma does not have there.
-bool stays_inside(const ContourBuilder& builder, const Component& c, std::uint8_t apex) {
-  std::set<std::array<std::uint8_t, 2>> edges;
-  std::set<std::array<std::uint8_t, 3>> triangles;
-  const auto edge = [](std::uint8_t a, std::uint8_t b) { return std::array{std::min(a, b), std::max(a, b)}; };
-  const auto triangle = [](std::uint8_t a, std::uint8_t b, std::uint8_t d) {
-    std::array t{a, b, d};
-    std::sort(t.begin(), t.end());
-    return t;
-  };
-  for (const Simplex& s : c.boundary) {
-    for (int i = 0; i < 3; ++i) edges.insert(edge(s[i], s[(i + 1) % 3]));
-    triangles.insert(triangle(s[0], s[1], s[2]));
-  }
-  const auto faces = [&](std::uint8_t v) { return builder.faces_of(v); };
-  for (const std::uint8_t v : c.vertices)
-    if (v != apex && (faces(v) & faces(apex)) != 0 && !edges.contains(edge(v, apex))) return false;
-  for (const auto& e : edges)
-    if (e[0] != apex && e[1] != apex && (faces(e[0]) & faces(e[1]) & faces(apex)) != 0 &&
-        !triangles.contains(triangle(e[0], e[1], apex)))
-      return false;
-  for (const auto& t : triangles)
-    if (t[0] != apex && t[1] != apex && t[2] != apex && (faces(t[0]) & faces(t[1]) & faces(t[2]) & faces(apex)) != 0)
-      return false;
-  return true;
-}
-
 bool pull(const ContourBuilder& builder, const Component& c, Facet& facet) {
+  const SigmaComplex sigma(builder, c.boundary);
   for (const std::uint8_t apex : c.vertices) {
     auto cone = pulled_cone(c, apex);
     if (!facet.simplices.empty() && cone.size() >= facet.simplices.size()) continue;
-    if (stays_inside(builder, c, apex)) facet.simplices = std::move(cone);
+    if (std::all_of(cone.begin(), cone.end(), [&](const Simplex& s) { return sigma.allows(s); }))
+      facet.simplices = std::move(cone);
   }
   return !facet.simplices.empty();
 }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sigma as a complex, and contraction of added vertices (private to the generator).
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <vector>
+
+#include "tegl/gen/facets.hpp"
+
+namespace tegl::gen {
+
+/// The triangulation of one component of a 4-tile's Sigma, to be asked what a filling may draw.
+class SigmaComplex {
+ public:
+  SigmaComplex(const ContourBuilder& builder, const std::vector<Simplex>& component);
+
+  /// True if no edge, triangle or whole of the tetrahedron lies in a face of the tile without being Sigma's.
+  [[nodiscard]] bool allows(const Simplex& tetrahedron) const;
+
+ private:
+  [[nodiscard]] bool allows_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) const;
+
+  const ContourBuilder& builder_;
+  std::array<std::bitset<256>, 256> adjacent_;
+  std::vector<std::array<std::uint8_t, 3>> triangles_;  // ascending vertices, sorted
+};
+
+/// Contracts vertices >= first_own of a filled component into neighbours as long as the link condition holds
+/// (then the result is homeomorphic: Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge contraction,
+/// 1999) and sigma allows what arises. Deterministic, greedy.
+void contract(std::vector<Simplex>& tetrahedra, std::uint8_t first_own, const SigmaComplex& sigma);
+
+}  // namespace tegl::gen
