@@ -118,7 +118,7 @@ bool separates_valid_tile(const Image<T, N>& image, const Point<N>& at, int axis
   above[axis] = std::lround(at[axis]);
   auto below = above;
   --below[axis];
-  return is_valid_tile(image, above) != is_valid_tile(image, below);
+  return is_valid_tile<T, N>(image, above) != is_valid_tile<T, N>(image, below);
 }
 
 /// EXPECT_TRUE(is_open_only_where_data_end(contour, image)): every boundary face lies in a face of a tile that has a
@@ -139,7 +139,7 @@ template <int N, class Real, Value T>
     bool explained = false;
     for (int a = 0; a < N; ++a)
       explained = explained || (constant[a] && std::abs(centroid[a] - std::round(centroid[a])) < 1e-9 &&
-                                separates_valid_tile(image, centroid, a));
+                                separates_valid_tile<T, N>(image, centroid, a));
     if (explained) continue;
     auto failure = ::testing::AssertionFailure() << "a boundary face inside the data, at index";
     for (int a = 0; a < N; ++a) failure << ' ' << centroid[a];
