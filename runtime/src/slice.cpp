@@ -11,8 +11,10 @@
 //
 // Why the cut is closed where the contour is (the contour's last coordinate t, "at" = h, a vertex at h called on):
 // with on vertices counted as above, simplices have points on the same edges as at h - e, for any e > 0 smaller than
-// the distance to the next vertex below: combinatorially the cut at h - e, a manifold. Its points around an on vertex
-// are then drawn together into that vertex.
+// the distance to the next vertex below: combinatorially the cut at h - e, a manifold. Its points around an on vertex u
+// are then drawn together into u. That keeps the manifold if those points span a disc (of discs drawn to points a
+// surface comes out unchanged: R. L. Moore, Concerning upper semi-continuous collections of continua, 1925), but
+// pinches it where h is a critical value at u. There the points are left apart, each in u's place: see `draw_together`.
 // If h is the coordinate of a layer of the image, the on vertices are that layer's (up to samples that equal the
 // isovalue): the contour's part in the hyperplane is the layer's contour M, each face of which is met by one simplex
 // from below. The cut of that simplex is the face, other simplices collapse, and the cut is M. Where there is no tile
@@ -35,24 +37,20 @@
 #include <fmt/format.h>
 
 #include "slice_at.hpp"
+#include "slice_piece.hpp"
 
 namespace tegl {
 namespace {
 
+using detail::edge_point;
+using detail::is_vertex_point;
+using detail::lower_end;
+using detail::Piece;
+using detail::PointKey;
+using detail::upper_end;
+using detail::vertex_point;
+
 enum class Side : std::uint8_t { below, on, above };
-
-/// A point of the cut: (lower vertex << 32) | upper vertex of the edge that it lies on, or twice an on vertex.
-using PointKey = std::uint64_t;
-
-constexpr PointKey vertex_point(Index v) { return (PointKey{v} << 32) | v; }
-constexpr Index lower_end(PointKey key) { return static_cast<Index>(key >> 32); }
-constexpr Index upper_end(PointKey key) { return static_cast<Index>(key & 0xffffffffu); }
-
-/// The cut of one simplex before numbering: N - 1 points, or 4 for a quadrilateral (N = 4), in cyclic order.
-struct Piece {
-  std::array<PointKey, 4> points;
-  int count = 0;
-};
 
 /// The vertices of a simplex with those of `high` (bit j: vertex j) first, by an even permutation.
 template <int N>
@@ -96,7 +94,7 @@ class Cutter {
   Contour<N - 1, Real> cut() {
     classify();
     cut_simplices();
-    add_faces_met_from_above();
+    draw_together();
     number_points();
     Contour<N - 1, Real> result;
     std::copy_n(contour_.axis_names.begin(), N - 1, result.axis_names.begin());
@@ -123,6 +121,7 @@ class Cutter {
     for (std::size_t v = 0; v < sides_.size(); ++v) {
       const Real t = contour_.vertices[v][N - 1];
       sides_[v] = t < at_ ? Side::below : t > at_ ? Side::above : Side::on;
+      has_on_vertices_ = has_on_vertices_ || t == at_;
     }
   }
 
@@ -136,7 +135,7 @@ class Cutter {
         on |= static_cast<unsigned>(sides_[simplex[j]] == Side::on) << j;
       }
       if (on != 0) gather_on_faces(static_cast<Index>(s), on);
-      if (high != 0 && high != (1u << N) - 1) add_piece(simplex, high);
+      if (high != 0 && high != (1u << N) - 1) add_piece(simplex, high, pieces_);
     }
   }
 
@@ -154,28 +153,77 @@ class Cutter {
     if (flat) ++flat_count_;
   }
 
-  /// The piece between the `high` vertices of a simplex and the others.
-  void add_piece(const std::array<Index, N>& simplex, unsigned high) {
+  /// The piece between the `high` vertices of a simplex and the others; its points not yet drawn together.
+  void add_piece(const std::array<Index, N>& simplex, unsigned high, std::vector<Piece>& pieces) const {
     const std::array<Index, N> sorted = high_first<N>(simplex, high);
     const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
     Piece piece;
+    piece.count = count;
     for (int i = 0; i < count; ++i) {
-      const Index upper = sorted[pairs[i].first];
       const Index lower = sorted[pairs[i].second];
-      PointKey key = (PointKey{lower} << 32) | upper;
-      if (sides_[lower] == Side::on) key = vertex_point(lower);
-      if (sides_[upper] == Side::on) key = vertex_point(upper);
-      // Points drawn together are neighbours in the cycle: they share the on vertex.
-      const bool repeats =
-          piece.count > 0 && (piece.points[piece.count - 1] == key || (i == count - 1 && piece.points[0] == key));
-      if (!repeats) piece.points[piece.count++] = key;
+      // A lower vertex that is on belongs to a face met from above alone.
+      piece.points[i] = sides_[lower] == Side::on ? vertex_point(lower) : edge_point(lower, sorted[pairs[i].first]);
     }
-    if (piece.count >= N - 1) pieces_.push_back(piece);
+    pieces.push_back(piece);
+  }
+
+  /// Draws the points around on vertices together. Where the result is pinched and the points themselves were not, the
+  /// vertices concerned are left apart; each round leaves more of them so, and with all apart nothing is pinched.
+  void draw_together() {
+    const std::vector<Piece> faces = faces_met_from_above();
+    std::vector<bool> apart(has_on_vertices_ ? sides_.size() : 0, false);
+    std::vector<PointKey> excused;
+    for (int round = 0; has_on_vertices_; ++round) {
+      std::vector<Piece> drawn = drawn_pieces(apart);
+      drawn.insert(drawn.end(), faces.begin(), faces.end());
+      const std::vector<PointKey> pinched = detail::pinched_points(drawn);
+      if (round == 0 && !pinched.empty()) excused = detail::pinched_points(pieces_);
+      if (!leave_apart(pinched, excused, round >= kMostRounds, apart)) {
+        pieces_ = std::move(drawn);
+        return;
+      }
+    }
+  }
+
+  std::vector<Piece> drawn_pieces(const std::vector<bool>& apart) const {
+    std::vector<Piece> result;
+    result.reserve(pieces_.size());
+    for (const Piece& piece : pieces_) {
+      Piece drawn;
+      for (int i = 0; i < piece.count; ++i) {
+        const Index upper = upper_end(piece.points[i]);
+        const PointKey key = sides_[upper] == Side::on && !apart[upper] ? vertex_point(upper) : piece.points[i];
+        // Points drawn together are neighbours in the cycle: they share the on vertex.
+        const bool repeats = drawn.count > 0 &&
+                             (drawn.points[drawn.count - 1] == key || (i == piece.count - 1 && drawn.points[0] == key));
+        if (!repeats) drawn.points[drawn.count++] = key;
+      }
+      if (drawn.count >= N - 1) result.push_back(drawn);
+    }
+    return result;
+  }
+
+  /// Marks the on vertices among the pinched points (or all on vertices), except those around which the points were
+  /// pinched before, as a contour may be next to missing values. True if that changes anything.
+  bool leave_apart(const std::vector<PointKey>& pinched, const std::vector<PointKey>& excused, bool all,
+                   std::vector<bool>& apart) const {
+    std::vector<bool> candidates(apart.size(), false);
+    for (const PointKey key : pinched)
+      if (is_vertex_point(key)) candidates[upper_end(key)] = true;
+    if (all && !pinched.empty()) candidates.assign(apart.size(), true);
+    for (const PointKey key : excused) candidates[upper_end(key)] = false;
+    bool changed = false;
+    for (std::size_t v = 0; v < apart.size(); ++v) {
+      if (!candidates[v] || apart[v]) continue;
+      apart[v] = true;
+      changed = true;
+    }
+    return changed;
   }
 
   /// Faces with one simplex above and none below; see the top of this file. Where a flat part has simplices below
   /// as well, they made the cut already.
-  void add_faces_met_from_above() {
+  std::vector<Piece> faces_met_from_above() {
     std::sort(on_faces_.begin(), on_faces_.end(), [](const OnFace& a, const OnFace& b) {
       return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
     });
@@ -199,6 +247,7 @@ class Cutter {
       for (const OnFace& face : cofaces)
         if (face.apex == Side::on) met_from_below[find(face.flat)] = true;
     });
+    std::vector<Piece> faces;
     for_each_on_face([&](std::span<const OnFace> cofaces) {
       if (count_apexes(cofaces, Side::below) != 0 || count_apexes(cofaces, Side::above) != 1) return;
       const OnFace* from_above = nullptr;
@@ -206,8 +255,9 @@ class Cutter {
         if (face.apex == Side::on && met_from_below[find(face.flat)]) return;
         if (face.apex == Side::above) from_above = &face;
       }
-      add_piece(contour_.simplices[from_above->simplex], 1u << from_above->omitted);
+      add_piece(contour_.simplices[from_above->simplex], 1u << from_above->omitted, faces);
     });
+    return faces;
   }
 
   static std::ptrdiff_t count_apexes(std::span<const OnFace> cofaces, Side side) {
@@ -241,8 +291,8 @@ class Cutter {
     const auto& low = contour_.vertices[lower_end(key)];
     const auto& high = contour_.vertices[upper_end(key)];
     std::array<Real, N - 1> result;
-    if (lower_end(key) == upper_end(key)) {
-      std::copy_n(low.begin(), N - 1, result.begin());
+    if (high[N - 1] == at_) {
+      std::copy_n(high.begin(), N - 1, result.begin());
       return result;
     }
     const auto t = static_cast<double>(low[N - 1]);
@@ -290,9 +340,12 @@ class Cutter {
     return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
   }
 
+  static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart at once, to bound the time
+
   const Contour<N, Real>& contour_;
   const Real at_;
   std::vector<Side> sides_;
+  bool has_on_vertices_ = false;
   std::vector<Piece> pieces_;
   std::vector<OnFace> on_faces_;
   Index flat_count_ = 0;
