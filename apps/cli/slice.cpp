@@ -51,7 +51,7 @@ CutAxis cut_axis(const AnyImage& image) {
     constexpr int kLast = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>) - 1;
     const Axis& axis = owned.grid.axes[kLast];
     const auto world = [&](double at) { return owned.grid.linear(kLast, kLast) * at + owned.grid.offset(kLast); };
-    const auto [first, last] = std::minmax(world(axis[0]), world(axis[axis.size() - 1]));
+    const auto [first, last] = std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
     return CutAxis{axis_label(axis.name, kLast), first, last, kLast + 1, "image"};
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);

@@ -171,7 +171,7 @@ Spectrum make_spectrum(std::span<const T> values, std::span<const std::size_t> s
         const T a = values[i];
         const T b = values[i + stride];
         if (a == b || !is_finite(a) || !is_finite(b)) continue;
-        const auto [low, high] = std::minmax(static_cast<double>(a), static_cast<double>(b));
+        const auto [low, high] = std::minmax({static_cast<double>(a), static_cast<double>(b)});
         const std::size_t from = binning(low) + 1;
         const std::size_t to = binning(high) + 1;
         if (from == to) continue;

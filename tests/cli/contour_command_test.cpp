@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Contour : public ProgramTest {
+ protected:
+  /// Runs `tegl contour FILE --iso ISO -o OUT --json` with more options, and expects success.
+  nlohmann::json contour(const std::string& file, const std::string& iso, const std::string& out,
+                         const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"contour", file, "--iso", iso, "-o", path(out), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.json();
+  }
+  [[nodiscard]] std::string bytes(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return text.str();
+  }
+};
+
+TEST_F(Contour, OfADiscIsACircleOfSegments) {
+  const nlohmann::json report = contour(write("disc.nrrd", nrrd_bytes(ball({16, 15}, 4.3))), "0", "out.ply");
+  EXPECT_EQ(report["image_dim"], 2);
+  EXPECT_EQ(report["dim"], 1);
+  EXPECT_EQ(report["components"], 1);
+  EXPECT_EQ(report["euler"], 0);
+  EXPECT_EQ(report["boundary_simplices"], 0);
+  EXPECT_EQ(report["vertices"], report["simplices"]);
+}
+
+TEST_F(Contour, OfABallIsASphereOfTriangles) {
+  const nlohmann::json report = contour(write("ball.nrrd", nrrd_bytes(ball({12, 13, 14}, 4.3))), "0", "out.ply");
+  EXPECT_EQ(report["image_dim"], 3);
+  EXPECT_EQ(report["dim"], 2);
+  EXPECT_EQ(report["euler"], 2);
+  EXPECT_EQ(report["boundary_simplices"], 0);
+}
+
+TEST_F(Contour, OfMovingBallsIsAManifoldOfTetrahedra) {
+  const std::string file = write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 1}));
+  const nlohmann::json report = contour(file, "0", "out.vtkhdf");
+  EXPECT_EQ(report["image_dim"], 4);
+  EXPECT_EQ(report["dim"], 3);
+  EXPECT_EQ(report["components"], 1);
+  EXPECT_GT(report["boundary_simplices"], 0) << "open at the first and the last time";
+  for (const char* key : {"nonmanifold_simplices", "bad_links", "orientation_conflicts"}) EXPECT_EQ(report[key], 0);
+  const nlohmann::json closed = contour(file, "0", "closed.vtkhdf", {"--close"});
+  EXPECT_EQ(closed["boundary_simplices"], 0);
+  EXPECT_EQ(closed["euler"], 0) << "a closed 3-manifold";
+}
+
+TEST_F(Contour, ReportsEveryKey) {
+  const nlohmann::json report = contour(write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2))), "0", "out.glb");
+  for (const char* key : {"dim", "vertices", "simplices", "components", "euler", "boundary_simplices",
+                          "nonmanifold_simplices", "bad_links", "orientation_conflicts", "degenerate_simplices",
+                          "active_tiles", "tiles", "isovalue", "image_dim", "input", "output"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+    EXPECT_FALSE(report[key].is_null()) << key;
+  }
+  for (const char* stage : {"read", "classify", "find", "generate", "close", "check", "write", "total"}) {
+    ASSERT_TRUE(report["seconds"].contains(stage)) << stage;
+    EXPECT_GE(report["seconds"][stage], 0) << stage;
+  }
+  EXPECT_EQ(report["tiles"], 343);
+  EXPECT_GT(report["active_tiles"], 0);
+  EXPECT_LT(report["active_tiles"], 343);
+}
+
+TEST_F(Contour, WithoutItsCheckHasNullsInstead) {
+  const nlohmann::json report =
+      contour(write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2))), "0", "out.ply", {"--no-check"});
+  EXPECT_TRUE(report["euler"].is_null());
+  EXPECT_TRUE(report["bad_links"].is_null());
+  EXPECT_GT(report["vertices"], 0);
+  EXPECT_GT(report["simplices"], 0);
+}
+
+TEST_F(Contour, ReportsToPeopleWithTheSameCounts) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2)));
+  const RunResult run = run_tegl({"contour", file, "--iso", "0", "-o", path("out.ply")});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const nlohmann::json report = contour(file, "0", "again.ply");
+  EXPECT_THAT(run.out, HasSubstr(report["simplices"].dump() + " triangles"));
+  EXPECT_THAT(run.out, HasSubstr("an oriented manifold"));
+  EXPECT_THAT(run.out, HasSubstr("none: closed"));
+  EXPECT_THAT(run.out, HasSubstr(path("out.ply")));
+  EXPECT_TRUE(run.err.empty()) << run.err;
+}
+
+TEST_F(Contour, SaysNothingWhenQuiet) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2)));
+  const RunResult run = run_tegl({"contour", file, "--iso", "0", "-o", path("out.ply"), "--quiet"});
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_EQ(run.out + run.err, "");
+  EXPECT_THAT(files(), ElementsAre("ball.nrrd", "out.ply"));
+}
+
+TEST_F(Contour, IsTheSameFileEveryTime) {
+  const std::string file = write("noise.nrrd", nrrd_bytes(noise({9, 8, 7}, 4)));
+  contour(file, "128", "a.ply");
+  contour(file, "128", "b.ply");
+  EXPECT_EQ(bytes("a.ply"), bytes("b.ply"));
+}
+
+TEST_F(Contour, OptionsChangeTheResultAsTheySay) {
+  const std::string file = write("noise.nrrd", nrrd_bytes_uint8(noise({9, 8, 7}, 4)));
+  const nlohmann::json plain = contour(file, "128", "plain.ply");
+  const nlohmann::json barycentric = contour(file, "128", "barycentric.ply", {"--triangulation", "barycentric"});
+  EXPECT_GT(barycentric["simplices"], plain["simplices"]);
+  EXPECT_EQ(barycentric["euler"], plain["euler"]);
+  const nlohmann::json high = contour(file, "128", "high.ply", {"--ambiguity", "high"});
+  EXPECT_NE(high["euler"], plain["euler"]);
+  const nlohmann::json closed = contour(file, "128", "closed.ply", {"--close"});
+  EXPECT_GT(plain["boundary_simplices"], 0);
+  EXPECT_EQ(closed["boundary_simplices"], 0);
+  EXPECT_GT(plain["degenerate_simplices"], 0) << "some samples are 128";
+  const nlohmann::json kept_away = contour(file, "128", "epsilon.ply", {"--epsilon", "0.01"});
+  EXPECT_EQ(kept_away["degenerate_simplices"], 0);
+  EXPECT_EQ(kept_away["simplices"], plain["simplices"]);
+}
+
+TEST_F(Contour, GradientDirectionReversesTheOrientation) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({9, 9, 9}, 2.7)));
+  const auto volume = [&](const std::vector<std::string>& more) {
+    contour(file, "0", "out.ply", more);
+    const Mesh mesh = read_mesh(path("out.ply"));
+    double six_volumes = 0;
+    for (std::size_t i = 0; i < mesh.simplices.size(); i += 3) {
+      std::array<Eigen::Vector3d, 3> corners;
+      for (std::size_t j = 0; j < 3; ++j) {
+        corners[j] = Eigen::Map<const Eigen::Vector3d>(&mesh.coordinates[3 * std::size_t{mesh.simplices[i + j]}]);
+      }
+      six_volumes += corners[0].dot(corners[1].cross(corners[2]));
+    }
+    return six_volumes / 6;
+  };
+  const double outward = volume({});
+  EXPECT_GT(outward, 60) << "normals to low values point out of the ball";
+  EXPECT_LT(outward, 83);
+  EXPECT_NEAR(volume({"--gradient-direction", "ascent"}), -outward, 1e-9);
+  EXPECT_NEAR(volume({"--precision", "float"}), outward, 1e-4);
+}
+
+TEST_F(Contour, FloatPrecisionGivesFloats) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({9, 9, 9}, 2.7)));
+  contour(file, "0", "float.ply", {"--precision", "float"});
+  contour(file, "0", "double.ply");
+  const auto all_floats = [](const Mesh& mesh) {
+    return std::all_of(mesh.coordinates.begin(), mesh.coordinates.end(),
+                       [](double x) { return static_cast<double>(static_cast<float>(x)) == x; });
+  };
+  EXPECT_TRUE(all_floats(read_mesh(path("float.ply"))));
+  EXPECT_FALSE(all_floats(read_mesh(path("double.ply"))));
+}
+
+TEST_F(Contour, ReadsTheVariableThatIsNamed) {
+  const Samples disc = ball({9, 8}, 3.3);
+  write_netcdf(path("two.nc"), {"x", "y"}, {{0, 1, 2, 3, 4, 5, 6, 7, 8}, {0, 1, 2, 3, 4, 5, 6, 7}},
+               {{"ROUND", disc}, {"NOISE", noise({9, 8}, 2)}});
+  EXPECT_EQ(contour(path("two.nc"), "0", "round.ply", {"--var", "ROUND"})["components"], 1);
+  EXPECT_GT(contour(path("two.nc"), "128", "noise.ply", {"--var", "NOISE"})["components"], 1);
+}
+
+TEST_F(Contour, StaysOpenAroundMissingSamples) {
+  Samples values = ball({11, 11, 11}, 3.6);
+  values.values[5 + 11 * (5 + 11 * 8)] = NAN;  // on the sphere
+  const nlohmann::json report = contour(write("hole.nrrd", nrrd_bytes(values)), "0", "out.ply");
+  EXPECT_GT(report["boundary_simplices"], 0);
+  EXPECT_EQ(report["euler"], 1) << "a sphere with one hole";
+  EXPECT_EQ(report["bad_links"], 0);
+}
+
+}  // namespace
+}  // namespace tegl::test

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What goes wrong: the exit code, a message that names the file and the value, and no file left behind.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "sample_files.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Errors : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ball_ = write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2)));
+  }
+  [[nodiscard]] const std::string& ball_file() const { return ball_; }
+
+  /// Expects the exit code and one line on standard error with all the parts, nothing on standard output, and
+  /// no file but those that were there.
+  void expect_failure(int exit, const std::vector<std::string>& arguments,
+                      const std::vector<std::string>& parts) const {
+    const std::vector<std::string> before = files();
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, exit) << run.err;
+    EXPECT_THAT(run.err, StartsWith("tegl: "));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    for (const std::string& part : parts) EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(files(), before);
+  }
+  void expect_contour_failure(int exit, const std::string& file, const std::string& iso, const std::string& out,
+                              const std::vector<std::string>& parts) const {
+    expect_failure(exit, {"contour", file, "--iso", iso, "-o", out}, parts);
+  }
+
+ private:
+  std::string ball_;
+};
+
+TEST_F(Errors, WrongUsageExitsWith2) {
+  const std::string out = path("out.ply");
+  expect_failure(2, {}, {"--help"});
+  expect_failure(2, {"paint"}, {"paint"});
+  expect_failure(2, {"contour", ball_file(), "-o", out}, {"--iso"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0"}, {"--output"});
+  expect_failure(2, {"contour", "--iso", "0", "-o", out}, {"FILE"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--colour"}, {"--colour", "tegl contour --help"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--triangulation", "fine"}, {"fine", "compact"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--ambiguity", "mean"}, {"mean", "low"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--precision", "half"}, {"half", "double"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--gradient-direction", "up"}, {"up", "descent"});
+  expect_failure(2, {"slice", ball_file(), "--iso", "0", "-o", out, "--at", "7.3"}, {"7.3", "t=7.3"});
+  expect_failure(2, {"slice", ball_file(), "--iso", "0", "-o", out}, {"--at"});
+  expect_failure(2, {"check", ball_file(), "--require", "round"}, {"round", "closed"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--json", "--quiet"}, {});
+}
+
+TEST_F(Errors, NumbersThatAreNoneExitWith2) {
+  for (const char* iso : {"abc", "nan", "inf", "-inf", "7,3", "1e999", ""}) {
+    expect_contour_failure(2, ball_file(), iso, path("out.ply"), {iso, "--iso"});
+  }
+  for (const char* epsilon : {"0.5", "-0.1", "nan", "x"}) {
+    expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", path("out.ply"), "--epsilon", epsilon},
+                   {epsilon, "--epsilon"});
+  }
+}
+
+TEST_F(Errors, VariablesThatDoNotExistExitWith2) {
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", path("out.ply"), "--var", "TEMP"},
+                 {ball_file(), "TEMP"});
+}
+
+TEST_F(Errors, InputThatIsNotThereExitsWith3) {
+  for (const char* command : {"info", "check"}) {
+    expect_failure(3, {command, path("none.nrrd")}, {path("none.nrrd"), "no such file"});
+    expect_failure(3, {command, path("")}, {path(""), "directory"});
+  }
+  expect_contour_failure(3, path("none.nrrd"), "0", path("out.ply"), {path("none.nrrd"), "no such file"});
+  expect_contour_failure(3, path(""), "0", path("out.ply"), {"directory"});
+  expect_failure(3, {"slice", path("none.nii"), "--iso", "0", "--at", "t=1", "-o", path("out.ply")}, {"none.nii"});
+  // A header whose data file is missing.
+  const std::string header = write("detached.nhdr",
+                                   "NRRD0004\ntype: uint8\ndimension: 2\nsizes: 3 3\nencoding: raw\n"
+                                   "data file: missing.raw\n");
+  const RunResult run = run_tegl({"info", header});
+  EXPECT_THAT(run.exit, testing::AnyOf(3, 4)) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("missing.raw"));
+}
+
+TEST_F(Errors, DamagedInputExitsWith4) {
+  const Samples balls = merging_balls(9, 3);
+  const std::vector<std::pair<std::string, std::string>> sound = {{"cut.nrrd", nrrd_bytes(balls)},
+                                                                  {"cut.nii", nifti_bytes(balls, {1, 1, 1, 1})},
+                                                                  {"cut.mha", metaimage_bytes(balls)}};
+  for (const auto& [name, bytes] : sound) {
+    const std::string file = write(name, bytes.substr(0, bytes.size() - 1000));
+    expect_contour_failure(4, file, "0", path("out.vtkhdf"), {file});
+    expect_failure(4, {"info", file}, {file});
+    const std::string header = write("header_" + name, bytes.substr(0, 40));
+    expect_contour_failure(4, header, "0", path("out.vtkhdf"), {header});
+    const std::string empty = write("empty_" + name, "");
+    expect_contour_failure(4, empty, "0", path("out.vtkhdf"), {empty});
+    const std::string garbage = write("garbage_" + name, std::string(2000, '\x5a'));
+    expect_contour_failure(4, garbage, "0", path("out.vtkhdf"), {garbage});
+  }
+  const std::string garbage = write("garbage.nc", std::string(2000, '\x5a'));
+  expect_contour_failure(4, garbage, "0", path("out.vtkhdf"), {garbage});
+}
+
+TEST_F(Errors, UnknownInputExitsWith4) {
+  const std::string file = write("image.txt", "1 2 3\n");
+  expect_contour_failure(4, file, "0", path("out.ply"), {file});
+  // One axis alone.
+  const std::string line = write("line.nrrd", nrrd_bytes(ball({9}, 2)));
+  expect_contour_failure(4, line, "0", path("out.ply"), {line});
+}
+
+TEST_F(Errors, AnIsovalueOutOfRangeExitsWith5AndNamesTheRange) {
+  const std::string file = write("small.nrrd", nrrd_bytes(sample({3, 3}, [](auto& x) { return x[0] + 3 * x[1]; })));
+  expect_contour_failure(5, file, "8.5", path("out.ply"), {file, "8.5", "0 < isovalue <= 8"});
+  expect_contour_failure(5, file, "-2", path("out.ply"), {file, "-2", "0 .. 8"});
+  // All samples are at or above the least one: nothing lies below it.
+  expect_contour_failure(5, file, "0", path("out.ply"), {file, "0 < isovalue <= 8"});
+  expect_failure(5, {"contour", file, "--iso", "-2", "--close", "-o", path("out.ply")}, {"-2"});
+}
+
+TEST_F(Errors, AnAxisOfOneSampleExitsWith5) {
+  const std::string file = write("flat.nrrd", nrrd_bytes(sample({1, 4, 4}, [](auto& x) { return x[1] + x[2]; })));
+  expect_contour_failure(5, file, "2", path("out.ply"), {file, "1 sample", "'x'"});
+}
+
+TEST_F(Errors, NothingButMissingSamplesExitsWith5) {
+  const std::string file = write("nan.nrrd", nrrd_bytes(sample({4, 4, 4}, [](auto&) { return NAN; })));
+  expect_contour_failure(5, file, "0", path("out.ply"), {file, "missing"});
+  // Both sides of the isovalue, but never side by side.
+  const std::string split = write(
+      "split.nrrd", nrrd_bytes(sample({5, 4, 4}, [](auto& x) { return x[0] == 2 ? static_cast<double>(NAN) : x[0]; })));
+  expect_contour_failure(5, split, "2", path("out.ply"), {split, "missing"});
+}
+
+TEST_F(Errors, OutputThatCannotBeWrittenExitsWith6) {
+  const std::string four = write("balls.nrrd", nrrd_bytes(merging_balls(9, 3)));
+  for (const char* name : {"out.ply", "out.glb", "out.gltf"}) {
+    expect_contour_failure(6, four, "0", path(name), {path(name), "4D", ".vtkhdf"});
+  }
+  expect_contour_failure(6, ball_file(), "0", path("out.xyz"), {path("out.xyz"), ".xyz", ".ply"});
+  expect_contour_failure(6, ball_file(), "0", path("out"), {path("out"), "extension"});
+  expect_contour_failure(6, ball_file(), "0", path("none/out.ply"), {path("none/out.ply"), "does not exist"});
+  expect_contour_failure(6, ball_file(), "0", ball_file() + "/out.ply", {"not a folder"});
+  expect_contour_failure(6, ball_file(), "0", "/proc/out.ply", {"/proc/out.ply"});
+}
+
+TEST_F(Errors, OutputChecksComeBeforeTheInputIsRead) {
+  // The input is damaged and the output is wrong: the output is seen first.
+  const std::string damaged = write("damaged.nrrd", nrrd_bytes(ball({8, 8, 8}, 2)).substr(0, 300));
+  expect_contour_failure(6, damaged, "0", path("none/out.ply"), {path("none/out.ply")});
+}
+
+TEST_F(Errors, ComeAsJsonToThoseWhoAskForJson) {
+  const auto error_of = [&](const std::vector<std::string>& arguments) {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.out, "");
+    const nlohmann::json document = nlohmann::json::parse(run.err, nullptr, false);
+    EXPECT_FALSE(document.is_discarded()) << run.err;
+    EXPECT_EQ(document["error"]["exit"], run.exit);
+    EXPECT_FALSE(document["error"]["message"].get<std::string>().empty());
+    return document["error"]["code"].get<std::string>();
+  };
+  EXPECT_EQ(error_of({"info", path("none.nrrd"), "--json"}), "FileNotFound");
+  EXPECT_EQ(error_of({"contour", ball_file(), "--iso", "100", "-o", path("out.ply"), "--json"}), "EmptyResult");
+  EXPECT_EQ(error_of({"contour", "--json", "--colour"}), "InvalidArgument");
+}
+
+TEST_F(Errors, AnOldOutputSurvivesAFailure) {
+  write("out.ply", "precious");
+  expect_contour_failure(5, ball_file(), "100", path("out.ply"), {});
+  EXPECT_EQ(std::filesystem::file_size(path("out.ply")), 8u);
+}
+
+TEST_F(Errors, HelpAndVersionAreNone) {
+  const RunResult help = run_tegl({"--help"});
+  EXPECT_EQ(help.exit, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("contour"), HasSubstr("slice"), HasSubstr("Exit codes"), HasSubstr("130")));
+  EXPECT_THAT(help.err, IsEmpty());
+  for (const char* command : {"info", "contour", "slice", "check"}) {
+    const RunResult run = run_tegl({command, "--help"});
+    EXPECT_EQ(run.exit, 0);
+    EXPECT_THAT(run.out, AllOf(HasSubstr("Examples:"), HasSubstr(std::string("tegl ") + command)));
+  }
+  const RunResult version = run_tegl({"--version"});
+  EXPECT_EQ(version.exit, 0);
+  EXPECT_THAT(version.out, StartsWith("tegl 0."));
+}
+
+}  // namespace
+}  // namespace tegl::test

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "sample_files.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Info = ProgramTest;
+
+TEST_F(Info, TellsAxesAndValuesOfAnNrrdFile) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({7, 6, 5}, 2), "spacings: 1 0.5 2\n"));
+  const RunResult run = run_tegl({"info", file, "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const nlohmann::json info = run.json();
+  EXPECT_EQ(info["format"], "NRRD");
+  EXPECT_EQ(info["image_dim"], 3);
+  EXPECT_EQ(info["value_type"], "float");
+  EXPECT_EQ(info["samples"], 7 * 6 * 5);
+  EXPECT_EQ(info["missing"], 0);
+  ASSERT_EQ(info["axes"].size(), 3u);
+  EXPECT_EQ(info["axes"][1]["size"], 6);
+  EXPECT_EQ(info["axes"][1]["step"], 0.5);
+  EXPECT_EQ(info["axes"][1]["uniform"], true);
+  const auto counts = info["histogram"]["counts"].get<std::vector<int>>();
+  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 7 * 6 * 5);
+  EXPECT_FALSE(info["suggested"].empty());
+  EXPECT_TRUE(run.err.empty()) << run.err;
+}
+
+TEST_F(Info, ShowsTheSameToPeople) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({7, 6, 5}, 2)));
+  const RunResult run = run_tegl({"info", file});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  for (const char* part : {"3D NRRD", "axes", "6 samples", "missing", "Histogram", "#", "Suggested values", "otsu"}) {
+    EXPECT_THAT(run.out, HasSubstr(part));
+  }
+  EXPECT_EQ(run.out.find('\x1b'), std::string::npos) << "colours without a terminal";
+}
+
+TEST_F(Info, TellsTheTimeAxisAndTheWorldOfANiftiFile) {
+  const std::string file = write("balls.nii", nifti_bytes(merging_balls(9, 4), {2, 2, 3, 1.5f}));
+  const RunResult run = run_tegl({"info", file, "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const nlohmann::json info = run.json();
+  EXPECT_EQ(info["format"], "NIfTI");
+  EXPECT_EQ(info["image_dim"], 4);
+  EXPECT_EQ(info["axes"][3]["unit"], "s");
+  EXPECT_EQ(info["axes"][3]["last"], 4.5);
+  EXPECT_EQ(info["world_frame"], "RAS");
+}
+
+TEST_F(Info, ReadsMetaImage) {
+  const std::string file = write("ball.mha", metaimage_bytes(ball({7, 6}, 2)));
+  const RunResult run = run_tegl({"info", file, "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.json()["format"], "MetaImage");
+  EXPECT_EQ(run.json()["image_dim"], 2);
+}
+
+TEST_F(Info, ShowsMissingSamplesAndUnevenAxesOfANetcdfFile) {
+  Samples values = ball({4, 3, 5}, 2);
+  values.values[0] = values.values[7] = -999;
+  write_netcdf(path("sea.nc"), {"lon", "lat", "depth"}, {{0, 1, 2, 3}, {-1, 0, 1}, {0, 10, 25, 50, 100}},
+               {{"TEMP", values}});
+  const RunResult run = run_tegl({"info", path("sea.nc"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const nlohmann::json info = run.json();
+  EXPECT_EQ(info["variable"], "TEMP");
+  EXPECT_EQ(info["value_unit"], "degC");
+  EXPECT_EQ(info["missing"], 2);
+  EXPECT_EQ(info["axes"][2]["name"], "depth");
+  EXPECT_EQ(info["axes"][2]["uniform"], false);
+  EXPECT_THAT(info["axes"][2]["coordinates"], ElementsAre(0, 10, 25, 50, 100));
+  EXPECT_THAT(run_tegl({"info", path("sea.nc")}).out, HasSubstr("steps 10 to 50"));
+}
+
+TEST_F(Info, NamesTheVariablesWhereThereAreSeveral) {
+  const Samples values = ball({4, 3}, 1);
+  write_netcdf(path("two.nc"), {"lon", "lat"}, {{0, 1, 2, 3}, {0, 1, 2}}, {{"TEMP", values}, {"SALT", values}});
+  const RunResult unnamed = run_tegl({"info", path("two.nc")});
+  EXPECT_EQ(unnamed.exit, 2);
+  EXPECT_THAT(unnamed.err, HasSubstr("TEMP"));
+  EXPECT_THAT(unnamed.err, HasSubstr("SALT"));
+  EXPECT_THAT(unnamed.err, HasSubstr("--var"));
+  const RunResult named = run_tegl({"info", path("two.nc"), "--var", "SALT", "--json"});
+  ASSERT_EQ(named.exit, 0) << named.err;
+  EXPECT_EQ(named.json()["variable"], "SALT");
+  EXPECT_EQ(named.json()["variables"].size(), 2u);
+  const RunResult unknown = run_tegl({"info", path("two.nc"), "--var", "WIND"});
+  EXPECT_EQ(unknown.exit, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("WIND"));
+  EXPECT_THAT(unknown.err, HasSubstr("SALT"));
+}
+
+TEST_F(Info, SaysSoWhenThereAreNoValues) {
+  const std::string file = write("nan.nrrd", nrrd_bytes(sample({3, 3}, [](auto&) { return NAN; })));
+  const RunResult run = run_tegl({"info", file});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("9 missing"));
+  const RunResult json = run_tegl({"info", file, "--json"});
+  EXPECT_TRUE(json.json()["min"].is_null());
+  EXPECT_TRUE(json.json()["suggested"].empty());
+}
+
+TEST_F(Info, SuggestsIsovaluesThatHaveAContour) {
+  const std::string file = write("noise.nrrd", nrrd_bytes_uint8(noise({8, 8, 8}, 1)));
+  const nlohmann::json suggested = run_tegl({"info", file, "--json"}).json()["suggested"];
+  ASSERT_FALSE(suggested.empty());
+  for (const auto& suggestion : suggested) {
+    const RunResult run =
+        run_tegl({"contour", file, "--iso", suggestion["value"].dump(), "-o", path("out.ply"), "--json"});
+    ASSERT_EQ(run.exit, 0) << run.err;
+    // Some of the contour's points on edges lie at the image's border, in tiles all the same: all are counted.
+    EXPECT_GE(run.json()["vertices"], suggestion["edges"]);
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test

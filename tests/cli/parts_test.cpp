@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The parts of the program that are functions: numbers, cuts, output paths, exit codes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <fstream>
+
+#include "cuts.hpp"
+#include "exit_codes.hpp"
+#include "numbers.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "result.hpp"
+
+namespace tegl::cli {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The error that a call throws; fails the test if it throws none.
+template <class Call>
+Error error_of(Call&& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return {ErrorCode::Cancelled, ""};
+}
+
+TEST(Numbers, AreReadWholeOrNotAtAll) {
+  EXPECT_EQ(parse_number("7.3"), 7.3);
+  EXPECT_EQ(parse_number("-4e2"), -400.0);
+  EXPECT_EQ(parse_number("+1"), 1.0);
+  EXPECT_TRUE(std::isnan(parse_number("nan").value()));
+  for (const char* text : {"", "abc", "7.3x", "7,3", "1 2", "+-1", "--1", "0x10", " 1"}) {
+    EXPECT_FALSE(parse_number(text).has_value()) << text;
+  }
+}
+
+TEST(Numbers, MustBeFiniteWhereAValueIsExpected) {
+  EXPECT_EQ(parse_finite("--iso", "20"), 20.0);
+  for (const char* text : {"nan", "inf", "-inf", "1e999", "abc"}) {
+    const Error error = error_of([&] { (void)parse_finite("--iso", text); });
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    EXPECT_THAT(error.what(), HasSubstr(text));
+    EXPECT_THAT(error.what(), HasSubstr("--iso"));
+  }
+}
+
+TEST(Numbers, AreShownShort) {
+  EXPECT_EQ(number(20.5), "20.5");
+  EXPECT_EQ(number(static_cast<double>(20.1f)), "20.1");
+  EXPECT_EQ(number(-400), "-400");
+  EXPECT_EQ(grouped(7), "7");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1000), "1 000");
+  EXPECT_EQ(grouped(1234567), "1 234 567");
+  EXPECT_EQ(counted(1, "vertex", "vertices"), "1 vertex");
+  EXPECT_EQ(counted(0, "vertex", "vertices"), "0 vertices");
+  EXPECT_EQ(byte_size(812), "812 B");
+  EXPECT_EQ(byte_size(3400000), "3.4 MB");
+  EXPECT_EQ(byte_size(999999), "1.0 MB");
+}
+
+TEST(Cuts, AreReadFromSeveralValuesAndLists) {
+  const std::vector<Cut> cuts = parse_cuts({"t=7.3", "TIME=1,2.50"});
+  ASSERT_EQ(cuts.size(), 3u);
+  EXPECT_EQ(cuts[0].axis, "t");
+  EXPECT_EQ(cuts[0].value, 7.3);
+  EXPECT_EQ(cuts[2].axis, "TIME");
+  EXPECT_EQ(cuts[2].value, 2.5);
+  EXPECT_EQ(cuts[2].text, "2.50");
+}
+
+TEST(Cuts, OtherTextIsRefusedAndQuoted) {
+  for (const char* text : {"7.3", "t", "t=", "=7", "t=a", "t=1,", "t=nan", "t=1,,2"}) {
+    const Error error = error_of([&] { (void)parse_cuts({text}); });
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    EXPECT_THAT(error.what(), HasSubstr(text));
+  }
+}
+
+TEST(Cuts, HaveAnOutputEach) {
+  const std::vector<Cut> cuts = parse_cuts({"TIME=1,2.50"});
+  EXPECT_THAT(cut_outputs("a_{t}.ply", cuts), ElementsAre("a_1.ply", "a_2.50.ply"));
+  EXPECT_THAT(cut_outputs("{TIME}/{t}.ply", cuts), ElementsAre("1/1.ply", "2.50/2.50.ply"));
+  EXPECT_EQ(error_of([&] { (void)cut_outputs("a.ply", cuts); }).code(), ErrorCode::InvalidArgument);
+  EXPECT_EQ(error_of([&] { (void)cut_outputs("{t}.ply", parse_cuts({"t=1,1"})); }).code(), ErrorCode::InvalidArgument);
+}
+
+TEST(Output, FormatsHoldTheDimensionsThatTheyHold) {
+  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.vtkhdf", "A.PLY"}) {
+    EXPECT_NO_THROW(require_output_holds(name, 1)) << name;
+    EXPECT_NO_THROW(require_output_holds(name, 2)) << name;
+  }
+  EXPECT_NO_THROW(require_output_holds("a.vtkhdf", 3));
+  for (const char* name : {"a.ply", "a.gltf", "a.glb"}) {
+    const Error error = error_of([&] { require_output_holds(name, 3); });
+    EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
+    EXPECT_THAT(error.what(), HasSubstr(".vtkhdf"));
+  }
+}
+
+TEST(Output, TheDimensionsThatAreAllowedCanBeWritten) {
+  // The table of formats here and the writers must not drift apart.
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir());
+  for (const char* extension : {".ply", ".gltf", ".glb", ".vtkhdf"}) {
+    for (int dim = 1; dim <= 3; ++dim) {
+      const std::filesystem::path path = folder / (std::string("tegl_writable_") + std::to_string(dim) + extension);
+      Mesh mesh;
+      mesh.dim = dim;
+      mesh.space_dim = dim + 1;
+      const auto points = static_cast<std::size_t>(dim + 1);
+      mesh.coordinates.assign(points * points, 0.0);
+      for (std::size_t i = 0; i < points; ++i) mesh.coordinates[i * points + i] = 1.0;
+      for (Index i = 0; i < points; ++i) mesh.simplices.push_back(i);
+      bool allowed = true;
+      try {
+        require_output_holds(path, dim);
+      } catch (const Error&) {
+        allowed = false;
+      }
+      if (allowed) {
+        EXPECT_GT(write_output(mesh, path, {}), 0u) << path;
+      } else {
+        EXPECT_EQ(error_of([&] { (void)write_output(mesh, path, {}); }).code(), ErrorCode::WriteFailed) << path;
+      }
+      EXPECT_EQ(std::filesystem::exists(path), allowed) << path;
+      std::filesystem::remove(path);
+    }
+  }
+}
+
+TEST(Output, IsLookedAtBeforeTheWork) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tegl_output_test";
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path input = folder / "input.ply";
+  std::ofstream(input) << "x";
+  const auto message = [&](const std::filesystem::path& path) {
+    const Error error = error_of([&] { require_output(path, input); });
+    EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
+    EXPECT_THAT(error.what(), HasSubstr(path.string()));
+    return std::string(error.what());
+  };
+  EXPECT_NO_THROW(require_output(folder / "out.glb", input));
+  EXPECT_NO_THROW(require_output("out.glb", input));
+  EXPECT_THAT(message(folder / "out.xyz"), HasSubstr(".xyz"));
+  EXPECT_THAT(message(folder / "out"), HasSubstr("no extension"));
+  EXPECT_THAT(message(folder / "none" / "out.ply"), HasSubstr("does not exist"));
+  EXPECT_THAT(message(input / "out.ply"), HasSubstr("not a folder"));
+  EXPECT_THAT(message(input), HasSubstr("input"));
+  std::filesystem::create_directories(folder / "folder.ply");
+  EXPECT_THAT(message(folder / "folder.ply"), HasSubstr("directory"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Faults, AreThoseOfManifoldnessAlone) {
+  MeshReport report;
+  report.dim = 2;
+  report.boundary_simplices = 3;
+  report.degenerate_simplices = 4;
+  EXPECT_FALSE(has_faults(report));
+  for (const auto member :
+       {&MeshReport::nonmanifold_simplices, &MeshReport::bad_links, &MeshReport::orientation_conflicts}) {
+    MeshReport faulty = report;
+    faulty.*member = 1;
+    EXPECT_TRUE(has_faults(faulty));
+  }
+}
+
+TEST(Faults, TextThatIsNoUtf8StillMakesJson) {
+  Json json;
+  json["unit"] = "\xb0\x43";  // degree sign in Latin-1
+  EXPECT_TRUE(nlohmann::json::accept(dump(json)));
+}
+
+TEST(ExitCodes, AreAsDocumented) {
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::InvalidArgument)), 2);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::VariableNotFound)), 2);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::FileNotFound)), 3);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::MalformedFile)), 4);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::UnsupportedData)), 4);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::EmptyResult)), 5);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::WriteFailed)), 6);
+  EXPECT_EQ(static_cast<int>(exit_code(ErrorCode::Cancelled)), 130);
+  for (const char* code : {"0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "6 ", "70 ", "130 "}) {
+    EXPECT_THAT(exit_code_help(), HasSubstr(std::string("\n  ") + code));
+  }
+}
+
+TEST(Interrupt, StopsProgressAtTheNextCall) {
+  const Console console(stderr);
+  const InterruptHandler handler;
+  ProgressBar bar(console, false);
+  const Progress progress = bar.stage("read");
+  EXPECT_TRUE(progress(0.5));
+  std::raise(SIGINT);
+  EXPECT_FALSE(progress(0.6));
+  EXPECT_EQ(error_of([&] { (void)bar.stage("write"); }).code(), ErrorCode::Cancelled);
+}
+
+}  // namespace
+}  // namespace tegl::cli

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sample_files.hpp"
+
+#include <netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+namespace tegl::test {
+
+namespace {
+
+std::string bytes_of(const std::vector<float>& values) {
+  std::string bytes(values.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+std::string joined(const std::vector<std::size_t>& sizes) {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < sizes.size(); ++i) text << (i == 0 ? "" : " ") << sizes[i];
+  return text.str();
+}
+
+std::string nrrd_header(const Samples& samples, const std::string& type, const std::string& extra) {
+  std::ostringstream header;
+  header << "NRRD0004\ntype: " << type << "\ndimension: " << samples.sizes.size()
+         << "\nsizes: " << joined(samples.sizes) << "\nendian: little\nencoding: raw\n"
+         << extra << "\n";
+  return header.str();
+}
+
+void require(int status) {
+  if (status != NC_NOERR) throw std::runtime_error(nc_strerror(status));
+}
+
+}  // namespace
+
+Samples sample(const std::vector<std::size_t>& sizes, const std::function<double(const std::vector<double>&)>& field) {
+  std::size_t count = 1;
+  for (const std::size_t size : sizes) count *= size;
+  Samples samples{sizes, std::vector<float>(count)};
+  std::vector<double> index(sizes.size());
+  for (float& value : samples.values) {
+    value = static_cast<float>(field(index));
+    for (std::size_t a = 0; a < sizes.size() && ++index[a] == static_cast<double>(sizes[a]); ++a) index[a] = 0;
+  }
+  return samples;
+}
+
+Samples ball(const std::vector<std::size_t>& sizes, double radius) {
+  return sample(sizes, [&](const std::vector<double>& x) {
+    double square = 0;
+    for (std::size_t a = 0; a < x.size(); ++a) {
+      const double offset = x[a] - static_cast<double>(sizes[a] - 1) / 2;
+      square += offset * offset;
+    }
+    return radius - std::sqrt(square);
+  });
+}
+
+Samples merging_balls(std::size_t size, std::size_t steps) {
+  const double middle = static_cast<double>(size - 1) / 2;
+  return sample({size, size, size, steps}, [&](const std::vector<double>& x) {
+    const double half_gap = 5.0 - 4.0 * x[3] / static_cast<double>(steps - 1);
+    const double around = std::hypot(x[1] - middle, x[2] - middle);
+    const double left = std::hypot(x[0] - middle + half_gap, around);
+    const double right = std::hypot(x[0] - middle - half_gap, around);
+    return 3.0 - std::min(left, right);
+  });
+}
+
+Samples noise(const std::vector<std::size_t>& sizes, std::uint64_t seed) {
+  std::mt19937_64 bits(seed);
+  return sample(sizes, [&](const std::vector<double>&) { return static_cast<double>(bits() >> 56); });
+}
+
+std::string nrrd_bytes(const Samples& samples, const std::string& extra) {
+  return nrrd_header(samples, "float", extra) + bytes_of(samples.values);
+}
+
+std::string nrrd_bytes_uint8(const Samples& samples) {
+  std::string bytes;
+  for (const float value : samples.values) bytes.push_back(static_cast<char>(static_cast<std::uint8_t>(value)));
+  return nrrd_header(samples, "uint8", "") + bytes;
+}
+
+std::string nifti_bytes(const Samples& samples, const std::vector<float>& spacing) {
+  // Offsets from the definition of the format, nifti1.h.
+  std::string header(352, '\0');
+  const auto put = [&](std::size_t at, auto value) { std::memcpy(header.data() + at, &value, sizeof(value)); };
+  put(0, std::int32_t{348});
+  put(40, static_cast<std::int16_t>(samples.sizes.size()));
+  for (std::size_t a = 0; a < 7; ++a) {
+    put(42 + 2 * a, static_cast<std::int16_t>(a < samples.sizes.size() ? samples.sizes[a] : 1));
+    put(80 + 4 * a, a < spacing.size() ? spacing[a] : 1.0f);
+  }
+  put(70, std::int16_t{16});      // datatype: float32
+  put(72, std::int16_t{32});      // bits
+  put(76, 1.0f);                  // handedness
+  put(108, 352.0f);               // where the values start
+  put(112, 1.0f);                 // slope
+  put(123, std::uint8_t{2 | 8});  // mm and s
+  put(252, std::int16_t{1});      // qform: scanner; the zero quaternion is the identity
+  std::memcpy(header.data() + 344, "n+1", 4);
+  return header + bytes_of(samples.values);
+}
+
+std::string metaimage_bytes(const Samples& samples) {
+  std::ostringstream header;
+  header << "ObjectType = Image\nNDims = " << samples.sizes.size()
+         << "\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\nDimSize = "
+         << joined(samples.sizes) << "\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n";
+  return header.str() + bytes_of(samples.values);
+}
+
+void write_netcdf(const std::string& path, const std::vector<std::string>& names,
+                  const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables) {
+  int file = 0;
+  require(nc_create(path.c_str(), NC_CLOBBER, &file));
+  std::vector<int> dimensions(names.size());
+  std::vector<int> axes(names.size());
+  for (std::size_t a = 0; a < names.size(); ++a) {
+    require(nc_def_dim(file, names[a].c_str(), coordinates[a].size(), &dimensions[a]));
+    require(nc_def_var(file, names[a].c_str(), NC_DOUBLE, 1, &dimensions[a], &axes[a]));
+  }
+  // The last dimension of netCDF runs fastest.
+  const std::vector<int> slow_first(dimensions.rbegin(), dimensions.rend());
+  std::vector<int> ids;
+  for (const NetcdfVariable& variable : variables) {
+    const int rank = static_cast<int>(slow_first.size());
+    require(nc_def_var(file, variable.name.c_str(), NC_FLOAT, rank, slow_first.data(), &ids.emplace_back()));
+    const float missing = -999;
+    require(nc_put_att_float(file, ids.back(), "_FillValue", NC_FLOAT, 1, &missing));
+    require(nc_put_att_text(file, ids.back(), "units", 4, "degC"));
+  }
+  require(nc_enddef(file));
+  for (std::size_t a = 0; a < names.size(); ++a) require(nc_put_var_double(file, axes[a], coordinates[a].data()));
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    require(nc_put_var_float(file, ids[i], variables[i].samples.values.data()));
+  }
+  require(nc_close(file));
+}
+
+}  // namespace tegl::test

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Small image files, written without the library that is to read them.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tegl::test {
+
+/// Values on a grid, axis 0 fastest.
+struct Samples {
+  std::vector<std::size_t> sizes;
+  std::vector<float> values;
+};
+
+/// The values of a function of the index.
+Samples sample(const std::vector<std::size_t>& sizes, const std::function<double(const std::vector<double>&)>& field);
+
+/// A ball of this radius in the middle of the grid: radius minus distance. Contour at 0: a sphere.
+Samples ball(const std::vector<std::size_t>& sizes, double radius);
+
+/// Two balls of radius 3 in 3D that move towards each other along x while t runs from 0 to steps - 1, and merge.
+Samples merging_balls(std::size_t size, std::size_t steps);
+
+/// Numbers without a pattern in [0, 255], always the same ones.
+Samples noise(const std::vector<std::size_t>& sizes, std::uint64_t seed);
+
+/// NRRD, attached header, float. `extra` header lines end with a newline each.
+std::string nrrd_bytes(const Samples& samples, const std::string& extra = "");
+/// The same as uint8.
+std::string nrrd_bytes_uint8(const Samples& samples);
+
+/// NIfTI-1, float, with spacings (mm; s along t) and without a rotation.
+std::string nifti_bytes(const Samples& samples, const std::vector<float>& spacing);
+
+/// MetaImage, float, attached data.
+std::string metaimage_bytes(const Samples& samples);
+
+/// A variable of a netCDF file; dimension i has these coordinates. Slowest dimension last, as in Samples.
+struct NetcdfVariable {
+  std::string name;
+  Samples samples;
+};
+/// netCDF classic with coordinate variables: axis i is named names[i] and has coordinates[i]; -999 is missing.
+void write_netcdf(const std::string& path, const std::vector<std::string>& names,
+                  const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables);
+
+}  // namespace tegl::test

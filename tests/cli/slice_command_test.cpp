@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Slice : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    file_ = write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 2}));  // t = 0, 2, 4, 6, 8 s
+  }
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+ private:
+  std::string file_;
+};
+
+TEST_F(Slice, OfMovingBallsIsTwoSpheresThenOne) {
+  const RunResult early = run_tegl({"slice", file(), "--iso", "0", "--at", "t=0.7", "-o", path("a.ply"), "--json"});
+  ASSERT_EQ(early.exit, 0) << early.err;
+  const nlohmann::json two = early.json();
+  EXPECT_EQ(two["image_dim"], 4);
+  EXPECT_EQ(two["dim"], 2);
+  EXPECT_EQ(two["components"], 2);
+  EXPECT_EQ(two["euler"], 4);
+  EXPECT_EQ(two["boundary_simplices"], 0);
+  EXPECT_EQ(two["at"]["value"], 0.7);
+  EXPECT_GT(two["active_tiles"], 0);
+  for (const char* stage : {"read", "slice", "check", "write"}) EXPECT_TRUE(two["seconds"].contains(stage));
+  const RunResult late = run_tegl({"slice", file(), "--iso", "0", "--at", "t=7.3", "-o", path("b.ply"), "--json"});
+  ASSERT_EQ(late.exit, 0) << late.err;
+  EXPECT_EQ(late.json()["euler"], 2);
+}
+
+TEST_F(Slice, OfASavedContourEqualsThatOfItsImage) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  for (const char* at : {"t=4", "t=7.3", "t=0", "t=8"}) {
+    const RunResult saved = run_tegl({"slice", path("all.vtkhdf"), "--at", at, "-o", path("saved.ply"), "--json"});
+    ASSERT_EQ(saved.exit, 0) << saved.err;
+    const RunResult direct = run_tegl({"slice", file(), "--iso", "0", "--at", at, "-o", path("direct.ply"), "--json"});
+    ASSERT_EQ(direct.exit, 0) << direct.err;
+    for (const char* key : {"vertices", "simplices", "components", "euler", "boundary_simplices", "bad_links"}) {
+      EXPECT_EQ(saved.json()[key], direct.json()[key]) << at << " " << key;
+    }
+    EXPECT_TRUE(saved.json()["isovalue"].is_null());
+    EXPECT_TRUE(saved.json()["active_tiles"].is_null());
+  }
+}
+
+TEST_F(Slice, OfAWholeTimeIsTheContourOfThatStep) {
+  const Samples balls = merging_balls(18, 5);
+  const std::size_t step = 18 * 18 * 18;
+  const Samples layer{{18, 18, 18}, {balls.values.begin() + 2 * step, balls.values.begin() + 3 * step}};
+  const std::string layer_file = write("layer.nii", nifti_bytes(layer, {1, 1, 1}));
+  ASSERT_EQ(run_tegl({"contour", layer_file, "--iso", "0", "-o", path("layer.ply"), "-q"}).exit, 0);
+  ASSERT_EQ(run_tegl({"slice", file(), "--iso", "0", "--at", "t=4", "-o", path("cut.ply"), "-q"}).exit, 0);
+  const auto points = [&](const std::string& name) {
+    const Mesh mesh = read_mesh(path(name));
+    std::vector<std::array<double, 3>> list(mesh.coordinates.size() / 3);
+    for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) list[i / 3][i % 3] = mesh.coordinates[i];
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  EXPECT_EQ(points("cut.ply"), points("layer.ply"));
+}
+
+TEST_F(Slice, CutsAtSeveralTimesAtOnce) {
+  const RunResult run = run_tegl(
+      {"slice", "--at", "t=1,2.50", "--at", "t=7.3", file(), "--iso", "0", "-o", path("cut_{t}.ply"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(files(), ElementsAre("balls.nii", "cut_1.ply", "cut_2.50.ply", "cut_7.3.ply"));
+  ASSERT_EQ(run.json().size(), 3u);
+  EXPECT_EQ(run.json()[1]["at"]["value"], 2.5);
+  EXPECT_EQ(run.json()[1]["output"], path("cut_2.50.ply"));
+}
+
+TEST_F(Slice, TakesTheAxisByItsOwnName) {
+  write_netcdf(path("balls.nc"), {"LON", "LAT", "DEPTH", "MONTH"},
+               {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17},
+                {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17},
+                {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17},
+                {1, 2, 4, 7, 12}},
+               {{"TEMP", merging_balls(18, 5)}});
+  const std::vector<std::string> rest = {"--iso", "0", "-o", path("out.ply"), "--json"};
+  for (const char* at : {"MONTH=1.5", "month=1.5", "t=1.5"}) {
+    std::vector<std::string> arguments = {"slice", path("balls.nc"), "--at", at};
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
+    const RunResult run = run_tegl(arguments);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_EQ(run.json()["at"]["axis"], "MONTH");
+    EXPECT_EQ(run.json()["euler"], 4);
+  }
+  const RunResult other = run_tegl({"slice", path("balls.nc"), "--at", "LAT=3", "--iso", "0", "-o", path("no.ply")});
+  EXPECT_EQ(other.exit, 2);
+  EXPECT_THAT(other.err, HasSubstr("LAT"));
+  EXPECT_THAT(other.err, HasSubstr("MONTH"));
+}
+
+TEST_F(Slice, OutsideOfTheTimesIsRefusedWithTheirRange) {
+  for (const char* at : {"t=-0.1", "t=8.01", "t=1e9"}) {
+    const RunResult run = run_tegl({"slice", file(), "--iso", "0", "--at", at, "-o", path("out.ply")});
+    EXPECT_EQ(run.exit, 5);
+    EXPECT_THAT(run.err, HasSubstr("0 <= t <= 8"));
+    EXPECT_THAT(run.err, HasSubstr(file()));
+  }
+  EXPECT_THAT(files(), ElementsAre("balls.nii"));
+}
+
+TEST_F(Slice, ThatIsEmptyLeavesNoFile) {
+  // A ball that exists around t = 1 only; cut at t = 3.
+  const Samples flash = sample({7, 7, 7, 5}, [](const std::vector<double>& x) {
+    return 2.2 - std::hypot(x[0] - 3, x[1] - 3, x[2] - 3) - 3 * std::abs(x[3] - 1);
+  });
+  const std::string flash_file = write("flash.nrrd", nrrd_bytes(flash));
+  const RunResult run = run_tegl({"slice", flash_file, "--iso", "0", "--at", "t=1,3", "-o", path("{t}.ply")});
+  EXPECT_EQ(run.exit, 5);
+  EXPECT_THAT(run.err, HasSubstr("t = 3"));
+  EXPECT_THAT(run.err, HasSubstr("empty"));
+  EXPECT_THAT(files(), ElementsAre("balls.nii", "flash.nrrd"));
+}
+
+TEST_F(Slice, OfASavedContourTakesNoOptionsOfTheExtraction) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--iso", "0"}, {"--close"}, {"--var", "T"}, {"--triangulation", "compact"}}) {
+    std::vector<std::string> arguments = {"slice", path("all.vtkhdf"), "--at", "t=1", "-o", path("out.ply")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 2);
+    EXPECT_THAT(run.err, HasSubstr(more.front()));
+  }
+  EXPECT_THAT(files(), Not(Contains("out.ply")));
+}
+
+TEST_F(Slice, OfAnImageNeedsAnIsovalue) {
+  const RunResult run = run_tegl({"slice", file(), "--at", "t=1", "-o", path("out.ply")});
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--iso"));
+}
+
+TEST_F(Slice, OfAVolumeIsItsContourLines) {
+  const std::string volume = write("ball.nrrd", nrrd_bytes(ball({12, 12, 12}, 4.3)));
+  const RunResult run = run_tegl({"slice", volume, "--iso", "0", "--at", "z=5.2", "-o", path("line.ply"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.json()["dim"], 1);
+  EXPECT_EQ(run.json()["components"], 1);
+  EXPECT_EQ(run.json()["boundary_simplices"], 0);
+}
+
+TEST_F(Slice, OfAPlaneImageIsRefused) {
+  const std::string disc = write("disc.nrrd", nrrd_bytes(ball({9, 9}, 3)));
+  const RunResult run = run_tegl({"slice", disc, "--iso", "0", "--at", "y=5", "-o", path("out.ply")});
+  EXPECT_EQ(run.exit, 4);
+  EXPECT_THAT(run.err, HasSubstr("2D"));
+}
+
+}  // namespace
+}  // namespace tegl::test

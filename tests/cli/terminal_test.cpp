@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What shows on a terminal and nowhere else: the progress bar, colours; and Ctrl-C.
+#include <gmock/gmock.h>
+
+#include "sample_files.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kColour = "\x1b[1m";
+
+class Terminal : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    file_ = write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2)));
+  }
+  [[nodiscard]] std::vector<std::string> contour(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"contour", file_, "--iso", "0", "-o", path("out.ply")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+ private:
+  std::string file_;
+};
+
+TEST_F(Terminal, ShowsProgressAndColours) {
+  const RunResult run = run_tegl_on_terminal(contour(), {});
+  EXPECT_EQ(run.exit, 0) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("read "));
+  EXPECT_THAT(run.out, HasSubstr("[..."));
+  EXPECT_THAT(run.out, HasSubstr(kColour));
+  EXPECT_THAT(run.out, HasSubstr("\r\x1b[K" + std::string(kColour))) << "the bar is gone before the report";
+}
+
+TEST_F(Terminal, ShowsNoColoursWhereNoneAreWanted) {
+  for (const char* setting : {"NO_COLOR=1", "TERM=dumb"}) {
+    const RunResult run = run_tegl_on_terminal(contour(), {setting});
+    EXPECT_EQ(run.exit, 0);
+    EXPECT_THAT(run.out, Not(HasSubstr(kColour))) << setting;
+    EXPECT_THAT(run.out, HasSubstr("triangles"));
+  }
+}
+
+TEST_F(Terminal, ShowsNoProgressInQuietOrJsonRuns) {
+  EXPECT_EQ(run_tegl_on_terminal(contour({"--quiet"}), {}).out, "");
+  EXPECT_THAT(run_tegl_on_terminal(contour({"--json"}), {}).out, Not(HasSubstr("\x1b")));
+}
+
+TEST_F(Terminal, InterruptStopsTheWorkAndLeavesNoFile) {
+  const std::string file = write("noise.nrrd", nrrd_bytes_uint8(noise({40, 40, 40, 12}, 9)));
+  const RunResult run = run_tegl_on_terminal(
+      {"contour", file, "--iso", "128", "--triangulation", "barycentric", "-o", path("noise.vtkhdf")}, {}, "contour ");
+  EXPECT_EQ(run.exit, 130) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("cancelled"));
+  EXPECT_THAT(files(), ElementsAre("ball.nrrd", "noise.nrrd"));
+}
+
+}  // namespace
+}  // namespace tegl::test
