@@ -120,6 +120,7 @@ int run_classes(const Options& options) {
   const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
   const auto elements = group(options.dim, GroupKind::Full, false);
   const Transversal classes = transversal(options.dim, elements);
+  require_burnside_count(classes, options.dim, GroupKind::Full, false);
   if (options.json)
     fmt::print("{{\"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
                options.dim, alternative_name(alternative), elements.size());
@@ -129,7 +130,7 @@ int run_classes(const Options& options) {
     const Signature s = classes.representatives[c];
     const ClassReport report{s, classes.orbit_length[c],
                              static_cast<std::uint32_t>(elements.size() / classes.orbit_length[c]), builder.build(s),
-                             ambiguous_faces(lattice, options.dim, alternative, s)};
+                             ambiguous_faces(lattice, options.dim, s)};
     if (options.json)
       fmt::print("{}\n  {}", c == 0 ? "" : ",", json_of(builder.tile(), report));
     else

@@ -2,7 +2,7 @@
 #include "tegl/gen/table_set.hpp"
 
 #include <map>
-#include <set>
+#include <numeric>
 
 #include "tegl/gen/counting.hpp"
 #include "tegl/gen/symmetry.hpp"
@@ -36,7 +36,9 @@ TableSet make_table_set(const TableRequest& request) {
   set.command = request.command;
   const auto elements = group(request.dim, GroupKind::Full, false);
   set.group_order = elements.size();
-  set.orbits = transversal(request.dim, elements).representatives.size();
+  const Transversal classes = transversal(request.dim, elements);
+  require_burnside_count(classes, request.dim, GroupKind::Full, false);
+  set.orbits = classes.representatives.size();
   for (const Triangulation t : request.triangulations) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
@@ -60,35 +62,34 @@ std::vector<CertifiedFigures> certify_all(int dim) {
   return figures;
 }
 
-std::vector<std::uint32_t> ambiguous_faces(const CubeLattice& lattice, int dim, Alternative alternative,
-                                           Signature signature) {
-  // The faces of each dimension as sets of corners, each with its own signature; shared ones count once.
+std::vector<std::uint32_t> ambiguous_faces(const CubeLattice& lattice, int dim, Signature signature) {
+  const auto is_diagonal = [](const Tile& tile, Signature s) {
+    for (std::uint32_t v = 0; v < tile.corner_count() / 2; ++v)
+      if (s == (1u << v | 1u << (tile.corner_count() - 1 - v))) return true;
+    return false;
+  };
+  struct Face {
+    std::vector<std::uint8_t> corners;  // as the whole tile numbers them
+    Signature own;                      // in the face's own frame
+  };
   std::vector<std::uint32_t> result(static_cast<std::size_t>(dim) + 1, 0);
-  std::map<Signature, Signature> level;  // corners of the face -> its signature in its own frame
-  std::map<Signature, std::vector<std::uint8_t>> corners_of;
-  std::vector<std::uint8_t> all;
-  for (std::uint32_t v = 0; v < lattice.tile(dim).corner_count(); ++v) all.push_back(static_cast<std::uint8_t>(v));
-  level[lattice.tile(dim).full()] = signature;
-  corners_of[lattice.tile(dim).full()] = all;
+  std::vector<std::uint8_t> all(lattice.tile(dim).corner_count());
+  std::iota(all.begin(), all.end(), std::uint8_t{0});
+  std::map<Signature, Face> level{{lattice.tile(dim).full(), {all, signature}}};  // by set of corners
   for (int k = dim; k >= 2; --k) {
     const Tile& tile = lattice.tile(k);
-    const ContourBuilder builder(lattice, k, alternative, Triangulation::barycentric);
-    std::map<Signature, Signature> next;
-    for (const auto& [set, own] : level) {
-      const auto contour = builder.build(own);
-      const bool open =
-          contour.facets.size() > 1 || (k == 4 && contour.facets.size() == 1 && contour.facets[0].boundary_euler != 2);
-      result[static_cast<std::size_t>(k)] += open ? 1 : 0;
-      const auto corners = corners_of[set];
+    std::map<Signature, Face> next;
+    for (const auto& [set, face] : level) {
+      if (is_diagonal(tile, face.own) || is_diagonal(tile, ~face.own & tile.full()))
+        ++result[static_cast<std::size_t>(k)];
       for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
-        std::vector<std::uint8_t> of_face;
-        Signature face_set = 0;
+        Face sub{{}, tile.restrict_to(f, face.own)};
+        Signature corners = 0;
         for (const std::uint8_t v : tile.faces[f].corner) {
-          of_face.push_back(corners[v]);
-          face_set |= 1u << corners[v];
+          sub.corners.push_back(face.corners[v]);
+          corners |= 1u << face.corners[v];
         }
-        next[face_set] = tile.restrict_to(f, own);
-        corners_of[face_set] = of_face;
+        next.emplace(corners, std::move(sub));
       }
     }
     level = std::move(next);

@@ -30,10 +30,8 @@ TableSet make_table_set(const TableRequest& request);
 /// The certificate of every signature of both alternatives in both triangulations.
 std::vector<CertifiedFigures> certify_all(int dim);
 
-/// Squares, cubes and tesseracts of a tile whose centre's sign matters, by dimension (index 2, 3, 4): ambiguous
-/// squares; cubes and tesseracts whose Sigma, with squares resolved by `builder`'s rule, has several components or
-/// one that is no sphere.
-std::vector<std::uint32_t> ambiguous_faces(const CubeLattice& lattice, int dim, Alternative alternative,
-                                           Signature signature);
+/// How many of a tile's m-faces are m-ambiguous, by m (index 2 ... dim): their high corners, or their low ones, are
+/// the two ends of one m-diagonal (thesis, definition 7.3.7).
+std::vector<std::uint32_t> ambiguous_faces(const CubeLattice& lattice, int dim, Signature signature);
 
 }  // namespace tegl::gen

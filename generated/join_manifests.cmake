@@ -1,0 +1,10 @@
+# Joins the manifests of the three dimensions into one JSON array.
+set(text "[\n")
+foreach(dim 2 3 4)
+  file(READ ${TABLES}/manifest${dim}.json part)
+  string(APPEND text "${part}")
+  if(dim LESS 4)
+    string(APPEND text ",\n")
+  endif()
+endforeach()
+file(WRITE ${OUT} "${text}]\n")
