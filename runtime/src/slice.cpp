@@ -9,18 +9,22 @@
 // g, d] < 0: the cut (f_1 … f_{N-2}), followed by the way up, is a negative frame of the simplex. So the orientation
 // follows from which vertices are above and from their order alone, also where coordinates coincide.
 //
-// Why the cut is closed where the contour is (the contour's last coordinate t, "at" = h, a vertex at h called on):
-// with on vertices counted as above, simplices have points on the same edges as at h - e, for any e > 0 smaller than
-// the distance to the next vertex below: combinatorially the cut at h - e, a manifold. Its points around an on vertex u
-// are then drawn together into u. That keeps the manifold if those points span a disc (of discs drawn to points a
-// surface comes out unchanged: R. L. Moore, Concerning upper semi-continuous collections of continua, 1925), but
-// pinches it where h is a critical value at u. There the points are left apart, each in u's place: see `draw_together`.
-// If h is the coordinate of a layer of the image, the on vertices are that layer's (up to samples that equal the
-// isovalue): the contour's part in the hyperplane is the layer's contour M, each face of which is met by one simplex
-// from below. The cut of that simplex is the face, other simplices collapse, and the cut is M. Where there is no tile
-// below (the first layer, or missing values below), M's faces are met from above only: they are boundary faces of the
-// contour and are added as they are. If the contour is closed at its first layer, the faces' other side is the cap, a
-// part of the contour flat in the hyperplane with nothing below it.
+// Why the cut is closed where the contour is. Let h be the hyperplane's coordinate, and call a vertex at h "on". If on
+// vertices count as above, simplices have points on the same edges as at h - e, for any e > 0 smaller than the distance
+// to the next vertex below: combinatorially the cut is that at h - e, a manifold. If they count as below, it is the cut
+// at h + e; and as the argument is about one vertex at a time, groups of on vertices without an edge between them may
+// count differently. A group (on vertices connected by edges among themselves) counts as below if no edge of it goes
+// down, else as above: the limit from below where there is one.
+// The points around an on vertex u are then drawn together into u. That keeps the manifold if those points span a disc
+// (of discs drawn to points a surface comes out unchanged: R. L. Moore, Concerning upper semi-continuous collections of
+// continua, 1925), but pinches it where h is a critical value at u. There the points are left apart, each in u's place.
+//
+// Why the cut at a layer of the image is that layer's contour M: the on vertices are M's vertices (up to samples that
+// equal the isovalue). With tiles below, each face of M is met by one simplex from below; the cut of that simplex is
+// the face, other simplices collapse. Without any (the first layer, or missing values below) M's vertices count as
+// below, and the simplices above cut to its faces in the same way; if the contour is closed at its first layer, the cap
+// lies flat in the hyperplane with nothing below. Where tiles below are missing under a part of M alone, the faces
+// met from above are boundary faces of the contour, and are added as they are.
 #include "tegl/slice.hpp"
 
 #include <algorithm>
@@ -29,7 +33,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <span>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -50,20 +54,23 @@ using detail::PointKey;
 using detail::upper_end;
 using detail::vertex_point;
 
-enum class Side : std::uint8_t { below, on, above };
+/// Where a vertex lies; on_low and on_high lie on the hyperplane and count as below and above it.
+enum class Side : std::uint8_t { below, on_low, on_high, above };
+constexpr bool is_high(Side side) { return side >= Side::on_high; }
+constexpr bool is_on(Side side) { return side == Side::on_low || side == Side::on_high; }
 
 /// The vertices of a simplex with those of `high` (bit j: vertex j) first, by an even permutation.
 template <int N>
 std::array<Index, N> high_first(const std::array<Index, N>& simplex, unsigned high) {
   std::array<Index, N> sorted = simplex;
-  std::array<bool, N> is_high;
+  std::array<bool, N> is_first;
   int high_count = 0;
-  for (int j = 0; j < N; ++j) high_count += is_high[j] = ((high >> j) & 1u) != 0;
+  for (int j = 0; j < N; ++j) high_count += is_first[j] = ((high >> j) & 1u) != 0;
   bool odd = false;
   for (int i = 1; i < N; ++i)
-    for (int j = i; j > 0 && is_high[j] && !is_high[j - 1]; --j) {
+    for (int j = i; j > 0 && is_first[j] && !is_first[j - 1]; --j) {
       std::swap(sorted[j], sorted[j - 1]);
-      std::swap(is_high[j], is_high[j - 1]);
+      std::swap(is_first[j], is_first[j - 1]);
       odd = !odd;
     }
   // There are at least three vertices, so two on one side to make the permutation even with.
@@ -92,9 +99,10 @@ class Cutter {
   Cutter(const Contour<N, Real>& contour, Real at) : contour_(contour), at_(at) {}
 
   Contour<N - 1, Real> cut() {
-    classify();
+    find_sides();
+    if (has_on_vertices_) group_on_vertices();
     cut_simplices();
-    draw_together();
+    if (has_on_vertices_) draw_together();
     number_points();
     Contour<N - 1, Real> result;
     std::copy_n(contour_.axis_names.begin(), N - 1, result.axis_names.begin());
@@ -110,89 +118,115 @@ class Cutter {
   /// An (N-2)-face that lies in the hyperplane, as seen from one of its simplices.
   struct OnFace {
     std::array<Index, N - 1> vertices;  // ascending
-    Side apex;                          // of the simplex's other vertex; on: the simplex is flat
-    int omitted;                        // the place of the other vertex in the simplex
     Index simplex;
-    Index flat;  // its number among the flat simplices
+    int omitted;  // the place in the simplex of the vertex that is not in the face
   };
+  static constexpr unsigned kAll = (1u << N) - 1;
 
-  void classify() {
+  /// Bit j: `test` holds for the side of vertex j.
+  template <class Test>
+  [[nodiscard]] unsigned corners(const std::array<Index, N>& simplex, const Test& test) const {
+    unsigned mask = 0;
+    for (int j = 0; j < N; ++j) mask |= static_cast<unsigned>(test(sides_[simplex[j]])) << j;
+    return mask;
+  }
+
+  /// On vertices count as above until they are grouped. Simplices on one side, off the hyperplane, are done with.
+  void find_sides() {
     sides_.resize(contour_.vertices.size());
     for (std::size_t v = 0; v < sides_.size(); ++v) {
       const Real t = contour_.vertices[v][N - 1];
-      sides_[v] = t < at_ ? Side::below : t > at_ ? Side::above : Side::on;
+      sides_[v] = t < at_ ? Side::below : t > at_ ? Side::above : Side::on_high;
       has_on_vertices_ = has_on_vertices_ || t == at_;
     }
+    for (std::size_t s = 0; s < contour_.simplices.size(); ++s) {
+      const auto& simplex = contour_.simplices[s];
+      Side least = sides_[simplex[0]];
+      Side most = least;
+      for (int j = 1; j < N; ++j) {
+        least = std::min(least, sides_[simplex[j]]);
+        most = std::max(most, sides_[simplex[j]]);
+      }
+      if (least != most || is_on(least)) touching_.push_back(static_cast<Index>(s));
+    }
+  }
+
+  /// Makes groups of on vertices without a way down count as below.
+  void group_on_vertices() {
+    std::vector<Index> parent(sides_.size());  // disjoint sets
+    std::iota(parent.begin(), parent.end(), Index{0});
+    const auto find = [&parent](Index v) {
+      while (parent[v] != v) v = parent[v] = parent[parent[v]];
+      return v;
+    };
+    std::vector<bool> has_way_down(sides_.size(), false);  // of vertices, then of sets
+    for (const Index s : touching_) {
+      const auto& simplex = contour_.simplices[s];
+      const bool down = corners(simplex, [](Side side) { return side == Side::below; }) != 0;
+      const Index* last = nullptr;
+      for (const Index& v : simplex) {
+        if (!is_on(sides_[v])) continue;
+        if (last != nullptr) parent[find(v)] = find(*last);
+        last = &v;
+        if (down) has_way_down[v] = true;
+      }
+    }
+    for (std::size_t v = 0; v < sides_.size(); ++v)
+      if (has_way_down[v]) has_way_down[find(static_cast<Index>(v))] = true;
+    for (std::size_t v = 0; v < sides_.size(); ++v)
+      if (is_on(sides_[v]) && !has_way_down[find(static_cast<Index>(v))]) sides_[v] = Side::on_low;
   }
 
   void cut_simplices() {
-    for (std::size_t s = 0; s < contour_.simplices.size(); ++s) {
+    for (const Index s : touching_) {
       const auto& simplex = contour_.simplices[s];
-      unsigned high = 0;
-      unsigned on = 0;
-      for (int j = 0; j < N; ++j) {
-        high |= static_cast<unsigned>(sides_[simplex[j]] != Side::below) << j;
-        on |= static_cast<unsigned>(sides_[simplex[j]] == Side::on) << j;
-      }
-      if (on != 0) gather_on_faces(static_cast<Index>(s), on);
-      if (high != 0 && high != (1u << N) - 1) add_piece(simplex, high, pieces_);
+      const unsigned high = corners(simplex, is_high);
+      if (high != 0 && high != kAll) pieces_.push_back(make_piece(simplex, high));
     }
   }
 
-  void gather_on_faces(Index s, unsigned on) {
-    const auto& simplex = contour_.simplices[s];
-    const bool flat = on == (1u << N) - 1;
-    for (int omitted = 0; omitted < N; ++omitted) {
-      if ((on | (1u << omitted)) != (1u << N) - 1) continue;
-      OnFace face{{}, sides_[simplex[omitted]], omitted, s, flat_count_};
-      for (int j = 0, k = 0; j < N; ++j)
-        if (j != omitted) face.vertices[k++] = simplex[j];
-      std::sort(face.vertices.begin(), face.vertices.end());
-      on_faces_.push_back(face);
-    }
-    if (flat) ++flat_count_;
-  }
-
-  /// The piece between the `high` vertices of a simplex and the others; its points not yet drawn together.
-  void add_piece(const std::array<Index, N>& simplex, unsigned high, std::vector<Piece>& pieces) const {
+  /// The piece between the `high` vertices of a simplex and the others.
+  static Piece make_piece(const std::array<Index, N>& simplex, unsigned high) {
     const std::array<Index, N> sorted = high_first<N>(simplex, high);
     const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
     Piece piece;
     piece.count = count;
-    for (int i = 0; i < count; ++i) {
-      const Index lower = sorted[pairs[i].second];
-      // A lower vertex that is on belongs to a face met from above alone.
-      piece.points[i] = sides_[lower] == Side::on ? vertex_point(lower) : edge_point(lower, sorted[pairs[i].first]);
-    }
-    pieces.push_back(piece);
+    for (int i = 0; i < count; ++i) piece.points[i] = edge_point(sorted[pairs[i].second], sorted[pairs[i].first]);
+    return piece;
+  }
+
+  /// The end of a point's edge that is on; an edge has at most one, as its ends would be in one group.
+  [[nodiscard]] std::optional<Index> on_end(PointKey key) const {
+    if (is_on(sides_[upper_end(key)])) return upper_end(key);
+    if (is_on(sides_[lower_end(key)])) return lower_end(key);
+    return std::nullopt;
   }
 
   /// Draws the points around on vertices together. Where the result is pinched and the points themselves were not, the
   /// vertices concerned are left apart; each round leaves more of them so, and with all apart nothing is pinched.
   void draw_together() {
     const std::vector<Piece> faces = faces_met_from_above();
-    std::vector<bool> apart(has_on_vertices_ ? sides_.size() : 0, false);
+    std::vector<bool> apart(sides_.size(), false);
     std::vector<PointKey> excused;
-    for (int round = 0; has_on_vertices_; ++round) {
+    for (int round = 0;; ++round) {
       std::vector<Piece> drawn = drawn_pieces(apart);
       drawn.insert(drawn.end(), faces.begin(), faces.end());
       const std::vector<PointKey> pinched = detail::pinched_points(drawn);
       if (round == 0 && !pinched.empty()) excused = detail::pinched_points(pieces_);
-      if (!leave_apart(pinched, excused, round >= kMostRounds, apart)) {
-        pieces_ = std::move(drawn);
-        return;
-      }
+      if (leave_apart(pinched, excused, round >= kMostRounds, apart)) continue;
+      pieces_ = std::move(drawn);
+      return;
     }
   }
 
-  std::vector<Piece> drawn_pieces(const std::vector<bool>& apart) const {
+  [[nodiscard]] std::vector<Piece> drawn_pieces(const std::vector<bool>& apart) const {
     std::vector<Piece> result;
     result.reserve(pieces_.size());
     for (const Piece& piece : pieces_) {
       Piece drawn;
       for (int i = 0; i < piece.count; ++i) {
-        const Index upper = upper_end(piece.points[i]);
-        const PointKey key = sides_[upper] == Side::on && !apart[upper] ? vertex_point(upper) : piece.points[i];
+        const std::optional<Index> on = on_end(piece.points[i]);
+        const PointKey key = on && !apart[*on] ? vertex_point(*on) : piece.points[i];
         // Points drawn together are neighbours in the cycle: they share the on vertex.
         const bool repeats = drawn.count > 0 &&
                              (drawn.points[drawn.count - 1] == key || (i == piece.count - 1 && drawn.points[0] == key));
@@ -207,11 +241,11 @@ class Cutter {
   /// pinched before, as a contour may be next to missing values. True if that changes anything.
   bool leave_apart(const std::vector<PointKey>& pinched, const std::vector<PointKey>& excused, bool all,
                    std::vector<bool>& apart) const {
-    std::vector<bool> candidates(apart.size(), false);
+    std::vector<bool> candidates(apart.size(), all && !pinched.empty());
     for (const PointKey key : pinched)
       if (is_vertex_point(key)) candidates[upper_end(key)] = true;
-    if (all && !pinched.empty()) candidates.assign(apart.size(), true);
-    for (const PointKey key : excused) candidates[upper_end(key)] = false;
+    for (const PointKey key : excused)
+      if (const std::optional<Index> on = on_end(key)) candidates[*on] = false;
     bool changed = false;
     for (std::size_t v = 0; v < apart.size(); ++v) {
       if (!candidates[v] || apart[v]) continue;
@@ -221,54 +255,34 @@ class Cutter {
     return changed;
   }
 
-  /// Faces with one simplex above and none below; see the top of this file. Where a flat part has simplices below
-  /// as well, they made the cut already.
-  std::vector<Piece> faces_met_from_above() {
-    std::sort(on_faces_.begin(), on_faces_.end(), [](const OnFace& a, const OnFace& b) {
+  /// The contour's boundary faces among vertices that count as above, whose simplex is above; see the top of this file.
+  [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
+    std::vector<OnFace> on_faces;
+    for (const Index s : touching_)
+      gather_on_faces(s, corners(contour_.simplices[s], [](Side side) { return side == Side::on_high; }), on_faces);
+    std::sort(on_faces.begin(), on_faces.end(), [](const OnFace& a, const OnFace& b) {
       return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
     });
-    std::vector<Index> part(flat_count_);  // disjoint sets of the flat simplices
-    std::iota(part.begin(), part.end(), Index{0});
-    const auto find = [&part](Index i) {
-      while (part[i] != i) i = part[i] = part[part[i]];
-      return i;
-    };
-    for_each_on_face([&](std::span<const OnFace> cofaces) {
-      const OnFace* first_flat = nullptr;
-      for (const OnFace& face : cofaces) {
-        if (face.apex != Side::on) continue;
-        if (first_flat) part[find(face.flat)] = find(first_flat->flat);
-        first_flat = &face;
-      }
-    });
-    std::vector<bool> met_from_below(flat_count_, false);
-    for_each_on_face([&](std::span<const OnFace> cofaces) {
-      if (count_apexes(cofaces, Side::below) == 0) return;
-      for (const OnFace& face : cofaces)
-        if (face.apex == Side::on) met_from_below[find(face.flat)] = true;
-    });
     std::vector<Piece> faces;
-    for_each_on_face([&](std::span<const OnFace> cofaces) {
-      if (count_apexes(cofaces, Side::below) != 0 || count_apexes(cofaces, Side::above) != 1) return;
-      const OnFace* from_above = nullptr;
-      for (const OnFace& face : cofaces) {
-        if (face.apex == Side::on && met_from_below[find(face.flat)]) return;
-        if (face.apex == Side::above) from_above = &face;
-      }
-      add_piece(contour_.simplices[from_above->simplex], 1u << from_above->omitted, faces);
-    });
+    for (std::size_t i = 0, j = 0; i < on_faces.size(); i = j) {
+      while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
+      const auto& simplex = contour_.simplices[on_faces[i].simplex];
+      if (j - i != 1 || sides_[simplex[on_faces[i].omitted]] != Side::above) continue;
+      Piece face = make_piece(simplex, 1u << on_faces[i].omitted);
+      for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
+      faces.push_back(face);
+    }
     return faces;
   }
 
-  static std::ptrdiff_t count_apexes(std::span<const OnFace> cofaces, Side side) {
-    return std::count_if(cofaces.begin(), cofaces.end(), [side](const OnFace& face) { return face.apex == side; });
-  }
-
-  template <class Visit>
-  void for_each_on_face(const Visit& visit) const {
-    for (std::size_t i = 0, j = 0; i < on_faces_.size(); i = j) {
-      while (j < on_faces_.size() && on_faces_[j].vertices == on_faces_[i].vertices) ++j;
-      visit(std::span(on_faces_).subspan(i, j - i));
+  void gather_on_faces(Index s, unsigned on, std::vector<OnFace>& on_faces) const {
+    for (int omitted = 0; omitted < N; ++omitted) {
+      if ((on | (1u << omitted)) != kAll) continue;
+      OnFace face{{}, s, omitted};
+      for (int j = 0, k = 0; j < N; ++j)
+        if (j != omitted) face.vertices[k++] = contour_.simplices[s][j];
+      std::sort(face.vertices.begin(), face.vertices.end());
+      on_faces.push_back(face);
     }
   }
 
@@ -288,13 +302,13 @@ class Cutter {
   }
 
   [[nodiscard]] std::array<Real, N - 1> position(PointKey key) const {
-    const auto& low = contour_.vertices[lower_end(key)];
-    const auto& high = contour_.vertices[upper_end(key)];
     std::array<Real, N - 1> result;
-    if (high[N - 1] == at_) {
-      std::copy_n(high.begin(), N - 1, result.begin());
+    if (const std::optional<Index> on = on_end(key)) {
+      std::copy_n(contour_.vertices[*on].begin(), N - 1, result.begin());
       return result;
     }
+    const auto& low = contour_.vertices[lower_end(key)];
+    const auto& high = contour_.vertices[upper_end(key)];
     const auto t = static_cast<double>(low[N - 1]);
     const double beta = (static_cast<double>(at_) - t) / (static_cast<double>(high[N - 1]) - t);
     for (int a = 0; a < N - 1; ++a) {
@@ -346,9 +360,8 @@ class Cutter {
   const Real at_;
   std::vector<Side> sides_;
   bool has_on_vertices_ = false;
+  std::vector<Index> touching_;  ///< simplices not wholly on one side
   std::vector<Piece> pieces_;
-  std::vector<OnFace> on_faces_;
-  Index flat_count_ = 0;
   std::vector<PointKey> keys_;
 };
 

@@ -12,15 +12,16 @@ namespace tegl {
 /// cut's normals point to the same side, low or high, as the contour's.
 ///
 /// Points. The cut's vertices lie on the edges between a vertex below and one above the hyperplane, interpolated in
-/// double from the one below. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above, and is
-/// itself the point of every cut edge that ends in it; simplices that collapse thereby are dropped. Faces that lie
-/// in the hyperplane and bound the contour, or its flat part in the hyperplane, from above alone belong to the cut too.
-/// So
+/// double from the one below. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above, or as
+/// below where the contour does not come up to it from below, and is itself the point of every cut edge that ends in
+/// it; simplices that collapse thereby are dropped. Parts of the contour's boundary that lie in the hyperplane belong
+/// to the cut where only their upper side has a contour. So
 ///  - at a sample's coordinate t = k the cut has the vertices and simplices of the contour of layer k of the image,
 ///    bit by bit: also at the first layer, and where the layer below is missing. (Where samples equal the isovalue,
-///    whole pieces of a 4D contour may be flat in t = k, and the cut shows how the contour comes up to it from below.
-///    Extracting with a positive ExtractOptions::epsilon keeps such pieces out of the hyperplane.)
-///  - at any other t the cut of a closed manifold is a closed manifold, oriented alike.
+///    pieces of the contour may lie flat in t = k, and the cut is the limit from below. A positive
+///    ExtractOptions::epsilon at the extraction keeps such pieces out of the hyperplane.)
+///  - at any other t the cut of a closed manifold is a closed manifold, oriented alike. That holds for every t: where
+///    drawing points together would pinch the cut, they are left apart at the same place.
 ///
 /// Quadrilaterals are split by the shorter diagonal. The result's order depends on the contour's alone.
 /// Errors: InvalidArgument (`at` not finite). An `at` beyond the contour gives an empty cut.
