@@ -24,13 +24,12 @@ void Command::add_variable() {
 
 ReadImageResult Command::read(const Progress& progress) const {
   require_input(file_);
-  ReadImageResult result = read_image(file_, {.variable = variable_, .progress = progress});
-  if (!variable_.empty() && result.info.variable != variable_) {
-    throw Error(ErrorCode::VariableNotFound,
-                fmt::format("{}: no variable '{}': {} files hold one unnamed image; expected no --var", file_,
-                            variable_, result.info.format));
+  try {
+    return read_image(file_, {.variable = variable_, .progress = progress});
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::VariableNotFound || !variable_.empty()) throw;
+    throw Error(error.code(), fmt::format("{} (choose it with --var)", error.what()));
   }
-  return result;
 }
 
 }  // namespace tegl::cli

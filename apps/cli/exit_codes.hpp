@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the program's exit status means. Documented for users in README.md beside this file and at the
+// What the program's exit status means. Documented for users in docs/command-line.md and at the
 // end of `tegl --help`; scripts rely on the numbers, so they never change their meaning.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a command found and did, as text for people and as JSON for machines. README.md lists the keys.
+// What a command found and did, as text for people and as JSON for machines. docs/command-line.md lists the keys.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
 #include <fstream>
 #include <sstream>
 

@@ -138,7 +138,7 @@ TEST_F(Slice, OfASavedContourTakesNoOptionsOfTheExtraction) {
     EXPECT_EQ(run.exit, 2);
     EXPECT_THAT(run.err, HasSubstr(more.front()));
   }
-  EXPECT_THAT(files(), Not(Contains("out.ply")));
+  EXPECT_THAT(files(), testing::Not(Contains("out.ply")));
 }
 
 TEST_F(Slice, OfAnImageNeedsAnIsovalue) {
