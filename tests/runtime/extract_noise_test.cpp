@@ -11,30 +11,15 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "tegl/extract.hpp"
+#include "variants.hpp"
 
 namespace tegl::test {
 namespace {
 
-std::vector<ExtractOptions> variants() {
-  std::vector<ExtractOptions> result;
-  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
-    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high}) {
-      ExtractOptions options;
-      options.triangulation = triangulation;
-      options.ambiguity = ambiguity;
-      result.push_back(options);
-    }
-  return result;
-}
-
-std::string describe(const ExtractOptions& options) {
-  return std::string(options.triangulation == Triangulation::compact ? "compact" : "barycentric") + ", " +
-         (options.ambiguity == Ambiguity::low ? "low" : "high");
-}
-
 template <class T>
 class NoiseOf : public ::testing::Test {};
-using ValueTypes = ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::int32_t, float, double>;
+using ValueTypes =
+    ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::int32_t, float, double>;
 TYPED_TEST_SUITE(NoiseOf, ValueTypes);
 
 template <class Real, Value T, int N>

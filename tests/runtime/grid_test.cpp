@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tegl/grid.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace tegl {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+template <class Make>
+std::string message_of_invalid_grid(const Make& make) {
+  try {
+    make();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidGrid);
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+TEST(Axis, UniformIsOriginPlusMultiplesOfTheStep) {
+  const Axis axis = Axis::uniform(5, 10.0, -2.5);
+  EXPECT_EQ(axis.size(), 5u);
+  EXPECT_TRUE(axis.is_uniform());
+  EXPECT_TRUE(axis.is_descending());
+  EXPECT_EQ(axis[0], 10.0);
+  EXPECT_EQ(axis[4], 0.0);
+  EXPECT_EQ(axis.step(), -2.5);
+}
+
+TEST(Axis, RectilinearKeepsItsCoordinates) {
+  const Axis axis = Axis::rectilinear({0.0, 5.0, 30.0, 100.0});
+  EXPECT_EQ(axis.size(), 4u);
+  EXPECT_FALSE(axis.is_uniform());
+  EXPECT_FALSE(axis.is_descending());
+  EXPECT_EQ(axis.origin(), 0.0);
+  EXPECT_EQ(axis[2], 30.0);
+  EXPECT_DOUBLE_EQ(axis.step(), 100.0 / 3);
+  EXPECT_TRUE(Axis::rectilinear({1000.0, 850.0, 500.0}).is_descending());
+}
+
+TEST(Axis, RejectsWhatIsNoAxisAndSaysWhy) {
+  EXPECT_NE(message_of_invalid_grid([] { Axis::uniform(0); }).find("0 samples"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::uniform(3, 0.0, 0.0); }).find("step 0"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::uniform(3, 0.0, kNan); }).find("nan"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::uniform(3, kInfinity, 1.0); }).find("inf"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::rectilinear({}); }).find("0 samples"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::rectilinear({1.0, kNan}); }).find("coordinate 1"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::rectilinear({1.0, 2.0, 2.0}); }).find("1 and 2"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::rectilinear({1.0, 2.0, 1.5}); }).find("ascending"), std::string::npos);
+  EXPECT_NE(message_of_invalid_grid([] { Axis::rectilinear({3.0, 2.0, 2.5}); }).find("descending"), std::string::npos);
+}
+
+TEST(Axis, PartHasTheSameCoordinatesNameAndUnit) {
+  Axis axis = Axis::uniform(10, 0.1, 0.1);
+  axis.name = "t";
+  axis.unit = "s";
+  const Axis part = axis.part(3, 4);
+  ASSERT_EQ(part.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(part[i], axis[3 + i]);
+  EXPECT_EQ(part.name, "t");
+  EXPECT_EQ(part.unit, "s");
+  EXPECT_EQ(axis.part(9, 1)[0], axis[9]);
+  EXPECT_THROW(axis.part(8, 3), Error);
+  EXPECT_THROW(axis.part(0, 0), Error);
+  EXPECT_THROW(axis.part(10, 1), Error);
+}
+
+TEST(Grid, HasAWorldMapUnlessItIsTheIdentity) {
+  auto grid = Grid<3>::unit({4, 5, 6});
+  EXPECT_EQ(grid.sizes(), (std::array<std::size_t, 3>{4, 5, 6}));
+  EXPECT_FALSE(grid.has_world_map());
+  grid.offset[1] = 1e-300;
+  EXPECT_TRUE(grid.has_world_map());
+  grid.offset[1] = 0;
+  grid.linear(0, 0) = -1;
+  EXPECT_TRUE(grid.has_world_map());
+}
+
+}  // namespace
+}  // namespace tegl
