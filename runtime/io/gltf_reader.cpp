@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Triangles and lines of glTF 2.0 files, of all meshes in the scene, placed by their nodes. Materials, skins,
+// animation and compressed buffers are outside of what is read.
+// Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.5 to 3.7 and 4.4.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "common.hpp"
+#include "mesh_formats.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Json = nlohmann::json;
+using Bytes = std::vector<unsigned char>;
+
+constexpr int kDeepest = 64;  ///< of nodes below nodes
+
+std::uint32_t word_at(std::span<const unsigned char> bytes, std::size_t offset) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + offset, sizeof(value));
+  return value;
+}
+
+std::optional<Bytes> decoded_base64(std::string_view text) {
+  Bytes bytes;
+  std::uint32_t group = 0;
+  int bits = 0;
+  while (text.ends_with('=')) text.remove_suffix(1);
+  for (const char c : text) {
+    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+'             ? 62
+                      : c == '/'             ? 63
+                                             : -1;
+    if (digit < 0) return std::nullopt;
+    group = group << 6 | static_cast<std::uint32_t>(digit);
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<unsigned char>(group >> bits));
+  }
+  return bytes;
+}
+
+/// An accessor's place, checked to lie within its buffer.
+struct View {
+  std::span<const unsigned char> bytes;
+  std::size_t stride = 0;
+  std::size_t count = 0;
+  int component = 0;
+};
+
+class GltfReader {
+ public:
+  explicit GltfReader(const fs::path& path) : path_(path) {}
+
+  Mesh run() {
+    read_container();
+    read_buffers();
+    mesh_.space_dim = 3;
+    mesh_.dim = 0;
+    read_scene();
+    read_extras();
+    if (mesh_.dim == 0) mesh_.dim = 2;
+    return std::move(mesh_);
+  }
+
+ private:
+  template <class... Args>
+  [[noreturn]] void malformed(fmt::format_string<Args...> format, Args&&... args) const {
+    fail(ErrorCode::MalformedFile, path_, format, std::forward<Args>(args)...);
+  }
+
+  void read_container() {
+    const Bytes all = read_bytes(path_, 0, static_cast<std::size_t>(size_of_file(path_)));
+    std::span<const unsigned char> text = all;
+    if (all.size() >= 4 && std::memcmp(all.data(), "glTF", 4) == 0) {
+      if (all.size() < 20 || word_at(all, 4) != 2) malformed("no glTF 2.0: expected version 2 after 'glTF'");
+      const std::size_t json_bytes = word_at(all, 12);
+      if (json_bytes > all.size() - 20) malformed("JSON of {} bytes in a file of {}", json_bytes, all.size());
+      text = text.subspan(20, json_bytes);
+      const std::size_t next = 20 + json_bytes;
+      if (all.size() - next >= 8) {
+        const std::size_t count = word_at(all, next);
+        if (count > all.size() - next - 8)
+          malformed("binary part of {} bytes; expected at most {}", count, all.size() - next - 8);
+        binary_.assign(all.begin() + static_cast<std::ptrdiff_t>(next + 8),
+                       all.begin() + static_cast<std::ptrdiff_t>(next + 8 + count));
+      }
+    }
+    json_ = Json::parse(text.begin(), text.end(), nullptr, false);
+    if (json_.is_discarded() || !json_.is_object()) malformed("no glTF: expected a JSON object");
+    if (text_at(member(json_, "asset"), "version").substr(0, 2) != "2.")
+      malformed("no glTF 2.0: asset.version missing or other");
+    if (json_.contains("extensionsRequired") && !json_["extensionsRequired"].empty())
+      fail(ErrorCode::UnsupportedData, path_, "needs the extensions {}; expected none",
+           json_["extensionsRequired"].dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+
+  /// A member of an object, or null.
+  static const Json& member(const Json& object, const char* name) {
+    static const Json kNull;
+    if (!object.is_object()) return kNull;
+    const auto found = object.find(name);
+    return found == object.end() ? kNull : *found;
+  }
+  static std::string text_at(const Json& object, const char* name) {
+    const Json& value = member(object, name);
+    return value.is_string() ? value.get<std::string>() : std::string();
+  }
+  /// A whole number of at least 0; `absent` if there is no such member.
+  [[nodiscard]] std::size_t number_at(const Json& object, const char* name, std::optional<std::size_t> absent) const {
+    const Json& value = member(object, name);
+    if (value.is_null() && absent) return *absent;
+    if (!value.is_number_unsigned()) malformed("'{}' missing or no whole number", name);
+    return value.get<std::size_t>();
+  }
+  [[nodiscard]] const Json& element(const char* array, std::size_t index) const {
+    const Json& list = member(json_, array);
+    if (!list.is_array() || index >= list.size()) malformed("{} number {} does not exist", array, index);
+    return list[index];
+  }
+
+  void read_buffers() {
+    const Json& list = member(json_, "buffers");
+    for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
+      const std::string uri = text_at(list[i], "uri");
+      const std::size_t length = number_at(list[i], "byteLength", std::nullopt);
+      buffers_.push_back(uri.empty() ? binary_ : buffer_of(uri));
+      if (buffers_.back().size() < length)
+        malformed("buffer {} of {} bytes; expected {}", i, buffers_.back().size(), length);
+    }
+  }
+
+  [[nodiscard]] Bytes buffer_of(const std::string& uri) const {
+    if (!uri.starts_with("data:")) {
+      const fs::path file = path_.parent_path() / uri;
+      require_readable_file(file);
+      return read_bytes(file, 0, static_cast<std::size_t>(size_of_file(file)));
+    }
+    constexpr std::string_view kMark = ";base64,";
+    const std::size_t mark = uri.find(kMark);
+    auto bytes =
+        mark == std::string::npos ? std::nullopt : decoded_base64(std::string_view(uri).substr(mark + kMark.size()));
+    if (!bytes) malformed("data URI that is no base64");
+    return std::move(*bytes);
+  }
+
+  [[nodiscard]] View view_of(std::size_t accessor_index, std::size_t components) const {
+    const Json& accessor = element("accessors", accessor_index);
+    if (accessor.contains("sparse")) fail(ErrorCode::UnsupportedData, path_, "sparse accessor; expected a dense one");
+    const Json& buffer_view = element("bufferViews", number_at(accessor, "bufferView", std::nullopt));
+    const std::size_t buffer = number_at(buffer_view, "buffer", std::nullopt);
+    if (buffer >= buffers_.size()) malformed("buffers number {} does not exist", buffer);
+    View view;
+    view.component = static_cast<int>(number_at(accessor, "componentType", std::nullopt) & 0xffff);
+    const std::size_t component_bytes = view.component == 5121 ? 1 : view.component == 5123 ? 2 : 4;
+    const std::size_t item = components * component_bytes;
+    view.count = number_at(accessor, "count", std::nullopt);
+    view.stride = number_at(buffer_view, "byteStride", item);
+    const std::size_t offset = number_at(buffer_view, "byteOffset", 0);
+    const std::size_t length = number_at(buffer_view, "byteLength", std::nullopt);
+    const std::size_t start = number_at(accessor, "byteOffset", 0);
+    const std::size_t whole = buffers_[buffer].size();
+    if (offset > whole || length > whole - offset)
+      malformed("bufferView of {} bytes at {} in {}", length, offset, whole);
+    const bool fits = view.count == 0 || (start <= length && item <= length - start && view.stride >= item &&
+                                          (view.count - 1) <= (length - start - item) / view.stride);
+    if (!fits)
+      malformed("accessor {} of {} items does not fit its bufferView of {} bytes", accessor_index, view.count, length);
+    view.bytes = std::span(buffers_[buffer]).subspan(offset + std::min(start, length));
+    return view;
+  }
+
+  void read_scene() {
+    const Json& scenes = member(json_, "scenes");
+    if (!scenes.is_array() || scenes.empty()) malformed("no scene; expected one");
+    const Json& scene = element("scenes", number_at(json_, "scene", 0));
+    const Json& nodes = member(scene, "nodes");
+    for (std::size_t i = 0; nodes.is_array() && i < nodes.size(); ++i)
+      read_node(index_in(nodes, i), Eigen::Affine3d::Identity(), 0);
+  }
+
+  [[nodiscard]] std::size_t index_in(const Json& list, std::size_t i) const {
+    if (!list[i].is_number_unsigned()) malformed("list of nodes with something else");
+    return list[i].get<std::size_t>();
+  }
+
+  template <std::size_t Count>
+  [[nodiscard]] std::optional<std::array<double, Count>> numbers_at(const Json& object, const char* name) const {
+    const Json& list = member(object, name);
+    if (list.is_null()) return std::nullopt;
+    std::array<double, Count> result;
+    if (!list.is_array() || list.size() != Count) malformed("'{}' of a node; expected {} numbers", name, Count);
+    for (std::size_t i = 0; i < Count; ++i) {
+      if (!list[i].is_number()) malformed("'{}' of a node; expected {} numbers", name, Count);
+      result[i] = list[i].get<double>();
+    }
+    return result;
+  }
+
+  [[nodiscard]] Eigen::Affine3d placement(const Json& node) const {
+    Eigen::Affine3d result = Eigen::Affine3d::Identity();
+    if (const auto matrix = numbers_at<16>(node, "matrix")) {
+      result.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix->data());
+      return result;
+    }
+    if (const auto t = numbers_at<3>(node, "translation")) result.translate(Eigen::Vector3d(t->data()));
+    if (const auto q = numbers_at<4>(node, "rotation"))
+      result.rotate(Eigen::Quaterniond((*q)[3], (*q)[0], (*q)[1], (*q)[2]));
+    if (const auto s = numbers_at<3>(node, "scale")) result.scale(Eigen::Vector3d(s->data()));
+    return result;
+  }
+
+  void read_node(std::size_t index, const Eigen::Affine3d& parent, int depth) {
+    // The specification wants a forest; a cycle or a node in many places would never end.
+    const std::size_t nodes = member(json_, "nodes").size();
+    if (depth > kDeepest || ++visited_ > nodes) malformed("nodes that are no tree, or deeper than {}", kDeepest);
+    const Json& node = element("nodes", index);
+    const Eigen::Affine3d here = parent * placement(node);
+    if (node.contains("mesh")) read_primitives(element("meshes", number_at(node, "mesh", std::nullopt)), here);
+    const Json& children = member(node, "children");
+    for (std::size_t i = 0; children.is_array() && i < children.size(); ++i)
+      read_node(index_in(children, i), here, depth + 1);
+  }
+
+  void read_primitives(const Json& mesh, const Eigen::Affine3d& place) {
+    const Json& primitives = member(mesh, "primitives");
+    for (std::size_t i = 0; primitives.is_array() && i < primitives.size(); ++i) {
+      constexpr std::size_t kLines = 1;
+      constexpr std::size_t kTriangles = 4;
+      const std::size_t mode = number_at(primitives[i], "mode", kTriangles);
+      const int dim = mode == kLines ? 1 : 2;
+      if (mode != kLines && mode != kTriangles)
+        fail(ErrorCode::UnsupportedData, path_, "primitive of mode {}; expected 1 (lines) or 4 (triangles)", mode);
+      if (mesh_.dim != 0 && mesh_.dim != dim)
+        fail(ErrorCode::UnsupportedData, path_, "both lines and triangles; expected one of them");
+      mesh_.dim = dim;
+      read_primitive(primitives[i], place);
+    }
+  }
+
+  void read_primitive(const Json& primitive, const Eigen::Affine3d& place) {
+    const auto first = static_cast<std::size_t>(mesh_.coordinates.size() / 3);
+    const View points = view_of(number_at(member(primitive, "attributes"), "POSITION", std::nullopt), 3);
+    constexpr int kFloat = 5126;
+    if (points.component != kFloat) malformed("positions of component type {}; expected {}", points.component, kFloat);
+    for (std::size_t v = 0; v < points.count; ++v) {
+      std::array<float, 3> raw;
+      std::memcpy(raw.data(), points.bytes.data() + v * points.stride, sizeof(raw));
+      const Eigen::Vector3d point = place * Eigen::Vector3d(raw[0], raw[1], raw[2]);
+      mesh_.coordinates.insert(mesh_.coordinates.end(), point.begin(), point.end());
+    }
+    const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
+    const bool indexed = primitive.contains("indices");
+    View indices;
+    if (indexed) indices = view_of(number_at(primitive, "indices", std::nullopt), 1);
+    const std::size_t count = indexed ? indices.count : points.count;
+    if (count % corners != 0) malformed("{} vertex numbers; expected a multiple of {}", count, corners);
+    if (first + points.count > std::numeric_limits<Index>::max())
+      fail(ErrorCode::TooLarge, path_, "{} vertices; expected less than 2^32", first + points.count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t vertex = indexed ? index_value(indices, i) : i;
+      if (vertex >= points.count) malformed("vertex number {}; expected less than {}", vertex, points.count);
+      mesh_.simplices.push_back(static_cast<Index>(first + vertex));
+    }
+  }
+
+  [[nodiscard]] std::size_t index_value(const View& view, std::size_t i) const {
+    const unsigned char* at = view.bytes.data() + i * view.stride;
+    switch (view.component) {
+      case 5121:
+        return *at;
+      case 5123:
+        return static_cast<std::size_t>(at[0] | at[1] << 8);
+      case 5125:
+        return word_at(view.bytes, i * view.stride);
+      default:
+        malformed("indices of component type {}; expected 5121, 5123 or 5125", view.component);
+    }
+  }
+
+  /// What the writer left: whether the mesh is planar, names and units.
+  void read_extras() {
+    const Json& extras = member(member(member(json_, "asset"), "extras"), "tegl");
+    if (!extras.is_object()) return;
+    const auto texts = [&](const char* name) {
+      std::vector<std::string> result;
+      for (const Json& value : member(extras, name))
+        result.push_back(value.is_string() ? value.get<std::string>() : "");
+      return result;
+    };
+    mesh_.axis_names = texts("axis_names");
+    mesh_.axis_units = texts("axis_units");
+    const Json& dim = member(extras, "dim");
+    if (mesh_.dim == 0 && dim.is_number_integer()) mesh_.dim = dim.get<int>() == 1 ? 1 : 2;
+    const Json& space_dim = member(extras, "space_dim");
+    if (space_dim.is_number_integer() && space_dim.get<int>() == 2) flatten(mesh_, path_);
+  }
+
+  fs::path path_;
+  Json json_;
+  Bytes binary_;
+  std::vector<Bytes> buffers_;
+  std::size_t visited_ = 0;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh read_gltf(const fs::path& path) { return GltfReader(path).run(); }
+
+}  // namespace tegl::io_detail

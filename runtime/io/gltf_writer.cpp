@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// glTF 2.0: .glb, and .gltf with the buffer inside as base64, so that it is one file. Coordinates are float, as the
+// format has no other; axis names and what is needed to read a mesh back are in asset.extras. No normals: viewers then
+// shade faces flat, as the specification asks.
+// Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "common.hpp"
+#include "mesh_formats.hpp"
+#include "output_file.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Positions {
+  std::vector<std::array<float, 3>> values;
+  std::array<float, 3> low{};
+  std::array<float, 3> high{};
+};
+
+Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
+  Positions result;
+  result.low.fill(std::numeric_limits<float>::infinity());
+  result.high.fill(-std::numeric_limits<float>::infinity());
+  result.values.resize(vertex_count(mesh));
+  for (std::size_t v = 0; v < result.values.size(); ++v) {
+    const auto point = position(mesh, v);
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!(std::abs(point[a]) <= static_cast<double>(std::numeric_limits<float>::max())))
+        fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected what float holds", v,
+             point[a]);
+      const auto value = static_cast<float>(point[a]);
+      result.values[v][a] = value;
+      result.low[a] = std::min(result.low[a], value);
+      result.high[a] = std::max(result.high[a], value);
+    }
+  }
+  return result;
+}
+
+Json asset(const Mesh& mesh) {
+  Json extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
+  extras["axis_names"] = mesh.axis_names;
+  extras["axis_units"] = mesh.axis_units;
+  return {{"version", "2.0"}, {"generator", "tegl"}, {"extras", {{"tegl", extras}}}};
+}
+
+/// Everything but the buffer itself. glTF allows no empty accessor: an empty mesh is a scene without nodes.
+Json document(const Mesh& mesh, const Positions& points, std::size_t buffer_bytes) {
+  Json json = {{"asset", asset(mesh)}, {"scene", 0}};
+  if (points.values.empty() || mesh.simplices.empty()) {
+    json["scenes"] = Json::array({Json{{"name", "empty contour"}}});
+    return json;
+  }
+  constexpr int kLines = 1;
+  constexpr int kTriangles = 4;
+  constexpr int kFloat = 5126;
+  constexpr int kUint32 = 5125;
+  constexpr int kVertexBuffer = 34962;
+  constexpr int kIndexBuffer = 34963;
+  const std::size_t position_bytes = points.values.size() * sizeof(points.values[0]);
+  const Json primitive = {{"attributes", {{"POSITION", 0}}},
+                          {"indices", 1},
+                          {"material", 0},
+                          {"mode", mesh.dim == 1 ? kLines : kTriangles}};
+  json["scenes"] = Json::array({Json{{"nodes", {0}}}});
+  json["nodes"] = Json::array({Json{{"mesh", 0}, {"name", "contour"}}});
+  json["meshes"] = Json::array({Json{{"name", "contour"}, {"primitives", Json::array({primitive})}}});
+  json["materials"] = Json::array({Json{{"name", "contour"}, {"doubleSided", true}}});
+  json["accessors"] = Json::array(
+      {Json{{"bufferView", 0},
+            {"componentType", kFloat},
+            {"count", points.values.size()},
+            {"type", "VEC3"},
+            {"min", points.low},
+            {"max", points.high}},
+       Json{{"bufferView", 1}, {"componentType", kUint32}, {"count", mesh.simplices.size()}, {"type", "SCALAR"}}});
+  json["bufferViews"] =
+      Json::array({Json{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", kVertexBuffer}},
+                   Json{{"buffer", 0},
+                        {"byteOffset", position_bytes},
+                        {"byteLength", buffer_bytes - position_bytes},
+                        {"target", kIndexBuffer}}});
+  json["buffers"] = Json::array({Json{{"byteLength", buffer_bytes}}});
+  return json;
+}
+
+/// base64 in pieces of a multiple of 3 bytes, as the two parts of the buffer come one after the other.
+std::string base64(std::span<const unsigned char> bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < count ? bytes[i + j] : 0U);
+    for (std::size_t j = 0; j < 4; ++j) text += j <= count ? kDigits[group >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+template <class Range>
+std::span<const unsigned char> as_raw(const Range& range) {
+  return {reinterpret_cast<const unsigned char*>(range.data()), range.size() * sizeof(range[0])};
+}
+
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+void write_text(const Mesh& mesh, const Positions& points, Json json, OutputFile& file) {
+  if (json.contains("buffers")) {
+    std::vector<unsigned char> buffer;
+    for (const auto part : {as_raw(points.values), as_raw(mesh.simplices)})
+      buffer.insert(buffer.end(), part.begin(), part.end());
+    json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(buffer);
+  }
+  file.write(dumped(json));
+}
+
+void write_binary(const Mesh& mesh, const Positions& points, const Json& json, OutputFile& file) {
+  constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
+  constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
+  constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
+  std::string text = dumped(json);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const bool has_buffer = json.contains("buffers");
+  const std::uint64_t buffer_bytes = has_buffer ? as_raw(points.values).size() + as_raw(mesh.simplices).size() : 0;
+  const std::uint64_t total = 12 + 8 + text.size() + (has_buffer ? 8 + buffer_bytes : 0);
+  if (total > std::numeric_limits<std::uint32_t>::max())
+    fail(ErrorCode::TooLarge, file.target(), "{} bytes as .glb; expected at most 2^32 - 1 (write .ply or .vtkhdf)",
+         total);
+  const auto word = [&](std::uint64_t value) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    file.write(&bits, sizeof(bits));
+  };
+  constexpr std::uint32_t kVersion = 2;
+  for (const std::uint64_t value :
+       {std::uint64_t{kMagic}, std::uint64_t{kVersion}, total, std::uint64_t{text.size()}, std::uint64_t{kJsonChunk}})
+    word(value);
+  file.write(text);
+  if (!has_buffer) return;
+  word(buffer_bytes);
+  word(kBinChunk);
+  file.write_range(as_raw(points.values));
+  file.write_range(as_raw(mesh.simplices));
+}
+
+}  // namespace
+
+void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
+  OutputFile file(path);
+  const Positions points = positions(mesh, path);
+  tick(progress, 0.5, path);
+  const Json json = document(mesh, points, as_raw(points.values).size() + as_raw(mesh.simplices).size());
+  if (lower_name(path).ends_with(".glb"))
+    write_binary(mesh, points, json, file);
+  else
+    write_text(mesh, points, json, file);
+  tick(progress, 1.0, path);
+  file.commit();
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// HDF5 handles, attributes and datasets. Based on: The HDF Group, HDF5 1.10 C API.
+#include "hdf5_file.hpp"
+
+#include <algorithm>
+
+#include "common.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* out) {
+  // The walk starts at the innermost call: the first entry with a text is the reason.
+  auto& reason = *static_cast<std::string*>(out);
+  if (reason.empty() && error->desc != nullptr) reason = error->desc;
+  return 0;
+}
+
+std::string innermost_reason() {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
+  return reason.empty() ? "no reason given" : reason;
+}
+
+}  // namespace
+
+bool H5Handle::close() noexcept {
+  const hid_t id = id_;
+  id_ = -1;
+  return id < 0 || closer_(id) >= 0;
+}
+
+H5Quiet::H5Quiet() {
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+H5Quiet::~H5Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+H5File H5File::create(const fs::path& where, const fs::path& path) {
+  H5Handle handle(H5Fcreate(where.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  if (handle.id() < 0) fail(ErrorCode::WriteFailed, path, "cannot be created ({})", innermost_reason());
+  return {path, ErrorCode::WriteFailed, std::move(handle)};
+}
+
+H5File H5File::open(const fs::path& path) {
+  H5Handle handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (handle.id() < 0)
+    fail(ErrorCode::MalformedFile, path, "cannot be opened as HDF5 ({}); expected a whole HDF5 file",
+         innermost_reason());
+  return {path, ErrorCode::MalformedFile, std::move(handle)};
+}
+
+H5Handle H5File::checked(hid_t id, H5Handle::Closer closer, const char* what) const {
+  if (id < 0) fail(code_, path_, "{} failed in HDF5 ({})", what, innermost_reason());
+  return {id, closer};
+}
+
+void H5File::checked(herr_t status, const char* what) const {
+  if (status < 0) fail(code_, path_, "{} failed in HDF5 ({})", what, innermost_reason());
+}
+
+void H5File::close() {
+  checked(H5Fflush(file_.id(), H5F_SCOPE_LOCAL), "writing");
+  if (!file_.close()) fail(code_, path_, "closing failed in HDF5 ({})", innermost_reason());
+}
+
+H5Handle H5File::create_group(const char* name) const {
+  return checked(H5Gcreate2(file_.id(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "creating a group");
+}
+
+H5Handle H5File::open_group(const char* name) const {
+  return checked(H5Gopen2(file_.id(), name, H5P_DEFAULT), H5Gclose, "opening a group");
+}
+
+bool H5File::has(hid_t group, const char* name) const {
+  return H5Lexists(group, name, H5P_DEFAULT) > 0 && H5Oexists_by_name(group, name, H5P_DEFAULT) > 0;
+}
+
+void H5File::put_text(hid_t object, const char* name, const std::string& text) const {
+  // Fixed length and null-padded: what VTK compares the grid's type with.
+  const H5Handle type = checked(H5Tcopy(H5T_C_S1), H5Tclose, "writing an attribute");
+  checked(H5Tset_size(type.id(), std::max<std::size_t>(1, text.size())), "writing an attribute");
+  checked(H5Tset_strpad(type.id(), H5T_STR_NULLPAD), "writing an attribute");
+  const H5Handle space = checked(H5Screate(H5S_SCALAR), H5Sclose, "writing an attribute");
+  const H5Handle attribute = checked(H5Acreate2(object, name, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                                     H5Aclose, "writing an attribute");
+  checked(H5Awrite(attribute.id(), type.id(), text.c_str()), "writing an attribute");
+}
+
+void H5File::put_numbers(hid_t object, const char* name, std::span<const std::int64_t> numbers) const {
+  const hsize_t size = numbers.size();
+  const H5Handle space = checked(H5Screate_simple(1, &size, nullptr), H5Sclose, "writing an attribute");
+  const H5Handle attribute = checked(H5Acreate2(object, name, H5T_STD_I64LE, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                                     H5Aclose, "writing an attribute");
+  checked(H5Awrite(attribute.id(), H5T_NATIVE_INT64, numbers.data()), "writing an attribute");
+}
+
+std::string H5File::get_text(hid_t object, const char* name) const {
+  if (H5Aexists(object, name) <= 0) return {};
+  const H5Handle attribute = checked(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, "reading an attribute");
+  const H5Handle type = checked(H5Aget_type(attribute.id()), H5Tclose, "reading an attribute");
+  if (H5Tget_class(type.id()) != H5T_STRING) return {};
+  const H5Handle space = checked(H5Aget_space(attribute.id()), H5Sclose, "reading an attribute");
+  if (H5Sget_simple_extent_npoints(space.id()) != 1) return {};
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* text = nullptr;
+    checked(H5Aread(attribute.id(), type.id(), static_cast<void*>(&text)), "reading an attribute");
+    const std::string result = text == nullptr ? "" : text;
+    H5free_memory(text);
+    return result;
+  }
+  constexpr std::size_t kLongest = std::size_t{1} << 16;  // HDF5's own limit of an attribute
+  const std::size_t size = H5Tget_size(type.id());
+  if (size > kLongest) fail(code_, path_, "attribute '{}' of {} bytes; expected at most {}", name, size, kLongest);
+  std::string text(size, '\0');
+  checked(H5Aread(attribute.id(), type.id(), text.data()), "reading an attribute");
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
+}
+
+std::vector<std::int64_t> H5File::get_numbers(hid_t object, const char* name) const {
+  if (H5Aexists(object, name) <= 0) return {};
+  const H5Handle attribute = checked(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, "reading an attribute");
+  const H5Handle type = checked(H5Aget_type(attribute.id()), H5Tclose, "reading an attribute");
+  const H5Handle space = checked(H5Aget_space(attribute.id()), H5Sclose, "reading an attribute");
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  constexpr hssize_t kMost = 1024;
+  if (H5Tget_class(type.id()) != H5T_INTEGER || count < 0 || count > kMost) return {};
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
+  checked(H5Aread(attribute.id(), H5T_NATIVE_INT64, numbers.data()), "reading an attribute");
+  return numbers;
+}
+
+void H5File::write_rows(hid_t group, const char* name, hid_t file_type, hid_t memory_type, std::uint64_t rows,
+                        std::uint64_t columns,
+                        const std::function<const void*(std::uint64_t, std::uint64_t)>& fill) const {
+  const int rank = columns == 0 ? 1 : 2;
+  const std::array<hsize_t, 2> size = {rows, columns};
+  const H5Handle space = checked(H5Screate_simple(rank, size.data(), nullptr), H5Sclose, "writing a dataset");
+  const H5Handle dataset =
+      checked(H5Dcreate2(group, name, file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
+              "writing a dataset");
+  constexpr std::uint64_t kBlockRows = std::uint64_t{1} << 17;
+  for (std::uint64_t first = 0; first < rows; first += kBlockRows) {
+    const std::array<hsize_t, 2> start = {first, 0};
+    const std::array<hsize_t, 2> count = {std::min(kBlockRows, rows - first), columns};
+    const H5Handle memory = checked(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, "writing a dataset");
+    checked(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+            "writing a dataset");
+    const void* block = fill(first, count[0]);
+    checked(H5Dwrite(dataset.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, block), "writing a dataset");
+  }
+}
+
+std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {
+  if (!has(group, name)) fail(code_, path_, "no dataset '{}'; expected it", name);
+  const H5Handle dataset = checked(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, "opening a dataset");
+  const H5Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "opening a dataset");
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  if (rank < 1 || rank > 2) fail(code_, path_, "dataset '{}' of {} dimensions; expected 1 or 2", name, rank);
+  std::array<hsize_t, 2> size{};
+  checked(H5Sget_simple_extent_dims(space.id(), size.data(), nullptr), "opening a dataset");
+  const std::vector<std::uint64_t> result(size.begin(), size.begin() + rank);
+  // Compressed data may be larger than the file, but by no more than the filters can do.
+  constexpr std::uint64_t kBestRatio = 4096;
+  if (checked_bytes(result, 1, path_) / kBestRatio > size_of_file(path_))
+    fail(code_, path_, "dataset '{}' of {} values in a file of {} bytes", name, shape_text(result),
+         size_of_file(path_));
+  return result;
+}
+
+void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to) const {
+  const H5Handle dataset = checked(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, "opening a dataset");
+  checked(H5Dread(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), "reading a dataset");
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The readers and writers of the single mesh formats, and what they share.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "tegl/io.hpp"
+
+namespace tegl::io_detail {
+
+void write_ply(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+Mesh read_ply(const std::filesystem::path& path);
+
+void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+Mesh read_gltf(const std::filesystem::path& path);
+
+void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+Mesh read_vtkhdf(const std::filesystem::path& path);
+
+/// STL and OBJ: triangle soups, whose vertices are joined where their coordinates are equal.
+Mesh read_with_assimp(const std::filesystem::path& path);
+
+/// Name or unit of an axis; "" where the mesh has none.
+inline const std::string& axis_text(const std::vector<std::string>& texts, int axis) {
+  static const std::string kNone;
+  return static_cast<std::size_t>(axis) < texts.size() ? texts[static_cast<std::size_t>(axis)] : kNone;
+}
+
+inline std::size_t vertex_count(const Mesh& mesh) {
+  return mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim);
+}
+inline std::size_t simplex_count(const Mesh& mesh) {
+  return mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1);
+}
+
+/// x, y, z of a vertex; z = 0 in the plane.
+inline std::array<double, 3> position(const Mesh& mesh, std::size_t vertex) {
+  std::array<double, 3> result{};
+  const auto n = static_cast<std::size_t>(mesh.space_dim);
+  for (std::size_t a = 0; a < std::min<std::size_t>(n, 3); ++a) result[a] = mesh.coordinates[vertex * n + a];
+  return result;
+}
+
+/// Makes a mesh that was read with space_dim 3 planar, if the file says it was written from the plane (`space_dim` 2);
+/// MalformedFile if it is not in the plane z = 0.
+void flatten(Mesh& mesh, const std::filesystem::path& path);
+
+/// Throws MalformedFile if a simplex names a vertex that does not exist.
+void check_indices(const Mesh& mesh, const std::filesystem::path& path);
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// netCDF variables as images: which variable, its coordinate variables as axes, packing and missing values.
+// Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
+// conventions of the NetCDF Users' Guide.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include <fmt/ranges.h>
+
+#include "common.hpp"
+#include "netcdf_file.hpp"
+#include "readers.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+/// How stored values become numbers: v * scale + offset, missing where the attributes say so.
+struct Packing {
+  double scale = 1;
+  double offset = 0;
+  bool scaled = false;
+  std::vector<double> missing;  ///< stored values that mean "none"
+  double least = -std::numeric_limits<double>::infinity();
+  double greatest = std::numeric_limits<double>::infinity();
+  bool any_attribute = false;
+};
+
+Packing read_packing(const NcFile& file, const NcVariable& variable) {
+  Packing packing;
+  const auto scale = file.number(variable, "scale_factor");
+  const auto offset = file.number(variable, "add_offset");
+  packing.scale = scale.value_or(1.0);
+  packing.offset = offset.value_or(0.0);
+  packing.scaled = scale.has_value() || offset.has_value();
+  const auto fill = file.numbers(variable, "_FillValue");
+  packing.missing = fill;
+  for (const double value : file.numbers(variable, "missing_value")) packing.missing.push_back(value);
+  packing.any_attribute = packing.scaled || !packing.missing.empty();
+  const auto range = file.numbers(variable, "valid_range");
+  const auto limit = [&](const char* name, std::size_t index, double& value) {
+    if (range.size() == 2) value = range[index];
+    if (const auto single = file.number(variable, name)) value = *single;
+    packing.any_attribute |= std::isfinite(value);
+  };
+  limit("valid_min", 0, packing.least);
+  limit("valid_max", 1, packing.greatest);
+  // Without a fill value of their own, floats that were never written have the library's.
+  if (fill.empty() && variable.type == NC_FLOAT) packing.missing.push_back(NC_FILL_FLOAT);
+  if (fill.empty() && variable.type == NC_DOUBLE) packing.missing.push_back(NC_FILL_DOUBLE);
+  return packing;
+}
+
+template <class Real, class T>
+Real unpack_one(T stored, const Packing& packing) {
+  // Attributes are compared in the variable's own type: a fill value of -1e34 is not the same number as a float.
+  for (const double value : packing.missing)
+    if (stored == static_cast<T>(value)) return std::numeric_limits<Real>::quiet_NaN();
+  const auto value = static_cast<double>(stored);
+  if (value < packing.least || value > packing.greatest) return std::numeric_limits<Real>::quiet_NaN();
+  return packing.scaled ? static_cast<Real>(value * packing.scale + packing.offset) : static_cast<Real>(stored);
+}
+
+template <class Real, class T>
+std::vector<Real> unpack_all(const std::vector<T>& stored, const Packing& packing) {
+  std::vector<Real> result(stored.size());
+  std::transform(stored.begin(), stored.end(), result.begin(),
+                 [&](T value) { return unpack_one<Real>(value, packing); });
+  return result;
+}
+
+/// Float for what float holds exactly, integers of up to 16 bits included; double for the others.
+ValueArray unpack(ValueArray&& values, Packing packing) {
+  return std::visit(
+      [&]<class T>(std::vector<T>& stored) -> ValueArray {
+        // A value that the type cannot hold is never met, and casting it would be undefined.
+        std::erase_if(packing.missing, [](double value) {
+          constexpr auto kLowest = static_cast<double>(std::numeric_limits<T>::lowest());
+          constexpr auto kHighest = static_cast<double>(std::numeric_limits<T>::max());
+          return !(value >= kLowest && value <= kHighest) || (std::is_integral_v<T> && value >= 0x1p63);
+        });
+        if constexpr (std::is_floating_point_v<T>) {
+          for (T& value : stored) value = unpack_one<T>(value, packing);
+          return std::move(stored);
+        } else {
+          if (!packing.any_attribute) return std::move(stored);
+          if constexpr (sizeof(T) <= 2) return unpack_all<float>(stored, packing);
+          return unpack_all<double>(stored, packing);
+        }
+      },
+      values);
+}
+
+/// Number of dimensions longer than 1.
+std::size_t rank(const NcVariable& variable) {
+  return static_cast<std::size_t>(
+      std::count_if(variable.sizes.begin(), variable.sizes.end(), [](std::size_t size) { return size > 1; }));
+}
+
+std::vector<NcVariable> image_variables(const NcFile& file, const std::vector<NcVariable>& all) {
+  std::set<std::string, std::less<>> auxiliary;  // named by others as their bounds or coordinates
+  for (const NcVariable& variable : all)
+    for (const char* attribute : {"bounds", "climatology", "coordinates", "cell_measures", "grid_mapping"}) {
+      const std::string names = file.text(variable, attribute);
+      for (const std::string_view word : words(names)) auxiliary.emplace(word);
+    }
+  std::vector<NcVariable> result;
+  for (const NcVariable& variable : all) {
+    const std::string plain = variable.name.substr(variable.name.rfind('/') + 1);
+    const bool empty = std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end();
+    if (is_numeric(variable.type) && rank(variable) >= 2 && rank(variable) <= 4 && !empty && !auxiliary.contains(plain))
+      result.push_back(variable);
+  }
+  return result;
+}
+
+std::string listing(const std::vector<NcVariable>& variables) {
+  std::vector<std::string> items;
+  for (const NcVariable& variable : variables)
+    items.push_back(fmt::format("{} ({})", variable.name, shape_text(variable.sizes)));
+  return fmt::format("{}", fmt::join(items, ", "));
+}
+
+NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const std::vector<NcVariable>& candidates,
+                  const std::string& wanted) {
+  if (!wanted.empty()) {
+    for (const NcVariable& variable : all)
+      if (variable.name == wanted || variable.name == "/" + wanted) return variable;
+    fail(ErrorCode::VariableNotFound, file.path(), "no variable '{}'; expected one of {}", wanted,
+         candidates.empty() ? "none: no variable here has 2 to 4 axes" : listing(candidates));
+  }
+  if (candidates.size() == 1) return candidates[0];
+  if (candidates.empty())
+    fail(ErrorCode::UnsupportedData, file.path(), "no variable with 2 to 4 axes longer than 1; it has {}",
+         all.empty() ? "no variables" : listing(all));
+  fail(ErrorCode::VariableNotFound, file.path(), "{} variables, and none chosen; expected one of {}", candidates.size(),
+       listing(candidates));
+}
+
+/// Uniform if, and only if, that gives the same coordinates bit by bit.
+Axis make_axis(std::vector<double> coordinates) {
+  const std::size_t size = coordinates.size();
+  if (size >= 2)
+    for (const double step :
+         {coordinates[1] - coordinates[0], (coordinates[size - 1] - coordinates[0]) / static_cast<double>(size - 1)}) {
+      if (step == 0.0 || !std::isfinite(step) || !std::isfinite(coordinates[0])) continue;
+      const Axis uniform = Axis::uniform(size, coordinates[0], step);
+      bool equal = true;
+      for (std::size_t i = 0; i < size && equal; ++i) equal = uniform[i] == coordinates[i];
+      if (equal) return uniform;
+    }
+  return Axis::rectilinear(std::move(coordinates));
+}
+
+Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimension, bool& is_time) {
+  const std::string name = file.dimension_name(variable, dimension);
+  const auto coordinate = file.coordinate(variable, dimension);
+  Axis axis = Axis::uniform(variable.sizes[dimension]);
+  std::string unit;
+  std::string role;
+  if (coordinate) {
+    std::vector<double> values =
+        std::visit([](const auto& stored) { return std::vector<double>(stored.begin(), stored.end()); },
+                   unpack(file.values(*coordinate, {}), read_packing(file, *coordinate)));
+    try {
+      axis = make_axis(std::move(values));
+    } catch (const Error& e) {
+      fail(e.code(), file.path(), "coordinate variable '{}': {}", coordinate->name, e.what());
+    }
+    unit = file.text(*coordinate, "units");
+    role = file.text(*coordinate, "axis") + " " + file.text(*coordinate, "standard_name") + " ";
+  }
+  axis.name = name;
+  axis.unit = unit;
+  is_time = role.starts_with("T ") || role.ends_with(" time ") || unit.find(" since ") != std::string::npos ||
+            lower(name) == "t" || lower(name) == "time";
+  return axis;
+}
+
+/// Moves axis k behind the others: time, which varies slowest in an image. One copy.
+void move_axis_last(std::size_t k, RawImage& image) {
+  std::vector<Axis>& axes = image.grid.axes;
+  std::size_t inner = 1;
+  std::size_t outer = 1;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (a != k) (a < k ? inner : outer) *= axes[a].size();
+  const std::size_t steps = axes[k].size();
+  std::visit(
+      [&]<class T>(std::vector<T>& values) {
+        std::vector<T> moved(values.size());
+        for (std::size_t o = 0; o < outer; ++o)
+          for (std::size_t t = 0; t < steps; ++t)
+            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>((o * steps + t) * inner), inner,
+                        moved.begin() + static_cast<std::ptrdiff_t>((t * outer + o) * inner));
+        values = std::move(moved);
+      },
+      image.values);
+  std::rotate(axes.begin() + static_cast<std::ptrdiff_t>(k), axes.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+              axes.end());
+}
+
+void read_grid_and_values(const NcFile& file, const NcVariable& variable, const Progress& progress, RawImage& image) {
+  std::vector<bool> is_time;
+  for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
+    if (variable.sizes[d] == 1) continue;
+    bool time = false;
+    image.grid.axes.push_back(read_axis(file, variable, d, time));
+    is_time.push_back(time);
+  }
+  image.values = unpack(file.values(variable, progress), read_packing(file, variable));
+  const auto found = std::find(is_time.begin(), is_time.end(), true);
+  if (found != is_time.end() && !is_time.back())
+    move_axis_last(static_cast<std::size_t>(found - is_time.begin()), image);
+  const auto n = static_cast<Eigen::Index>(image.grid.axes.size());
+  image.grid.linear = Eigen::MatrixXd::Identity(n, n);
+  image.grid.offset = Eigen::VectorXd::Zero(n);
+}
+
+}  // namespace
+
+RawImage read_netcdf(const std::filesystem::path& path, const ReadImageOptions& options) {
+  const NcFile file(path, options.progress);
+  const auto all = file.variables();
+  const auto candidates = image_variables(file, all);
+  const NcVariable variable = choose(file, all, candidates, options.variable);
+  if (rank(variable) < 2 || rank(variable) > 4)
+    fail(ErrorCode::UnsupportedData, path, "variable '{}' is {}; expected 2 to 4 axes longer than 1", variable.name,
+         variable.sizes.empty() ? "a single value" : shape_text(variable.sizes));
+  if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
+    fail(ErrorCode::UnsupportedData, path, "variable '{}' is {}; expected at least one sample", variable.name,
+         shape_text(variable.sizes));
+  RawImage image;
+  read_grid_and_values(file, variable, options.progress, image);
+  image.info.format = "netCDF";
+  image.info.variable = variable.name;
+  for (const NcVariable& candidate : candidates) image.info.variables.push_back(candidate.name);
+  image.info.value_unit = file.text(variable, "units");
+  image.info.value_name = file.text(variable, "long_name");
+  if (image.info.value_name.empty()) image.info.value_name = file.text(variable, "standard_name");
+  image.info.stored_type = nc_type_name(variable.type);
+  return image;
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The netCDF-C library behind C++ values. Based on: Unidata, netCDF-C 4.9 API.
+#include "netcdf_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include <netcdf_mem.h>
+
+#include "cdf_header.hpp"
+#include "common.hpp"
+#include "inflate.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array<unsigned char, 8> kHdf5Magic = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+
+bool is_hdf5(std::span<const unsigned char> prefix) {
+  return prefix.size() >= kHdf5Magic.size() && std::equal(kHdf5Magic.begin(), kHdf5Magic.end(), prefix.begin());
+}
+
+/// An empty array of a netCDF type.
+ValueArray array_for(nc_type type, bool as_unsigned) {
+  switch (type) {
+    case NC_BYTE:
+      if (as_unsigned) return std::vector<std::uint8_t>();
+      return std::vector<std::int8_t>();
+    case NC_UBYTE:
+      return std::vector<std::uint8_t>();
+    case NC_SHORT:
+      if (as_unsigned) return std::vector<std::uint16_t>();
+      return std::vector<std::int16_t>();
+    case NC_USHORT:
+      return std::vector<std::uint16_t>();
+    case NC_INT:
+      if (as_unsigned) return std::vector<std::uint32_t>();
+      return std::vector<std::int32_t>();
+    case NC_UINT:
+      return std::vector<std::uint32_t>();
+    case NC_INT64:
+      return std::vector<std::int64_t>();
+    case NC_UINT64:
+      return std::vector<std::uint64_t>();
+    case NC_FLOAT:
+      return std::vector<float>();
+    default:
+      return std::vector<double>();
+  }
+}
+
+}  // namespace
+
+const char* nc_type_name(nc_type type) noexcept {
+  constexpr std::array<const char*, 13> kNames = {"none",  "int8",   "char",   "int16", "int32",  "float", "double",
+                                                  "uint8", "uint16", "uint32", "int64", "uint64", "string"};
+  return type >= 0 && type < static_cast<nc_type>(kNames.size()) ? kNames[static_cast<std::size_t>(type)]
+                                                                 : "user-defined";
+}
+
+bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UINT64 && type != NC_CHAR; }
+
+NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
+  if (is_gzip(path)) content_ = inflate_to_memory(path, progress);
+  const auto prefix =
+      content_.empty() ? read_bytes(path, 0, 8)
+                       : std::vector<unsigned char>(
+                             content_.begin(),
+                             content_.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(8, content_.size())));
+  if (is_classic_netcdf(prefix))
+    check_classic_netcdf(path, content_);
+  else if (!is_hdf5(prefix))
+    fail(ErrorCode::MalformedFile, path, "starts with {}; expected netCDF: 'CDF' and 1, 2 or 5, or '\\x89HDF'",
+         shown(std::span<const unsigned char>(prefix)));
+  // An absolute path cannot be taken for the address of a server.
+  const int status = content_.empty()
+                         ? nc_open(fs::absolute(path).c_str(), NC_NOWRITE, &id_)
+                         : nc_open_mem(path.filename().c_str(), NC_NOWRITE, content_.size(), content_.data(), &id_);
+  check(status, "opening it");
+}
+
+NcFile::~NcFile() {
+  if (id_ >= 0) nc_close(id_);
+}
+
+void NcFile::check(int status, const std::string& what) const {
+  if (status != NC_NOERR)
+    fail(ErrorCode::MalformedFile, path_, "{} failed in the netCDF library ({})", what, nc_strerror(status));
+}
+
+NcVariable NcFile::describe(int group, int id, const std::string& prefix) const {
+  NcVariable variable{group, id, "", NC_NAT, {}, {}};
+  std::array<char, NC_MAX_NAME + 1> name{};
+  int rank = 0;
+  check(nc_inq_var(group, id, name.data(), &variable.type, &rank, nullptr, nullptr), "reading a variable's name");
+  variable.name = prefix + name.data();
+  variable.dimensions.resize(static_cast<std::size_t>(rank));
+  check(nc_inq_vardimid(group, id, variable.dimensions.data()), "reading the dimensions of " + variable.name);
+  for (const int dimension : variable.dimensions) {
+    std::size_t size = 0;
+    check(nc_inq_dimlen(group, dimension, &size), "reading the dimensions of " + variable.name);
+    variable.sizes.push_back(size);
+  }
+  return variable;
+}
+
+void NcFile::collect(int group, const std::string& prefix, int depth, std::vector<NcVariable>& out) const {
+  int count = 0;
+  check(nc_inq_nvars(group, &count), "listing the variables");
+  std::vector<int> ids(static_cast<std::size_t>(count));
+  check(nc_inq_varids(group, &count, ids.data()), "listing the variables");
+  for (const int id : ids) out.push_back(describe(group, id, prefix));
+  check(nc_inq_grps(group, &count, nullptr), "listing the groups");
+  std::vector<int> groups(static_cast<std::size_t>(count));
+  check(nc_inq_grps(group, &count, groups.data()), "listing the groups");
+  constexpr int kDeepest = 32;
+  if (depth > kDeepest) fail(ErrorCode::MalformedFile, path_, "groups nested deeper than {}", kDeepest);
+  for (const int child : groups) {
+    std::array<char, NC_MAX_NAME + 1> name{};
+    check(nc_inq_grpname(child, name.data()), "reading a group's name");
+    collect(child, (prefix.empty() ? "/" : prefix) + name.data() + "/", depth + 1, out);
+  }
+}
+
+std::vector<NcVariable> NcFile::variables() const {
+  std::vector<NcVariable> result;
+  collect(id_, "", 0, result);
+  return result;
+}
+
+std::string NcFile::dimension_name(const NcVariable& variable, std::size_t dimension) const {
+  std::array<char, NC_MAX_NAME + 1> name{};
+  check(nc_inq_dimname(variable.group, variable.dimensions[dimension], name.data()), "reading a dimension's name");
+  return name.data();
+}
+
+std::optional<NcVariable> NcFile::coordinate(const NcVariable& variable, std::size_t dimension) const {
+  const std::string name = dimension_name(variable, dimension);
+  for (int group = variable.group;;) {
+    int id = 0;
+    if (nc_inq_varid(group, name.c_str(), &id) == NC_NOERR) {
+      NcVariable found = describe(group, id, "");
+      const bool fits = found.dimensions.size() == 1 && found.dimensions[0] == variable.dimensions[dimension];
+      if (fits && is_numeric(found.type)) return found;
+    }
+    if (nc_inq_grp_parent(group, &group) != NC_NOERR) return std::nullopt;
+  }
+}
+
+std::string NcFile::text(const NcVariable& variable, const char* attribute) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  if (nc_inq_att(variable.group, variable.id, attribute, &type, &length) != NC_NOERR || length == 0) return {};
+  if (type == NC_CHAR) {
+    std::string value(length, '\0');
+    check(nc_get_att_text(variable.group, variable.id, attribute, value.data()), "reading an attribute");
+    return std::string(trim(value.c_str()));
+  }
+  if (type != NC_STRING) return {};
+  std::vector<char*> strings(length, nullptr);
+  check(nc_get_att_string(variable.group, variable.id, attribute, strings.data()), "reading an attribute");
+  std::string value = strings[0] == nullptr ? "" : strings[0];
+  nc_free_string(length, strings.data());
+  return std::string(trim(value));
+}
+
+std::vector<double> NcFile::numbers(const NcVariable& variable, const char* attribute) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  if (nc_inq_att(variable.group, variable.id, attribute, &type, &length) != NC_NOERR || !is_numeric(type)) return {};
+  std::vector<double> values(length);
+  if (length > 0)
+    check(nc_get_att_double(variable.group, variable.id, attribute, values.data()),
+          "reading the attribute " + std::string(attribute));
+  return values;
+}
+
+std::optional<double> NcFile::number(const NcVariable& variable, const char* attribute) const {
+  const auto values = numbers(variable, attribute);
+  if (values.empty()) return std::nullopt;
+  return values[0];
+}
+
+void NcFile::read_blocks(const NcVariable& variable, std::size_t item, void* to, const Progress& progress) const {
+  const std::size_t rank = variable.sizes.size();
+  if (rank == 0) return check(nc_get_var(variable.group, variable.id, to), "reading " + variable.name);
+  const std::size_t layers = variable.sizes[0];
+  std::size_t layer_bytes = item;
+  for (std::size_t d = 1; d < rank; ++d) layer_bytes *= variable.sizes[d];
+  // Blocks of whole chunks, so that none is decompressed twice.
+  constexpr std::size_t kBlockBytes = std::size_t{1} << 24;
+  std::size_t step = std::max<std::size_t>(1, kBlockBytes / std::max<std::size_t>(1, layer_bytes));
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> chunks(rank, 1);
+  if (nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) == NC_NOERR && storage == NC_CHUNKED &&
+      chunks[0] > 0)
+    step = (step + chunks[0] - 1) / chunks[0] * chunks[0];
+  std::vector<std::size_t> start(rank, 0);
+  std::vector<std::size_t> count = variable.sizes;
+  for (std::size_t first = 0; first < layers; first += step) {
+    tick(progress, static_cast<double>(first) / static_cast<double>(layers), path_);
+    start[0] = first;
+    count[0] = std::min(step, layers - first);
+    check(nc_get_vara(variable.group, variable.id, start.data(), count.data(),
+                      static_cast<unsigned char*>(to) + first * layer_bytes),
+          "reading " + variable.name);
+  }
+}
+
+ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) const {
+  if (!is_numeric(variable.type))
+    fail(ErrorCode::UnsupportedData, path_, "variable '{}' holds {} values; expected numbers", variable.name,
+         nc_type_name(variable.type));
+  ValueArray result = array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
+  const std::vector<std::uint64_t> sizes(variable.sizes.begin(), variable.sizes.end());
+  std::visit(
+      [&]<class T>(std::vector<T>& values) {
+        const std::uint64_t bytes = checked_bytes(sizes, sizeof(T), path_);
+        // No filter of the library compresses better; more is a damaged header, not data.
+        constexpr std::uint64_t kBestRatio = 4096;
+        const std::uint64_t stored = content_.empty() ? size_of_file(path_) : content_.size();
+        if (bytes / kBestRatio > stored)
+          fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} samples in a file of {} bytes", variable.name,
+               shape_text(sizes), stored);
+        values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
+        read_blocks(variable, sizeof(T), values.data(), progress);
+      },
+      result);
+  return result;
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From what a reader found to an image of the library's value types and dimensions.
+#include "raw_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include <Eigen/LU>
+
+#include "common.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+template <class T>
+constexpr bool kIsWide =
+    std::is_same_v<T, std::uint32_t> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint64_t>;
+
+template <class To, class From>
+std::vector<To> converted(const std::vector<From>& from) {
+  std::vector<To> to(from.size());
+  std::transform(from.begin(), from.end(), to.begin(), [](From value) { return static_cast<To>(value); });
+  return to;
+}
+
+template <class T>
+bool fits_int32(const std::vector<T>& values) {
+  constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
+  return std::all_of(values.begin(), values.end(), [](T value) {
+    if constexpr (std::is_signed_v<T>) return value >= -kMax - 1 && value <= kMax;
+    return value <= static_cast<T>(kMax);
+  });
+}
+
+template <int N>
+Grid<N> fixed_grid(const RawGrid& grid) {
+  Grid<N> result;
+  for (int a = 0; a < N; ++a) result.axes[a] = grid.axes[a];
+  result.linear = grid.linear;
+  result.offset = grid.offset;
+  return result;
+}
+
+template <int N>
+AnyImageN<N> with_dimension(RawImage&& image) {
+  const Grid<N> grid = fixed_grid<N>(image.grid);
+  return std::visit(
+      [&]<class T>(std::vector<T>& values) -> AnyImageN<N> {
+        if constexpr (!kIsWide<T>) {
+          return OwnedImage<T, N>{grid, std::move(values)};
+        } else {
+          if (fits_int32(values)) return OwnedImage<std::int32_t, N>{grid, converted<std::int32_t>(values)};
+          return OwnedImage<double, N>{grid, converted<double>(values)};
+        }
+      },
+      image.values);
+}
+
+/// True if axis a neither moves along other coordinates nor is moved along by other axes.
+bool is_decoupled(const Eigen::MatrixXd& matrix, Eigen::Index a) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    if (i != a && (matrix(i, a) != 0.0 || matrix(a, i) != 0.0)) return false;
+  return true;
+}
+
+}  // namespace
+
+RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd& affine, const Eigen::VectorXd& offset,
+                    const std::filesystem::path& path) {
+  const auto n = static_cast<Eigen::Index>(sizes.size());
+  if (!affine.allFinite() || !offset.allFinite())
+    fail(ErrorCode::MalformedFile, path, "orientation with an entry that is not finite; expected finite numbers");
+  RawGrid grid{{}, Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Zero(n)};
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const bool decoupled = is_decoupled(affine, a);
+    const double step = decoupled ? affine(a, a) : affine.col(a).norm();
+    if (step == 0.0 || !std::isfinite(step))
+      fail(ErrorCode::MalformedFile, path, "axis {} has a step of {}; expected a finite step other than 0", a, step);
+    grid.axes.push_back(Axis::uniform(sizes[static_cast<std::size_t>(a)], decoupled ? offset(a) : 0.0, step));
+    if (decoupled) continue;
+    grid.linear.col(a) = affine.col(a) / step;
+    grid.offset(a) = offset(a);
+  }
+  constexpr double kSmallestVolume = 1e-9;  // of the parallelepiped of unit columns: below, axes coincide
+  if (!(std::abs(grid.linear.determinant()) > kSmallestVolume))
+    fail(ErrorCode::MalformedFile, path, "orientation of determinant {}; expected axes in independent directions",
+         grid.linear.determinant());
+  return grid;
+}
+
+void name_axes(RawGrid& grid) {
+  constexpr std::array<const char*, 4> kNames = {"x", "y", "z", "t"};
+  for (std::size_t a = 0; a < std::min(grid.axes.size(), kNames.size()); ++a)
+    if (grid.axes[a].name.empty()) grid.axes[a].name = kNames[a];
+}
+
+void drop_trailing_axes(RawImage& image) {
+  RawGrid& grid = image.grid;
+  while (grid.axes.size() > 2 && grid.axes.back().size() == 1) {
+    const auto left = static_cast<Eigen::Index>(grid.axes.size()) - 1;
+    const bool decoupled = grid.linear.col(left).head(left).isZero(0.0) && grid.linear.row(left).head(left).isZero(0.0);
+    grid.axes.pop_back();
+    if (decoupled) {
+      grid.linear = grid.linear.topLeftCorner(left, left).eval();
+      grid.offset = grid.offset.head(left).eval();
+    } else {
+      grid.linear = Eigen::MatrixXd::Identity(left, left);
+      grid.offset = Eigen::VectorXd::Zero(left);
+      image.info.world_frame.clear();
+    }
+  }
+}
+
+AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
+  switch (image.grid.axes.size()) {
+    case 2:
+      return with_dimension<2>(std::move(image));
+    case 3:
+      return with_dimension<3>(std::move(image));
+    case 4:
+      return with_dimension<4>(std::move(image));
+    default:
+      break;
+  }
+  std::vector<std::size_t> sizes;
+  for (const Axis& axis : image.grid.axes) sizes.push_back(axis.size());
+  fail(ErrorCode::UnsupportedData, path, "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample",
+       sizes.size(), shape_text(sizes));
+}
+
+const char* type_name(const ValueArray& values) noexcept {
+  constexpr std::array<const char*, 10> kNames = {"uint8", "int8",   "uint16", "int16", "int32",
+                                                  "float", "double", "uint32", "int64", "uint64"};
+  return kNames[values.index()];
+}
+
+ValueArray components_last(const ValueArray& values, std::size_t components) {
+  return std::visit(
+      [&]<class T>(const std::vector<T>& from) -> ValueArray {
+        const std::size_t samples = from.size() / components;
+        std::vector<T> to(from.size());
+        for (std::size_t c = 0; c < components; ++c)
+          for (std::size_t i = 0; i < samples; ++i) to[c * samples + i] = from[i * components + c];
+        return to;
+      },
+      values);
+}
+
+}  // namespace tegl::io_detail

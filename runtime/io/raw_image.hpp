@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a reader hands over: values of any stored type and a grid whose dimension is known at run time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "tegl/io.hpp"
+#include "value_array.hpp"
+
+namespace tegl::io_detail {
+
+/// The coordinate function of n axes: as Grid<N>, of dynamic size.
+struct RawGrid {
+  std::vector<Axis> axes;  ///< axis 0 runs fastest
+  Eigen::MatrixXd linear;  ///< n x n
+  Eigen::VectorXd offset;  ///< n
+};
+
+struct RawImage {
+  RawGrid grid;
+  ValueArray values;
+  ImageInfo info;
+};
+
+/// The grid of samples at affine * index + offset (affine: n x n, column a = step along axis a). An axis that is not
+/// coupled to others has its origin and signed step in itself, so that a diagonal affine leaves the world map the
+/// identity; the other axes hold the lengths of their columns, and `linear` their directions. Errors: MalformedFile for
+/// a column that is zero or not finite, or a singular affine.
+RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd& affine, const Eigen::VectorXd& offset,
+                    const std::filesystem::path& path);
+
+/// Names x, y, z, t by position, for axes that have none.
+void name_axes(RawGrid& grid);
+
+/// Drops trailing axes of one sample, but keeps two axes; where a dropped axis takes part in the orientation
+/// (a slice that lies obliquely in space), what is left is the plane's own coordinates and no world frame.
+void drop_trailing_axes(RawImage& image);
+
+/// The image, in 2, 3 or 4 dimensions; UnsupportedData for any other. uint32, int64 and uint64 become int32 if all
+/// values fit, else double.
+AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path);
+
+/// "uint8", ... of the alternative that is held.
+const char* type_name(const ValueArray& values) noexcept;
+
+/// Sorts components (fastest) to a last, slowest axis: n samples of c components become c volumes of n.
+ValueArray components_last(const ValueArray& values, std::size_t components);
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// read_image: which format a file has, and the steps that all formats share.
+#include <array>
+#include <cstring>
+#include <string_view>
+
+#include "common.hpp"
+#include "inflate.hpp"
+#include "raw_image.hpp"
+#include "readers.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+enum class Format { Nifti, Nrrd, MetaImage, NetCdf };
+
+struct Extension {
+  std::string_view text;
+  Format format;
+};
+
+constexpr std::array<Extension, 17> kExtensions = {{{".nii", Format::Nifti},
+                                                    {".nii.gz", Format::Nifti},
+                                                    {".hdr", Format::Nifti},
+                                                    {".hdr.gz", Format::Nifti},
+                                                    {".img", Format::Nifti},
+                                                    {".img.gz", Format::Nifti},
+                                                    {".nrrd", Format::Nrrd},
+                                                    {".nhdr", Format::Nrrd},
+                                                    {".mha", Format::MetaImage},
+                                                    {".mhd", Format::MetaImage},
+                                                    {".nc", Format::NetCdf},
+                                                    {".nc.gz", Format::NetCdf},
+                                                    {".cdf", Format::NetCdf},
+                                                    {".cdf.gz", Format::NetCdf},
+                                                    {".nc4", Format::NetCdf},
+                                                    {".nc4.gz", Format::NetCdf},
+                                                    {".netcdf", Format::NetCdf}}};
+
+/// By extension, as users mean it; a file without a known one, by its first bytes.
+Format format_of(const fs::path& path) {
+  const std::string name = lower_name(path);
+  for (const Extension& extension : kExtensions)
+    if (name.ends_with(extension.text)) return extension.format;
+  const auto prefix = read_prefix(path, 348);
+  const std::string_view start(reinterpret_cast<const char*>(prefix.data()), prefix.size());
+  if (start.starts_with("NRRD000")) return Format::Nrrd;
+  if (start.starts_with("CDF") || start.starts_with("\x89HDF")) return Format::NetCdf;
+  if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;
+  fail(ErrorCode::UnsupportedFormat, path,
+       "no image format known by its name or first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
+       ".nhdr), MetaImage (.mha, .mhd) or netCDF (.nc, .cdf, .nc4, also gzipped)",
+       shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
+}
+
+RawImage read_raw(const fs::path& path, const ReadImageOptions& options) {
+  const Format format = format_of(path);
+  if (format != Format::NetCdf && !options.variable.empty())
+    fail(ErrorCode::InvalidArgument, path, "variable '{}' asked of a file that holds one image without a name",
+         options.variable);
+  switch (format) {
+    case Format::Nifti:
+      return read_nifti(path, options.progress);
+    case Format::Nrrd:
+      return read_nrrd(path, options.progress);
+    case Format::MetaImage:
+      return read_metaimage(path, options.progress);
+    default:
+      return read_netcdf(path, options);
+  }
+}
+
+}  // namespace
+
+ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options) {
+  require_readable_file(path);
+  tick(options.progress, 0.0, path);
+  RawImage image = read_raw(path, options);
+  drop_trailing_axes(image);
+  ImageInfo info = std::move(image.info);
+  AnyImage result = to_any_image(std::move(image), path);
+  tick(options.progress, 1.0, path);
+  return {std::move(result), std::move(info)};
+}
+
+}  // namespace tegl

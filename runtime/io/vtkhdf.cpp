@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTKHDF, unstructured grids: what ParaView opens. Triangles, segments, or tetrahedra whose vertices carry the time as
+// the point array "t". All coordinates are double: lossless. Axis names and units are attributes of the group, which
+// VTK does not look at.
+// Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "common.hpp"
+#include "hdf5_file.hpp"
+#include "mesh_formats.hpp"
+#include "output_file.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// VTK's numbers of the simplices by dimension: line, triangle, tetrahedron.
+constexpr std::array<unsigned char, 4> kCellTypes = {1, 3, 5, 10};
+
+std::string joined(const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, "\n")); }
+
+std::vector<std::string> split(const std::string& text, std::size_t count) {
+  std::vector<std::string> result(1);
+  for (const char c : text) {
+    if (c == '\n')
+      result.emplace_back();
+    else
+      result.back() += c;
+  }
+  result.resize(count);
+  return result;
+}
+
+/// Writes the parts one after the other; progress counts what is written of all.
+class Writer {
+ public:
+  Writer(const Mesh& mesh, const H5File& file, hid_t group, const Progress& progress, const fs::path& path)
+      : mesh_(mesh), file_(file), group_(group), progress_(progress), path_(path) {}
+
+  void run() {
+    const auto vertices = static_cast<std::int64_t>(vertex_count(mesh_));
+    const auto cells = static_cast<std::int64_t>(simplex_count(mesh_));
+    const auto corners = static_cast<std::int64_t>(mesh_.dim) + 1;
+    single("NumberOfPoints", vertices);
+    single("NumberOfCells", cells);
+    single("NumberOfConnectivityIds", cells * corners);
+    points();
+    connectivity(static_cast<std::uint64_t>(cells * corners));
+    offsets(static_cast<std::uint64_t>(cells) + 1, corners);
+    types(static_cast<std::uint64_t>(cells));
+  }
+
+  void times(hid_t point_data) {
+    std::vector<double> block;
+    file_.write_rows(point_data, "t", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, vertex_count(mesh_), 0,
+                     [&](std::uint64_t first, std::uint64_t count) {
+                       block.resize(count);
+                       for (std::uint64_t i = 0; i < count; ++i) block[i] = mesh_.coordinates[4 * (first + i) + 3];
+                       return block.data();
+                     });
+  }
+
+ private:
+  void report(double fraction) const { tick(progress_, fraction, path_); }
+
+  void single(const char* name, std::int64_t value) const {
+    file_.write_rows(group_, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1, 0,
+                     [&](std::uint64_t, std::uint64_t) { return &value; });
+  }
+
+  void points() const {
+    std::vector<std::array<double, 3>> block;
+    file_.write_rows(group_, "Points", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, vertex_count(mesh_), 3,
+                     [&](std::uint64_t first, std::uint64_t count) {
+                       report(0.3 * static_cast<double>(first) / static_cast<double>(vertex_count(mesh_)));
+                       block.resize(count);
+                       for (std::uint64_t i = 0; i < count; ++i) block[i] = position(mesh_, first + i);
+                       return block.data();
+                     });
+  }
+
+  void connectivity(std::uint64_t ids) const {
+    file_.write_rows(group_, "Connectivity", H5T_STD_I64LE, H5T_NATIVE_UINT32, ids, 0,
+                     [&](std::uint64_t first, std::uint64_t) {
+                       report(0.3 + 0.5 * static_cast<double>(first) / static_cast<double>(ids));
+                       return mesh_.simplices.data() + first;
+                     });
+  }
+
+  void offsets(std::uint64_t count, std::int64_t corners) const {
+    std::vector<std::int64_t> block;
+    file_.write_rows(group_, "Offsets", H5T_STD_I64LE, H5T_NATIVE_INT64, count, 0,
+                     [&](std::uint64_t first, std::uint64_t rows) {
+                       report(0.8 + 0.1 * static_cast<double>(first) / static_cast<double>(count));
+                       block.resize(rows);
+                       for (std::uint64_t i = 0; i < rows; ++i)
+                         block[i] = static_cast<std::int64_t>(first + i) * corners;
+                       return block.data();
+                     });
+  }
+
+  void types(std::uint64_t cells) const {
+    std::vector<unsigned char> block;
+    file_.write_rows(group_, "Types", H5T_STD_U8LE, H5T_NATIVE_UINT8, cells, 0, [&](std::uint64_t, std::uint64_t rows) {
+      block.assign(rows, kCellTypes[static_cast<std::size_t>(mesh_.dim)]);
+      return block.data();
+    });
+  }
+
+  const Mesh& mesh_;
+  const H5File& file_;
+  hid_t group_;
+  const Progress& progress_;
+  const fs::path& path_;
+};
+
+void write_into(const Mesh& mesh, const fs::path& where, const fs::path& path, const Progress& progress) {
+  const H5Quiet quiet;
+  H5File file = H5File::create(where, path);
+  {
+    const H5Handle group = file.create_group("VTKHDF");
+    constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
+    file.put_numbers(group.id(), "Version", kVersion);
+    file.put_text(group.id(), "Type", "UnstructuredGrid");
+    const std::array<std::int64_t, 2> dims = {mesh.dim, mesh.space_dim};
+    file.put_numbers(group.id(), "tegl_dim_and_space_dim", dims);
+    file.put_text(group.id(), "tegl_axis_names", joined(mesh.axis_names));
+    file.put_text(group.id(), "tegl_axis_units", joined(mesh.axis_units));
+    Writer writer(mesh, file, group.id(), progress, path);
+    writer.run();
+    const H5Handle point_data = file.create_group("VTKHDF/PointData");
+    if (mesh.space_dim == 4) writer.times(point_data.id());
+  }
+  tick(progress, 1.0, path);
+  file.close();
+}
+
+/// The simplices of cells that are all of one type.
+class Reader {
+ public:
+  Reader(const fs::path& path) : path_(path), file_(H5File::open(path)), group_(open_root(file_, path)) {}
+
+  Mesh run() {
+    mesh_.space_dim = 3;
+    read_cells();
+    read_points();
+    const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
+    if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 3 ? static_cast<int>(dims[0]) : 2;
+    if (file_.has(group_.id(), "PointData") && (mesh_.dim == 3 || (dims.size() == 2 && dims[1] == 4))) add_times();
+    if (dims.size() == 2 && dims[1] == 2) flatten(mesh_, path_);
+    const auto n = static_cast<std::size_t>(mesh_.space_dim);
+    mesh_.axis_names = split(file_.get_text(group_.id(), "tegl_axis_names"), n);
+    mesh_.axis_units = split(file_.get_text(group_.id(), "tegl_axis_units"), n);
+    return std::move(mesh_);
+  }
+
+ private:
+  static H5Handle open_root(const H5File& file, const fs::path& path) {
+    H5Handle group = file.open_group("VTKHDF");
+    const std::string type = file.get_text(group.id(), "Type");
+    if (type != "UnstructuredGrid")
+      fail(ErrorCode::UnsupportedData, path, "VTKHDF of type {}; expected 'UnstructuredGrid'", shown(type));
+    return group;
+  }
+
+  [[nodiscard]] std::uint64_t length(hid_t group, const char* name) const {
+    const auto size = file_.sizes(group, name);
+    if (size.size() != 1) fail(ErrorCode::MalformedFile, path_, "dataset '{}' of 2 dimensions; expected 1", name);
+    return size[0];
+  }
+
+  template <class T>
+  [[nodiscard]] std::vector<T> numbers(const char* name, hid_t type) const {
+    std::vector<T> values(static_cast<std::size_t>(length(group_.id(), name)));
+    if (!values.empty()) file_.read(group_.id(), name, type, values.data());
+    return values;
+  }
+
+  void read_cells() {
+    const auto types = numbers<unsigned char>("Types", H5T_NATIVE_UINT8);
+    const auto ids = numbers<std::int64_t>("Connectivity", H5T_NATIVE_INT64);
+    mesh_.dim = 0;
+    for (int dim = 1; dim <= 3 && !types.empty(); ++dim)
+      if (types[0] == kCellTypes[static_cast<std::size_t>(dim)]) mesh_.dim = dim;
+    const auto other = std::find_if(types.begin(), types.end(), [&](unsigned char t) { return t != types[0]; });
+    if (!types.empty() && (mesh_.dim == 0 || other != types.end()))
+      fail(ErrorCode::UnsupportedData, path_,
+           "cells of VTK type {}; expected all 3 (lines), all 5 (triangles) or all "
+           "10 (tetrahedra)",
+           mesh_.dim == 0 ? types[0] : *other);
+    const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
+    if (types.empty() ? !ids.empty() : ids.size() != types.size() * corners)
+      fail(ErrorCode::MalformedFile, path_, "{} vertex numbers of {} cells; expected {}", ids.size(), types.size(),
+           types.size() * corners);
+    const auto offsets = numbers<std::int64_t>("Offsets", H5T_NATIVE_INT64);
+    for (std::size_t i = 0; i <= types.size(); ++i)
+      if (offsets.size() != types.size() + 1 || offsets[i] != static_cast<std::int64_t>(i * corners))
+        fail(ErrorCode::MalformedFile, path_, "{} offsets of {} cells, or not in steps of {}", offsets.size(),
+             types.size(), corners);
+    mesh_.simplices.resize(ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (ids[i] < 0 || ids[i] > std::numeric_limits<Index>::max())
+        fail(ErrorCode::MalformedFile, path_, "vertex number {}; expected 0 or more, below 2^32", ids[i]);
+      mesh_.simplices[i] = static_cast<Index>(ids[i]);
+    }
+  }
+
+  void read_points() {
+    const auto size = file_.sizes(group_.id(), "Points");
+    if (size.size() != 2 || size[1] != 3)
+      fail(ErrorCode::MalformedFile, path_, "points of shape {}; expected rows of 3", shape_text(size));
+    mesh_.coordinates.resize(static_cast<std::size_t>(size[0] * 3));
+    if (size[0] > 0) file_.read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
+  }
+
+  /// x y z and the point array t, side by side.
+  void add_times() {
+    const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+    if (!file_.has(point_data.id(), "t")) return;
+    const std::size_t vertices = mesh_.coordinates.size() / 3;
+    if (length(point_data.id(), "t") != vertices)
+      fail(ErrorCode::MalformedFile, path_, "point array 't' of {} values; expected {}", length(point_data.id(), "t"),
+           vertices);
+    std::vector<double> times(vertices);
+    if (vertices > 0) file_.read(point_data.id(), "t", H5T_NATIVE_DOUBLE, times.data());
+    Buffer<double> all(4 * vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      std::copy_n(mesh_.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * v), 3,
+                  all.begin() + static_cast<std::ptrdiff_t>(4 * v));
+      all[4 * v + 3] = times[v];
+    }
+    mesh_.coordinates = std::move(all);
+    mesh_.space_dim = 4;
+  }
+
+  const fs::path& path_;
+  H5File file_;
+  H5Handle group_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress) {
+  PendingPath pending(path);
+  write_into(mesh, pending.path(), path, progress);
+  pending.commit();
+}
+
+Mesh read_vtkhdf(const fs::path& path) {
+  const H5Quiet quiet;
+  return Reader(path).run();
+}
+
+}  // namespace tegl::io_detail
