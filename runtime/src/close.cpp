@@ -46,13 +46,14 @@ TilePoint<std::popcount(Axes)> region_place(const SlabView<N>& view, std::uint32
 
 template <int N, class Real>
 Caps<N, Real>::Caps(const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
-                    const Placement<N, Real>& placement, bool inverted, bool flip)
+                    const Placement<N, Real>& placement, bool inverted, bool flip, unsigned closed_axes)
     : shape_(shape),
       tables_(tables),
       counter_(counter),
       placement_(placement),
       inverted_(inverted),
       flip_(flip),
+      closed_axes_(closed_axes),
       border_(shape.words()),
       valid_(shape.words()) {
   for (CapPlanes* planes : {&layers_[0], &layers_[1], &slab_}) {
@@ -65,12 +66,12 @@ Caps<N, Real>::Caps(const RowShape<N>& shape, const TableSet<N>& tables, const C
 template <int N, class Real>
 const Word* Caps<N, Real>::border_cells(unsigned axes, const Row& at) {
   const auto index = shape_.index_of(at.row);
-  bool all = (axes >> (N - 1) & 1u) == 0 && (at.layer == 0 || at.layer + 1 == shape_.layers());
+  bool all = closes(N - 1) && (axes >> (N - 1) & 1u) == 0 && (at.layer == 0 || at.layer + 1 == shape_.layers());
   for (int a = 1; a < N - 1; ++a)
-    all = all || ((axes >> a & 1u) == 0 && (index[a] == 0 || index[a] + 1 == shape_.size(a)));
+    all = all || (closes(a) && (axes >> a & 1u) == 0 && (index[a] == 0 || index[a] + 1 == shape_.size(a)));
   const bool along_row = (axes & 1u) != 0;
   for (std::size_t w = 0; w < shape_.words(); ++w) border_[w] = all ? shape_.mask(w, along_row) : 0;
-  if (!along_row) {
+  if (!along_row && closes(0)) {
     const std::size_t last = shape_.size(0) - 1;
     border_[0] |= 1;
     border_[last / kWordBits] |= Word{1} << (last % kWordBits);
@@ -237,6 +238,7 @@ template <int N, class Real>
 template <int Omitted>
 void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned side) {
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  if (!closes(Omitted)) return;
   if (Omitted == N - 1 && k != (side == 0 ? 0 : shape_.layers() - 2)) return;
   for (std::size_t row = 0; row < shape_.rows(); ++row) {
     const auto index = shape_.index_of(row);

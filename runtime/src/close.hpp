@@ -28,8 +28,9 @@ class Caps {
   using Simplex = std::array<Index, N>;
 
   /// `inverted`: the layers' bits are. `flip`: against the orientation "positive side faces high".
+  /// `closed_axes`: bit a: whether the borders across axis a get caps.
   Caps(const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
-       const Placement<N, Real>& placement, bool inverted, bool flip);
+       const Placement<N, Real>& placement, bool inverted, bool flip, unsigned closed_axes);
 
   /// The cap vertices of layer k, between its slabs (or null); after its contour points are known.
   void add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above);
@@ -62,6 +63,7 @@ class Caps {
   void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
   template <int Omitted>
   void square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const;
+  [[nodiscard]] bool closes(int axis) const noexcept { return (closed_axes_ >> axis & 1u) != 0; }
   [[nodiscard]] unsigned original(unsigned signature, unsigned corners) const noexcept {
     return inverted_ ? ~signature & ((1u << corners) - 1) : signature;
   }
@@ -72,6 +74,7 @@ class Caps {
   const Placement<N, Real>& placement_;
   bool inverted_;
   bool flip_;
+  unsigned closed_axes_;
   std::array<CapPlanes, 2> layers_;  ///< by k % 2
   CapPlanes slab_;
   std::vector<Word> border_;

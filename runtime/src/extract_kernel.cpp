@@ -59,7 +59,7 @@ template <int N, class Real>
 class Extraction {
  public:
   Extraction(const SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-             const ExtractOptions& options, std::uint64_t max_vertices)
+             const ExtractOptions& options, std::uint64_t max_vertices, unsigned closed_axes)
       : source_(source),
         options_(options),
         inverted_(options.ambiguity == Ambiguity::high),
@@ -69,7 +69,8 @@ class Extraction {
         placement_(grid),
         counter_(shape_, tables),
         tiles_(*tables.tile, placement_, against_tables(grid, options) != inverted_, counter_.has_cubes()) {
-    if (options.close) caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options));
+    if (options.close)
+      caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options), closed_axes);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
     for (Slab<N>& slab : slabs_) counter_.allocate(slab);
   }
@@ -199,7 +200,8 @@ class Extraction {
 
 template <int N, class Real>
 Contour<N, Real> extract_source(const SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-                                const ExtractOptions& options, ExtractStats* stats, std::uint64_t max_vertices) {
+                                const ExtractOptions& options, ExtractStats* stats, std::uint64_t max_vertices,
+                                unsigned closed_axes) {
   Contour<N, Real> contour;
   ExtractStats done;
   done.tiles = 1;
@@ -209,14 +211,14 @@ Contour<N, Real> extract_source(const SampleSource<N>& source, const Grid<N>& gr
     done.tiles *= grid.axes[a].size() - 1;
   }
   contour.direction = options.direction;
-  if (done.tiles != 0) Extraction<N, Real>(source, grid, tables, options, max_vertices).run(contour, done);
+  if (done.tiles != 0) Extraction<N, Real>(source, grid, tables, options, max_vertices, closed_axes).run(contour, done);
   if (stats != nullptr) *stats = done;
   return contour;
 }
 
 #define TEGL_INSTANTIATE(N, Real)                                                                               \
   template Contour<N, Real> extract_source<N, Real>(const SampleSource<N>&, const Grid<N>&, const TableSet<N>&, \
-                                                    const ExtractOptions&, ExtractStats*, std::uint64_t);
+                                                    const ExtractOptions&, ExtractStats*, std::uint64_t, unsigned);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

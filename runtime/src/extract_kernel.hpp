@@ -26,10 +26,11 @@ void check_arguments(double isovalue, const ExtractOptions& options);
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options);
 
-/// The contour of `source` over `grid`. `stats` may be null.
+/// The contour of `source` over `grid`. `stats` may be null. `closed_axes`: bit a: whether options.close
+/// closes the borders across axis a.
 template <int N, class Real>
 Contour<N, Real> extract_source(const SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
                                 const ExtractOptions& options, ExtractStats* stats,
-                                std::uint64_t max_vertices = kMaxVertices);
+                                std::uint64_t max_vertices = kMaxVertices, unsigned closed_axes = ~0u);
 
 }  // namespace tegl::detail
