@@ -48,5 +48,29 @@ TYPED_TEST(NoiseOf, In4dIsAManifoldOpenOnlyAtTheBorder) {
   expect_sound<double>(noise<TypeParam, 4>({66, 2, 3, 2}, 6), noise_isovalue<TypeParam>());
 }
 
+TEST(Noise, Of24To4IsAManifold) {
+  const auto image = noise<float, 4>(24, 7);
+  const auto report = expect_oriented_manifold(extract<float>(image.view(), 0.5));
+  EXPECT_GT(report.simplices, 3'000'000u);
+}
+
+TEST(Noise, Of14To4IsAManifoldInAllVariants) {
+  const auto image = noise<float, 4>(14, 8);
+  for (const ExtractOptions& options : variants()) {
+    SCOPED_TRACE(describe(options));
+    expect_oriented_manifold(extract<float>(image.view(), 0.5, options));
+  }
+}
+
+/// Sparse and dense noise reach signatures that even noise rarely does.
+TEST(Noise, OfAnyShareOfHighSamplesIsAManifold) {
+  for (const double isovalue : {0.03, 0.2, 0.8, 0.97}) {
+    SCOPED_TRACE(isovalue);
+    expect_sound<double>(noise<float, 2>(30, 11), isovalue);
+    expect_sound<double>(noise<float, 3>(10, 12), isovalue);
+    expect_sound<double>(noise<float, 4>(6, 13), isovalue);
+  }
+}
+
 }  // namespace
 }  // namespace tegl::test
