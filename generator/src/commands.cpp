@@ -161,6 +161,11 @@ int run_out(const Options& options) {
                                                                                     : Triangulation::barycentric};
   if (options.triangulation != TriangulationChoice::All)
     request.command += fmt::format(" --triangulation {}", triangulation_name(request.triangulations.front()));
+  if (options.layout == LayoutChoice::Class && options.dim > 2 &&
+      options.triangulation != TriangulationChoice::Barycentric)
+    throw Error(ErrorCode::InvalidArgument,
+                "--layout class with compact tables: their triangulation does not move with the symmetries, so they "
+                "have one list per signature; expected --triangulation barycentric beside it");
   if (options.layout != LayoutChoice::Auto) {
     const Layout layout = options.layout == LayoutChoice::Class ? Layout::by_class : Layout::flat;
     request.layout = [layout](Triangulation) { return layout; };

@@ -157,6 +157,7 @@ std::string text_of(const std::string& path) {
 }
 
 TEST(Manifest, IsWhatTheBuildGenerated) {
+  if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   std::string joined = "[\n";
   for (const int dim : {2, 3, 4})
     joined +=
@@ -166,6 +167,7 @@ TEST(Manifest, IsWhatTheBuildGenerated) {
 }
 
 TEST(Emission, IsTheSameTextEveryTime) {
+  if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   TableRequest request;
   request.dim = 3;
   request.command = "gen --dim 3";
