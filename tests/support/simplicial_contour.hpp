@@ -122,11 +122,14 @@ Contour<N, Real> simplicial_contour(const Image<T, N>& image, double isovalue) {
   return SimplicialContour<N, Real, T>(image, isovalue).contour;
 }
 
-/// The layer i of the last axis as an image of one dimension less; the grid without the last axis, no world map.
+/// The layer i of the last axis as an image of one dimension less. Of a world map, which must leave the last axis
+/// apart, it keeps what concerns the others.
 template <Value T, int N>
 Image<T, N - 1> last_axis_layer(const Image<T, N>& image, std::size_t i) {
   Grid<N - 1> grid;
   std::copy_n(image.grid().axes.begin(), N - 1, grid.axes.begin());
+  grid.linear = image.grid().linear.template topLeftCorner<N - 1, N - 1>();
+  grid.offset = image.grid().offset.template head<N - 1>();
   typename Image<T, N - 1>::Strides strides;
   std::copy_n(image.strides().begin(), N - 1, strides.begin());
   return Image<T, N - 1>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[N - 1], grid, strides);

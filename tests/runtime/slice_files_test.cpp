@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cuts of measured and simulated data in four dimensions, where the folder with the files is there.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "compare.hpp"
+#include "fields.hpp"
+#include "invariants.hpp"
+#include "simplicial_contour.hpp"
+#include "tegl/io.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl {
+namespace {
+
+using test::same_surface;
+
+struct File {
+  std::string path;
+  double quantile;     ///< of the values; the isovalue is a little above the value there
+  bool closes = true;  ///< no missing values, so the closed contour is closed
+};
+std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
+
+/// The first samples along each axis, at most 40 in space and 8 in time: enough to be real, fast enough to test.
+template <Value T>
+Image<T, 4> head(Image<T, 4> image) {
+  for (int a = 0; a < 4; ++a) {
+    const std::size_t size = std::min<std::size_t>(image.size(a), a == 3 ? 8 : 40);
+    image = image.part(a, (image.size(a) - size) / 2, size);
+  }
+  return image;
+}
+
+/// A value with the given share of the samples below it, that few samples equal.
+template <Value T>
+double isovalue_at(const Image<T, 4>& image, double quantile) {
+  std::vector<double> values;
+  test::for_each_sample<4>(image.grid(), [&](std::size_t, const std::array<std::size_t, 4>& index) {
+    const auto value = static_cast<double>(image(index));
+    if (!std::isnan(value)) values.push_back(value);
+  });
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return std::is_floating_point_v<T> ? *at * (1 + 1e-4) + 1e-7 : *at + 0.5;
+}
+
+template <Value T>
+double time_of(const Image<T, 4>& image, double index) {
+  const auto& axis = image.grid().axes[3];
+  const auto i = std::min(static_cast<std::size_t>(index), axis.size() - 2);
+  const double t = axis[i] + (index - static_cast<double>(i)) * (axis[i + 1] - axis[i]);
+  return image.grid().linear(3, 3) * t + image.grid().offset(3);
+}
+
+class SliceOfFile : public ::testing::TestWithParam<File> {
+ protected:
+  /// Calls with a part of the file's image.
+  template <class Visit>
+  void with_image(const Visit& visit) {
+    const std::filesystem::path path = std::filesystem::path(TEGL_SHARED_DATA_DIR) / "fourd" / GetParam().path;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+    const ReadImageResult read = read_image(path);
+    ASSERT_TRUE(std::holds_alternative<AnyImageN<4>>(read.image));
+    std::visit([&](const auto& owned) { visit(head(owned.view())); }, std::get<AnyImageN<4>>(read.image));
+  }
+};
+
+TEST_P(SliceOfFile, IsAManifoldAtAnyTime) {
+  with_image([this](const auto& image) {
+    ExtractOptions options;
+    options.close = true;
+    const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile), options);
+    const MeshReport report = check(whole);
+    EXPECT_EQ(report.nonmanifold_simplices + report.orientation_conflicts, 0u);
+    std::mt19937_64 bits(1);
+    for (int i = 0; i < 40; ++i) {
+      const double index = static_cast<double>(image.size(3) - 1) * test::unit_random(bits);
+      const MeshReport cut = check(slice(whole, time_of(image, index)));
+      EXPECT_GT(cut.simplices, 100u);
+      EXPECT_EQ(cut.nonmanifold_simplices + cut.orientation_conflicts + cut.unused_vertices, 0u) << index;
+      if (GetParam().closes) {
+        EXPECT_TRUE(test::is_closed_oriented_manifold(cut)) << index;
+      }
+    }
+  });
+}
+
+TEST_P(SliceOfFile, AtATimeStepEqualsThe3dContour) {
+  with_image([this](const auto& image) {
+    const double isovalue = isovalue_at(image, GetParam().quantile);
+    const auto whole = extract<double>(image, isovalue);
+    for (std::size_t k = 0; k < image.size(3); ++k)
+      EXPECT_TRUE(same_surface(slice(whole, time_of(image, static_cast<double>(k))),
+                               extract<double>(test::last_axis_layer(image, k), isovalue)))
+          << k;
+  });
+}
+
+TEST_P(SliceOfFile, TakenDirectlyEqualsTheCutOfTheWhole) {
+  with_image([this](const auto& image) {
+    const double isovalue = isovalue_at(image, GetParam().quantile);
+    const auto whole = extract(image, isovalue);
+    const auto last = static_cast<double>(image.size(3) - 1);
+    for (const double index : {0.0, 0.25, 1.0, 1.5, last - 0.1, last}) {
+      const double at = time_of(image, index);
+      EXPECT_TRUE(same_surface(slice_image(image, isovalue, at), slice(whole, at))) << index;
+    }
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, SliceOfFile,
+                         ::testing::Values(File{"colpex_theta_83x83x10x6_float.nhdr", 0.6}, File{"functional.nii", 0.7},
+                                           File{"pcasl.nii.gz", 0.7}, File{"example4d.nii.gz", 0.7},
+                                           File{"viscous_fingers_64x64x64x24_float.nhdr", 0.9},
+                                           File{"ocean_atlas_subset.nc.gz", 0.5, false}),
+                         [](const auto& param) {
+                           std::string name = param.param.path.substr(0, param.param.path.find('.'));
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace tegl
