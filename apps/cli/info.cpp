@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "numbers.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "result.hpp"
 #include "statistics.hpp"
@@ -143,6 +144,8 @@ std::string axis_text(const Description& description, std::size_t at) {
     least = std::min(least, std::abs(axis[i] - axis[i - 1]));
     most = std::max(most, std::abs(axis[i] - axis[i - 1]));
   }
+  // Times in floating point are often uniform but for their last digits.
+  if (number(least) == number(most)) return text + fmt::format(", steps of about {}", number(most));
   return text + fmt::format(", steps {} to {}", number(least), number(most));
 }
 
@@ -224,6 +227,30 @@ std::string to_text(const Console& console, const Description& description, cons
                             description.statistics_seconds);
 }
 
+/// What is said of a file with several variables when none was chosen.
+std::string choice_text(const Console& console, const std::string& file, const std::vector<ImageVariable>& variables) {
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: several variables", file)));
+  for (const ImageVariable& variable : variables) {
+    text += report_line(variable.name, fmt::format("{}{}{}", fmt::join(variable.sizes, " x "),
+                                                   variable.unit.empty() ? "" : " " + variable.unit,
+                                                   variable.long_name.empty() ? "" : ", " + variable.long_name));
+  }
+  return text + "\nChoose one with --var.\n";
+}
+
+Json choice_json(const std::string& file, const std::vector<ImageVariable>& variables) {
+  Json json;
+  json["input"] = file;
+  json["variable"] = nullptr;
+  json["variables"] = Json::array();
+  json["shapes"] = Json::object();
+  for (const ImageVariable& variable : variables) {
+    json["variables"].push_back(variable.name);
+    json["shapes"][variable.name] = variable.sizes;
+  }
+  return json;
+}
+
 class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
@@ -234,6 +261,14 @@ class InfoCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
+    require_input(file());
+    if (variable().empty()) {
+      const std::vector<ImageVariable> variables = list_image_variables(file());
+      if (variables.size() > 1) {
+        streams.out.write(json() ? dump(choice_json(file(), variables)) : choice_text(streams.out, file(), variables));
+        return ExitCode::Ok;
+      }
+    }
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));

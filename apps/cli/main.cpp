@@ -66,14 +66,19 @@ ExitCode run(Command& command, const Streams& streams) {
 }
 
 /// A command line that CLI11 refused, or a request for help.
-ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json) {
+ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json,
+                std::string_view first_word) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     program.exit(error);  // prints the help or the version to standard output
     return ExitCode::Ok;
   }
   std::string help = "tegl";
   for (const CLI::App* command : program.get_subcommands()) help += " " + command->get_name();
-  const std::string message = fmt::format("{} (see {} --help)", error.what(), help);
+  std::string what = error.what();
+  if (help == "tegl" && !first_word.empty() && first_word.front() != '-') {
+    what = fmt::format("there is no command '{}'; expected info, contour, slice or check", first_word);
+  }
+  const std::string message = fmt::format("{} (see {} --help)", what, help);
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
 }
 
@@ -95,7 +100,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // Nothing was parsed, yet whoever asks for JSON wants errors in JSON too.
     const bool json = std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
-    return static_cast<int>(refuse(program, error, streams, json));
+    return static_cast<int>(refuse(program, error, streams, json, argc > 1 ? argv[1] : ""));
   }
   const auto named =
       std::find_if(commands.begin(), commands.end(), [](const auto& command) { return command->named(); });

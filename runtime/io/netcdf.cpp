@@ -5,6 +5,7 @@
 // conventions of the NetCDF Users' Guide.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -243,6 +244,20 @@ RawImage read_netcdf(const std::filesystem::path& path, const ReadImageOptions& 
   if (image.info.value_name.empty()) image.info.value_name = file.text(variable, "standard_name");
   image.info.stored_type = nc_type_name(variable.type);
   return image;
+}
+
+std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path) {
+  const NcFile file(path, {});
+  std::vector<ImageVariable> result;
+  for (const NcVariable& variable : image_variables(file, file.variables())) {
+    ImageVariable& entry = result.emplace_back();
+    entry.name = variable.name;
+    std::copy_if(variable.sizes.rbegin(), variable.sizes.rend(), std::back_inserter(entry.sizes),
+                 [](std::size_t size) { return size > 1; });
+    entry.unit = file.text(variable, "units");
+    entry.long_name = file.text(variable, "long_name");
+  }
+  return result;
 }
 
 }  // namespace tegl::io_detail

@@ -89,4 +89,9 @@ ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options
   return {std::move(result), std::move(info)};
 }
 
+std::vector<ImageVariable> list_image_variables(const fs::path& path) {
+  require_readable_file(path);
+  return format_of(path) == Format::NetCdf ? list_netcdf(path) : std::vector<ImageVariable>();
+}
+
 }  // namespace tegl

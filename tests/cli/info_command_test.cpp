@@ -84,10 +84,14 @@ TEST_F(Info, NamesTheVariablesWhereThereAreSeveral) {
   const Samples values = ball({4, 3}, 1);
   write_netcdf(path("two.nc"), {"lon", "lat"}, {{0, 1, 2, 3}, {0, 1, 2}}, {{"TEMP", values}, {"SALT", values}});
   const RunResult unnamed = run_tegl({"info", path("two.nc")});
-  EXPECT_EQ(unnamed.exit, 2);
-  EXPECT_THAT(unnamed.err, HasSubstr("TEMP"));
-  EXPECT_THAT(unnamed.err, HasSubstr("SALT"));
-  EXPECT_THAT(unnamed.err, HasSubstr("--var"));
+  EXPECT_EQ(unnamed.exit, 0) << unnamed.err;
+  for (const char* part : {"TEMP", "SALT", "4 x 3", "degC", "--var"}) EXPECT_THAT(unnamed.out, HasSubstr(part));
+  const RunResult list = run_tegl({"info", path("two.nc"), "--json"});
+  EXPECT_THAT(list.json()["variables"], ElementsAre("TEMP", "SALT"));
+  EXPECT_THAT(list.json()["shapes"]["SALT"], ElementsAre(4, 3));
+  const RunResult contour = run_tegl({"contour", path("two.nc"), "--iso", "0", "-o", path("out.ply")});
+  EXPECT_EQ(contour.exit, 2);
+  for (const char* part : {"TEMP", "SALT", "--var"}) EXPECT_THAT(contour.err, HasSubstr(part));
   const RunResult named = run_tegl({"info", path("two.nc"), "--var", "SALT", "--json"});
   ASSERT_EQ(named.exit, 0) << named.err;
   EXPECT_EQ(named.json()["variable"], "SALT");

@@ -48,6 +48,18 @@ struct ReadImageOptions {
 /// what is left must have 2, 3 or 4 axes. netCDF: scale_factor/add_offset applied, missing -> NaN.
 ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
+/// A variable that can be read as an image.
+struct ImageVariable {
+  std::string name;
+  std::vector<std::size_t> sizes;  ///< of its axes longer than 1, as in the image: axis 0, which runs fastest, first
+  std::string unit;                ///< may be empty
+  std::string long_name;           ///< may be empty
+};
+
+/// The variables that ReadImageOptions::variable may name in a netCDF file; none for the other formats, whose files
+/// hold one image without a name. Reads no values. Errors: those of read_image.
+std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path);
+
 /// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.
 struct Mesh {
   int dim = 2;
