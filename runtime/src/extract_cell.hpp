@@ -30,8 +30,9 @@ struct CellFrame {
   }
   /// Local corner number to the set of axes of N-space along which it is displaced.
   static constexpr unsigned spread(unsigned corner) noexcept {
+    constexpr auto kAxes = axes();
     unsigned mask = 0;
-    for (int j = 0; j < kDim; ++j) mask |= (corner >> j & 1u) << axes()[static_cast<std::size_t>(j)];
+    for (std::size_t j = 0; j < kAxes.size(); ++j) mask |= (corner >> j & 1u) << kAxes[j];
     return mask;
   }
   /// First corner of the r-th row of corners.
@@ -163,11 +164,13 @@ class CellEdges {
     return result;
   }
   static constexpr std::array<Place, Frame::kEdges> places() noexcept {
+    constexpr auto kStreams = streams();
+    constexpr auto kAxes = Frame::axes();
     std::array<Place, Frame::kEdges> result{};
     for (unsigned e = 0; e < Frame::kEdges; ++e) {
       const unsigned mask = Frame::spread(edge_base(Frame::kDim, e));
       for (unsigned s = 0; s < kStreamCount; ++s)
-        if (streams()[s].axis == Frame::axes()[e >> (Frame::kDim - 1)] && streams()[s].mask == (mask & ~1u))
+        if (kStreams[s].axis == kAxes[e >> (Frame::kDim - 1)] && kStreams[s].mask == (mask & ~1u))
           result[e] = {s, (mask & 1u) != 0};
     }
     return result;

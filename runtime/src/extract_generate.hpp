@@ -3,8 +3,8 @@
 // Pass 4 of the extraction: vertices and simplices of one row, written to the row's own places.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <utility>
 
 #include "extract_cell.hpp"
 #include "extract_count.hpp"
@@ -41,8 +41,9 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
                     const CubePlane& plane, std::size_t row, std::size_t layer, LocalRun<4>& local,
                     typename Placement<4, Real>::Vertex* vertices) noexcept {
   const RowShape<4>& shape = *view.shape;
+  const Word* const first = plane.bits[0].data() + row * shape.pitch();
+  if (std::all_of(first, first + shape.words(), [](Word word) { return word == 0; })) return;
   auto index = shape.index_of(row);
-  if (!shape.has_cells(index, Axes)) return;
   index[3] = layer;
   CellBits<4, Axes> cells(view, row);
   CellEdges<4, Axes> edges(view, row);
@@ -50,7 +51,7 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
   std::array<TilePoint<3>, tables::kFaceSlots> points;
   Index next = plane.base[row];
   for (std::size_t w = 0; w < shape.words(); ++w) {
-    Word rest = plane.bits[0][row * shape.pitch() + w];
+    Word rest = first[w];
     if (rest == 0) continue;
     cells.load(w);
     edges.load(w);
@@ -99,13 +100,15 @@ class TileWriter {
     auto index = shape.index_of(row);
     if (!shape.has_cells(index, kAll)) return;
     index[N - 1] = layer;
+    const Word* const active = view.slab->active.data() + row * shape.pitch();
+    if (std::all_of(active, active + shape.words(), [](Word word) { return word == 0; })) return;
     CellBits<N, kAll> cells(view, row);
     CellEdges<N, kAll> edges(view, row);
     Ids ids;
     Index own = view.slab->tile_base[row];
     Simplex* out = simplices + view.slab->simplex_base[row];
     for (std::size_t w = 0; w < shape.words(); ++w) {
-      Word rest = view.slab->active[row * shape.pitch() + w];
+      Word rest = active[w];
       if (rest == 0) continue;
       cells.load(w);
       edges.load(w);
@@ -150,19 +153,34 @@ class TileWriter {
     }
   }
 
+  /// The place in the tile of a vertex that it shares with its neighbours.
+  static TilePoint<N> shared_place(const SlabView<N>& view, const Ids& ids, unsigned v) noexcept {
+    constexpr unsigned kEdges = tables::edge_count(N);
+    if constexpr (N == 4)
+      if (v >= kEdges) {
+        const unsigned cube = (v - kEdges) / tables::kFaceSlots;
+        return cube_point(cube, view.cube_places(static_cast<int>(cube / 2), cube % 2)[ids[v]]);
+      }
+    return edge_place<N, kAll>(view, v, ids[v]);
+  }
+
   void write_own(const SlabView<N>& view, const SimplexList<N>& list, const Ids& ids,
                  const typename RowShape<N>::Index& index, Index own, Vertex* vertices) const noexcept {
-    constexpr unsigned kEdges = tables::edge_count(N);
-    std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
-    const auto place = [&](unsigned v) {
-      if constexpr (N == 4)
-        if (v >= kEdges) {
-          const unsigned cube = (v - kEdges) / tables::kFaceSlots;
-          return cube_point(cube, view.cube_places(static_cast<int>(cube / 2), cube % 2)[ids[v]]);
-        }
-      return edge_place<N, kAll>(view, v, ids[v]);
-    };
-    own_places<N>(list, place, points.data());
+    constexpr unsigned kShared = tables::first_tile_vertex(N);
+    std::array<TilePoint<N>, 256 - kShared> points;
+    if constexpr (N == 4) {
+      std::array<TilePoint<N>, kShared> known;  // each is asked for by many simplices
+      std::array<bool, kShared> is_known{};
+      const auto place = [&](unsigned v) -> const TilePoint<N>& {
+        if (!is_known[v]) known[v] = shared_place(view, ids, v);
+        is_known[v] = true;
+        return known[v];
+      };
+      own_places<N>(list, place, points.data());
+    } else {
+      own_places<N>(
+          list, [&](unsigned v) { return shared_place(view, ids, v); }, points.data());
+    }
     for (unsigned j = 0; j < list.own_vertices(); ++j)
       vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
   }

@@ -4,6 +4,7 @@
 // layers of ranks in memory.
 #include "extract_kernel.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -96,6 +97,7 @@ class Extraction {
       generate_layer(k + 1, contour);
       generate_slab(k, contour);
       watch.add_to(stats.generate_seconds);
+      ++slabs_done_;
       if (caps_) {
         caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
         caps_->add_slab(k, view(k));
@@ -138,15 +140,27 @@ class Extraction {
     resize(slab(k).local, total_, contour);
     total_ = counter_.place_layer(layer(k + 1), total_);
     resize(layer(k + 1).local, total_, contour);
-    contour.simplices.resize(simplices_);
+    grow(contour.simplices, simplices_);
     return tiles;
   }
 
   /// Room for the vertices from local.first to `end`.
-  void resize(LocalRun<N>& local, std::uint64_t end, Contour<N, Real>& contour) const {
+  void resize(LocalRun<N>& local, std::uint64_t end, Contour<N, Real>& contour) {
     check_vertex_count(end, max_vertices_);
     local.points.resize(end - local.first);
-    contour.vertices.resize(end);
+    grow(contour.vertices, end);
+  }
+
+  /// Resizes an output. Where it has to move, it gets room for what the slabs so far let expect, within
+  /// bounds: moving costs more than address space that is never touched.
+  template <class Output>
+  void grow(Output& output, std::size_t size) {
+    if (size > output.capacity()) {
+      const double expected =
+          static_cast<double>(size) * static_cast<double>(shape_.layers() - 1) / static_cast<double>(slabs_done_ + 1);
+      output.reserve(std::max(size + size / 2, std::min(4 * size, static_cast<std::size_t>(1.05 * expected))));
+    }
+    output.resize(size);
   }
 
   void generate_layer(std::size_t k, Contour<N, Real>& contour) {
@@ -194,6 +208,7 @@ class Extraction {
   std::array<Slab<N>, 2> slabs_;
   std::uint64_t total_ = 0;      ///< vertices so far
   std::uint64_t simplices_ = 0;  ///< simplices so far
+  std::size_t slabs_done_ = 0;
 };
 
 }  // namespace
