@@ -49,23 +49,29 @@ class SampleSource {
                            LocalPoint<N>* out) const noexcept = 0;
 };
 
+/// The samples must outlive it; the view need not.
 template <Value T, int N>
 class ImageSource final : public SampleSource<N> {
  public:
   using typename SampleSource<N>::Index;
 
   ImageSource(const Image<T, N>& image, double isovalue, double epsilon)
-      : image_(image), isovalue_(isovalue), epsilon_(epsilon), threshold_(make_threshold<T>(isovalue)) {}
+      : data_(image.data()),
+        strides_(image.strides()),
+        row_size_(image.size(0)),
+        isovalue_(isovalue),
+        epsilon_(epsilon),
+        threshold_(make_threshold<T>(isovalue)) {}
 
   bool classify(const Index& start, Word* high, Word* missing) const noexcept override {
-    return classify_row(row(start), image_.strides()[0], image_.size(0), threshold_, high, missing);
+    return classify_row(row(start), strides_[0], row_size_, threshold_, high, missing);
   }
 
   void edge_alphas(const Index& start, int axis, const Word* edges, std::size_t words,
                    LocalPoint<N>* out) const noexcept override {
     const T* const samples = row(start);
-    const std::ptrdiff_t along = image_.strides()[0];
-    const std::ptrdiff_t across = image_.strides()[axis];
+    const std::ptrdiff_t along = strides_[0];
+    const std::ptrdiff_t across = strides_[axis];
     for (std::size_t w = 0; w < words; ++w)
       for (Word rest = edges[w]; rest != 0; rest &= rest - 1) {
         const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
@@ -78,11 +84,13 @@ class ImageSource final : public SampleSource<N> {
  private:
   const T* row(const Index& start) const noexcept {
     std::ptrdiff_t at = 0;
-    for (int a = 1; a < N; ++a) at += static_cast<std::ptrdiff_t>(start[a]) * image_.strides()[a];
-    return image_.data() + at;
+    for (int a = 1; a < N; ++a) at += static_cast<std::ptrdiff_t>(start[a]) * strides_[a];
+    return data_ + at;
   }
 
-  const Image<T, N>& image_;
+  const T* data_;
+  typename Image<T, N>::Strides strides_;
+  std::size_t row_size_;
   double isovalue_;
   double epsilon_;
   Threshold<T> threshold_;
