@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "extract_layers.hpp"
@@ -26,6 +28,7 @@ class Placement {
       coordinates_[a].resize(grid.axes[a].size());
       for (std::size_t i = 0; i < coordinates_[a].size(); ++i) coordinates_[a][i] = grid.axes[a][i];
     }
+    if constexpr (N == 4) find_insides();
   }
 
   [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }
@@ -58,7 +61,8 @@ class Placement {
   [[nodiscard]] Vertex in_cell(const Index& base, const std::array<double, Frame::kDim>& place) const noexcept {
     std::array<double, N> point;
     for (int a = 0; a < N; ++a) point[a] = place_or_sample<Frame>(a, base[a], place);
-    return world(point);
+    return Frame::axes().empty() || Frame::axes().back() != N - 1 ? world(point)
+                                                                  : inside_slab(world(point), base[N - 1]);
   }
 
   /// The points on the edges along `axis` from the samples of a row that are set in `edges`.
@@ -71,11 +75,39 @@ class Placement {
         start[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
         point[0] = sample(0, start[0]);
         point[axis] = between(axis, start[axis], (*alphas++)[0]);
-        *out++ = world(point);
+        *out++ = axis == N - 1 ? inside_slab(world(point), start[N - 1]) : world(point);
       }
   }
 
  private:
+  /// N = 4: a point between layers k and k + 1, kept off both by the least that shows in its type. Where samples
+  /// equal the isovalue (or almost), points between layers would fall into a layer, and a cut there could not tell
+  /// them from the layer's own points (`slice`).
+  Vertex inside_slab(Vertex vertex, std::size_t k) const noexcept {
+    if constexpr (N == 4)
+      if (!insides_.empty()) vertex[N - 1] = std::clamp(vertex[N - 1], insides_[k][0], insides_[k][1]);
+    return vertex;
+  }
+
+  /// The last coordinates that points in each slab may have: of grids whose last axis is apart, and slabs with room.
+  void find_insides() {
+    for (int a = 0; a < N - 1; ++a)
+      if (linear_(N - 1, a) != 0) return;
+    const auto layer = [this](std::size_t k) {
+      std::array<double, N> point{};
+      point[N - 1] = coordinates_[N - 1][k];
+      return world(point)[N - 1];
+    };
+    for (std::size_t k = 0; k + 1 < coordinates_[N - 1].size(); ++k) {
+      const auto [low, high] = std::minmax({layer(k), layer(k + 1)});
+      const Real least = (high - low) * (std::numeric_limits<Real>::epsilon() / 2);
+      std::array<Real, 2> inside{std::max(std::nextafter(low, high), low + least),
+                                 std::min(std::nextafter(high, low), high - least)};
+      if (inside[0] > inside[1]) inside = {low, high};
+      insides_.push_back(inside);
+    }
+  }
+
   template <class Frame>
   double place_or_sample(int axis, std::size_t i, const std::array<double, Frame::kDim>& place) const noexcept {
     constexpr auto kAxes = Frame::axes();
@@ -88,6 +120,7 @@ class Placement {
   Eigen::Matrix<double, N, N> linear_;
   Eigen::Matrix<double, N, 1> offset_;
   bool mapped_;
+  std::vector<std::array<Real, 2>> insides_;
 };
 
 }  // namespace tegl::detail

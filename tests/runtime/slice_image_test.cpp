@@ -102,11 +102,35 @@ TEST(SliceImage, OfAClosedContourAtATimeStepEqualsTheClosed3dContour) {
   }
 }
 
-TEST(SliceImage, WithEpsilonSamplesAtTheIsovalueDoNotMatter) {
-  const auto owned = test::coarse_noise<std::uint8_t, 4>(Grid<4>::unit({7, 7, 7, 7}), 25, 3);
+TEST(SliceImage, AtATimeStepEqualsThe3dContourWhereSamplesEqualTheIsovalue) {
+  for (const std::uint64_t levels : {2u, 3u, 20u}) {
+    const auto owned = test::coarse_noise<std::uint8_t, 4>(Grid<4>::unit({6, 6, 6, 6}), 25 + levels, levels);
+    for (ExtractOptions options : all_options()) {
+      expect_cuts_are_layers<float>(owned.view(), 1.0, options);
+      expect_cuts_are_layers<double>(owned.view(), 1.0, options);
+      options.close = true;
+      expect_cuts_are_layers<float>(owned.view(), 1.0, options);
+    }
+  }
+}
+
+TEST(SliceImage, AtALayerEqualsItsContourWhereSamplesEqualTheIsovalueWithEpsilon) {
+  const auto owned = test::coarse_noise<std::uint8_t, 3>(Grid<3>::unit({12, 12, 12}), 25, 3);
   for (ExtractOptions options : all_options()) {
     options.epsilon = 1e-3;
     expect_cuts_are_layers<float>(owned.view(), 1.0, options);
+  }
+}
+
+TEST(SliceImage, AtATimeStepEqualsThe3dContourWhereSamplesAlmostEqualTheIsovalue) {
+  // So close that points between layers round to the layers, at times of any size.
+  for (const double origin : {0.0, 1e-3, 17.0, 86400.0, -1e7}) {
+    Grid<4> grid = Grid<4>::unit({5, 5, 5, 5});
+    grid.axes[3] = Axis::uniform(5, origin, 4.0);
+    auto owned = test::coarse_noise<double, 4>(grid, 44, 3);
+    std::mt19937_64 bits(45);
+    for (double& value : owned.values) value += 1e-12 * (test::unit_random(bits) - 0.5);
+    for (const ExtractOptions& options : all_options()) expect_cuts_are_layers<float>(owned.view(), 1.0, options);
   }
 }
 

@@ -41,7 +41,9 @@ struct ExtractStats {
 /// The contour {value = isovalue} of an image: separates samples >= isovalue (high) from the others.
 ///
 /// Closed (away from the image's border and from missing values), a manifold and oriented, whatever
-/// the values. An image with an axis of one sample has no tiles, hence an empty contour.
+/// the values. Points of a 4D contour between two layers of the last axis are kept off the layers by the least
+/// that Real can show, so that `slice` finds the contour of a layer in it even where samples equal the isovalue.
+/// An image with an axis of one sample has no tiles, hence an empty contour.
 /// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled.
 /// Cost: one pass over the samples plus the output. Real: float or double.
 template <class Real = float, Value T, int N>

@@ -17,9 +17,9 @@ namespace tegl {
 /// it; simplices that collapse thereby are dropped. Parts of the contour's boundary that lie in the hyperplane belong
 /// to the cut where only their upper side has a contour. So
 ///  - at a sample's coordinate t = k the cut has the vertices and simplices of the contour of layer k of the image,
-///    bit by bit: also at the first layer, and where the layer below is missing. (Where samples equal the isovalue,
-///    pieces of the contour may lie flat in t = k, and the cut is the limit from below. A positive
-///    ExtractOptions::epsilon at the extraction keeps such pieces out of the hyperplane.)
+///    bit by bit: also at the first layer, where the layer below is missing, and where samples equal the isovalue. (N =
+///    3: not in the last case. There pieces of the surface may lie flat in the layer, and the cut is the limit from
+///    below; a positive ExtractOptions::epsilon at the extraction keeps them out of it.)
 ///  - at any other t the cut of a closed manifold is a closed manifold, oriented alike. That holds for every t: where
 ///    drawing points together would pinch the cut, they are left apart at the same place.
 ///
