@@ -173,64 +173,85 @@ void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i
 
 template <int N, class Real>
 template <int Omitted>
-void Caps<N, Real>::add_face_row(const SlabView<N>& view, std::size_t k, unsigned side, std::size_t row) {
+Word Caps<N, Real>::face_cells(const Slab<N>& slab, std::size_t row, std::size_t w, unsigned side) const {
+  constexpr bool kAcrossRow = Omitted == 0;
+  Word cells = shape_.mask(w, !kAcrossRow);
+  if constexpr (kAcrossRow) {
+    const std::size_t at = side == 0 ? 0 : shape_.size(0) - 1;
+    cells = w == at / kWordBits ? Word{1} << (at % kWordBits) : 0;
+  }
+  if (slab.all_valid) return cells;
+  const Word* const valid = slab.valid.data() + shape_.unshifted(row, side << Omitted) * shape_.pitch();
+  if (!kAcrossRow || side == 0) return cells & valid[w];
+  return cells & (valid[w] << 1 | (w == 0 ? 0 : valid[w - 1] >> (kWordBits - 1)));
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, std::size_t layer, unsigned side,
+                                 std::size_t row) {
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
-  constexpr int kDim = N - 1;
-  constexpr unsigned kCorners = 1u << kDim;
-  using Frame = CellFrame<N, kAxes>;
-  // Inwards is where the contour's positive side looks; the sign of (face's frame, inwards) in the image's frame.
-  const bool flip = flip_ != (((N - 1 - Omitted) % 2 != 0) != (side != 0));
-  const Slab<N>& slab = *view.slab;
-  // A face across the last axis lies in one layer, which then is its lower one.
-  const SlabView<N> face = Omitted == N - 1 ? SlabView<N>{&shape_, {view.layers[side], nullptr}, &slab} : view;
-  const std::size_t layer = Omitted == N - 1 ? k + side : k;
-  const std::size_t tile_row = shape_.unshifted(row, side << Omitted);
-  auto index = shape_.index_of(row);
-  index[N - 1] = layer;
+  constexpr unsigned kCorners = 1u << (N - 1);
   CellBits<N, kAxes> cells(face, row);
   CellEdges<N, kAxes> edges(face, row);
+  // A contour's positive side looks inwards here; this is the sign of (frame of the face, inwards) in N-space.
+  const bool flip = flip_ != (((N - 1 - Omitted) % 2 != 0) != (side != 0));
+  auto index = shape_.index_of(row);
+  index[N - 1] = layer;
   Ids ids;
   for (std::size_t w = 0; w < shape_.words(); ++w) {
-    Word rest = shape_.mask(w, Frame::kAlongRow);
-    if constexpr (Omitted == 0) {
-      const std::size_t at = side == 0 ? 0 : shape_.size(0) - 1;
-      rest = w == at / kWordBits ? Word{1} << (at % kWordBits) : 0;
-    }
+    Word rest = face_cells<Omitted>(slab, row, w, side);
     if (rest == 0) continue;
     cells.load(w);
     edges.load(w);
     for (; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      index[0] = w * kWordBits + bit;
-      const std::size_t tile = index[0] - (Omitted == 0 ? side : 0);
-      if (!slab.all_valid && (slab.valid[tile_row * shape_.pitch() + tile / kWordBits] >> (tile % kWordBits) & 1u) == 0)
-        continue;
       const unsigned signature = original(cells.signature(bit), kCorners);
       const tables::RegionList& list = tables_.face->lists[signature];
       if (list.simplex_count == 0) continue;
-      corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
+      index[0] = w * kWordBits + bit;
       edges.ids(bit, ids.data() + kCorners);
-      if constexpr (N == 4) {
-        Index* const cubes = ids.data() + kCorners + tables::edge_count(kDim);
-        if (counter_.has_cubes())
-          for (unsigned j = 0; j < tables::kFaceSlots; ++j)
-            cubes[j] = face.cubes(Omitted, 0).id(row, shape_.pitch(), index[0]) + j;
-        square_ids<Omitted>(row, layer, index[0], cubes + tables::kFaceSlots);
-      }
-      for (unsigned j = 0; j < list.own_vertices; ++j) {
-        ids[tables::first_region_vertex(kDim) + j] = ~static_cast<Index>(vertices_.size());
-        const auto place =
-            region_place<N, kAxes>(face, tables_.face->masks[list.first_mask + j], ids.data() + kCorners);
-        vertices_.push_back(placement_.template in_cell<Frame>(index, place));
-      }
-      const std::uint8_t* stored = tables_.face->simplices + std::size_t{list.first_simplex} * N;
-      for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
-        Simplex simplex;
-        for (int j = 0; j < N; ++j) simplex[j] = ids[stored[j]];
-        if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
-        simplices_.push_back(simplex);
-      }
+      shared_ids<Omitted>(face, row, layer, index[0], signature, ids);
+      add_own<kAxes>(face, list, index, ids);
+      add_simplices(list, ids, flip);
     }
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i,
+                               unsigned signature, Ids& ids) const {
+  corner_ids<Omitted>(row, layer, i, signature, ids.data());
+  if constexpr (N == 4) {
+    Index* const cubes = ids.data() + (1u << (N - 1)) + tables::edge_count(N - 1);
+    if (counter_.has_cubes())
+      for (unsigned j = 0; j < tables::kFaceSlots; ++j)
+        cubes[j] = face.cubes(Omitted, 0).id(row, shape_.pitch(), i) + j;
+    square_ids<Omitted>(row, layer, i, cubes + tables::kFaceSlots);
+  }
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_own(const SlabView<N>& face, const tables::RegionList& list,
+                            const typename RowShape<N>::Index& index, Ids& ids) {
+  for (unsigned j = 0; j < list.own_vertices; ++j) {
+    ids[tables::first_region_vertex(N - 1) + j] = ~static_cast<Index>(vertices_.size());
+    const std::uint32_t mask = tables_.face->masks[list.first_mask + j];
+    const auto place = region_place<N, Axes>(face, mask, ids.data() + (1u << (N - 1)));
+    vertices_.push_back(placement_.template in_cell<CellFrame<N, Axes>>(index, place));
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_simplices(const tables::RegionList& list, const Ids& ids, bool flip) {
+  const std::uint8_t* stored = tables_.face->simplices + std::size_t{list.first_simplex} * N;
+  for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
+    Simplex simplex;
+    for (int j = 0; j < N; ++j) simplex[j] = ids[stored[j]];
+    if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
+    simplices_.push_back(simplex);
   }
 }
 
@@ -240,11 +261,15 @@ void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned si
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
   if (!closes(Omitted)) return;
   if (Omitted == N - 1 && k != (side == 0 ? 0 : shape_.layers() - 2)) return;
+  // A face across the last axis lies in one layer, which then is its lower one.
+  const SlabView<N> in_layer{&shape_, {view.layers[side], nullptr}, view.slab};
+  const SlabView<N>& face = Omitted == N - 1 ? in_layer : view;
+  const std::size_t layer = Omitted == N - 1 ? k + side : k;
   for (std::size_t row = 0; row < shape_.rows(); ++row) {
     const auto index = shape_.index_of(row);
     const bool across_rows = Omitted > 0 && Omitted < N - 1;
     if (across_rows && index[Omitted] != (side == 0 ? 0 : shape_.size(Omitted) - 1)) continue;
-    if (shape_.has_cells(index, kAxes)) add_face_row<Omitted>(view, k, side, row);
+    if (shape_.has_cells(index, kAxes)) add_face_row<Omitted>(face, *view.slab, layer, side, row);
   }
 }
 

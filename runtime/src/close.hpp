@@ -57,8 +57,20 @@ class Caps {
   void add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at);
   template <int Omitted>
   void add_face(const SlabView<N>& view, std::size_t k, unsigned side);
+  /// `face`: what the cells of the face at `side` of axis `Omitted` lie in, from `layer` on.
   template <int Omitted>
-  void add_face_row(const SlabView<N>& view, std::size_t k, unsigned side, std::size_t row);
+  void add_face_row(const SlabView<N>& face, const Slab<N>& slab, std::size_t layer, unsigned side, std::size_t row);
+  /// The cells of a face that belong to a valid tile.
+  template <int Omitted>
+  Word face_cells(const Slab<N>& slab, std::size_t row, std::size_t w, unsigned side) const;
+  /// Numbers of corners, cubes' and squares' barycentres of a face's cell, by local vertex.
+  template <int Omitted>
+  void shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
+                  Ids& ids) const;
+  template <unsigned Axes>
+  void add_own(const SlabView<N>& face, const tables::RegionList& list, const typename RowShape<N>::Index& index,
+               Ids& ids);
+  void add_simplices(const tables::RegionList& list, const Ids& ids, bool flip);
   template <int Omitted>
   void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
   template <int Omitted>

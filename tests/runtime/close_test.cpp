@@ -172,5 +172,28 @@ TYPED_TEST(Close, LeavesTheContourOpenAtMissingValues) {
   }
 }
 
+/// Caps and contour end together at missing values, however these lie: no face is left with a side too many, and
+/// without caps the very same contour remains.
+TYPED_TEST(Close, CapsFitTheContourAroundMissingValues) {
+  constexpr int N = TypeParam::value;
+  std::array<std::size_t, N> sizes;
+  sizes.fill(N == 4 ? 5 : 9);
+  sizes[0] = 66;
+  for (const double share : {0.01, 0.1}) {
+    const auto image = noise_with_missing<float, N>(Grid<N>::unit(sizes), 22, share);
+    for (ExtractOptions options : closed_variants()) {
+      SCOPED_TRACE(describe(options));
+      const auto closed = extract<double>(image.view(), 0.4, options);
+      const auto report = check(closed);
+      EXPECT_EQ(report.nonmanifold_simplices, 0u);
+      EXPECT_EQ(report.orientation_conflicts, 0u);
+      EXPECT_EQ(report.unused_vertices, 0u);
+      options.close = false;
+      const auto open = check(extract<double>(image.view(), 0.4, options));
+      EXPECT_LT(report.boundary_simplices, open.boundary_simplices);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tegl::test
