@@ -224,7 +224,7 @@ std::size_t otsu_threshold(const std::vector<std::uint64_t>& counts) {
 /// enough for its mean, and the tiny contours of extreme values, all noise, are left out.
 std::optional<std::size_t> contrast_threshold(const Spectrum& spectrum, std::size_t bins) {
   constexpr std::size_t kTried = 256;
-  constexpr double kLeastShare = 0.01;
+  constexpr double kLeastShare = 0.25;
   const std::size_t stride = std::max<std::size_t>(1, bins / kTried);
   std::int64_t most = 0;
   for (std::size_t k = stride; k < bins; k += stride) most = std::max(most, spectrum.edges[k]);

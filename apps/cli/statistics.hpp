@@ -55,7 +55,8 @@ struct ValueStatistics {
 /// O(n) for each dimension. The suggestions are
 ///   otsu        the threshold that splits the histogram with the greatest variance between the classes
 ///   contrast    the isovalue with the greatest mean step |V(a) - V(b)| over the grid edges that it cuts, of
-///               those that cut at least 1 % of what the best one does: boundaries between materials
+///               those that cut at least a quarter of the edges that the largest contour does: boundaries between
+///               materials
 ///   median, percentile 75, percentile 90
 /// For whole-numbered data they lie half way between two numbers, where no sample equals the isovalue.
 template <Value T>

@@ -71,6 +71,12 @@ TEST_F(Check, OfAThirdTriangleOnAnEdgeFails) {
   EXPECT_THAT(run.out, HasSubstr("1 face in more than two simplices"));
 }
 
+TEST_F(Check, OfTwoTrianglesThatMeetInAVertexFails) {
+  const RunResult run = run_tegl({"check", save({{0, 2, 6}, {1, 3, 6}})});
+  EXPECT_EQ(run.exit, 1);
+  EXPECT_THAT(run.out, HasSubstr("1 vertex with a bad link"));
+}
+
 TEST_F(Check, TellsDegenerateTriangles) {
   const std::string file = save({{0, 1, 6}});
   const RunResult run = run_tegl({"check", file, "--json"});
