@@ -14,9 +14,9 @@ namespace tegl {
 
 /// The value types that the library is built for.
 template <class T>
-concept Value = std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::int8_t> ||
-                std::is_same_v<T, std::uint16_t> || std::is_same_v<T, std::int16_t> ||
-                std::is_same_v<T, std::int32_t> || std::is_same_v<T, float> || std::is_same_v<T, double>;
+concept Value = std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::int8_t> || std::is_same_v<T, std::uint16_t> ||
+    std::is_same_v<T, std::int16_t> || std::is_same_v<T, std::int32_t> || std::is_same_v<T, float> ||
+    std::is_same_v<T, double>;
 
 /// A view of an N-dimensional image; owns nothing but its grid. Value of index i:
 /// data[sum_a i_a * strides[a]]; strides count elements, may be negative or zero.
@@ -27,7 +27,8 @@ class Image {
   using value_type = T;
   using Strides = std::array<std::ptrdiff_t, N>;
 
-  /// A dense view, axis 0 fastest. Throws InvalidGrid for a null pointer or an axis without samples.
+  /// A dense view, axis 0 fastest. Throws InvalidGrid for a null pointer, an axis without samples, or a map to the
+  /// world that is singular or not finite.
   Image(const T* data, Grid<N> grid);
   /// A view by any strides.
   Image(const T* data, Grid<N> grid, const Strides& strides);
@@ -44,6 +45,7 @@ class Image {
   }
 
   /// The layers [first, first + count) along `axis`, with unchanged coordinates. O(1) plus the axis.
+  /// Throws InvalidArgument for an axis or layers that the image does not have.
   [[nodiscard]] Image part(int axis, std::size_t first, std::size_t count) const;
 
  private:
