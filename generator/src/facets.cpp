@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "filling.hpp"
+#include "hull.hpp"
 #include "tegl/gen/regions.hpp"
 #include "tegl/table_contract.hpp"
 
@@ -88,6 +89,7 @@ ContourBuilder::ContourBuilder(const CubeLattice& lattice, int n, Alternative al
       for (std::uint32_t j = 0; j < tables::kFaceSlots; ++j)
         faces_of_[tile_->edge_count() + f * tables::kFaceSlots + j] |= 1u << f;
   }
+  if (n >= 3 && triangulation == Triangulation::compact) hulls_ = std::make_unique<HullContours>(*tile_);
   if (n == 4)
     side_regions_ = std::make_unique<RegionBuilder>(lattice, 3, Alternative::low, triangulation, RegionStyle::cone);
   find_orientation();

@@ -10,12 +10,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 
 #include "contraction.hpp"
+#include "hull.hpp"
 #include "side_filling.hpp"
 
 namespace tegl::gen {
@@ -196,6 +197,92 @@ std::vector<Simplex> cone(int n, const Component& c, std::uint8_t apex) {
   return result;
 }
 
+using SignedFace = std::pair<Simplex, int>;
+
+/// A simplex with ascending vertices and the sign of the permutation.
+SignedFace sorted_face(Simplex s, int count) {
+  int sign = 1;
+  for (int i = 1; i < count; ++i)
+    for (int j = i; j > 0 && s[j] < s[j - 1]; --j) {
+      std::swap(s[j], s[j - 1]);
+      sign = -sign;
+    }
+  return {s, sign};
+}
+
+/// True if the oriented boundary of the n-vertex simplices is exactly `boundary`.
+bool is_bounded_by(int n, const std::vector<Simplex>& simplices, const std::vector<Simplex>& boundary) {
+  std::map<Simplex, int> sum;
+  for (const Simplex& s : simplices)
+    for (int drop = 0; drop < n; ++drop) {
+      Simplex face{};
+      for (int i = 0, k = 0; i < n; ++i)
+        if (i != drop) face[k++] = s[i];
+      const auto [key, sign] = sorted_face(face, n - 1);
+      sum[key] += drop % 2 == 0 ? sign : -sign;
+    }
+  std::erase_if(sum, [](const auto& entry) { return entry.second == 0; });
+  if (sum.size() != boundary.size()) return false;
+  return std::all_of(boundary.begin(), boundary.end(), [&](Simplex s) {
+    for (int i = n - 1; i < 4; ++i) s[i] = 0;
+    const auto [key, sign] = sorted_face(s, n - 1);
+    const auto found = sum.find(key);
+    return found != sum.end() && found->second == sign;
+  });
+}
+
+/// The part of the hull's contour that a component bounds, if it bounds one.
+bool take_from_hull(int n, const std::vector<Simplex>& hull, const Component& c, Facet& facet) {
+  std::vector<Simplex> part;
+  for (const Simplex& s : hull) {
+    const auto inside = std::count_if(s.begin(), s.begin() + n, [&](std::uint8_t v) {
+      return std::binary_search(c.vertices.begin(), c.vertices.end(), v);
+    });
+    if (inside == n) part.push_back(s);
+    if (inside != 0 && inside != n) return false;  // the hull joins what the rule keeps apart
+  }
+  if (!is_bounded_by(n, part, c.boundary)) return false;
+  facet.simplices = std::move(part);
+  return true;
+}
+
+/// The corners of `inside` that are joined with `corner` by edges and by the diagonals of squares.
+Signature joined_with(const Tile& tile, Signature inside, std::uint8_t corner) {
+  const auto near = [&](std::uint32_t a, std::uint32_t b) {
+    int distance = 0;
+    for (int i = 0; i < tile.dim; ++i) distance += tile.corners[a][i] != tile.corners[b][i] ? 1 : 0;
+    return distance <= 2;
+  };
+  Signature reached = Signature{1} << corner;
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (std::uint32_t a = 0; a < tile.corner_count(); ++a)
+      for (std::uint32_t b = 0; b < tile.corner_count(); ++b)
+        if (((reached >> a) & 1u) != 0 && ((inside >> b) & 1u) != 0 && ((reached >> b) & 1u) == 0 && near(a, b)) {
+          reached |= Signature{1} << b;
+          grown = true;
+        }
+  }
+  return reached;
+}
+
+/// Fills a component from the hull of the side that the alternative joins; where that hull joins more than the rule
+/// does, from the hull of the component's own part of that side.
+bool fill_from_hull(const ContourBuilder& builder, Signature signature, const Component& c, Facet& facet) {
+  const Tile& tile = builder.tile();
+  const bool low = builder.alternative() == Alternative::low;
+  const Signature inside = low ? ~signature & tile.full() : signature;
+  const auto [a, b] = tile.edges[facet.points.front()];
+  const Signature own = joined_with(tile, inside, ((inside >> a) & 1u) != 0 ? a : b);
+  for (const Signature corners : {inside, own}) {
+    auto hull = builder.hulls().contour(corners);
+    if (!low)  // out of the hull is towards low
+      for (Simplex& s : hull) std::swap(s[tile.dim - 1], s[tile.dim - 2]);
+    if (take_from_hull(tile.dim, hull, c, facet)) return true;
+  }
+  return false;
+}
+
 /// Number of facets of the tile's faces that lie in a component.
 std::uint32_t facets_around(const ContourBuilder& builder, Signature signature, const Component& c) {
   std::uint32_t count = 0;
@@ -205,12 +292,32 @@ std::uint32_t facets_around(const ContourBuilder& builder, Signature signature, 
   return count;
 }
 
+/// A component that is a simplex's boundary is filled by that simplex.
+bool fill_simplex(int n, const Component& c, Facet& facet) {
+  if (c.vertices.size() != static_cast<std::size_t>(n)) return false;
+  facet.simplices = n == 3 ? std::vector{Simplex{facet.points[0], facet.points[1], facet.points[2]}}
+                           : pulled_cone(c, c.vertices.front());
+  return true;
+}
+
+/// Fills without adding a vertex: from the hull, or as a cone from one of the component's own vertices (a polygon: by
+/// chords), whichever needs fewer simplices.
+bool fill_compact(const ContourBuilder& builder, Signature signature, const Component& c, Facet& facet) {
+  Facet other;
+  const bool from_hull = fill_from_hull(builder, signature, c, facet);
+  const bool from_own = builder.dim() == 3 ? !from_hull && cut_by_chords(builder, facet.points, other)
+                        : c.euler == 2     ? pull(builder, c, other)
+                                           : false;
+  if (from_own && (!from_hull || other.simplices.size() < facet.simplices.size()))
+    facet.simplices = std::move(other.simplices);
+  return from_hull || from_own;
+}
+
 }  // namespace
 
 void fill(const ContourBuilder& builder, Signature signature, TileContour& contour) {
   const int n = builder.dim();
   const bool compact = builder.triangulation() == Triangulation::compact;
-  const std::size_t corners_of_simplex = static_cast<std::size_t>(n);
   for (const Component& c : components_of(n, contour.boundary)) {
     Facet facet;
     facet.boundary_euler = c.euler;
@@ -218,15 +325,13 @@ void fill(const ContourBuilder& builder, Signature signature, TileContour& conto
     for (const std::uint8_t v : c.vertices)
       if (v < builder.tile().edge_count()) facet.points.push_back(v);
     if (n == 3) facet.points = cycle_of(c);
-    if (c.vertices.size() == corners_of_simplex && c.boundary.size() == (n == 3 ? 3u : 4u)) {
-      const auto cycle = n == 3 ? facet.points : std::vector<std::uint8_t>{};
-      facet.simplices =
-          n == 3 ? std::vector{Simplex{cycle[0], cycle[1], cycle[2]}} : pulled_cone(c, c.vertices.front());
+    if (fill_simplex(n, c, facet)) {
+      facet.filling = Filling::simplex;
+    } else if (compact && fill_compact(builder, signature, c, facet)) {
+      facet.filling = Filling::pulled;
     } else if (n == 4 && c.euler != 2) {
       facet.filling = Filling::side;
       fill_by_side(builder, signature, c.boundary, contour, facet);
-    } else if (compact && (n == 3 ? cut_by_chords(builder, facet.points, facet) : pull(builder, c, facet))) {
-      facet.filling = Filling::pulled;
     } else {
       facet.filling = Filling::cone;
       facet.simplices = cone(n, c, static_cast<std::uint8_t>(builder.own_base() + contour.cone_vertices++));

@@ -49,6 +49,7 @@ struct TileContour {
   std::vector<std::uint64_t> side_masks;  ///< one per side vertex: corners and edges to average
 };
 
+class HullContours;
 class RegionBuilder;
 
 /// Builds the contour of any signature of the n-cube, n = 1 ... 4, by one rule.
@@ -79,6 +80,8 @@ class ContourBuilder {
   [[nodiscard]] std::uint32_t faces_of(std::uint8_t vertex) const { return faces_of_[vertex]; }
   /// n = 4: the regions of the cubes that side filling copies.
   [[nodiscard]] const RegionBuilder& side_regions() const { return *side_regions_; }
+  /// compact, n >= 3: the hulls that facets are taken from.
+  [[nodiscard]] const HullContours& hulls() const { return *hulls_; }
 
  private:
   void find_orientation();
@@ -90,6 +93,7 @@ class ContourBuilder {
   int orientation_ = 1;                           ///< sign that makes the positive side face high
   std::unique_ptr<ContourBuilder> face_builder_;  ///< one dimension lower
   std::unique_ptr<RegionBuilder> side_regions_;   ///< n = 4
+  std::unique_ptr<HullContours> hulls_;           ///< compact, n >= 3
   std::vector<TileContour> face_contours_;        ///< of every signature one dimension lower
   std::array<std::uint32_t, 256> faces_of_{};
 };
