@@ -17,16 +17,22 @@ namespace {
 
 using Point = std::array<int, 4>;
 
-/// The determinant of the first n rows and columns, by expansion along the rows.
-int determinant(const std::array<Point, 4>& m, int n, unsigned columns = 0xf, int row = 0) {
-  if (row == n) return 1;
-  int sum = 0, sign = 1;
-  for (int c = 0; c < n; ++c) {
-    if (((columns >> c) & 1u) == 0) continue;
-    if (m[row][c] != 0) sum += sign * m[row][c] * determinant(m, n, columns & ~(1u << c), row + 1);
-    sign = -sign;
+/// The determinant of the first n rows and columns, exactly (E. Bareiss, 1968: all divisions are without rest).
+int determinant(std::array<Point, 4> m, int n) {
+  int sign = 1, previous = 1;
+  for (int k = 0; k + 1 < n; ++k) {
+    int pivot = k;
+    while (pivot < n && m[pivot][k] == 0) ++pivot;
+    if (pivot == n) return 0;
+    if (pivot != k) {
+      std::swap(m[pivot], m[k]);
+      sign = -sign;
+    }
+    for (int i = k + 1; i < n; ++i)
+      for (int j = k + 1; j < n; ++j) m[i][j] = (m[i][j] * m[k][k] - m[i][k] * m[k][j]) / previous;
+    previous = m[k][k];
   }
-  return sum;
+  return sign * m[n - 1][n - 1];
 }
 
 int dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
