@@ -15,9 +15,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "contraction.hpp"
 #include "hull.hpp"
 #include "side_filling.hpp"
+#include "sigma_complex.hpp"
 
 namespace tegl::gen {
 

@@ -10,7 +10,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "contraction.hpp"
 #include "tegl/gen/regions.hpp"
 
 namespace tegl::gen {
@@ -94,26 +93,6 @@ int induced_sign(const std::vector<Simplex>& tetrahedra, const Simplex& triangle
   return 0;
 }
 
-/// Closes the gaps that contraction leaves in the numbers of the added vertices, and drops the masks of those that
-/// are gone: masks[first_mask] belongs to vertex first_own.
-void renumber(std::vector<Simplex>& tetrahedra, std::uint8_t first_own, std::size_t first_mask,
-              std::vector<std::uint64_t>& masks) {
-  std::map<std::uint8_t, std::uint8_t> number;
-  for (const Simplex& t : tetrahedra)
-    for (const std::uint8_t v : t)
-      if (v >= first_own) number.emplace(v, 0);
-  std::vector<std::uint64_t> kept(masks.begin(), masks.begin() + static_cast<std::ptrdiff_t>(first_mask));
-  std::uint8_t next = first_own;
-  for (auto& [old, id] : number) {
-    id = next++;
-    kept.push_back(masks[first_mask + old - first_own]);
-  }
-  masks = std::move(kept);
-  for (Simplex& t : tetrahedra)
-    for (std::uint8_t& v : t)
-      if (v >= first_own) v = number.at(v);
-}
-
 }  // namespace
 
 void fill_by_side(const ContourBuilder& builder, Signature signature, const std::vector<Simplex>& component,
@@ -123,8 +102,6 @@ void fill_by_side(const ContourBuilder& builder, Signature signature, const std:
   auto side = side_of(builder, builder.side_regions(), high);
   keep_connected(side, component.front()[0]);
 
-  const std::size_t first_mask = contour.side_masks.size();
-  const auto first_own = static_cast<std::uint8_t>(builder.own_base() + contour.cone_vertices + first_mask);
   std::map<Place, std::uint8_t> number;
   for (const Tetrahedron& t : side)
     for (const Place& p : t) number.emplace(p, 0);
@@ -150,10 +127,6 @@ void fill_by_side(const ContourBuilder& builder, Signature signature, const std:
     facet.simplices.push_back({number.at(t[0]), number.at(t[1]), number.at(t[2]), number.at(t[3])});
   if (induced_sign(facet.simplices, component.front()) < 0)
     for (Simplex& s : facet.simplices) std::swap(s[2], s[3]);
-  if (builder.triangulation() == Triangulation::compact) {
-    contract(facet.simplices, first_own, SigmaComplex(builder, component));
-    renumber(facet.simplices, first_own, first_mask, contour.side_masks);
-  }
 }
 
 }  // namespace tegl::gen

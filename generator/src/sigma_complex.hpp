@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sigma as a complex, and contraction of added vertices (private to the generator).
+// Sigma as a complex (private to the generator).
 #pragma once
 
 #include <array>
@@ -26,10 +26,5 @@ class SigmaComplex {
   std::array<std::bitset<256>, 256> adjacent_;
   std::vector<std::array<std::uint8_t, 3>> triangles_;  // ascending vertices, sorted
 };
-
-/// Contracts vertices >= first_own of a filled component into neighbours as long as the link condition holds
-/// (then the result is homeomorphic: Dey, Edelsbrunner, Guha and Nekhayev, Topology preserving edge contraction,
-/// 1999) and sigma allows what arises. Deterministic, greedy.
-void contract(std::vector<Simplex>& tetrahedra, std::uint8_t first_own, const SigmaComplex& sigma);
 
 }  // namespace tegl::gen
