@@ -15,7 +15,7 @@ namespace {
 /// Bit i of the result is flags[i], each 0 or 1.
 Word pack(const std::uint8_t* flags) noexcept {
   Word word = 0;
-  for (unsigned byte = 0; byte < 8; ++byte) {
+  for (std::size_t byte = 0; byte < 8; ++byte) {
     Word eight = 0;
     if constexpr (std::endian::native == std::endian::little) {
       std::memcpy(&eight, flags + 8 * byte, 8);

@@ -58,7 +58,7 @@ class SimplexList {
     if (permutation_ == nullptr) return stored_mask;
     std::uint64_t mask = 0;
     for (std::uint64_t rest = stored_mask; rest != 0; rest &= rest - 1) {
-      const unsigned v = static_cast<unsigned>(std::countr_zero(rest));
+      const auto v = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned corners = 1u << K;
       mask |= std::uint64_t{1} << (v < corners ? permutation_[v] : corners + permutation_[v]);
     }
@@ -193,7 +193,7 @@ void own_places(const SimplexList<K>& list, const Place& place, TilePoint<K>* ou
   for (unsigned j = 0; j < list.list().side_vertices; ++j) {
     Weighted<K> sum;
     for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {
-      const unsigned v = static_cast<unsigned>(std::countr_zero(rest));
+      const auto v = static_cast<unsigned>(std::countr_zero(rest));
       sum.add(v < (1u << K) ? corner_point<K>(v) : place(v - (1u << K)), 1.0);
     }
     for (int a = 0; a < K; ++a) out[cones + j][a] = 0.5 * (0.5 + sum.point[a] / sum.weight);
