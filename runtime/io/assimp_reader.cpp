@@ -61,7 +61,7 @@ Mesh read_with_assimp(const fs::path& path) {
   Joiner joiner(mesh);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& part = *scene->mMeshes[m];
-    if (part.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;
+    if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
     for (unsigned f = 0; f < part.mNumFaces; ++f)
       for (unsigned corner = 0; corner < 3; ++corner)
         mesh.simplices.push_back(joiner.number_of(part.mVertices[part.mFaces[f].mIndices[corner]]));

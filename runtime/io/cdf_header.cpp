@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Walks the header of a classic netCDF file. Every count is checked against what is left of the file before it is
-// used. Based on: Unidata, "The NetCDF Classic Format Specification" (CDF-1, CDF-2, CDF-5).
+// Walks the header of a classic netCDF file. Every count is checked against what is left of the file before it is used.
+//
+// Based on: Unidata, "The NetCDF Classic Format Specification" (CDF-1, CDF-2, CDF-5).
 #include "cdf_header.hpp"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Triangles and lines of glTF 2.0 files, of all meshes in the scene, placed by their nodes. Materials, skins,
-// animation and compressed buffers are outside of what is read.
+// Triangles and lines of glTF 2.0 files, of all meshes in the scene, placed by their nodes. Materials, skins, animation
+// and compressed buffers are outside of what is read.
+//
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.5 to 3.7 and 4.4.
 #include <algorithm>
 #include <array>

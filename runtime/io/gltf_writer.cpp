@@ -3,6 +3,7 @@
 // glTF 2.0: .glb, and .gltf with the buffer inside as base64, so that it is one file. Coordinates are float, as the
 // format has no other; axis names and what is needed to read a mesh back are in asset.extras. No normals: viewers then
 // shade faces flat, as the specification asks.
+//
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
 #include <algorithm>
 #include <array>

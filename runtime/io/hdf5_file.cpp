@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// HDF5 handles, attributes and datasets. Based on: The HDF Group, HDF5 1.10 C API.
+// HDF5 handles, attributes and datasets.
+//
+// Based on: The HDF Group, HDF5 1.10 C API.
 #include "hdf5_file.hpp"
 
 #include <algorithm>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// gzip and zlib streams through zlib's inflate. Based on: RFC 1950 and 1952; zlib's manual, inflateInit2.
+// gzip and zlib streams through zlib's inflate.
+//
+// Based on: RFC 1950 and 1952; zlib's manual, inflateInit2.
 #include "inflate.hpp"
 
 #include <algorithm>

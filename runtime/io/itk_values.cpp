@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// ITK's ImageIO classes, used directly: the raw buffer, no templates and no factories.
+// ITK's MetaImageIO, used directly (the raw buffer, no templates and no factories), and ITK's NrrdIO.
 #include "itk_values.hpp"
 
+#include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <streambuf>
 #include <string>
 
+#include <NrrdIO.h>
 #include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
-#include <itkNrrdImageIO.h>
 
 #include "common.hpp"
 
@@ -49,17 +50,6 @@ class Quiet {
   std::streambuf* cerr_;
   bool warnings_;
 };
-
-itk::ImageIOBase::Pointer make_io(ItkFormat format) {
-  switch (format) {
-    case ItkFormat::Nifti:
-      return itk::NiftiImageIO::New().GetPointer();
-    case ItkFormat::Nrrd:
-      return itk::NrrdImageIO::New().GetPointer();
-    default:
-      return itk::MetaImageIO::New().GetPointer();
-  }
-}
 
 /// ITK's descriptions run over several lines and name source files; one line of it is enough.
 std::string one_line(const char* description) {
@@ -120,36 +110,90 @@ std::uint64_t select_all(itk::ImageIOBase& io) {
   return count;
 }
 
-ItkValues read_all(itk::ImageIOBase& io, const std::filesystem::path& path, std::uint64_t expected) {
+[[noreturn]] void fail_count(const std::filesystem::path& path, std::uint64_t found, std::uint64_t expected) {
+  fail(ErrorCode::MalformedFile, path, "ITK finds {} values; expected {} from the header", found, expected);
+}
+
+ValueArray read_all(itk::ImageIOBase& io, const std::filesystem::path& path, std::uint64_t expected) {
   io.SetFileName(path.string());
   io.ReadImageInformation();
   const std::uint64_t count = select_all(io);
-  if (count != expected)
-    fail(ErrorCode::MalformedFile, path, "ITK finds {} values; expected {} from the header", count, expected);
-  ItkValues result{array_for(io.GetComponentType(), path), io.GetNumberOfComponents()};
+  if (count != expected) fail_count(path, count, expected);
+  ValueArray result = array_for(io.GetComponentType(), path);
   std::visit(
       [&](auto& values) {
         values.resize(static_cast<std::size_t>(count));
         io.Read(values.data());
       },
-      result.values);
+      result);
   return result;
+}
+
+struct NukeNrrd {
+  void operator()(Nrrd* nrrd) const noexcept { nrrdNuke(nrrd); }
+};
+
+template <class T>
+ValueArray copied(const Nrrd& nrrd, std::uint64_t count) {
+  const T* first = static_cast<const T*>(nrrd.data);
+  return std::vector<T>(first, first + count);
+}
+
+ValueArray values_of(const Nrrd& nrrd, std::uint64_t count, const std::filesystem::path& path) {
+  switch (nrrd.type) {
+    case nrrdTypeChar:
+      return copied<std::int8_t>(nrrd, count);
+    case nrrdTypeUChar:
+      return copied<std::uint8_t>(nrrd, count);
+    case nrrdTypeShort:
+      return copied<std::int16_t>(nrrd, count);
+    case nrrdTypeUShort:
+      return copied<std::uint16_t>(nrrd, count);
+    case nrrdTypeInt:
+      return copied<std::int32_t>(nrrd, count);
+    case nrrdTypeUInt:
+      return copied<std::uint32_t>(nrrd, count);
+    case nrrdTypeLLong:
+      return copied<std::int64_t>(nrrd, count);
+    case nrrdTypeULLong:
+      return copied<std::uint64_t>(nrrd, count);
+    case nrrdTypeFloat:
+      return copied<float>(nrrd, count);
+    case nrrdTypeDouble:
+      return copied<double>(nrrd, count);
+    default:
+      fail(ErrorCode::UnsupportedData, path, "values that are no numbers; expected integers, float or double");
+  }
 }
 
 }  // namespace
 
-ItkValues read_itk_values(ItkFormat format, const std::filesystem::path& path, std::uint64_t expected) {
+ValueArray read_metaimage_values(const std::filesystem::path& path, std::uint64_t expected) {
   const Quiet quiet;
   try {
-    return read_all(*make_io(format), path, expected);
+    return read_all(*itk::MetaImageIO::New(), path, expected);
   } catch (const Error&) {
     throw;
   } catch (const itk::ExceptionObject& e) {
     fail(ErrorCode::MalformedFile, path, "cannot be read ({})", one_line(e.GetDescription()));
   } catch (const std::bad_alloc&) {
     fail(ErrorCode::TooLarge, path, "{} values do not fit into memory", expected);
-  } catch (const std::exception& e) {
-    fail(ErrorCode::MalformedFile, path, "cannot be read ({})", one_line(e.what()));
+  }
+}
+
+ValueArray read_nrrd_values(const std::filesystem::path& path, std::uint64_t expected) {
+  const Quiet quiet;
+  const std::unique_ptr<Nrrd, NukeNrrd> nrrd(nrrdNew());
+  if (nrrdLoad(nrrd.get(), path.c_str(), nullptr) != 0) {
+    const std::unique_ptr<char, decltype(&std::free)> reasons(biffGetDone(NRRD), &std::free);
+    fail(ErrorCode::MalformedFile, path, "cannot be read ({})", one_line(reasons ? reasons.get() : "no reason given"));
+  }
+  const std::uint64_t count = nrrdElementNumber(nrrd.get());
+  if (count != expected) fail_count(path, count, expected);
+  try {
+    return values_of(*nrrd, count, path);
+  } catch (const std::bad_alloc&) {
+    fail(ErrorCode::TooLarge, path, "{} values do not fit into memory", expected);
   }
 }
 

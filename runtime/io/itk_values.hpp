@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The values of an image file through an ITK ImageIO. Geometry comes from the headers (nifti.cpp, nrrd.cpp,
-// metaimage.cpp), as ITK narrows it to orthonormal directions and six digits. Nothing of Eigen is included here: ITK
-// brings its own, older one.
+// The values of NRRD and MetaImage files through ITK. Geometry comes from the headers (nrrd.cpp, metaimage.cpp), as
+// ITK narrows it to orthonormal directions. Nothing of Eigen is included here: ITK brings its own, older one.
+//
+// Neither function is thread-safe: the libraries keep global state, and their own output is switched off for the
+// whole process during the call. Nothing is printed, and no ITK exception leaves.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 
@@ -13,17 +14,12 @@
 
 namespace tegl::io_detail {
 
-enum class ItkFormat { Nifti, Nrrd, MetaImage };
+/// All values of a MetaImage, of one number per sample. `expected`: how many the header promises.
+/// Errors: MalformedFile with ITK's reason, or where ITK sees another number; TooLarge when memory runs out.
+ValueArray read_metaimage_values(const std::filesystem::path& path, std::uint64_t expected);
 
-struct ItkValues {
-  ValueArray values;
-  std::size_t components = 1;  ///< per pixel, running fastest
-};
-
-/// Reads all values; `expected` is the number of numbers that the header promises (samples times components).
-/// Errors: MalformedFile with ITK's reason, or where ITK sees another size; UnsupportedData for value types that
-/// ITK cannot deliver as numbers. Nothing is printed and no ITK exception leaves. Not thread-safe: ITK's and the
-/// format libraries' own output is switched off for the whole process during the call.
-ItkValues read_itk_values(ItkFormat format, const std::filesystem::path& path, std::uint64_t expected);
+/// All values of an NRRD, in the order of the file. Through ITK's NrrdIO library and not its ImageIO class, which
+/// refuses files with time beside a three-dimensional space. Errors as above.
+ValueArray read_nrrd_values(const std::filesystem::path& path, std::uint64_t expected);
 
 }  // namespace tegl::io_detail

@@ -2,6 +2,7 @@
 //
 // MetaImage files (.mha, and .mhd with the data beside). The header is read here for a check, before anything is
 // allocated, that the data are all there, which MetaIO leaves to the user; ITK reads the values.
+//
 // Based on: S. Aylward, "MetaIO: Introduction and Documentation" (ITK wiki).
 #include <algorithm>
 #include <array>
@@ -260,7 +261,7 @@ RawImage read_metaimage(const fs::path& path, const Progress& progress) {
   if (unit.empty() && anatomical) unit = "mm";
   for (std::size_t a = 0; a < std::min<std::size_t>(3, image.grid.axes.size()); ++a) image.grid.axes[a].unit = unit;
   name_axes(image.grid);
-  image.values = read_itk_values(ItkFormat::MetaImage, path, checked_bytes(header.sizes, 1, path)).values;
+  image.values = read_metaimage_values(path, checked_bytes(header.sizes, 1, path));
   return image;
 }
 

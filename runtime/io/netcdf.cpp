@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // netCDF variables as images: which variable, its coordinate variables as axes, packing and missing values.
+//
 // Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
 // conventions of the NetCDF Users' Guide.
 #include <algorithm>
@@ -182,24 +183,14 @@ Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimen
   return axis;
 }
 
-/// Moves axis k behind the others: time, which varies slowest in an image. One copy.
+/// Moves axis k behind the others: time, which varies slowest in an image.
 void move_axis_last(std::size_t k, RawImage& image) {
   std::vector<Axis>& axes = image.grid.axes;
   std::size_t inner = 1;
   std::size_t outer = 1;
   for (std::size_t a = 0; a < axes.size(); ++a)
     if (a != k) (a < k ? inner : outer) *= axes[a].size();
-  const std::size_t steps = axes[k].size();
-  std::visit(
-      [&]<class T>(std::vector<T>& values) {
-        std::vector<T> moved(values.size());
-        for (std::size_t o = 0; o < outer; ++o)
-          for (std::size_t t = 0; t < steps; ++t)
-            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>((o * steps + t) * inner), inner,
-                        moved.begin() + static_cast<std::ptrdiff_t>((t * outer + o) * inner));
-        values = std::move(moved);
-      },
-      image.values);
+  image.values = with_axis_last(image.values, inner, axes[k].size(), outer);
   std::rotate(axes.begin() + static_cast<std::ptrdiff_t>(k), axes.begin() + static_cast<std::ptrdiff_t>(k) + 1,
               axes.end());
 }

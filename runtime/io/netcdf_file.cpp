@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The netCDF-C library behind C++ values. Based on: Unidata, netCDF-C 4.9 API.
+// The netCDF-C library behind C++ values.
+//
+// Based on: Unidata, netCDF-C 4.9 API.
 #include "netcdf_file.hpp"
 
 #include <algorithm>

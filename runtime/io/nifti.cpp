@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NIfTI-1 images. The header is read here, for what ITK does not keep: the sform as it stands (sheared ones too),
-// units, the time axis; and for a check, before anything is allocated, that the file holds what it promises. Based on:
-// R. W. Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004; nifti1.h.
+// NIfTI-1 images, header and values. Not through ITK, whose reader (5.2) replaces NaN, our missing values, by 0 and
+// refuses files whose only orientation is a sheared sform.
+//
+// Based on: R. W. Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004; nifti1.h.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 #include "common.hpp"
 #include "inflate.hpp"
-#include "itk_values.hpp"
+#include "raw_values.hpp"
 #include "readers.hpp"
 
 namespace tegl::io_detail {
@@ -29,6 +32,7 @@ class HeaderBytes {
   explicit HeaderBytes(std::vector<unsigned char> bytes) : bytes_(std::move(bytes)) {}
 
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+  [[nodiscard]] bool swapped() const { return swapped_; }
   void set_swapped(bool swapped) { swapped_ = swapped; }
 
   template <class T>
@@ -66,7 +70,10 @@ constexpr std::array<StoredType, 10> kTypes = {{{2, "uint8", 1},
 struct Header {
   std::vector<std::uint64_t> sizes;  ///< at least 3
   StoredType type{};
-  bool pair = false;  ///< values in an .img file beside
+  bool swapped = false;  ///< in the other byte order than this machine's
+  bool pair = false;     ///< values in an .img file beside
+  double slope = 0;      ///< 0: values as stored
+  double intercept = 0;
   std::uint64_t vox_offset = 0;
   std::array<double, 8> pixdim{};
   int qform_code = 0;
@@ -181,7 +188,10 @@ Header parse_header(const fs::path& path) {
   Header header;
   header.sizes = read_sizes(bytes, path);
   header.type = read_type(bytes, path);
+  header.swapped = bytes.swapped();
   header.pair = bytes.bytes(345, 1)[0] == 'i';
+  header.slope = bytes.get<float>(112);
+  header.intercept = bytes.get<float>(116);
   header.vox_offset = read_vox_offset(bytes, header.pair, path);
   for (std::size_t i = 0; i < 8; ++i) header.pixdim[i] = bytes.get<float>(76 + 4 * i);
   header.qform_code = bytes.get<std::int16_t>(252);
@@ -259,13 +269,21 @@ fs::path partner(const fs::path& path, const std::string& wanted) {
        path.filename().string());
 }
 
-/// Throws unless the values that the header promises are in the file, compressed or not.
-void check_length(const Header& header, const fs::path& data, const Progress& progress) {
-  const std::uint64_t needed = checked_bytes(header.sizes, header.type.bytes, data) + header.vox_offset;
-  const std::uint64_t found = is_gzip(data) ? inflated_size(data, 0, progress) : size_of_file(data);
-  if (found < needed)
-    fail(ErrorCode::MalformedFile, data, "{} bytes; expected {} for {} samples of type {}", found, needed,
-         shape_text(header.sizes), header.type.name);
+/// slope * v + intercept, as float for values of up to 16 bits and for float, else as double.
+ValueArray scaled(ValueArray&& values, const Header& header) {
+  const bool plain = header.slope == 0 || !std::isfinite(header.slope) || !std::isfinite(header.intercept) ||
+                     (header.slope == 1 && header.intercept == 0);
+  if (plain) return std::move(values);
+  return std::visit(
+      [&]<class T>(const std::vector<T>& stored) -> ValueArray {
+        using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
+        std::vector<Real> result(stored.size());
+        std::transform(stored.begin(), stored.end(), result.begin(), [&](T value) {
+          return static_cast<Real>(header.slope * static_cast<double>(value) + header.intercept);
+        });
+        return result;
+      },
+      values);
 }
 
 }  // namespace
@@ -277,14 +295,15 @@ RawImage read_nifti(const fs::path& path, const Progress& progress) {
   const Header header = parse_header(header_path);
   const fs::path data_path = header.pair && !is_img ? partner(path, ".img") : path;
   require_readable_file(data_path);
-  check_length(header, data_path, progress);
   RawImage image;
   image.grid = make_grid(header, header_path);
   image.info.format = "NIfTI";
   image.info.stored_type = header.type.name;
   if (header.sform_code > 0 || header.qform_code > 0) image.info.world_frame = "RAS";
-  const std::uint64_t samples = checked_bytes(header.sizes, 1, path);
-  image.values = read_itk_values(ItkFormat::Nifti, header_path, samples).values;
+  image.values = scaled(read_raw_values(data_path, header.vox_offset, header.type.name,
+                                        checked_bytes(header.sizes, header.type.bytes, path) / header.type.bytes,
+                                        header.swapped, progress),
+                        header);
   return image;
 }
 

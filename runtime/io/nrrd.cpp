@@ -2,6 +2,7 @@
 //
 // NRRD images, with the data attached or in a file of their own. The header is read here for the geometry and for a
 // check, before anything is allocated, that the data are all there; ITK reads the values.
+//
 // Based on: G. Kindlmann, "Definition of NRRD File Format" (Teem), versions NRRD0001 to NRRD0005.
 #include <algorithm>
 #include <array>
@@ -157,7 +158,8 @@ std::vector<double> per_axis(const Fields& fields, std::string_view name, std::s
 std::vector<std::string> words_per_axis(const Fields& fields, std::string_view name, std::size_t axes,
                                         const fs::path& path) {
   std::vector<std::string> result;
-  for (const std::string_view word : words(optional_field(fields, name))) result.push_back(lower(word));
+  const std::string text = optional_field(fields, name);
+  for (const std::string_view word : words(text)) result.push_back(lower(word));
   if (result.empty()) result.resize(axes);
   if (result.size() != axes)
     fail(ErrorCode::MalformedFile, path, "{} {}; expected one for each of the {} axes", result.size(), name, axes);
@@ -251,7 +253,7 @@ Space read_space(const Fields& fields, const fs::path& path) {
 struct Header {
   std::vector<std::uint64_t> sizes;
   StoredType type{};
-  std::optional<std::size_t> list_axis;  ///< holds what changes in time; ITK delivers it as components
+  std::optional<std::size_t> list_axis;  ///< a list of images: read as time
   std::vector<bool> kept;                ///< axis of the image
   std::string encoding;
   fs::path data_path;
@@ -451,6 +453,16 @@ RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, cons
   return grid;
 }
 
+/// The values in the order of the grid, where a list of images is the last axis.
+void move_list_last(const Header& header, ValueArray& values) {
+  std::size_t inner = 1;
+  std::size_t outer = 1;
+  for (std::size_t a = 0; a < header.sizes.size(); ++a)
+    if (a != *header.list_axis) (a < *header.list_axis ? inner : outer) *= static_cast<std::size_t>(header.sizes[a]);
+  if (outer > 1)
+    values = with_axis_last(values, inner, static_cast<std::size_t>(header.sizes[*header.list_axis]), outer);
+}
+
 }  // namespace
 
 RawImage read_nrrd(const fs::path& path, const Progress& progress) {
@@ -464,8 +476,8 @@ RawImage read_nrrd(const fs::path& path, const Progress& progress) {
   image.info.value_unit = optional_field(text.fields, "sampleunits");
   std::erase(image.info.value_unit, '"');
   image.info.value_name = optional_field(text.fields, "content");
-  ItkValues read = read_itk_values(ItkFormat::Nrrd, path, checked_bytes(header.sizes, 1, path));
-  image.values = header.list_axis ? components_last(read.values, read.components) : std::move(read.values);
+  image.values = read_nrrd_values(path, checked_bytes(header.sizes, 1, path));
+  if (header.list_axis) move_list_last(header, image.values);
   return image;
 }
 

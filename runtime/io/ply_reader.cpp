@@ -2,6 +2,7 @@
 //
 // PLY in all three encodings, with any elements and properties; what is neither vertex, face nor edge is passed over.
 // Every count is checked against what is left of the file before it is used.
+//
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
 #include <array>

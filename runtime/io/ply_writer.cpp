@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // PLY, binary little-endian, with coordinates as double: lossless. Segments become an `edge` element.
+//
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
 #include <bit>

@@ -139,13 +139,14 @@ const char* type_name(const ValueArray& values) noexcept {
   return kNames[values.index()];
 }
 
-ValueArray components_last(const ValueArray& values, std::size_t components) {
+ValueArray with_axis_last(const ValueArray& values, std::size_t inner, std::size_t count, std::size_t outer) {
   return std::visit(
       [&]<class T>(const std::vector<T>& from) -> ValueArray {
-        const std::size_t samples = from.size() / components;
         std::vector<T> to(from.size());
-        for (std::size_t c = 0; c < components; ++c)
-          for (std::size_t i = 0; i < samples; ++i) to[c * samples + i] = from[i * components + c];
+        for (std::size_t o = 0; o < outer; ++o)
+          for (std::size_t i = 0; i < count; ++i)
+            std::copy_n(from.begin() + static_cast<std::ptrdiff_t>((o * count + i) * inner), inner,
+                        to.begin() + static_cast<std::ptrdiff_t>((i * outer + o) * inner));
         return to;
       },
       values);

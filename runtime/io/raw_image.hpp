@@ -49,7 +49,8 @@ AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path);
 /// "uint8", ... of the alternative that is held.
 const char* type_name(const ValueArray& values) noexcept;
 
-/// Sorts components (fastest) to a last, slowest axis: n samples of c components become c volumes of n.
-ValueArray components_last(const ValueArray& values, std::size_t components);
+/// The values with an axis moved behind the others, which keep their order: before it lie `inner` samples, along it
+/// `count`, after it `outer`. One copy.
+ValueArray with_axis_last(const ValueArray& values, std::size_t inner, std::size_t count, std::size_t outer);
 
 }  // namespace tegl::io_detail

@@ -3,6 +3,7 @@
 // VTKHDF, unstructured grids: what ParaView opens. Triangles, segments, or tetrahedra whose vertices carry the time as
 // the point array "t". All coordinates are double: lossless. Axis names and units are attributes of the group, which
 // VTK does not look at.
+//
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
 #include <algorithm>
 #include <array>

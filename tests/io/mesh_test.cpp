@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Meshes: round trips, what the files contain seen by other programs' readers, combinations that no format holds,
+// and writing that leaves nothing behind.
+#include <sys/resource.h>
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "io_support.hpp"
+
+namespace tegl::test {
+namespace {
+
+Mesh written_and_read(const Mesh& mesh, const std::string& name) {
+  TempDir dir;
+  write_mesh(mesh, dir / name);
+  EXPECT_EQ(dir.files(), 1U);
+  return read_mesh(dir / name);
+}
+
+Mesh as_floats(Mesh mesh) {
+  for (double& value : mesh.coordinates) value = static_cast<float>(value);
+  return mesh;
+}
+
+TEST(Mesh, PlyAndVtkhdfAreLossless) {
+  for (const char* name : {"a.ply", "a.vtkhdf"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3), std::pair(1, 3)})
+      for (const std::size_t simplices : {0U, 1U, 1000U, 200000U}) {
+        SCOPED_TRACE(testing::Message() << name << " dim " << dim << " in " << space_dim << ", " << simplices);
+        const Mesh mesh = random_mesh(dim, space_dim, simplices / 2 + (simplices > 0), simplices, simplices);
+        expect_same(written_and_read(mesh, name), mesh);
+      }
+}
+
+TEST(Mesh, FourDimensionalContoursGoThroughVtkhdf) {
+  for (const std::size_t simplices : {0U, 1U, 150000U}) {
+    const Mesh mesh = random_mesh(3, 4, simplices + 4, simplices, simplices);
+    expect_same(written_and_read(mesh, "a.vtkhdf"), mesh);
+  }
+}
+
+TEST(Mesh, GltfKeepsFloatsAndOrder) {
+  for (const char* name : {"a.gltf", "a.glb"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3)})
+      for (const std::size_t simplices : {1U, 1000U}) {
+        SCOPED_TRACE(testing::Message() << name << " dim " << dim << ", " << simplices);
+        const Mesh mesh = random_mesh(dim, space_dim, 500, simplices, simplices);
+        expect_same(written_and_read(mesh, name), as_floats(mesh));
+      }
+}
+
+TEST(Mesh, EmptyMeshesAreValidFilesThatKeepTheirKind) {
+  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.vtkhdf"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3)}) {
+      SCOPED_TRACE(testing::Message() << name << " dim " << dim);
+      const Mesh mesh = random_mesh(dim, space_dim, 0, 0, 1);
+      expect_same(written_and_read(mesh, name), mesh);
+    }
+}
+
+TEST(Mesh, NamesMayHoldAnyCharacters) {
+  Mesh mesh = random_mesh(2, 3, 3, 1, 7);
+  mesh.axis_names = {"x \"quoted\" \\ name", "end_header", "\xc3\xa4"};
+  mesh.axis_units = {"", "m s-1", "comment"};
+  for (const char* name : {"a.ply", "a.gltf", "a.vtkhdf"}) {
+    SCOPED_TRACE(name);
+    expect_same(written_and_read(mesh, name), std::string(name) == "a.gltf" ? as_floats(mesh) : mesh);
+  }
+  mesh.axis_names[0] = "two\nlines";
+  EXPECT_EQ(written_and_read(mesh, "a.ply").axis_names[0], "two lines");
+}
+
+TEST(Mesh, ContoursBecomeMeshesAndBack) {
+  Contour<3, float> contour;
+  contour.vertices = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8.5F}};
+  contour.simplices = {{0, 1, 2}, {2, 1, 0}};
+  contour.axis_names = {"x", "y", "z"};
+  contour.axis_units = {"mm", "mm", "mm"};
+  const auto back = to_contour<3>(to_mesh(contour));
+  EXPECT_EQ(back.vertices[2], (std::array<double, 3>{6, 7, 8.5}));
+  EXPECT_TRUE(back.simplices == contour.simplices);
+  EXPECT_EQ(back.axis_names, contour.axis_names);
+  EXPECT_EQ(back.axis_units, contour.axis_units);
+  expect_error(ErrorCode::UnsupportedData, {"2-simplices in 3-space; expected 3-simplices in 4-space"},
+               [&] { to_contour<4>(to_mesh(contour)); });
+}
+
+TEST(Mesh, PlanarSegmentsOfOtherProgramsAreTwoDimensionalContours) {
+  Mesh mesh = random_mesh(1, 3, 4, 3, 5);
+  for (std::size_t v = 0; v < 4; ++v) mesh.coordinates[3 * v + 2] = 0;
+  EXPECT_EQ(to_contour<2>(mesh).vertices[1][0], mesh.coordinates[3]);
+  mesh.coordinates[5] = 0.5;
+  expect_error(ErrorCode::UnsupportedData, {"vertex 1 with z = 0.5"}, [&] { to_contour<2>(mesh); });
+}
+
+TEST(Mesh, AssimpReadsOurGltfAndPly) {
+  const Mesh mesh = random_mesh(2, 3, 300, 500, 3);
+  for (const char* name : {"a.gltf", "a.glb", "a.ply"}) {
+    SCOPED_TRACE(name);
+    TempDir dir;
+    write_mesh(mesh, dir / name);
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile((dir / name).string(), 0);
+    ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+    ASSERT_EQ(scene->mNumMeshes, 1U);
+    const aiMesh& part = *scene->mMeshes[0];
+    ASSERT_EQ(part.mNumFaces, 500U);
+    for (unsigned f = 0; f < part.mNumFaces; ++f)
+      for (unsigned c = 0; c < 3; ++c) {
+        const aiVector3D& at = part.mVertices[part.mFaces[f].mIndices[c]];
+        const std::size_t v = mesh.simplices[3 * f + c];
+        ASSERT_EQ(at.x, static_cast<float>(mesh.coordinates[3 * v])) << f;
+        ASSERT_EQ(at.z, static_cast<float>(mesh.coordinates[3 * v + 2])) << f;
+      }
+  }
+}
+
+TEST(Mesh, AssimpReadsOurLines) {
+  TempDir dir;
+  write_mesh(random_mesh(1, 2, 30, 50, 3), dir / "a.glb");
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile((dir / "a.glb").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  EXPECT_EQ(scene->mMeshes[0]->mNumFaces, 50U);
+  EXPECT_EQ(scene->mMeshes[0]->mPrimitiveTypes, static_cast<unsigned>(aiPrimitiveType_LINE));
+}
+
+TEST(Mesh, GltfStatesWhatTheSpecificationAsks) {
+  TempDir dir;
+  const Mesh mesh = random_mesh(2, 3, 10, 4, 9);
+  write_mesh(mesh, dir / "a.gltf");
+  const auto json = nlohmann::json::parse(read_file(dir / "a.gltf"));
+  EXPECT_EQ(json["asset"]["version"], "2.0");
+  const auto& position = json["accessors"][0];
+  EXPECT_EQ(position["count"], 10);
+  double low = 1e9;
+  for (std::size_t v = 0; v < 10; ++v) low = std::min<double>(low, static_cast<float>(mesh.coordinates[3 * v + 1]));
+  EXPECT_EQ(position["min"][1].get<double>(), low);
+  EXPECT_EQ(json["accessors"][1]["count"], 12);
+  EXPECT_EQ(json["meshes"][0]["primitives"][0]["mode"], 4);
+  // A .glb is a header and chunks, each a multiple of 4 bytes long.
+  write_mesh(mesh, dir / "a.glb");
+  const std::string glb = read_file(dir / "a.glb");
+  std::uint32_t total = 0;
+  std::memcpy(&total, &glb[8], 4);
+  EXPECT_EQ(total, glb.size());
+  EXPECT_EQ(glb.size() % 4, 0U);
+}
+
+TEST(Mesh, ReadsPlyOfOtherPrograms) {
+  TempDir dir;
+  const std::string vertices = "0 0 0 255\n1 0 0 255\n1 1 0 255\n0 1 0.5 255\n";
+  write_file(
+      dir / "a.ply",
+      "ply\r\nformat ascii 1.0\r\ncomment made elsewhere\r\nobj_info none\r\nelement vertex 4\r\nproperty float x\r\n"
+      "property float y\r\nproperty float z\r\nproperty uchar red\r\nelement material 1\r\nproperty list uchar "
+      "float shininess\r\nelement face 2\r\nproperty list uchar int vertex_index\r\nproperty int flag\r\n"
+      "end_header\r\n" +
+          vertices + "2 0.5 0.25\n4 0 1 2 3 7\n3 0 2 1 8\n");
+  const Mesh mesh = read_mesh(dir / "a.ply");
+  EXPECT_EQ(mesh.dim, 2);
+  EXPECT_EQ(mesh.coordinates[11], 0.5);
+  EXPECT_EQ((std::vector<Index>(mesh.simplices.begin(), mesh.simplices.end())),
+            (std::vector<Index>{0, 1, 2, 0, 2, 3, 0, 2, 1}));
+  // Big-endian, with an element to pass over in front.
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement extra 1\nproperty list int double list\nelement vertex 2\n"
+      "property short x\nproperty double y\nproperty float z\nelement edge 1\nproperty int vertex1\n"
+      "property int vertex2\nend_header\n";
+  bytes += std::string({0, 0, 0, 1}) + std::string(8, '\x7f');
+  for (const char x : {'\x03', '\x04'})
+    bytes += std::string({0, x, 0x40, 0, 0, 0, 0, 0, 0, 0, 0x3f, static_cast<char>(0x80), 0, 0});
+  bytes += std::string({0, 0, 0, 1, 0, 0, 0, 0});
+  write_file(dir / "b.ply", bytes);
+  const Mesh edges = read_mesh(dir / "b.ply");
+  EXPECT_EQ(edges.dim, 1);
+  EXPECT_THAT(std::vector<double>(edges.coordinates.begin(), edges.coordinates.end()),
+              testing::ElementsAre(3, 2, 1, 4, 2, 1));
+  EXPECT_THAT(std::vector<Index>(edges.simplices.begin(), edges.simplices.end()), testing::ElementsAre(1, 0));
+}
+
+TEST(Mesh, StlAndObjAreJoinedWhereCoordinatesAreEqual) {
+  TempDir dir;
+  std::string stl = "solid tetrahedron\n";
+  const std::array<const char*, 4> corners = {"0 0 0", "1 0 0", "0 1 0", "0 0 1e-7"};
+  for (const auto& face : {std::array<int, 3>{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+    stl += "facet normal 0 0 0\nouter loop\n";
+    for (const int c : face) stl += std::string("vertex ") + corners[static_cast<std::size_t>(c)] + "\n";
+    stl += "endloop\nendfacet\n";
+  }
+  write_file(dir / "a.stl", stl + "endsolid\n");
+  const Mesh mesh = read_mesh(dir / "a.stl");
+  EXPECT_EQ(mesh.coordinates.size(), 12U);
+  EXPECT_EQ(mesh.simplices.size(), 12U);
+  write_file(dir / "a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  EXPECT_EQ(read_mesh(dir / "a.obj").simplices.size(), 6U);
+}
+
+TEST(Mesh, GltfNodesPlaceTheirMeshes) {
+  TempDir dir;
+  const Mesh mesh = random_mesh(2, 3, 3, 1, 9);
+  write_mesh(mesh, dir / "a.gltf");
+  auto json = nlohmann::json::parse(read_file(dir / "a.gltf"));
+  json["nodes"] = {
+      {{"children", {1, 2}}, {"translation", {10, 0, 0}}}, {{"mesh", 0}, {"scale", {2, 2, 2}}}, {{"mesh", 0}}};
+  write_file(dir / "b.gltf", json.dump());
+  const Mesh placed = read_mesh(dir / "b.gltf");
+  ASSERT_EQ(placed.coordinates.size(), 18U);
+  EXPECT_NEAR(placed.coordinates[0], 2 * mesh.coordinates[0] + 10, 1e-3);
+  EXPECT_NEAR(placed.coordinates[9], mesh.coordinates[0] + 10, 1e-3);
+  EXPECT_EQ(placed.simplices[3], placed.simplices[0] + 3);
+  json["nodes"][1] = {{"children", {0}}};
+  write_file(dir / "c.gltf", json.dump());
+  expect_error(ErrorCode::MalformedFile, {"nodes that are no tree"}, [&] { read_mesh(dir / "c.gltf"); });
+}
+
+TEST(Mesh, CombinationsThatAFormatCannotHoldAreNamed) {
+  TempDir dir;
+  for (const char* name : {"a.ply", "a.glb", "a.gltf"})
+    expect_error(ErrorCode::UnsupportedFormat,
+                 {name, "3-simplices in 4-space (the contour of a 4D image); expected .vtkhdf"},
+                 [&] { write_mesh(random_mesh(3, 4, 4, 1, 1), dir / name); });
+  expect_error(ErrorCode::UnsupportedFormat, {"a.stl", "read only"},
+               [&] { write_mesh(random_mesh(2, 3, 3, 1, 1), dir / "a.stl"); });
+  expect_error(ErrorCode::UnsupportedFormat, {"a.xyz", "'.xyz'; expected .ply"},
+               [&] { write_mesh(random_mesh(2, 3, 3, 1, 1), dir / "a.xyz"); });
+  expect_error(ErrorCode::UnsupportedFormat, {"noextension"},
+               [&] { write_mesh(random_mesh(2, 3, 3, 1, 1), dir / "noextension"); });
+  Mesh bad = random_mesh(2, 3, 3, 1, 1);
+  bad.simplices[1] = 3;
+  expect_error(ErrorCode::InvalidArgument, {"vertex number 3; expected less than 3"},
+               [&] { write_mesh(bad, dir / "a.ply"); });
+  Mesh huge = random_mesh(2, 3, 3, 1, 1);
+  huge.coordinates[4] = 1e300;
+  expect_error(ErrorCode::UnsupportedData, {"vertex 1 has the coordinate 1e+300"},
+               [&] { write_mesh(huge, dir / "a.glb"); });
+  EXPECT_EQ(dir.files(), 0U);
+}
+
+TEST(Mesh, FailedWritingLeavesNothingAndKeepsTheOldFile) {
+  TempDir dir;
+  const Mesh mesh = random_mesh(2, 3, 1000, 2000, 1);
+  for (const char* name : {"a.ply", "a.glb", "a.gltf", "a.vtkhdf"}) {
+    SCOPED_TRACE(name);
+    expect_error(ErrorCode::WriteFailed, {"nowhere", "No such file or directory"},
+                 [&] { write_mesh(mesh, dir / "nowhere" / name); });
+    write_file(dir / name, "old");
+    int calls = 0;
+    expect_error(ErrorCode::Cancelled, {name},
+                 [&] { write_mesh(mesh, dir / name, [&](double) { return ++calls < 2; }); });
+    EXPECT_EQ(read_file(dir / name), "old");
+    EXPECT_EQ(dir.files(), 1U);
+    write_mesh(mesh, dir / name);
+    EXPECT_EQ(dir.files(), 1U);
+    expect_same(read_mesh(dir / name), name[2] == 'g' ? as_floats(mesh) : mesh);
+    fs::remove(dir / name);
+    fs::create_directory(dir / name);
+    expect_error(ErrorCode::WriteFailed, {name, "is a directory"}, [&] { write_mesh(mesh, dir / name); });
+    fs::remove(dir / name);
+  }
+}
+
+/// Writes where files may have 100 kB; exits with 7 if that is reported as it should be.
+[[noreturn]] void exit_with_limited_files(const Mesh& mesh, const TempDir& dir, const std::string& name) {
+  signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{100000, 100000};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    write_mesh(mesh, dir / name);
+  } catch (const Error& error) {
+    const bool named = std::string(error.what()).find(name) != std::string::npos;
+    _exit(error.code() == ErrorCode::WriteFailed && named && dir.files() == 0 ? 7 : 1);
+  }
+  _exit(2);
+}
+
+TEST(Mesh, FullDisksAreReported) {
+  // A limit on the size of files stands for the full disk: the same errno path, without a mount.
+  TempDir dir;
+  const Mesh mesh = random_mesh(2, 3, 20000, 40000, 1);
+  for (const char* name : {"a.ply", "a.glb", "a.gltf", "a.vtkhdf"})
+    EXPECT_EXIT(exit_with_limited_files(mesh, dir, name), testing::ExitedWithCode(7), "") << name;
+}
+
+TEST(Mesh, LinksAreWrittenThrough) {
+  TempDir dir;
+  write_file(dir / "real.ply", "old");
+  fs::create_symlink("real.ply", dir / "link.ply");
+  const Mesh mesh = random_mesh(2, 3, 10, 20, 1);
+  write_mesh(mesh, dir / "link.ply");
+  EXPECT_TRUE(fs::is_symlink(dir / "link.ply"));
+  expect_same(read_mesh(dir / "real.ply"), mesh);
+}
+
+}  // namespace
+}  // namespace tegl::test
