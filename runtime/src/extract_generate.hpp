@@ -15,11 +15,21 @@ namespace tegl::detail {
 
 /// The place of edge `e` of a cell in its frame; `id` is its vertex.
 template <int N, unsigned Axes>
-TilePoint<std::popcount(Axes)> edge_place(const SlabView<N>& view, unsigned e, Index id) noexcept {
+[[gnu::always_inline]] inline TilePoint<std::popcount(Axes)> edge_place(const SlabView<N>& view, unsigned e,
+                                                                        Index id) noexcept {
   using Frame = CellFrame<N, Axes>;
-  const int axis = Frame::axes()[e >> (Frame::kDim - 1)];
-  const unsigned up = Frame::spread(edge_base(Frame::kDim, e)) >> (N - 1) & 1u;
-  return edge_point<Frame::kDim>(e, view.edge_places(axis, up)[id][0]);
+  struct Where {
+    int axis;
+    unsigned up;
+  };
+  static constexpr auto kWhere = [] {
+    std::array<Where, Frame::kEdges> result{};
+    for (unsigned edge = 0; edge < Frame::kEdges; ++edge)
+      result[edge] = {Frame::axes()[edge >> (Frame::kDim - 1)],
+                      Frame::spread(edge_base(Frame::kDim, edge)) >> (N - 1) & 1u};
+    return result;
+  }();
+  return edge_point<Frame::kDim>(e, view.edge_places(kWhere[e].axis, kWhere[e].up)[id][0]);
 }
 
 /// Writes the points on a row's edges of one axis.
@@ -154,7 +164,8 @@ class TileWriter {
   }
 
   /// The place in the tile of a vertex that it shares with its neighbours.
-  static TilePoint<N> shared_place(const SlabView<N>& view, const Ids& ids, unsigned v) noexcept {
+  [[gnu::always_inline]] static TilePoint<N> shared_place(const SlabView<N>& view, const Ids& ids,
+                                                          unsigned v) noexcept {
     constexpr unsigned kEdges = tables::edge_count(N);
     if constexpr (N == 4)
       if (v >= kEdges) {

@@ -79,15 +79,23 @@ template <int K>
 using TilePoint = std::array<double, K>;
 
 template <int K>
-TilePoint<K> corner_point(unsigned corner) noexcept {
-  TilePoint<K> point;
+constexpr TilePoint<K> corner_point(unsigned corner) noexcept {
+  TilePoint<K> point{};
   for (int a = 0; a < K; ++a) point[a] = static_cast<double>(corner >> a & 1u);
   return point;
 }
 
+/// The base corners of a k-tile's edges.
 template <int K>
-TilePoint<K> edge_point(unsigned edge, double alpha) noexcept {
-  TilePoint<K> point = corner_point<K>(edge_base(K, edge));
+inline constexpr auto kEdgeBases = [] {
+  std::array<TilePoint<K>, tables::edge_count(K)> result{};
+  for (unsigned e = 0; e < result.size(); ++e) result[e] = corner_point<K>(edge_base(K, e));
+  return result;
+}();
+
+template <int K>
+[[gnu::always_inline]] inline TilePoint<K> edge_point(unsigned edge, double alpha) noexcept {
+  TilePoint<K> point = kEdgeBases<K>[edge];
   point[edge >> (K - 1)] = alpha;
   return point;
 }
@@ -142,8 +150,11 @@ TilePoint<K> midpoint(const TilePoint<K>& p, const TilePoint<K>& q) noexcept {
 
 /// Measure and barycentre of the face of a cone that lies opposite of the apex (table contract:
 /// "Positions"). `barycentred`: its first vertex is a cube's barycentre.
+///
+/// Inlined by force, like edge_point: compilers otherwise leave calls in the innermost loop, at half the speed.
 template <int K>
-Weighted<K> opposite_face(const std::array<TilePoint<K>, K - 1>& face, bool barycentred) noexcept {
+[[gnu::always_inline]] inline Weighted<K> opposite_face(const std::array<TilePoint<K>, K - 1>& face,
+                                                        bool barycentred) noexcept {
   if constexpr (K == 2) return {face[0], 1.0};
   if constexpr (K == 3) return {midpoint<3>(face[0], face[1]), distance(face[0], face[1])};
   if constexpr (K == 4) {

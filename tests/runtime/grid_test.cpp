@@ -2,6 +2,7 @@
 #include "tegl/grid.hpp"
 
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -13,14 +14,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class Make>
 std::string message_of_invalid_grid(const Make& make) {
+  std::string message;
   try {
     make();
+    ADD_FAILURE() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::InvalidGrid);
-    return error.what();
+    message.append(error.what());
   }
-  ADD_FAILURE() << "no error";
-  return {};
+  return message;
 }
 
 TEST(Axis, UniformIsOriginPlusMultiplesOfTheStep) {
