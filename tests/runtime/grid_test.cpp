@@ -60,13 +60,13 @@ TEST(Axis, RejectsWhatIsNoAxisAndSaysWhy) {
 
 TEST(Axis, PartHasTheSameCoordinatesNameAndUnit) {
   Axis axis = Axis::uniform(10, 0.1, 0.1);
-  axis.name = "t";
-  axis.unit = "s";
+  axis.name = "time";
+  axis.unit = "hours";
   const Axis part = axis.part(3, 4);
   ASSERT_EQ(part.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(part[i], axis[3 + i]);
-  EXPECT_EQ(part.name, "t");
-  EXPECT_EQ(part.unit, "s");
+  EXPECT_EQ(part.name, "time");
+  EXPECT_EQ(part.unit, "hours");
   EXPECT_EQ(axis.part(9, 1)[0], axis[9]);
   EXPECT_THROW((void)axis.part(8, 3), Error);
   EXPECT_THROW((void)axis.part(0, 0), Error);
