@@ -14,6 +14,7 @@
 
 #include "close.hpp"
 #include "extract_generate.hpp"
+#include "pinches.hpp"
 
 namespace tegl::detail {
 
@@ -69,7 +70,8 @@ class Extraction {
         tables_(tables),
         placement_(grid),
         counter_(shape_, tables),
-        tiles_(*tables.tile, placement_, against_tables(grid, options) != inverted_, counter_.has_cubes()) {
+        tiles_(*tables.tile, placement_, against_tables(grid, options) != inverted_, counter_.has_cubes()),
+        pinches_(shape_, counter_) {
     if (options.close)
       caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options), closed_axes);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
@@ -85,6 +87,8 @@ class Extraction {
     open_first_layer(contour);
     watch.add_to(stats.find_seconds);
     generate_layer(0, contour);
+    pinches_.open_slab(0, slab(0));
+    pinches_.add_layer(0, layer(0));
     watch.add_to(stats.generate_seconds);
     if (caps_) caps_->add_layer(0, layer(0), nullptr, &slab(0));
     watch.add_to(stats.close_seconds);
@@ -96,6 +100,9 @@ class Extraction {
       watch.add_to(stats.find_seconds);
       generate_layer(k + 1, contour);
       generate_slab(k, contour);
+      pinches_.add_slab(k, slab(k));
+      if (const Slab<N>* const above = slab_above(k + 1)) pinches_.open_slab(k + 1, *above);
+      pinches_.add_layer(k + 1, layer(k + 1));
       watch.add_to(stats.generate_seconds);
       ++slabs_done_;
       if (caps_) {
@@ -106,6 +113,11 @@ class Extraction {
     }
     if (caps_) caps_->finish(contour, max_vertices_);
     watch.add_to(stats.close_seconds);
+    if (pinches_.any_missing()) {
+      pinches_.add_caps(static_cast<Index>(total_), static_cast<Index>(contour.vertices.size()));
+      separate_pinches(contour, pinches_.vertices(), max_vertices_);
+    }
+    watch.add_to(stats.generate_seconds);
     report(1, 1);
   }
 
@@ -204,6 +216,7 @@ class Extraction {
   Counter<N> counter_;
   TileWriter<N, Real> tiles_;
   std::optional<Caps<N, Real>> caps_;
+  PinchCandidates<N> pinches_;
   std::array<Layer<N>, 3> layers_;
   std::array<Slab<N>, 2> slabs_;
   std::uint64_t total_ = 0;      ///< vertices so far

@@ -41,7 +41,8 @@ struct ExtractStats {
 /// The contour {value = isovalue} of an image: separates samples >= isovalue (high) from the others.
 ///
 /// Closed (away from the image's border and from missing values), a manifold and oriented, whatever
-/// the values. Points of a 4D contour between two layers of the last axis are kept off the layers by the least
+/// the values. Where tiles next to missing values meet in an edge or a square of the grid alone, the vertices there are
+/// doubled, in the same place, so that the contour is a manifold there too. Points of a 4D contour between two layers of the last axis are kept off the layers by the least
 /// that Real can show, so that `slice` finds the contour of a layer in it even where samples equal the isovalue.
 /// An image with an axis of one sample has no tiles, hence an empty contour.
 /// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled.

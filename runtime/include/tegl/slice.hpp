@@ -31,8 +31,9 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
 /// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
 /// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
-/// Equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit. `options.close` closes
-/// the cut at the borders of the other axes, as the cut of the closed contour is.
+/// Equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit; where values are missing
+/// at some times and not at others, up to how the same surface is divided into triangles. `options.close` closes the
+/// cut at the borders of the other axes, as the cut of the closed contour is.
 ///
 /// An image with one sample along the last axis has no tiles, hence an empty cut, at the one `at` that lies inside.
 /// Errors: those of `extract`; InvalidArgument when `at` is not finite or outside of the last axis, and when
