@@ -111,10 +111,9 @@ class Separation {
     for (std::size_t c = 0; c < candidates_.size(); ++c) split_vertex(candidates_[c], star(c));
     if constexpr (N == 4) {
       for (std::size_t v = vertices; v < contour_.vertices.size(); ++v) candidates_.push_back(static_cast<Index>(v));
-      do gather_stars();
-      while (split_edges());
-      do gather_stars();
-      while (part_holes());
+      gather_stars();
+      while (split_edges()) gather_stars();
+      while (part_holes()) gather_stars();
     }
   }
 
