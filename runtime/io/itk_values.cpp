@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// ITK's MetaImageIO, used directly (the raw buffer, no templates and no factories), and ITK's NrrdIO.
+// NrrdIO and MetaIO, as they come with ITK.
 #include "itk_values.hpp"
 
 #include <cstdlib>
@@ -11,15 +11,15 @@
 #include <string>
 
 #include <NrrdIO.h>
-#include <itkMetaImageIO.h>
+#include <metaImage.h>
 
 #include "common.hpp"
 
 namespace tegl::io_detail {
 
-namespace {
+namespace fs = std::filesystem;
 
-using Component = itk::IOComponentEnum;
+namespace {
 
 class NullBuffer : public std::streambuf {
  protected:
@@ -27,17 +27,11 @@ class NullBuffer : public std::streambuf {
   std::streamsize xsputn(const char*, std::streamsize count) override { return count; }
 };
 
-/// Silences ITK's warnings and MetaIO's writing to cout and cerr for its lifetime; errors come as exceptions.
+/// Keeps MetaIO from writing to cout and cerr for its lifetime; there is no other way to stop it.
 class Quiet {
  public:
-  Quiet()
-      : cout_(std::cout.rdbuf(&null_)),
-        cerr_(std::cerr.rdbuf(&null_)),
-        warnings_(itk::Object::GetGlobalWarningDisplay()) {
-    itk::Object::SetGlobalWarningDisplay(false);
-  }
+  Quiet() : cout_(std::cout.rdbuf(&null_)), cerr_(std::cerr.rdbuf(&null_)) {}
   ~Quiet() {
-    itk::Object::SetGlobalWarningDisplay(warnings_);
     std::cerr.rdbuf(cerr_);
     std::cout.rdbuf(cout_);
   }
@@ -48,85 +42,22 @@ class Quiet {
   NullBuffer null_;
   std::streambuf* cout_;
   std::streambuf* cerr_;
-  bool warnings_;
 };
 
-/// ITK's descriptions run over several lines and name source files; one line of it is enough.
-std::string one_line(const char* description) {
-  std::string result;
-  for (const std::string_view word : words(description)) {
-    if (!result.empty()) result += ' ';
-    result += word;
-  }
+/// NrrdIO's reasons run over several lines, one per function on the way; as one line, and not too long.
+std::string one_line(const char* reasons) {
+  std::string result = fmt::format("{}", fmt::join(words(reasons), " "));
   constexpr std::size_t kLongest = 300;
   if (result.size() > kLongest) result = result.substr(0, kLongest) + "...";
   return result;
 }
 
-/// An empty array of the component type.
-ValueArray array_for(Component type, const std::filesystem::path& path) {
-  static_assert(sizeof(long) == 8, "ITK's LONG is taken as 64 bits");
-  switch (type) {
-    case Component::UCHAR:
-      return std::vector<std::uint8_t>();
-    case Component::CHAR:
-      return std::vector<std::int8_t>();
-    case Component::USHORT:
-      return std::vector<std::uint16_t>();
-    case Component::SHORT:
-      return std::vector<std::int16_t>();
-    case Component::UINT:
-      return std::vector<std::uint32_t>();
-    case Component::INT:
-      return std::vector<std::int32_t>();
-    case Component::ULONG:
-    case Component::ULONGLONG:
-      return std::vector<std::uint64_t>();
-    case Component::LONG:
-    case Component::LONGLONG:
-      return std::vector<std::int64_t>();
-    case Component::FLOAT:
-      return std::vector<float>();
-    case Component::DOUBLE:
-      return std::vector<double>();
-    default:
-      break;
-  }
-  fail(ErrorCode::UnsupportedData, path, "values of type {}; expected integers of 8 to 64 bits, float or double",
-       itk::ImageIOBase::GetComponentTypeAsString(type));
+[[noreturn]] void fail_count(const fs::path& path, std::uint64_t found, std::uint64_t expected) {
+  fail(ErrorCode::MalformedFile, path, "{} values found; expected {} from the header", found, expected);
 }
 
-/// The whole image as region to read, and the number of its samples times components.
-std::uint64_t select_all(itk::ImageIOBase& io) {
-  const unsigned n = io.GetNumberOfDimensions();
-  itk::ImageIORegion region(n);
-  std::uint64_t count = io.GetNumberOfComponents();
-  for (unsigned d = 0; d < n; ++d) {
-    region.SetIndex(d, 0);
-    region.SetSize(d, io.GetDimensions(d));
-    if (__builtin_mul_overflow(count, std::uint64_t{io.GetDimensions(d)}, &count)) return 0;
-  }
-  io.SetIORegion(region);
-  return count;
-}
-
-[[noreturn]] void fail_count(const std::filesystem::path& path, std::uint64_t found, std::uint64_t expected) {
-  fail(ErrorCode::MalformedFile, path, "ITK finds {} values; expected {} from the header", found, expected);
-}
-
-ValueArray read_all(itk::ImageIOBase& io, const std::filesystem::path& path, std::uint64_t expected) {
-  io.SetFileName(path.string());
-  io.ReadImageInformation();
-  const std::uint64_t count = select_all(io);
-  if (count != expected) fail_count(path, count, expected);
-  ValueArray result = array_for(io.GetComponentType(), path);
-  std::visit(
-      [&](auto& values) {
-        values.resize(static_cast<std::size_t>(count));
-        io.Read(values.data());
-      },
-      result);
-  return result;
+[[noreturn]] void fail_memory(const fs::path& path, std::uint64_t expected) {
+  fail(ErrorCode::TooLarge, path, "{} values do not fit into memory", expected);
 }
 
 struct NukeNrrd {
@@ -139,7 +70,7 @@ ValueArray copied(const Nrrd& nrrd, std::uint64_t count) {
   return std::vector<T>(first, first + count);
 }
 
-ValueArray values_of(const Nrrd& nrrd, std::uint64_t count, const std::filesystem::path& path) {
+ValueArray values_of(const Nrrd& nrrd, std::uint64_t count, const fs::path& path) {
   switch (nrrd.type) {
     case nrrdTypeChar:
       return copied<std::int8_t>(nrrd, count);
@@ -168,21 +99,28 @@ ValueArray values_of(const Nrrd& nrrd, std::uint64_t count, const std::filesyste
 
 }  // namespace
 
-ValueArray read_metaimage_values(const std::filesystem::path& path, std::uint64_t expected) {
+void read_metaimage_values(const fs::path& path, std::uint64_t expected, ValueArray& values) {
   const Quiet quiet;
-  try {
-    return read_all(*itk::MetaImageIO::New(), path, expected);
-  } catch (const Error&) {
-    throw;
-  } catch (const itk::ExceptionObject& e) {
-    fail(ErrorCode::MalformedFile, path, "cannot be read ({})", one_line(e.GetDescription()));
-  } catch (const std::bad_alloc&) {
-    fail(ErrorCode::TooLarge, path, "{} values do not fit into memory", expected);
-  }
+  MetaImage image;
+  const bool known = image.Read(path.c_str(), false);
+  auto found = static_cast<std::uint64_t>(known ? image.ElementNumberOfChannels() : 0);
+  for (int d = 0; known && d < image.NDims(); ++d) found *= static_cast<std::uint64_t>(image.DimSize(d));
+  if (known && found != expected) fail_count(path, found, expected);
+  const bool read = known && std::visit(
+                                 [&](auto& array) {
+                                   try {
+                                     array.resize(static_cast<std::size_t>(expected));
+                                   } catch (const std::bad_alloc&) {
+                                     fail_memory(path, expected);
+                                   }
+                                   return image.Read(path.c_str(), true, array.data());
+                                 },
+                                 values);
+  if (!read) fail(ErrorCode::MalformedFile, path, "cannot be read (MetaIO gives no reason)");
+  image.ElementByteOrderFix();
 }
 
-ValueArray read_nrrd_values(const std::filesystem::path& path, std::uint64_t expected) {
-  const Quiet quiet;
+ValueArray read_nrrd_values(const fs::path& path, std::uint64_t expected) {
   const std::unique_ptr<Nrrd, NukeNrrd> nrrd(nrrdNew());
   if (nrrdLoad(nrrd.get(), path.c_str(), nullptr) != 0) {
     const std::unique_ptr<char, decltype(&std::free)> reasons(biffGetDone(NRRD), &std::free);
@@ -193,7 +131,7 @@ ValueArray read_nrrd_values(const std::filesystem::path& path, std::uint64_t exp
   try {
     return values_of(*nrrd, count, path);
   } catch (const std::bad_alloc&) {
-    fail(ErrorCode::TooLarge, path, "{} values do not fit into memory", expected);
+    fail_memory(path, expected);
   }
 }
 

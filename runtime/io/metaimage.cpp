@@ -261,7 +261,8 @@ RawImage read_metaimage(const fs::path& path, const Progress& progress) {
   if (unit.empty() && anatomical) unit = "mm";
   for (std::size_t a = 0; a < std::min<std::size_t>(3, image.grid.axes.size()); ++a) image.grid.axes[a].unit = unit;
   name_axes(image.grid);
-  image.values = read_metaimage_values(path, checked_bytes(header.sizes, 1, path));
+  image.values = array_of_type(header.type.name);
+  read_metaimage_values(path, checked_bytes(header.sizes, 1, path), image.values);
   return image;
 }
 

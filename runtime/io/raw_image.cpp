@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -137,6 +139,21 @@ const char* type_name(const ValueArray& values) noexcept {
   constexpr std::array<const char*, 10> kNames = {"uint8", "int8",   "uint16", "int16", "int32",
                                                   "float", "double", "uint32", "int64", "uint64"};
   return kNames[values.index()];
+}
+
+ValueArray array_of_type(std::string_view name) {
+  const auto search = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    ValueArray found;
+    const auto try_one = [&](ValueArray candidate) {
+      const bool matches = type_name(candidate) == name;
+      if (matches) found = std::move(candidate);
+      return matches;
+    };
+    if (!(try_one(ValueArray(std::in_place_index<I>)) || ...))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("no value type '{}'", name));
+    return found;
+  };
+  return search(std::make_index_sequence<std::variant_size_v<ValueArray>>());
 }
 
 ValueArray with_axis_last(const ValueArray& values, std::size_t inner, std::size_t count, std::size_t outer) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,6 +49,9 @@ AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path);
 
 /// "uint8", ... of the alternative that is held.
 const char* type_name(const ValueArray& values) noexcept;
+
+/// An empty array of the type of that name.
+ValueArray array_of_type(std::string_view name);
 
 /// The values with an axis moved behind the others, which keep their order: before it lie `inner` samples, along it
 /// `count`, after it `outer`. One copy.

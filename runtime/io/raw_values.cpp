@@ -18,16 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An empty array of the type of this name.
-template <std::size_t I = 0>
-ValueArray array_named(std::string_view type) {
-  if constexpr (I < std::variant_size_v<ValueArray>) {
-    ValueArray array(std::in_place_index<I>);
-    return type_name(array) == type ? array : array_named<I + 1>(type);
-  }
-  throw Error(ErrorCode::InvalidArgument, "no value type '" + std::string(type) + "'");
-}
-
 template <class T>
 void swap_bytes(std::vector<T>& values) {
   auto* bytes = reinterpret_cast<unsigned char*>(values.data());
@@ -64,7 +54,7 @@ std::uint64_t fill(const fs::path& path, std::uint64_t offset, std::span<unsigne
 
 ValueArray read_raw_values(const fs::path& path, std::uint64_t offset, std::string_view type, std::uint64_t count,
                            bool swapped, const Progress& progress) {
-  ValueArray result = array_named(type);
+  ValueArray result = array_of_type(type);
   std::visit(
       [&]<class T>(std::vector<T>& values) {
         const std::uint64_t bytes = checked_bytes(std::array{count}, sizeof(T), path);

@@ -39,6 +39,15 @@ TEST(MetaImage, AttachedDetachedCompressedAndTextAreTheSame) {
   }
 }
 
+TEST(MetaImage, BigEndianFilesReadTheSame) {
+  TempDir dir;
+  std::string data;
+  for (int i = 0; i < 24; ++i) data += {static_cast<char>(i), static_cast<char>(2 * i)};
+  write_file(dir / "a.mha", header("BinaryData = True\nBinaryDataByteOrderMSB = True\n") + "LOCAL\n" + data);
+  const auto values = image_as<std::int16_t, 3>(read_image(dir / "a.mha").image).values;
+  for (int i = 0; i < 24; ++i) EXPECT_EQ(values[static_cast<std::size_t>(i)], 256 * i + 2 * i);
+}
+
 template <class Stored, class Read>
 void expect_type(const std::string& keyword, const char* name) {
   SCOPED_TRACE(keyword);
