@@ -127,7 +127,7 @@ class LinkChecker {
     ridges_.clear();
     for (const Index s : star) {
       const Index* row = complex_[s];
-      Piece piece;
+      Piece piece{};
       bool odd = false;  // parity of moving v to the front
       for (int i = 0, k = 0; i <= D; ++i) {
         if (row[i] == v)

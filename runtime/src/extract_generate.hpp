@@ -70,7 +70,8 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
       edges.ids(bit, ids.data());
       const SimplexList<3> list(table, cells.signature(bit));
       own_places<3>(
-          list, [&](unsigned v) { return edge_place<4, Axes>(view, v, ids[v]); }, points.data());
+          list, [&](unsigned v) { return edge_place<4, Axes>(view, list.mapped(v), ids[list.mapped(v)]); },
+          points.data());
       index[0] = w * kWordBits + bit;
       for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
         local.points[next - local.first] = points[j];
@@ -94,18 +95,6 @@ class TileWriter {
 
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, Vertex* vertices,
              Simplex* simplices) const noexcept {
-    if (table_.element_of != nullptr)
-      write_row<true>(view, row, layer, vertices, simplices);
-    else
-      write_row<false>(view, row, layer, vertices, simplices);
-  }
-
- private:
-  using Ids = std::array<Index, 256>;  // by local vertex
-
-  template <bool Classes>
-  void write_row(const SlabView<N>& view, std::size_t row, std::size_t layer, Vertex* vertices,
-                 Simplex* simplices) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
     if (!shape.has_cells(index, kAll)) return;
@@ -129,23 +118,30 @@ class TileWriter {
         index[0] = w * kWordBits + bit;
         if constexpr (N == 4)
           if (has_cubes_) cube_ids(view, row, index[0], ids);
-        if (list.own_vertices() != 0) {
-          write_own(view, list, ids, index, own, vertices);
-          for (unsigned j = 0; j < list.own_vertices(); ++j) ids[tables::first_tile_vertex(N) + j] = own++;
-        }
-        out = write_simplices<Classes>(list, ids, out);
+        if (list.own_vertices() != 0) write_own(view, list, ids, index, own, vertices);
+        out = write_simplices(list, ids, own, out);
+        own += list.own_vertices();
       }
     }
   }
 
-  template <bool Classes>
-  Simplex* write_simplices(const SimplexList<N>& list, const Ids& ids, Simplex* out) const noexcept {
+ private:
+  using Ids = std::array<Index, 256>;  // by local vertex
+
+  /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per
+  /// use: then it is as fast as the flat one.
+  Simplex* write_simplices(const SimplexList<N>& list, Ids& ids, Index own, Simplex* out) const noexcept {
+    Ids permuted;
+    Ids& of_stored = list.is_permuted() ? permuted : ids;
+    if (list.is_permuted())
+      for (unsigned v = 0; v < tables::first_tile_vertex(N); ++v) of_stored[v] = ids[list.mapped(v)];
+    for (unsigned j = 0; j < list.own_vertices(); ++j) of_stored[tables::first_tile_vertex(N) + j] = own + j;
     const unsigned last = flip_ != list.reversed() ? N - 2 : N - 1;
     const unsigned before = (N - 2) + (N - 1) - last;
     for (unsigned q = 0; q < list.size(); ++q, ++out) {
-      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = ids[list.template mapped<Classes>(list.stored(q, j))];
-      (*out)[before] = ids[list.template mapped<Classes>(list.stored(q, N - 2))];
-      (*out)[last] = ids[list.template mapped<Classes>(list.stored(q, N - 1))];
+      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = of_stored[list.stored(q, j)];
+      (*out)[before] = of_stored[list.stored(q, N - 2)];
+      (*out)[last] = of_stored[list.stored(q, N - 1)];
     }
     return out;
   }
@@ -183,14 +179,14 @@ class TileWriter {
       std::array<TilePoint<N>, kShared> known;  // each is asked for by many simplices
       std::array<bool, kShared> is_known{};
       const auto place = [&](unsigned v) -> const TilePoint<N>& {
-        if (!is_known[v]) known[v] = shared_place(view, ids, v);
+        if (!is_known[v]) known[v] = shared_place(view, ids, list.mapped(v));
         is_known[v] = true;
         return known[v];
       };
       own_places<N>(list, place, points.data());
     } else {
       own_places<N>(
-          list, [&](unsigned v) { return shared_place(view, ids, v); }, points.data());
+          list, [&](unsigned v) { return shared_place(view, ids, list.mapped(v)); }, points.data());
     }
     for (unsigned j = 0; j < list.own_vertices(); ++j)
       vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);

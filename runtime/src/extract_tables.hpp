@@ -33,37 +33,27 @@ class SimplexList {
   [[nodiscard]] unsigned size() const noexcept { return list_->simplex_count; }
   [[nodiscard]] unsigned own_vertices() const noexcept { return list_->cone_vertices + unsigned{list_->side_vertices}; }
   [[nodiscard]] bool reversed() const noexcept { return reversed_; }
+  /// True in the class layout: stored vertices are those of the representative.
+  [[nodiscard]] bool is_permuted() const noexcept { return permutation_ != nullptr; }
 
   /// Vertex j of simplex q, as stored: ids from first_tile_vertex(K) on are as they are.
   [[nodiscard]] unsigned stored(unsigned q, unsigned j) const noexcept { return simplices_[q * K + j]; }
   /// A stored vertex in the frame of the signature.
-  template <bool Classes>
   [[nodiscard]] unsigned mapped(unsigned v) const noexcept {
-    if constexpr (Classes) {
-      if (v >= tables::first_tile_vertex(K)) return v;
-      v = permutation_[(1u << K) + v];
-      if constexpr (K == 4) {
-        static_assert(tables::kFaceSlots == 2);
-        if (v >= tables::edge_count(K)) v ^= swaps_ >> ((v - tables::edge_count(K)) / 2) & 1u;
-      }
+    if (permutation_ == nullptr || v >= tables::first_tile_vertex(K)) return v;
+    v = permutation_[(1u << K) + v];
+    if constexpr (K == 4) {
+      static_assert(tables::kFaceSlots == 2);
+      if (v >= tables::edge_count(K)) v ^= swaps_ >> ((v - tables::edge_count(K)) / 2) & 1u;
     }
     return v;
   }
-  [[nodiscard]] unsigned mapped(unsigned v) const noexcept {
-    return permutation_ != nullptr ? mapped<true>(v) : mapped<false>(v);
+  /// A stored corner in the frame of the signature.
+  [[nodiscard]] unsigned mapped_corner(unsigned v) const noexcept {
+    return permutation_ == nullptr ? v : permutation_[v];
   }
-  /// The mask of side vertex j: bit v a corner, bit 2^K + e an edge point, in the frame of the signature.
-  [[nodiscard]] std::uint64_t side_mask(unsigned j) const noexcept {
-    const std::uint64_t stored_mask = side_masks_[j];
-    if (permutation_ == nullptr) return stored_mask;
-    std::uint64_t mask = 0;
-    for (std::uint64_t rest = stored_mask; rest != 0; rest &= rest - 1) {
-      const auto v = static_cast<unsigned>(std::countr_zero(rest));
-      const unsigned corners = 1u << K;
-      mask |= std::uint64_t{1} << (v < corners ? permutation_[v] : corners + permutation_[v]);
-    }
-    return mask;
-  }
+  /// The mask of side vertex j: bit v a corner, bit 2^K + e an edge point, as stored.
+  [[nodiscard]] std::uint64_t side_mask(unsigned j) const noexcept { return side_masks_[j]; }
 
  private:
   const tables::List* list_;
@@ -180,7 +170,7 @@ TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& 
   for (unsigned q = 0; q < list.size(); ++q) {
     if (list.stored(q, 0) != apex) continue;
     std::array<TilePoint<K>, K - 1> face;
-    for (unsigned j = 1; j < K; ++j) face[j - 1] = place(list.mapped(list.stored(q, j)));
+    for (unsigned j = 1; j < K; ++j) face[j - 1] = place(list.stored(q, j));
     const Weighted<K> part = opposite_face<K>(face, list.stored(q, 1) >= tables::edge_count(K));
     sum.add(part.point, part.weight);
     plain.add(part.point, 1.0);
@@ -192,8 +182,8 @@ TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& 
 }
 
 /// The places of a tile's cone vertices and side vertices, in the unit tile: so they don't depend on the
-/// units of the axes. `place(v)` is the place of local vertex v < first_tile_vertex(K), in the frame of
-/// the signature. out: list.own_vertices() points.
+/// units of the axes. `place(v)` is the place of the stored vertex v < first_tile_vertex(K), in the frame
+/// of the signature. out: list.own_vertices() points.
 ///
 /// One function for the tiles of a 3D image and the cubes of a 4D image: their barycentres agree bit by
 /// bit, so that a 4D contour contains the 3D contours of its steps.
@@ -205,7 +195,7 @@ void own_places(const SimplexList<K>& list, const Place& place, TilePoint<K>* ou
     Weighted<K> sum;
     for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
-      sum.add(v < (1u << K) ? corner_point<K>(v) : place(v - (1u << K)), 1.0);
+      sum.add(v < (1u << K) ? corner_point<K>(list.mapped_corner(v)) : place(v - (1u << K)), 1.0);
     }
     for (int a = 0; a < K; ++a) out[cones + j][a] = 0.5 * (0.5 + sum.point[a] / sum.weight);
   }
