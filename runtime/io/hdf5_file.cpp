@@ -44,7 +44,11 @@ H5Quiet::H5Quiet() {
 H5Quiet::~H5Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
 H5File H5File::create(const fs::path& where, const fs::path& path) {
-  H5Handle handle(H5Fcreate(where.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  // The format of HDF5 1.8 has checksums on all metadata, which the default, older one has not: readers then notice
+  // damage instead of following it.
+  const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  H5Handle handle(H5Fcreate(where.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
   if (handle.id() < 0) fail(ErrorCode::WriteFailed, path, "cannot be created ({})", innermost_reason());
   return {path, ErrorCode::WriteFailed, std::move(handle)};
 }
