@@ -28,11 +28,12 @@ struct File {
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
 
-/// The first samples along each axis, at most 40 in space and 8 in time: enough to be real, fast enough to test.
+/// The middle of an image, at most 28 samples along each axis in space and 8 in time: enough to be real, fast enough to
+/// test.
 template <Value T>
-Image<T, 4> head(Image<T, 4> image) {
+Image<T, 4> middle(Image<T, 4> image) {
   for (int a = 0; a < 4; ++a) {
-    const std::size_t size = std::min<std::size_t>(image.size(a), a == 3 ? 8 : 40);
+    const std::size_t size = std::min<std::size_t>(image.size(a), a == 3 ? 8 : 28);
     image = image.part(a, (image.size(a) - size) / 2, size);
   }
   return image;
@@ -68,7 +69,7 @@ class SliceOfFile : public ::testing::TestWithParam<File> {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
     const ReadImageResult read = read_image(path);
     ASSERT_TRUE(std::holds_alternative<AnyImageN<4>>(read.image));
-    std::visit([&](const auto& owned) { visit(head(owned.view())); }, std::get<AnyImageN<4>>(read.image));
+    std::visit([&](const auto& owned) { visit(middle(owned.view())); }, std::get<AnyImageN<4>>(read.image));
   }
 };
 
@@ -78,13 +79,13 @@ TEST_P(SliceOfFile, IsAManifoldAtAnyTime) {
     options.close = true;
     const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile), options);
     const MeshReport report = check(whole);
-    EXPECT_EQ(report.nonmanifold_simplices + report.orientation_conflicts, 0u);
+    EXPECT_TRUE(test::is_oriented_manifold(report));
     std::mt19937_64 bits(1);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 170; ++i) {  // with six files, more than a thousand
       const double index = static_cast<double>(image.size(3) - 1) * test::unit_random(bits);
       const MeshReport cut = check(slice(whole, time_of(image, index)));
       EXPECT_GT(cut.simplices, 100u);
-      EXPECT_EQ(cut.nonmanifold_simplices + cut.orientation_conflicts + cut.unused_vertices, 0u) << index;
+      EXPECT_TRUE(test::is_oriented_manifold(cut)) << index;
       if (GetParam().closes) {
         EXPECT_TRUE(test::is_closed_oriented_manifold(cut)) << index;
       }
