@@ -329,7 +329,7 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
     throw Error(
         ErrorCode::InvalidArgument,
         fmt::format("coordinates of {} numbers each for simplices of dimension {}; expected {} to 8", space_dim, d, d));
-  const auto width = static_cast<std::size_t>(d + 1);
+  const std::size_t width = static_cast<std::size_t>(d) + 1;
   if (simplices.size() % width != 0)
     throw Error(
         ErrorCode::InvalidArgument,

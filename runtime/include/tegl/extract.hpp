@@ -32,21 +32,21 @@ struct ExtractOptions {
 struct ExtractStats {
   std::uint64_t tiles = 0;
   std::uint64_t active_tiles = 0;
-  double classify_seconds = 0;   ///< samples against the isovalue
-  double find_seconds = 0;       ///< active tiles, counts, places in the output
-  double generate_seconds = 0;   ///< vertices and simplices
-  double close_seconds = 0;      ///< caps
+  double classify_seconds = 0;  ///< samples against the isovalue
+  double find_seconds = 0;      ///< active tiles, counts, places in the output
+  double generate_seconds = 0;  ///< vertices and simplices
+  double close_seconds = 0;     ///< caps
 };
 
 /// The contour {value = isovalue} of an image: separates samples >= isovalue (high) from the others.
 ///
 /// Closed (away from the image's border and from missing values), a manifold and oriented, whatever
 /// the values. Where tiles next to missing values meet in an edge or a square of the grid alone, the vertices there are
-/// doubled, in the same place, so that the contour is a manifold there too. Points of a 4D contour between two layers of the last axis are kept off the layers by the least
-/// that Real can show, so that `slice` finds the contour of a layer in it even where samples equal the isovalue.
-/// An image with an axis of one sample has no tiles, hence an empty contour.
-/// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled.
-/// Cost: one pass over the samples plus the output. Real: float or double.
+/// doubled, in the same place, so that the contour is a manifold there too. Points of a 4D contour between two layers
+/// of the last axis are kept off the layers by the least that Real can show, so that `slice` finds the contour of a
+/// layer in it even where samples equal the isovalue. An image with an axis of one sample has no tiles, hence an empty
+/// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled. Cost: one pass over
+/// the samples plus the output. Real: float or double.
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
