@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Files in, files out. Link with tegl::io.
+//
+// Nothing here is thread-safe, not even on different files: the libraries behind some formats (netCDF, HDF5, NrrdIO,
+// MetaIO) keep global state. Nothing is printed.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +19,9 @@ namespace tegl {
 
 /// An image of any value type in N dimensions.
 template <int N>
-using AnyImageN = std::variant<OwnedImage<std::uint8_t, N>, OwnedImage<std::int8_t, N>, OwnedImage<std::uint16_t, N>,
-                               OwnedImage<std::int16_t, N>, OwnedImage<std::int32_t, N>, OwnedImage<float, N>,
-                               OwnedImage<double, N>>;
+using AnyImageN =
+    std::variant<OwnedImage<std::uint8_t, N>, OwnedImage<std::int8_t, N>, OwnedImage<std::uint16_t, N>,
+                 OwnedImage<std::int16_t, N>, OwnedImage<std::int32_t, N>, OwnedImage<float, N>, OwnedImage<double, N>>;
 /// An image of any value type in 2, 3 or 4 dimensions.
 using AnyImage = std::variant<AnyImageN<2>, AnyImageN<3>, AnyImageN<4>>;
 
@@ -43,9 +46,21 @@ struct ReadImageOptions {
   Progress progress;
 };
 
-/// Reads NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw and gzip), MetaImage (.mha, .mhd)
-/// and netCDF (.nc, .cdf, .nc4; also gzipped as a whole). Trailing axes of one sample are dropped;
-/// what is left must have 2, 3 or 4 axes. netCDF: scale_factor/add_offset applied, missing -> NaN.
+/// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
+/// (.mha, .mhd; one data file) and netCDF (.nc, .cdf, .nc4; also gzipped as a whole). A file of another extension is
+/// recognised by its first bytes.
+///
+/// Axes: the one that runs fastest in the file is axis 0, time is last. Trailing axes of one sample are dropped
+/// (netCDF: wherever they are); what is left must be 2, 3 or 4 axes. Units as the file states them. Orientations that
+/// couple axes become Grid::linear and offset, exact even if sheared; others go into the axes. NRRD spaces RAS and LAS
+/// are turned to LPS. Values: as stored; uint32, int64 and uint64 as int32 if all fit, else as double. NIfTI slope and
+/// intercept and netCDF packing are applied, and netCDF's missing values are NaN: in float, or in double for what float
+/// cannot hold.
+///
+/// Errors, all naming the file: FileNotFound, MalformedFile (damaged, cut short or contradicting itself; compressed
+/// data are checked to the last byte), UnsupportedFormat, UnsupportedData (colours, vectors, other than 2 to 4 axes),
+/// VariableNotFound (listing what there is), InvalidGrid (a coordinate variable that is not monotone), InvalidArgument
+/// (a variable asked of a format without names), TooLarge, Cancelled. Memory: up to three times the values.
 ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// A variable that can be read as an image.
@@ -64,8 +79,8 @@ std::vector<ImageVariable> list_image_variables(const std::filesystem::path& pat
 struct Mesh {
   int dim = 2;
   int space_dim = 3;
-  Buffer<double> coordinates;  ///< #V x space_dim, row = vertex
-  Buffer<Index> simplices;     ///< #S x (dim + 1), row = simplex
+  Buffer<double> coordinates;           ///< #V x space_dim, row = vertex
+  Buffer<Index> simplices;              ///< #S x (dim + 1), row = simplex
   std::vector<std::string> axis_names;  ///< space_dim names, may be empty
   std::vector<std::string> axis_units;
 };
@@ -77,9 +92,18 @@ Mesh to_mesh(const Contour<N, Real>& contour);
 template <int N>
 Contour<N, double> to_contour(const Mesh& mesh);
 
-/// Writes by extension: .ply, .gltf/.glb (2D and 3D contours), .vtkhdf (3D surfaces; 4D contours as
-/// tetrahedra with t as a point array). Written beside the target first and renamed at the end: never half a file.
+/// Writes by extension: .ply (lossless) and .gltf/.glb (coordinates as float) hold segments and triangles in the plane
+/// or in space; .vtkhdf (lossless) these and 4D contours, as tetrahedra with t as a point array. Written under another
+/// name beside the target and renamed at the end: never half a file. An empty mesh gives a valid file.
+/// Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh), InvalidArgument (a mesh that
+/// contradicts itself), UnsupportedData (.gltf: coordinates beyond float), TooLarge (.glb beyond 4 GiB), WriteFailed,
+/// Cancelled.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
+
+/// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
+/// triangles; glTF: nodes applied), and triangles of .stl and .obj, where vertices with equal coordinates become one.
+/// What write_mesh wrote comes back with the same numbering, names and units.
+/// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge.
 Mesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace tegl
