@@ -28,7 +28,7 @@ constexpr const char* kExamples =
     "  tegl slice heart.nii.gz --iso 400 --at t=7.3 -o heart.ply\n"
     "  tegl contour ocean.nc --iso 20 -o ocean.vtkhdf\n"
     "  tegl slice ocean.vtkhdf --at t=0.5,3.25,7.3 -o 'ocean_{t}.ply'\n"
-    "An image is read around the cut alone where its contour is concerned; a saved contour is cut as it is.\n"
+    "Of an image, the steps beside each cut alone are contoured; a saved contour is cut as it is.\n"
     "Times are those of the file's last axis, in its own unit; any real number in its range will do.";
 
 /// The axis that is cut, its range, and the image's dimension.
@@ -99,8 +99,31 @@ Mesh slice_mesh(const AnyImage& image, double isovalue, double at, const Extract
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
-Mesh slice_mesh(const Mesh& mesh, double at) {
-  return mesh.space_dim == 4 ? to_mesh(slice(to_contour<4>(mesh), at)) : to_mesh(slice(to_contour<3>(mesh), at));
+void require_cut(const ContourResult& result) {
+  if (!result.mesh.simplices.empty()) return;
+  throw Error(ErrorCode::EmptyResult,
+              fmt::format("the cut at {} = {} is empty; expected a contour there", result.cut->axis, result.cut->text));
+}
+
+/// The cuts of a saved contour, one after the other.
+template <int N>
+std::vector<ContourResult> cut_all(const Mesh& mesh, const std::vector<Cut>& cuts, double read_seconds,
+                                   ProgressBar& bar) {
+  const Contour<N, double> contour = to_contour<N>(mesh);
+  std::vector<ContourResult> results;
+  for (const Cut& cut : cuts) {
+    const Progress cutting = bar.stage("slice");
+    ContourResult& result = results.emplace_back();
+    result.image_dim = N;
+    result.cut = cut;
+    Stopwatch watch;
+    result.mesh = to_mesh(slice(contour, cut.value));
+    result.seconds.slice = watch.lap();
+    result.seconds.read = read_seconds;
+    require_cut(result);
+    cutting(1);
+  }
+  return results;
 }
 
 class SliceCommand final : public Command {
@@ -202,25 +225,7 @@ class SliceCommand final : public Command {
     require_cuttable(mesh.space_dim, "contour");
     cuts = resolve(std::move(cuts), cut_axis(mesh));
     const double read_seconds = watch.lap();
-    std::vector<ContourResult> results;
-    for (const Cut& cut : cuts) {
-      const Progress cutting = bar.stage("slice");
-      ContourResult& result = results.emplace_back();
-      result.image_dim = mesh.space_dim;
-      result.cut = cut;
-      watch.lap();
-      result.mesh = slice_mesh(mesh, cut.value);
-      result.seconds.slice = watch.lap();
-      result.seconds.read = read_seconds;
-      require_cut(result);
-    }
-    return results;
-  }
-
-  static void require_cut(const ContourResult& result) {
-    if (!result.mesh.simplices.empty()) return;
-    throw Error(ErrorCode::EmptyResult, fmt::format("the cut at {} = {} is empty; expected a contour there",
-                                                    result.cut->axis, result.cut->text));
+    return mesh.space_dim == 4 ? cut_all<4>(mesh, cuts, read_seconds, bar) : cut_all<3>(mesh, cuts, read_seconds, bar);
   }
 
   /// All or nothing: what was written is removed if one of the files cannot be.
