@@ -87,16 +87,36 @@ RunResult run_tegl(const std::vector<std::string>& arguments) {
   return result;
 }
 
+namespace {
+
+/// A new pseudo-terminal and its other side, both open; -1 where the machine gives none (no /dev/pts, say).
+std::array<int, 2> open_terminal() {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+  if (terminal < 0) return {-1, -1};
+  if (grantpt(terminal) == 0 && unlockpt(terminal) == 0)
+    if (const char* name = ptsname(terminal); name != nullptr)
+      if (const int other_side = open(name, O_RDWR | O_NOCTTY); other_side >= 0) return {terminal, other_side};
+  close(terminal);
+  return {-1, -1};
+}
+
+}  // namespace
+
+bool has_terminals() {
+  const auto sides = open_terminal();
+  for (const int side : sides)
+    if (side >= 0) close(side);
+  return sides[0] >= 0;
+}
+
 RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
                                const std::string& interrupt_at) {
   RunResult result;
-  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return result;
-  const std::string name = ptsname(terminal);
-  const int other_side = open(name.c_str(), O_RDWR | O_NOCTTY);
+  const auto [terminal, other_side] = open_terminal();
+  if (terminal < 0) return result;
   const winsize size{.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
   ioctl(other_side, TIOCSWINSZ, &size);
-  const pid_t child = start(arguments, [&] {
+  const pid_t child = start(arguments, [&, terminal = terminal, other_side = other_side] {
     setenv("TERM", "xterm", 1);
     unsetenv("NO_COLOR");
     for (const std::string& setting : environment) putenv(const_cast<char*>(setting.c_str()));

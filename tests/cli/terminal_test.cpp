@@ -19,6 +19,7 @@ class Terminal : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
+    if (!has_terminals()) GTEST_SKIP() << "this machine gives no pseudo-terminals";
     file_ = write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2)));
   }
   [[nodiscard]] std::vector<std::string> contour(const std::vector<std::string>& more = {}) const {
