@@ -11,7 +11,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "numbers.hpp"
 
 namespace tegl::cli {
 
@@ -19,22 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What each output format holds: simplices up to this dimension.
-struct OutputFormat {
-  std::string_view extension;
-  int most_dim;
-};
-constexpr std::array<OutputFormat, 4> kOutputs = {
-    {{".ply", 2}, {".gltf", 2}, {".glb", 2}, {".vtkhdf", 3}},
-};
-constexpr std::array<std::string_view, 2> kMoreMeshInputs = {".stl", ".obj"};
 constexpr std::string_view kExpectedExtensions = "expected .ply, .gltf or .glb (2D and 3D contours) or .vtkhdf";
 
-const OutputFormat* find_format(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  const auto match = [&](const OutputFormat& format) { return equal_ignoring_case(format.extension, extension); };
-  const auto* const found = std::find_if(kOutputs.begin(), kOutputs.end(), match);
-  return found == kOutputs.end() ? nullptr : found;
+const MeshFileFormat* find_output_format(const fs::path& path) {
+  const MeshFileFormat* const format = find_mesh_file_format(path);
+  return format != nullptr && format->writable ? format : nullptr;
 }
 
 [[noreturn]] void fail(const fs::path& output, std::string_view why) {
@@ -56,7 +44,7 @@ void require_input(const fs::path& path) {
 
 void require_output(const fs::path& output, const fs::path& input) {
   std::error_code error;
-  if (find_format(output) == nullptr) {
+  if (find_output_format(output) == nullptr) {
     const std::string extension = output.extension().string();
     fail(output, fmt::format("{}; {}",
                              extension.empty() ? "the name has no extension"
@@ -76,7 +64,7 @@ void require_output(const fs::path& output, const fs::path& input) {
 }
 
 void require_output_holds(const fs::path& output, int simplex_dim) {
-  const OutputFormat* const format = find_format(output);
+  const MeshFileFormat* const format = find_output_format(output);
   if (format != nullptr && simplex_dim <= format->most_dim) return;
   fail(output,
        fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf", output.extension().string(),
@@ -96,13 +84,6 @@ std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progr
   std::error_code error;
   const std::uintmax_t size = fs::file_size(output, error);
   return error ? 0 : size;
-}
-
-bool has_mesh_extension(const fs::path& path) {
-  if (find_format(path) != nullptr) return true;
-  const std::string extension = path.extension().string();
-  return std::any_of(kMoreMeshInputs.begin(), kMoreMeshInputs.end(),
-                     [&](std::string_view known) { return equal_ignoring_case(known, extension); });
 }
 
 }  // namespace tegl::cli

@@ -23,7 +23,4 @@ void require_output_holds(const std::filesystem::path& output, int simplex_dim);
 /// Writes the mesh and returns the file's size in bytes. Errors: WriteFailed, Cancelled.
 std::uint64_t write_output(const Mesh& mesh, const std::filesystem::path& output, const Progress& progress);
 
-/// True for the extensions of files that hold meshes: .ply, .gltf, .glb, .vtkhdf, .stl, .obj.
-bool has_mesh_extension(const std::filesystem::path& path);
-
 }  // namespace tegl::cli

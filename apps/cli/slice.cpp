@@ -153,7 +153,7 @@ class SliceCommand final : public Command {
     for (const std::string& output : outputs) require_output(output, file());
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
-        has_mesh_extension(file()) ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
+        find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = file();
       results[i].output = outputs[i];

@@ -16,27 +16,20 @@ namespace {
 
 using namespace io_detail;
 
-enum class MeshFormat { Ply, Gltf, VtkHdf, Soup };
+constexpr std::array<MeshFileFormat, 6> kFormats = {{{".ply", 2, true},
+                                                     {".gltf", 2, true},
+                                                     {".glb", 2, true},
+                                                     {".vtkhdf", 3, true},
+                                                     {".stl", 2, false},
+                                                     {".obj", 2, false}}};
 
-struct MeshExtension {
-  std::string_view text;
-  MeshFormat format;
-};
-
-constexpr std::array<MeshExtension, 6> kExtensions = {{{".ply", MeshFormat::Ply},
-                                                       {".gltf", MeshFormat::Gltf},
-                                                       {".glb", MeshFormat::Gltf},
-                                                       {".vtkhdf", MeshFormat::VtkHdf},
-                                                       {".stl", MeshFormat::Soup},
-                                                       {".obj", MeshFormat::Soup}}};
-
-MeshFormat format_of(const fs::path& path, std::string_view expected) {
-  const std::string name = lower_name(path);
-  for (const MeshExtension& extension : kExtensions)
-    if (name.ends_with(extension.text)) return extension.format;
+const MeshFileFormat& format_of(const fs::path& path, std::string_view expected) {
+  if (const MeshFileFormat* const format = find_mesh_file_format(path)) return *format;
   fail(ErrorCode::UnsupportedFormat, path, "no mesh format known by the extension '{}'; expected {}",
        path.extension().string(), expected);
 }
+
+bool is_gltf(const MeshFileFormat& format) { return format.extension == ".gltf" || format.extension == ".glb"; }
 
 void check_mesh(const Mesh& mesh, const fs::path& path) {
   const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
@@ -54,12 +47,12 @@ void check_mesh(const Mesh& mesh, const fs::path& path) {
     fail(ErrorCode::InvalidArgument, path, "mesh with vertex number {}; expected less than {}", *bad, vertices);
 }
 
-/// Lines and triangles go into every format; tetrahedra, and a fourth coordinate, into VTKHDF alone.
-void check_combination(const Mesh& mesh, MeshFormat format, const fs::path& path) {
-  if (format == MeshFormat::Soup)
+/// Lines and triangles go into every format; tetrahedra, and a fourth coordinate, only where tetrahedra go.
+void check_combination(const Mesh& mesh, const MeshFileFormat& format, const fs::path& path) {
+  if (!format.writable)
     fail(ErrorCode::UnsupportedFormat, path, "'{}' is read only; expected .ply, .gltf, .glb or .vtkhdf to write",
          path.extension().string());
-  if ((mesh.dim == 3 || mesh.space_dim == 4) && format != MeshFormat::VtkHdf)
+  if (mesh.dim > format.most_dim || (mesh.space_dim == 4 && format.most_dim < 3))
     fail(ErrorCode::UnsupportedFormat, path,
          "'{}' cannot hold {}-simplices in {}-space (the contour of a {}D image); "
          "expected .vtkhdf",
@@ -140,41 +133,35 @@ Contour<N, double> to_contour(const Mesh& mesh) {
   return contour;
 }
 
+std::span<const MeshFileFormat> mesh_file_formats() noexcept { return kFormats; }
+
+const MeshFileFormat* find_mesh_file_format(const fs::path& path) {
+  const std::string name = lower_name(path);
+  const auto* const found =
+      std::ranges::find_if(kFormats, [&](const MeshFileFormat& format) { return name.ends_with(format.extension); });
+  return found == kFormats.end() ? nullptr : found;
+}
+
 void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress) {
-  const MeshFormat format = format_of(path, ".ply, .gltf, .glb or .vtkhdf");
+  const MeshFileFormat& format = format_of(path, ".ply, .gltf, .glb or .vtkhdf");
   check_mesh(mesh, path);
   check_combination(mesh, format, path);
   tick(progress, 0.0, path);
-  switch (format) {
-    case MeshFormat::Ply:
-      write_ply(mesh, path, progress);
-      break;
-    case MeshFormat::Gltf:
-      write_gltf(mesh, path, progress);
-      break;
-    default:
-      write_vtkhdf(mesh, path, progress);
-      break;
-  }
+  if (format.extension == ".ply")
+    write_ply(mesh, path, progress);
+  else if (is_gltf(format))
+    write_gltf(mesh, path, progress);
+  else
+    write_vtkhdf(mesh, path, progress);
 }
 
 Mesh read_mesh(const fs::path& path) {
   require_readable_file(path);
-  Mesh mesh;
-  switch (format_of(path, ".ply, .gltf, .glb, .vtkhdf, .stl or .obj")) {
-    case MeshFormat::Ply:
-      mesh = read_ply(path);
-      break;
-    case MeshFormat::Gltf:
-      mesh = read_gltf(path);
-      break;
-    case MeshFormat::VtkHdf:
-      mesh = read_vtkhdf(path);
-      break;
-    default:
-      mesh = read_with_assimp(path);
-      break;
-  }
+  const MeshFileFormat& format = format_of(path, ".ply, .gltf, .glb, .vtkhdf, .stl or .obj");
+  Mesh mesh = format.extension == ".ply"      ? read_ply(path)
+              : format.extension == ".vtkhdf" ? read_vtkhdf(path)
+              : is_gltf(format)               ? read_gltf(path)
+                                              : read_with_assimp(path);
   check_indices(mesh, path);
   return mesh;
 }

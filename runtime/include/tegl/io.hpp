@@ -8,7 +8,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -84,6 +86,19 @@ struct Mesh {
   std::vector<std::string> axis_names;  ///< space_dim names, may be empty
   std::vector<std::string> axis_units;
 };
+
+/// What a file with a certain extension holds.
+struct MeshFileFormat {
+  std::string_view extension;  ///< with its dot, in lower case
+  int most_dim;                ///< simplices up to this dimension; 3: in 4-space as well
+  bool writable;
+};
+
+/// The formats of read_mesh and write_mesh, by extension.
+std::span<const MeshFileFormat> mesh_file_formats() noexcept;
+
+/// The format that a file's extension tells, in upper or lower case; null if it tells none.
+const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 
 template <int N, class Real>
 Mesh to_mesh(const Contour<N, Real>& contour);
