@@ -46,6 +46,7 @@ class CheckCommand final : public Command {
     if (json()) {
       Json json;
       add_check_keys(json, mesh, report);
+      json["seconds"] = {{"read", read_seconds}, {"check", check_seconds}, {"total", read_seconds + check_seconds}};
       streams.out.write(dump(json));
     } else if (!quiet()) {
       streams.out.write(
@@ -59,6 +60,7 @@ class CheckCommand final : public Command {
  private:
   [[nodiscard]] std::string missed_requirement(const MeshReport& report) const {
     for (const std::string& requirement : required_) {
+      if (report.simplices == 0) return fmt::format("empty, unlike --require {} demands", requirement);
       if (requirement == "closed" && report.boundary_simplices > 0) return "not closed, as --require closed demands";
       if (requirement == "nondegenerate" && report.degenerate_simplices > 0) {
         return "has simplices of zero size, unlike --require nondegenerate demands";

@@ -5,9 +5,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include "numbers.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl::cli {
 
@@ -34,8 +37,9 @@ int Console::width() const {
 }
 
 void Console::write(std::string_view text) const {
-  std::fwrite(text.data(), 1, text.size(), stream_);
-  std::fflush(stream_);
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream_) == text.size() && std::fflush(stream_) == 0;
+  if (!written && stream_ == stdout)
+    throw Error(ErrorCode::WriteFailed, fmt::format("standard output cannot be written ({})", std::strerror(errno)));
 }
 
 std::string Console::styled(std::string_view code, std::string_view text) const {

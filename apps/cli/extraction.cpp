@@ -80,6 +80,10 @@ void require_contour(const ReadImageResult& input, double isovalue) {
     throw Error(ErrorCode::EmptyResult, "all samples are missing; a contour needs values on both sides of it");
   }
   if (isovalue > range.min && isovalue <= range.max) return;
+  if (range.min == range.max)
+    throw Error(ErrorCode::EmptyResult,
+                fmt::format("all values are {}; a contour needs values on both sides of the isovalue {}",
+                            number(range.min), number(isovalue)));
   const std::string unit = input.info.value_unit.empty() ? "" : " " + input.info.value_unit;
   throw Error(ErrorCode::EmptyResult, fmt::format("the isovalue {} lies outside of the values, which are {} .. {}{}; "
                                                   "expected {} < isovalue <= {}",

@@ -198,7 +198,11 @@ std::string values_text(const Console& console, const Description& description) 
   text += report_line("percentiles", percentiles);
   text += fmt::format("\n{}\n", console.bold("Histogram (from each value on; bars: square root of the count)"));
   text += histogram_text(values.histogram, console.width());
-  if (values.suggestions.empty()) return text + "\nAll values are equal: there is nothing to contour.\n";
+  if (values.suggestions.empty())
+    return text +
+           (values.min == values.max
+                ? "\nAll values are equal: there is nothing to contour.\n"
+                : "\nNo two neighbours differ (samples are missing between them): there is nothing to contour.\n");
   text += fmt::format("\n{}\n", console.bold("Suggested values"));
   for (const Suggestion& suggestion : values.suggestions) {
     text += fmt::format("  {:>12} {:<14} {} edges\n", number(suggestion.value), suggestion.method,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <exception>
 #include <new>
 #include <string_view>
@@ -75,6 +76,8 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   std::string help = "tegl";
   for (const CLI::App* command : program.get_subcommands()) help += " " + command->get_name();
   std::string what = error.what();
+  if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
+    what = what.substr(0, what.find(':')) + " is given more than once; expected it once";
   if (help == "tegl" && !first_word.empty() && first_word.front() != '-') {
     what = fmt::format("there is no command '{}'; expected info, contour, slice or check", first_word);
   }
@@ -85,6 +88,7 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond its limit is a failed write, which leaves nothing behind
   const Streams streams;
   CLI::App program(kDescription, "tegl");
   program.set_version_flag("--version", "tegl " TEGL_VERSION);

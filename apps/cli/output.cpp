@@ -11,7 +11,6 @@
 #include <string_view>
 #include <system_error>
 
-
 namespace tegl::cli {
 
 namespace {

@@ -98,6 +98,7 @@ std::string check_text(const Console& console, const Mesh& mesh, const std::opti
   if (report->unused_vertices > 0) {
     text += report_line("unused", counted(report->unused_vertices, "vertex in no simplex", "vertices in no simplex"));
   }
+  if (report->simplices == 0) return text + report_line("check", "empty: no simplices");
   text += report_line("components", grouped(report->components));
   text += report_line("Euler", fmt::format("{}", report->euler));
   text += report_line("border", report->boundary_simplices == 0
@@ -106,9 +107,8 @@ std::string check_text(const Console& console, const Mesh& mesh, const std::opti
   const std::string faults = fault_text(*report);
   text += report_line("check", faults.empty() ? console.green("an oriented manifold") : console.red(faults));
   if (report->degenerate_simplices > 0) {
-    text +=
-        report_line("", fmt::format("{} of zero size (samples equal to the isovalue make them; --epsilon avoids them)",
-                                    counted_simplices(report->dim, report->degenerate_simplices)));
+    text += report_line("", fmt::format("{} of zero size (where samples equal the isovalue, --epsilon avoids them)",
+                                        counted_simplices(report->dim, report->degenerate_simplices)));
   }
   return text;
 }
@@ -125,10 +125,11 @@ void StageSeconds::add(const ExtractStats& stats) {
 Json to_json(const ContourResult& result) {
   Json json;
   json["input"] = result.input;
-  if (!result.variable.empty()) json["variable"] = result.variable;
+  json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
   json["output"] = result.output;
   json["image_dim"] = result.image_dim;
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
+  json["at"] = nullptr;
   if (result.cut) json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
   add_check_keys(json, result.mesh, result.report);
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);

@@ -6,6 +6,7 @@
 #include "hdf5_file.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "common.hpp"
 
@@ -28,6 +29,11 @@ std::string innermost_reason() {
   return reason.empty() ? "no reason given" : reason;
 }
 
+/// The driver takes what it cannot write without complaint.
+void require_written(const H5WriteStatus& status, const fs::path& path) {
+  if (status.error != 0) fail(ErrorCode::WriteFailed, path, "cannot be written ({})", std::strerror(status.error));
+}
+
 }  // namespace
 
 bool H5Handle::close() noexcept {
@@ -48,9 +54,14 @@ H5File H5File::create(const fs::path& where, const fs::path& path) {
   // damage instead of following it.
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  auto status = std::make_shared<H5WriteStatus>();
+  if (!use_pending_file_driver(access.id(), *status))
+    fail(ErrorCode::WriteFailed, path, "cannot be created ({})", innermost_reason());
   H5Handle handle(H5Fcreate(where.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
-  if (handle.id() < 0) fail(ErrorCode::WriteFailed, path, "cannot be created ({})", innermost_reason());
-  return {path, ErrorCode::WriteFailed, std::move(handle)};
+  if (handle.id() < 0)
+    fail(ErrorCode::WriteFailed, path, "cannot be created ({})",
+         status->error != 0 ? std::strerror(status->error) : innermost_reason());
+  return {path, ErrorCode::WriteFailed, std::move(status), std::move(handle)};
 }
 
 H5File H5File::open(const fs::path& path) {
@@ -58,7 +69,7 @@ H5File H5File::open(const fs::path& path) {
   if (handle.id() < 0)
     fail(ErrorCode::MalformedFile, path, "cannot be opened as HDF5 ({}); expected a whole HDF5 file",
          innermost_reason());
-  return {path, ErrorCode::MalformedFile, std::move(handle)};
+  return {path, ErrorCode::MalformedFile, nullptr, std::move(handle)};
 }
 
 H5Handle H5File::checked(hid_t id, H5Handle::Closer closer, const char* what) const {
@@ -73,6 +84,7 @@ void H5File::checked(herr_t status, const char* what) const {
 void H5File::close() {
   checked(H5Fflush(file_.id(), H5F_SCOPE_LOCAL), "writing");
   if (!file_.close()) fail(code_, path_, "closing failed in HDF5 ({})", innermost_reason());
+  if (status_) require_written(*status_, path_);
 }
 
 H5Handle H5File::create_group(const char* name) const {
@@ -142,25 +154,48 @@ std::vector<std::int64_t> H5File::get_numbers(hid_t object, const char* name) co
   return numbers;
 }
 
-void H5File::write_rows(hid_t group, const char* name, hid_t file_type, hid_t memory_type, std::uint64_t rows,
-                        std::uint64_t columns,
-                        const std::function<const void*(std::uint64_t, std::uint64_t)>& fill) const {
+H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
+                             std::uint64_t expected) const {
   const int rank = columns == 0 ? 1 : 2;
-  const std::array<hsize_t, 2> size = {rows, columns};
-  const H5Handle space = checked(H5Screate_simple(rank, size.data(), nullptr), H5Sclose, "writing a dataset");
-  const H5Handle dataset =
-      checked(H5Dcreate2(group, name, file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
-              "writing a dataset");
-  constexpr std::uint64_t kBlockRows = std::uint64_t{1} << 17;
-  for (std::uint64_t first = 0; first < rows; first += kBlockRows) {
-    const std::array<hsize_t, 2> start = {first, 0};
-    const std::array<hsize_t, 2> count = {std::min(kBlockRows, rows - first), columns};
-    const H5Handle memory = checked(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, "writing a dataset");
-    checked(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
-            "writing a dataset");
-    const void* block = fill(first, count[0]);
-    checked(H5Dwrite(dataset.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, block), "writing a dataset");
-  }
+  // A chunk fits the cache that HDF5 keeps per dataset (1 MiB), so that a partly filled one stays in memory.
+  constexpr hsize_t kChunkBytes = hsize_t{1} << 19;
+  const std::array<hsize_t, 2> size = {0, columns};
+  const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
+  const hsize_t most_rows = kChunkBytes / (H5Tget_size(file_type) * std::max<hsize_t>(1, columns));
+  const std::array<hsize_t, 2> chunk = {std::clamp<hsize_t>(expected, 1, most_rows), columns};  // stored whole
+  const H5Handle space = checked(H5Screate_simple(rank, size.data(), most.data()), H5Sclose, "creating a dataset");
+  const H5Handle options = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "creating a dataset");
+  checked(H5Pset_chunk(options.id(), rank, chunk.data()), "creating a dataset");
+  return {path_, status_,
+          checked(H5Dcreate2(group, name, file_type, space.id(), H5P_DEFAULT, options.id(), H5P_DEFAULT), H5Dclose,
+                  "creating a dataset"),
+          columns};
+}
+
+void H5Table::write(hid_t memory_type, const void* values, std::span<const std::uint64_t> start,
+                    std::span<const std::uint64_t> count) const {
+  const std::array<hsize_t, 2> from = {start[0], start[1]};
+  const std::array<hsize_t, 2> size = {count[0], count[1]};
+  const H5Handle file(H5Dget_space(dataset_.id()), H5Sclose);
+  const H5Handle memory(H5Screate_simple(columns_ == 0 ? 1 : 2, size.data(), nullptr), H5Sclose);
+  if (file.id() < 0 || memory.id() < 0 ||
+      H5Sselect_hyperslab(file.id(), H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr) < 0 ||
+      H5Dwrite(dataset_.id(), memory_type, memory.id(), file.id(), H5P_DEFAULT, values) < 0)
+    fail(ErrorCode::WriteFailed, path_, "writing a dataset failed in HDF5 ({})", innermost_reason());
+  require_written(*status_, path_);
+}
+
+void H5Table::append(hid_t memory_type, const void* values, std::uint64_t rows) {
+  if (rows == 0) return;
+  const std::array<hsize_t, 2> size = {rows_ + rows, columns_};
+  if (H5Dset_extent(dataset_.id(), size.data()) < 0)
+    fail(ErrorCode::WriteFailed, path_, "growing a dataset failed in HDF5 ({})", innermost_reason());
+  write(memory_type, values, std::array{rows_, std::uint64_t{0}}, std::array{rows, columns_});
+  rows_ += rows;
+}
+
+void H5Table::replace(hid_t memory_type, const void* value, std::uint64_t row, std::uint64_t column) {
+  write(memory_type, value, std::array{row, column}, std::array{std::uint64_t{1}, std::uint64_t{1}});
 }
 
 std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {

@@ -5,13 +5,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <hdf5.h>
 
+#include "hdf5_driver.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::io_detail {
@@ -50,7 +51,32 @@ class H5Quiet {
   void* data_ = nullptr;
 };
 
-/// A file being written or read; `path` is what messages name. All errors: `code`, with HDF5's innermost reason.
+/// A dataset that grows by rows at its end: chunked, so that memory holds a few chunks whatever its length.
+class H5Table {
+ public:
+  /// `rows` rows, given as `memory_type`, converted by HDF5 to the file's type.
+  void append(hid_t memory_type, const void* values, std::uint64_t rows);
+  /// One value of a row that is there already.
+  void replace(hid_t memory_type, const void* value, std::uint64_t row, std::uint64_t column);
+  [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
+
+ private:
+  friend class H5File;
+  H5Table(std::filesystem::path path, std::shared_ptr<const H5WriteStatus> status, H5Handle dataset,
+          std::uint64_t columns)
+      : path_(std::move(path)), status_(std::move(status)), dataset_(std::move(dataset)), columns_(columns) {}
+  void write(hid_t memory_type, const void* values, std::span<const std::uint64_t> start,
+             std::span<const std::uint64_t> count) const;
+
+  std::filesystem::path path_;
+  std::shared_ptr<const H5WriteStatus> status_;
+  H5Handle dataset_;
+  std::uint64_t columns_;  ///< 0: one-dimensional
+  std::uint64_t rows_ = 0;
+};
+
+/// A file being written or read; `path` is what messages name. Errors: WriteFailed or MalformedFile, with the system's
+/// reason or HDF5's innermost one.
 class H5File {
  public:
   /// Creates the file at `where`.
@@ -70,11 +96,10 @@ class H5File {
   [[nodiscard]] std::string get_text(hid_t object, const char* name) const;
   [[nodiscard]] std::vector<std::int64_t> get_numbers(hid_t object, const char* name) const;
 
-  /// A dataset of rows x columns (columns 0: one-dimensional). `fill(first, count)` returns `count` rows from
-  /// `first` as `memory_type`, converted by HDF5 to `file_type`; called in blocks of rows from first to last.
-  void write_rows(hid_t group, const char* name, hid_t file_type, hid_t memory_type, std::uint64_t rows,
-                  std::uint64_t columns,
-                  const std::function<const void*(std::uint64_t first, std::uint64_t count)>& fill) const;
+  /// An empty dataset of rows of `columns` values (0: one-dimensional), to be appended to: `expected` rows, or however
+  /// many. Must not outlive the file.
+  [[nodiscard]] H5Table create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
+                                     std::uint64_t expected) const;
 
   /// The sizes of a dataset, checked to be no larger than the file can hold; MalformedFile if it is not there.
   [[nodiscard]] std::vector<std::uint64_t> sizes(hid_t group, const char* name) const;
@@ -82,13 +107,15 @@ class H5File {
   void read(hid_t group, const char* name, hid_t memory_type, void* to) const;
 
  private:
-  H5File(std::filesystem::path path, ErrorCode code, H5Handle handle)
-      : path_(std::move(path)), code_(code), file_(std::move(handle)) {}
+  H5File(std::filesystem::path path, ErrorCode code, std::shared_ptr<const H5WriteStatus> status, H5Handle handle)
+      : path_(std::move(path)), code_(code), status_(std::move(status)), file_(std::move(handle)) {}
   H5Handle checked(hid_t id, H5Handle::Closer closer, const char* what) const;
   void checked(herr_t status, const char* what) const;
 
   std::filesystem::path path_;
   ErrorCode code_;
+  std::shared_ptr<const H5WriteStatus>
+      status_;  ///< null for files that are read; outlives the file, which reports to it
   H5Handle file_;
 };
 

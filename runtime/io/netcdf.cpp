@@ -183,58 +183,98 @@ Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimen
   return axis;
 }
 
-/// Moves axis k behind the others: time, which varies slowest in an image.
-void move_axis_last(std::size_t k, RawImage& image) {
-  std::vector<Axis>& axes = image.grid.axes;
-  std::size_t inner = 1;
-  std::size_t outer = 1;
-  for (std::size_t a = 0; a < axes.size(); ++a)
-    if (a != k) (a < k ? inner : outer) *= axes[a].size();
-  image.values = with_axis_last(image.values, inner, axes[k].size(), outer);
-  std::rotate(axes.begin() + static_cast<std::ptrdiff_t>(k), axes.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-              axes.end());
-}
+/// The grid of a variable, and which of its dimensions is the image's last axis: time, else the slowest one.
+struct VariableGrid {
+  RawGrid grid;
+  std::size_t last_dimension = 0;
+  std::size_t time_axis = 0;  ///< where the last axis lies in the file, counted from the fastest
+};
 
-void read_grid_and_values(const NcFile& file, const NcVariable& variable, const Progress& progress, RawImage& image) {
+VariableGrid read_grid(const NcFile& file, const NcVariable& variable) {
+  VariableGrid result;
+  std::vector<Axis>& axes = result.grid.axes;
   std::vector<bool> is_time;
+  std::vector<std::size_t> dimension_of;
   for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
     if (variable.sizes[d] == 1) continue;
     bool time = false;
-    image.grid.axes.push_back(read_axis(file, variable, d, time));
+    axes.push_back(read_axis(file, variable, d, time));
     is_time.push_back(time);
+    dimension_of.push_back(d);
   }
-  image.values = unpack(file.values(variable, progress), read_packing(file, variable));
-  const auto found = std::find(is_time.begin(), is_time.end(), true);
-  if (found != is_time.end() && !is_time.back())
-    move_axis_last(static_cast<std::size_t>(found - is_time.begin()), image);
-  const auto n = static_cast<Eigen::Index>(image.grid.axes.size());
-  image.grid.linear = Eigen::MatrixXd::Identity(n, n);
-  image.grid.offset = Eigen::VectorXd::Zero(n);
+  const auto found = is_time.back() ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
+  const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
+  std::rotate(axes.begin() + last, axes.begin() + last + 1, axes.end());
+  result.time_axis = static_cast<std::size_t>(last);
+  result.last_dimension = dimension_of[result.time_axis];
+  const auto n = static_cast<Eigen::Index>(axes.size());
+  result.grid.linear = Eigen::MatrixXd::Identity(n, n);
+  result.grid.offset = Eigen::VectorXd::Zero(n);
+  return result;
+}
+
+/// Values as the file has them, `count` along the grid's last axis, with that axis behind the others.
+ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t count) {
+  const std::vector<Axis>& axes = grid.grid.axes;
+  std::size_t inner = 1;
+  std::size_t outer = 1;
+  for (std::size_t a = 0; a + 1 < axes.size(); ++a) (a < grid.time_axis ? inner : outer) *= axes[a].size();
+  return outer == 1 || count == 1 ? std::move(values) : with_axis_last(values, inner, count, outer);
+}
+
+struct Found {
+  NcVariable variable;
+  ImageInfo info;
+};
+
+/// The variable that is asked for, if it can be an image.
+Found find_variable(const NcFile& file, const std::string& wanted) {
+  const auto all = file.variables();
+  const auto candidates = image_variables(file, all);
+  const NcVariable variable = choose(file, all, candidates, wanted);
+  if (rank(variable) < 2 || rank(variable) > 4)
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected 2 to 4 axes longer than 1",
+         variable.name, variable.sizes.empty() ? "a single value" : shape_text(variable.sizes));
+  if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected at least one sample", variable.name,
+         shape_text(variable.sizes));
+  ImageInfo info;
+  info.format = "netCDF";
+  info.variable = variable.name;
+  for (const NcVariable& candidate : candidates) info.variables.push_back(candidate.name);
+  info.value_unit = file.text(variable, "units");
+  info.value_name = file.text(variable, "long_name");
+  if (info.value_name.empty()) info.value_name = file.text(variable, "standard_name");
+  info.stored_type = nc_type_name(variable.type);
+  return {variable, info};
 }
 
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, const ReadImageOptions& options) {
   const NcFile file(path, options.progress);
-  const auto all = file.variables();
-  const auto candidates = image_variables(file, all);
-  const NcVariable variable = choose(file, all, candidates, options.variable);
-  if (rank(variable) < 2 || rank(variable) > 4)
-    fail(ErrorCode::UnsupportedData, path, "variable '{}' is {}; expected 2 to 4 axes longer than 1", variable.name,
-         variable.sizes.empty() ? "a single value" : shape_text(variable.sizes));
-  if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
-    fail(ErrorCode::UnsupportedData, path, "variable '{}' is {}; expected at least one sample", variable.name,
-         shape_text(variable.sizes));
+  const Found found = find_variable(file, options.variable);
+  VariableGrid grid = read_grid(file, found.variable);
   RawImage image;
-  read_grid_and_values(file, variable, options.progress, image);
-  image.info.format = "netCDF";
-  image.info.variable = variable.name;
-  for (const NcVariable& candidate : candidates) image.info.variables.push_back(candidate.name);
-  image.info.value_unit = file.text(variable, "units");
-  image.info.value_name = file.text(variable, "long_name");
-  if (image.info.value_name.empty()) image.info.value_name = file.text(variable, "standard_name");
-  image.info.stored_type = nc_type_name(variable.type);
+  image.values = in_order(unpack(file.values(found.variable, options.progress), read_packing(file, found.variable)),
+                          grid, grid.grid.axes.back().size());
+  image.grid = std::move(grid.grid);
+  image.info = found.info;
   return image;
+}
+
+RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::string& variable) {
+  const auto file = std::make_shared<const NcFile>(path, Progress());
+  if (file->is_compressed())
+    fail(ErrorCode::UnsupportedData, path,
+         "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");
+  const Found found = find_variable(*file, variable);
+  const VariableGrid grid = read_grid(*file, found.variable);
+  const Packing packing = read_packing(*file, found.variable);
+  return {grid.grid, found.info, file->block_length(found.variable, grid.last_dimension),
+          [file, packing, grid, variable = found.variable](std::size_t first, std::size_t count) {
+            return in_order(unpack(file->values(variable, grid.last_dimension, first, count), packing), grid, count);
+          }};
 }
 
 std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path) {

@@ -92,7 +92,8 @@ NcFile::~NcFile() {
 
 void NcFile::check(int status, const std::string& what) const {
   if (status != NC_NOERR)
-    fail(ErrorCode::MalformedFile, path_, "{} failed in the netCDF library ({})", what, nc_strerror(status));
+    fail(ErrorCode::MalformedFile, path_,
+         "{} failed in the netCDF library ({}); expected a whole, undamaged netCDF file", what, nc_strerror(status));
 }
 
 NcVariable NcFile::describe(int group, int id, const std::string& prefix) const {
@@ -125,6 +126,10 @@ void NcFile::collect(int group, const std::string& prefix, int depth, std::vecto
   for (const int child : groups) {
     std::array<char, NC_MAX_NAME + 1> name{};
     check(nc_inq_grpname(child, name.data()), "reading a group's name");
+    if (depth == 0 && std::string_view(name.data()) == "VTKHDF")
+      fail(ErrorCode::UnsupportedData, path_,
+           "holds a mesh (VTKHDF), such as a saved contour; expected an image: 'tegl check' and 'tegl slice' take "
+           "meshes");
     collect(child, (prefix.empty() ? "/" : prefix) + name.data() + "/", depth + 1, out);
   }
 }
@@ -196,12 +201,9 @@ void NcFile::read_blocks(const NcVariable& variable, std::size_t item, void* to,
   for (std::size_t d = 1; d < rank; ++d) layer_bytes *= variable.sizes[d];
   // Blocks of whole chunks, so that none is decompressed twice.
   constexpr std::size_t kBlockBytes = std::size_t{1} << 24;
+  const std::size_t block = block_length(variable, 0);
   std::size_t step = std::max<std::size_t>(1, kBlockBytes / std::max<std::size_t>(1, layer_bytes));
-  int storage = NC_CONTIGUOUS;
-  std::vector<std::size_t> chunks(rank, 1);
-  if (nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) == NC_NOERR && storage == NC_CHUNKED &&
-      chunks[0] > 0)
-    step = (step + chunks[0] - 1) / chunks[0] * chunks[0];
+  step = (step + block - 1) / block * block;
   std::vector<std::size_t> start(rank, 0);
   std::vector<std::size_t> count = variable.sizes;
   for (std::size_t first = 0; first < layers; first += step) {
@@ -214,11 +216,41 @@ void NcFile::read_blocks(const NcVariable& variable, std::size_t item, void* to,
   }
 }
 
-ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) const {
+std::size_t NcFile::block_length(const NcVariable& variable, std::size_t dimension) const {
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> chunks(variable.sizes.size(), 1);
+  const bool chunked =
+      nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) == NC_NOERR && storage == NC_CHUNKED;
+  return chunked ? std::max<std::size_t>(1, chunks[dimension]) : 1;
+}
+
+ValueArray NcFile::numeric_array(const NcVariable& variable) const {
   if (!is_numeric(variable.type))
     fail(ErrorCode::UnsupportedData, path_, "variable '{}' holds {} values; expected numbers", variable.name,
          nc_type_name(variable.type));
-  ValueArray result = array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
+  return array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
+}
+
+ValueArray NcFile::values(const NcVariable& variable, std::size_t dimension, std::size_t first,
+                          std::size_t count) const {
+  ValueArray result = numeric_array(variable);
+  std::vector<std::size_t> start(variable.sizes.size(), 0);
+  std::vector<std::size_t> sizes = variable.sizes;
+  start[dimension] = first;
+  sizes[dimension] = count;
+  std::visit(
+      [&]<class T>(std::vector<T>& values) {
+        const std::vector<std::uint64_t> wide(sizes.begin(), sizes.end());
+        values.resize(static_cast<std::size_t>(checked_bytes(wide, sizeof(T), path_) / sizeof(T)));
+        check(nc_get_vara(variable.group, variable.id, start.data(), sizes.data(), values.data()),
+              "reading " + variable.name);
+      },
+      result);
+  return result;
+}
+
+ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) const {
+  ValueArray result = numeric_array(variable);
   const std::vector<std::uint64_t> sizes(variable.sizes.begin(), variable.sizes.end());
   std::visit(
       [&]<class T>(std::vector<T>& values) {

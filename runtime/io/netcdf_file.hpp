@@ -47,11 +47,18 @@ class NcFile {
 
   /// All values, in the order of the file; attribute _Unsigned is taken into account. UnsupportedData unless numeric.
   [[nodiscard]] ValueArray values(const NcVariable& variable, const Progress& progress) const;
+  /// Those with indices [first, first + count) along one dimension (the others whole).
+  [[nodiscard]] ValueArray values(const NcVariable& variable, std::size_t dimension, std::size_t first,
+                                  std::size_t count) const;
+  /// How many indices of a dimension lie in one block of the file; 1 if it is not stored in blocks.
+  [[nodiscard]] std::size_t block_length(const NcVariable& variable, std::size_t dimension) const;
+  [[nodiscard]] bool is_compressed() const noexcept { return !content_.empty(); }
 
  private:
   void check(int status, const std::string& what) const;
   void collect(int group, const std::string& prefix, int depth, std::vector<NcVariable>& out) const;
   [[nodiscard]] NcVariable describe(int group, int id, const std::string& prefix) const;
+  [[nodiscard]] ValueArray numeric_array(const NcVariable& variable) const;
   void read_blocks(const NcVariable& variable, std::size_t item, void* to, const Progress& progress) const;
 
   std::filesystem::path path_;

@@ -40,15 +40,6 @@ bool fits_int32(const std::vector<T>& values) {
 }
 
 template <int N>
-Grid<N> fixed_grid(const RawGrid& grid) {
-  Grid<N> result;
-  for (int a = 0; a < N; ++a) result.axes[a] = grid.axes[a];
-  result.linear = grid.linear;
-  result.offset = grid.offset;
-  return result;
-}
-
-template <int N>
 AnyImageN<N> with_dimension(RawImage&& image) {
   const Grid<N> grid = fixed_grid<N>(image.grid);
   return std::visit(

@@ -43,6 +43,16 @@ void name_axes(RawGrid& grid);
 /// (a slice that lies obliquely in space), what is left is the plane's own coordinates and no world frame.
 void drop_trailing_axes(RawImage& image);
 
+/// The grid in N dimensions, of which it has as many axes.
+template <int N>
+Grid<N> fixed_grid(const RawGrid& grid) {
+  Grid<N> result;
+  for (int a = 0; a < N; ++a) result.axes[a] = grid.axes[a];
+  result.linear = grid.linear;
+  result.offset = grid.offset;
+  return result;
+}
+
 /// The image, in 2, 3 or 4 dimensions; UnsupportedData for any other. uint32, int64 and uint64 become int32 if all
 /// values fit, else double.
 AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <new>
 #include <span>
 
@@ -74,6 +75,24 @@ ValueArray read_raw_values(const fs::path& path, std::uint64_t offset, std::stri
         if (found < offset + bytes)
           fail(ErrorCode::MalformedFile, path, "{} bytes; expected {} for {} values of type {}", found, offset + bytes,
                count, type);
+        if (swapped) swap_bytes(values);
+      },
+      result);
+  return result;
+}
+
+ValueArray read_values_at(const fs::path& path, std::uint64_t offset, std::string_view type, std::uint64_t count,
+                          bool swapped) {
+  ValueArray result = array_of_type(type);
+  std::visit(
+      [&]<class T>(std::vector<T>& values) {
+        values.resize(static_cast<std::size_t>(count));
+        std::ifstream file(path, std::ios::binary);
+        file.seekg(static_cast<std::streamoff>(offset));
+        file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(count * sizeof(T)));
+        if (!file)
+          fail(ErrorCode::MalformedFile, path, "{} bytes from byte {} on cannot be read; expected {} values of type {}",
+               count * sizeof(T), offset, count, type);
         if (swapped) swap_bytes(values);
       },
       result);

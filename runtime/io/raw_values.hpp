@@ -18,4 +18,8 @@ namespace tegl::io_detail {
 ValueArray read_raw_values(const std::filesystem::path& path, std::uint64_t offset, std::string_view type,
                            std::uint64_t count, bool swapped, const Progress& progress);
 
+/// The same of a file that is not compressed, without progress.
+ValueArray read_values_at(const std::filesystem::path& path, std::uint64_t offset, std::string_view type,
+                          std::uint64_t count, bool swapped);
+
 }  // namespace tegl::io_detail

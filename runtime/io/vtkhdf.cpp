@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTKHDF, unstructured grids: what ParaView opens. Triangles, segments, or tetrahedra whose vertices carry the time as
-// the point array "t". All coordinates are double: lossless. Axis names and units are attributes of the group, which
-// VTK does not look at.
+// VTKHDF, unstructured grids: what ParaView opens. A mesh as a whole, to and from a file; vtkhdf_writer.cpp says what
+// is where in it.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
+#include "vtkhdf.hpp"
+
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "common.hpp"
 #include "hdf5_file.hpp"
 #include "mesh_formats.hpp"
-#include "output_file.hpp"
+#include "vtkhdf_writer.hpp"
 
 namespace tegl::io_detail {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// VTK's numbers of the simplices by dimension: line, triangle, tetrahedron.
-constexpr std::array<unsigned char, 4> kCellTypes = {1, 3, 5, 10};
-
-std::string joined(const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, "\n")); }
 
 std::vector<std::string> split(const std::string& text, std::size_t count) {
   std::vector<std::string> result(1);
@@ -35,110 +30,6 @@ std::vector<std::string> split(const std::string& text, std::size_t count) {
   }
   result.resize(count);
   return result;
-}
-
-/// Writes the parts one after the other; progress counts what is written of all.
-class Writer {
- public:
-  Writer(const Mesh& mesh, const H5File& file, hid_t group, const Progress& progress, const fs::path& path)
-      : mesh_(mesh), file_(file), group_(group), progress_(progress), path_(path) {}
-
-  void run() {
-    const auto vertices = static_cast<std::int64_t>(vertex_count(mesh_));
-    const auto cells = static_cast<std::int64_t>(simplex_count(mesh_));
-    const auto corners = static_cast<std::int64_t>(mesh_.dim) + 1;
-    single("NumberOfPoints", vertices);
-    single("NumberOfCells", cells);
-    single("NumberOfConnectivityIds", cells * corners);
-    points();
-    connectivity(static_cast<std::uint64_t>(cells * corners));
-    offsets(static_cast<std::uint64_t>(cells) + 1, corners);
-    types(static_cast<std::uint64_t>(cells));
-  }
-
-  void times(hid_t point_data) {
-    std::vector<double> block;
-    file_.write_rows(point_data, "t", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, vertex_count(mesh_), 0,
-                     [&](std::uint64_t first, std::uint64_t count) {
-                       block.resize(count);
-                       for (std::uint64_t i = 0; i < count; ++i) block[i] = mesh_.coordinates[4 * (first + i) + 3];
-                       return block.data();
-                     });
-  }
-
- private:
-  void report(double fraction) const { tick(progress_, fraction, path_); }
-
-  void single(const char* name, std::int64_t value) const {
-    file_.write_rows(group_, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1, 0,
-                     [&](std::uint64_t, std::uint64_t) { return &value; });
-  }
-
-  void points() const {
-    std::vector<std::array<double, 3>> block;
-    file_.write_rows(group_, "Points", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, vertex_count(mesh_), 3,
-                     [&](std::uint64_t first, std::uint64_t count) {
-                       report(0.3 * static_cast<double>(first) / static_cast<double>(vertex_count(mesh_)));
-                       block.resize(count);
-                       for (std::uint64_t i = 0; i < count; ++i) block[i] = position(mesh_, first + i);
-                       return block.data();
-                     });
-  }
-
-  void connectivity(std::uint64_t ids) const {
-    file_.write_rows(group_, "Connectivity", H5T_STD_I64LE, H5T_NATIVE_UINT32, ids, 0,
-                     [&](std::uint64_t first, std::uint64_t) {
-                       report(0.3 + 0.5 * static_cast<double>(first) / static_cast<double>(ids));
-                       return mesh_.simplices.data() + first;
-                     });
-  }
-
-  void offsets(std::uint64_t count, std::int64_t corners) const {
-    std::vector<std::int64_t> block;
-    file_.write_rows(group_, "Offsets", H5T_STD_I64LE, H5T_NATIVE_INT64, count, 0,
-                     [&](std::uint64_t first, std::uint64_t rows) {
-                       report(0.8 + 0.1 * static_cast<double>(first) / static_cast<double>(count));
-                       block.resize(rows);
-                       for (std::uint64_t i = 0; i < rows; ++i)
-                         block[i] = static_cast<std::int64_t>(first + i) * corners;
-                       return block.data();
-                     });
-  }
-
-  void types(std::uint64_t cells) const {
-    std::vector<unsigned char> block;
-    file_.write_rows(group_, "Types", H5T_STD_U8LE, H5T_NATIVE_UINT8, cells, 0, [&](std::uint64_t, std::uint64_t rows) {
-      block.assign(rows, kCellTypes[static_cast<std::size_t>(mesh_.dim)]);
-      return block.data();
-    });
-  }
-
-  const Mesh& mesh_;
-  const H5File& file_;
-  hid_t group_;
-  const Progress& progress_;
-  const fs::path& path_;
-};
-
-void write_into(const Mesh& mesh, const fs::path& where, const fs::path& path, const Progress& progress) {
-  const H5Quiet quiet;
-  H5File file = H5File::create(where, path);
-  {
-    const H5Handle group = file.create_group("VTKHDF");
-    constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
-    file.put_numbers(group.id(), "Version", kVersion);
-    file.put_text(group.id(), "Type", "UnstructuredGrid");
-    const std::array<std::int64_t, 2> dims = {mesh.dim, mesh.space_dim};
-    file.put_numbers(group.id(), "tegl_dim_and_space_dim", dims);
-    file.put_text(group.id(), "tegl_axis_names", joined(mesh.axis_names));
-    file.put_text(group.id(), "tegl_axis_units", joined(mesh.axis_units));
-    Writer writer(mesh, file, group.id(), progress, path);
-    writer.run();
-    const H5Handle point_data = file.create_group("VTKHDF/PointData");
-    if (mesh.space_dim == 4) writer.times(point_data.id());
-  }
-  tick(progress, 1.0, path);
-  file.close();
 }
 
 /// The simplices of cells that are all of one type.
@@ -248,9 +139,22 @@ class Reader {
 }  // namespace
 
 void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress) {
-  PendingPath pending(path);
-  write_into(mesh, pending.path(), path, progress);
-  pending.commit();
+  VtkhdfWriter writer(
+      path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh)});
+  const std::size_t all = mesh.coordinates.size() + mesh.simplices.size();
+  const auto in_blocks = [&](auto values, std::size_t before, std::size_t columns, auto&& append) {
+    const std::size_t most = kMostRows * columns;
+    for (std::size_t at = 0; at < values.size(); at += most) {
+      tick(progress, static_cast<double>(before + at) / static_cast<double>(all), path);
+      append(values.subspan(at, std::min(most, values.size() - at)));
+    }
+  };
+  in_blocks(std::span<const double>(mesh.coordinates), 0, static_cast<std::size_t>(mesh.space_dim),
+            [&](std::span<const double> part) { writer.append_vertices(part); });
+  in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size(), static_cast<std::size_t>(mesh.dim) + 1,
+            [&](std::span<const Index> part) { writer.append_simplices(part); });
+  tick(progress, 1.0, path);
+  writer.commit();
 }
 
 Mesh read_vtkhdf(const fs::path& path) {

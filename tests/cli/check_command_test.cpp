@@ -39,7 +39,10 @@ TEST_F(Check, OfASphereFindsNothing) {
                                    {"bad_links", 0},
                                    {"orientation_conflicts", 0},
                                    {"degenerate_simplices", 0}};
-  EXPECT_EQ(run.json(), expected) << "these keys and no others";
+  nlohmann::json found = run.json();
+  for (const char* stage : {"read", "check", "total"}) EXPECT_GE(found["seconds"][stage], 0.0);
+  found.erase("seconds");
+  EXPECT_EQ(found, expected) << "these keys and no others";
 }
 
 TEST_F(Check, OfASurfaceWithABorderIsFineUnlessClosednessIsRequired) {
@@ -53,6 +56,14 @@ TEST_F(Check, OfASurfaceWithABorderIsFineUnlessClosednessIsRequired) {
   EXPECT_EQ(required.exit, 1);
   EXPECT_THAT(required.out, HasSubstr("not closed"));
   EXPECT_EQ(run_tegl({"check", save(octahedron()), "--require", "closed,nondegenerate"}).exit, 0);
+}
+
+TEST_F(Check, OfAnEmptyMeshSaysSoAndMeetsNoRequirement) {
+  const std::string file = save({});
+  const RunResult run = run_tegl({"check", file});
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, HasSubstr("empty: no simplices"));
+  EXPECT_EQ(run_tegl({"check", file, "--require", "closed"}).exit, 1);
 }
 
 TEST_F(Check, OfAFlippedTriangleFails) {

@@ -2,8 +2,11 @@
 //
 // What goes wrong: the exit code, a message that names the file and the value, and no file left behind.
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "sample_files.hpp"
 #include "tegl_program.hpp"
@@ -158,6 +161,43 @@ TEST_F(Errors, OutputThatCannotBeWrittenExitsWith6) {
   expect_contour_failure(6, ball_file(), "0", path("none/out.ply"), {path("none/out.ply"), "does not exist"});
   expect_contour_failure(6, ball_file(), "0", ball_file() + "/out.ply", {"not a folder"});
   expect_contour_failure(6, ball_file(), "0", "/proc/out.ply", {"/proc/out.ply"});
+}
+
+TEST_F(Errors, AFileThatGrowsBeyondItsLimitExitsWith6InEveryFormat) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  for (const char* name : {"out.ply", "out.glb", "out.vtkhdf"})
+    for (const rlim_t limit : {rlim_t{100}, rlim_t{3000}}) {
+      const rlimit small{limit, before.rlim_max};
+      ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);  // inherited by the program
+      expect_contour_failure(6, ball_file(), "0", path(name), {path(name), "File too large"});
+      ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    }
+}
+
+TEST_F(Errors, AReportThatCannotBeWrittenExitsWith6) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  for (const std::string& command : {"info " + ball_file(), "info --json " + ball_file()}) {
+    const int status = std::system((TEGL_PROGRAM " " + command + " > /dev/full 2> /dev/null").c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 6) << command;
+  }
+}
+
+TEST_F(Errors, ASavedContourIsNoImage) {
+  const std::string saved = path("saved.vtkhdf");
+  ASSERT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", saved}).exit, 0);
+  expect_failure(4, {"info", saved}, {saved, "mesh", "expected an image"});
+  expect_contour_failure(4, saved, "0", path("out.ply"), {saved, "mesh", "expected an image"});
+}
+
+TEST_F(Errors, ConstantValuesExitWith5AndSaySo) {
+  const std::string file = write("constant.nrrd", nrrd_bytes(sample({3, 3}, [](auto&) { return 1.0; })));
+  expect_contour_failure(5, file, "1", path("out.ply"), {file, "all values are 1"});
+}
+
+TEST_F(Errors, AnOptionGivenTwiceIsNamed) {
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "--iso", "1", "-o", path("out.ply")},
+                 {"--iso", "more than once"});
 }
 
 TEST_F(Errors, OutputChecksComeBeforeTheInputIsRead) {

@@ -23,7 +23,8 @@ struct ExtractOptions {
   /// of the *data* lies inside the image (missing values), the contour stays open.
   bool close = false;
   /// Keeps the points on edges at least this share of an edge away from the samples, in [0, 0.5).
-  /// 0: exact positions; where a sample equals the isovalue, simplices of zero size may arise.
+  /// 0: exact positions; where a sample equals the isovalue, simplices of zero size arise. (Whatever it is, four points
+  /// of a compact 4D tile may lie in one plane.)
   double epsilon = 0.0;
   Progress progress;
 };

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
+#include "tegl/layers.hpp"
 
 namespace tegl {
 
@@ -76,6 +78,40 @@ struct ImageVariable {
 /// The variables that ReadImageOptions::variable may name in a netCDF file; none for the other formats, whose files
 /// hold one image without a name. Reads no values. Errors: those of read_image.
 std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path);
+
+/// The layers of an image of any value type in N dimensions.
+template <int N>
+using AnyLayersN =
+    std::variant<std::unique_ptr<LayerReader<std::uint8_t, N>>, std::unique_ptr<LayerReader<std::int8_t, N>>,
+                 std::unique_ptr<LayerReader<std::uint16_t, N>>, std::unique_ptr<LayerReader<std::int16_t, N>>,
+                 std::unique_ptr<LayerReader<std::int32_t, N>>, std::unique_ptr<LayerReader<float, N>>,
+                 std::unique_ptr<LayerReader<double, N>>>;
+/// The layers of an image of any value type in 2, 3 or 4 dimensions.
+using AnyLayers = std::variant<AnyLayersN<2>, AnyLayersN<3>, AnyLayersN<4>>;
+
+struct OpenLayersResult {
+  AnyLayers layers;
+  ImageInfo info;
+};
+
+/// Opens a variable of a netCDF file, or a dataset of an HDF5 file, to be read layer by layer: what read_image reads
+/// whole, with the same grid and values (uint32, int64 and uint64 as double). `variable` as in ReadImageOptions. The
+/// file stays open as long as the layers live. Memory: a layer, or as many as lie in one compressed block of the file,
+/// if these are no more than 256 MiB. Errors: those of read_image, now or by read(); UnsupportedData for a file that is
+/// gzipped as a whole.
+OpenLayersResult open_layers(const std::filesystem::path& path, const std::string& variable = {});
+
+/// Values that lie in a file one after the other, axis 0 fastest.
+struct RawLayout {
+  std::vector<std::size_t> sizes;  ///< of 2 to 4 axes
+  std::string type;                ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  std::uint64_t offset = 0;        ///< bytes before the first value
+  bool big_endian = false;
+};
+
+/// The same of a file that holds nothing but values, on a grid of step 1. Errors: FileNotFound; InvalidArgument (the
+/// layout); MalformedFile if the file is shorter than the layout needs.
+OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
 
 /// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.
 struct Mesh {

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images that are read layer by layer.
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <numeric>
+
+#include "common.hpp"
+#include "raw_image.hpp"
+#include "raw_values.hpp"
+#include "readers.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+/// Reads in blocks of the file, so that none is decompressed once per layer; holds one.
+template <Value T, int N>
+class BlockLayers final : public LayerReader<T, N> {
+ public:
+  BlockLayers(RawLayers source, std::size_t block)
+      : grid_(fixed_grid<N>(source.grid)), read_(std::move(source.read)), block_(block) {
+    for (int a = 0; a < N - 1; ++a) layer_size_ *= grid_.axes[a].size();
+  }
+
+  [[nodiscard]] const Grid<N>& grid() const noexcept override { return grid_; }
+
+  void read(std::size_t k, T* to) override {
+    const std::size_t first = k / block_ * block_;
+    if (first != first_) {
+      values_ = ValueArray();  // one block at a time
+      values_ = read_(first, std::min(block_, grid_.axes[N - 1].size() - first));
+      first_ = first;
+    }
+    std::visit(
+        [&](const auto& values) {
+          const auto begin = values.begin() + static_cast<std::ptrdiff_t>((k - first_) * layer_size_);
+          std::transform(begin, begin + static_cast<std::ptrdiff_t>(layer_size_), to,
+                         [](auto value) { return static_cast<T>(value); });
+        },
+        values_);
+  }
+
+ private:
+  Grid<N> grid_;
+  std::function<ValueArray(std::size_t, std::size_t)> read_;
+  std::size_t block_;
+  std::size_t layer_size_ = 1;
+  ValueArray values_;
+  std::size_t first_ = std::numeric_limits<std::size_t>::max();
+};
+
+/// Bytes of a block beyond which layers are read one by one.
+constexpr std::uint64_t kMostBlockBytes = std::uint64_t{1} << 28;
+
+template <int N>
+AnyLayersN<N> with_dimension(RawLayers&& source, const fs::path& path) {
+  return std::visit(
+      [&]<class Stored>(const std::vector<Stored>&) -> AnyLayersN<N> {
+        using T = std::conditional_t<Value<Stored>, Stored, double>;
+        std::vector<std::uint64_t> sizes;
+        for (const Axis& axis : source.grid.axes) sizes.push_back(axis.size());
+        sizes.back() = source.block;
+        const std::size_t block = checked_bytes(sizes, sizeof(Stored), path) <= kMostBlockBytes ? source.block : 1;
+        return std::unique_ptr<LayerReader<T, N>>(std::make_unique<BlockLayers<T, N>>(std::move(source), block));
+      },
+      source.read(0, 0));
+}
+
+OpenLayersResult to_result(RawLayers&& source, const fs::path& path) {
+  ImageInfo info = source.info;
+  switch (source.grid.axes.size()) {
+    case 2:
+      return {with_dimension<2>(std::move(source), path), std::move(info)};
+    case 3:
+      return {with_dimension<3>(std::move(source), path), std::move(info)};
+    case 4:
+      return {with_dimension<4>(std::move(source), path), std::move(info)};
+    default:
+      fail(ErrorCode::InvalidArgument, path, "image of {} axes; expected 2, 3 or 4", source.grid.axes.size());
+  }
+}
+
+std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
+  constexpr std::array<std::string_view, 7> kNames = {"uint8", "int8", "uint16", "int16", "int32", "float", "double"};
+  const auto* const found = std::ranges::find(kNames, layout.type);
+  if (found == kNames.end())
+    fail(ErrorCode::InvalidArgument, path, "values of type '{}'; expected one of {}", layout.type,
+         fmt::join(kNames, ", "));
+  return *found;
+}
+
+}  // namespace
+
+OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
+  require_readable_file(path);
+  return to_result(open_netcdf_layers(path, variable), path);
+}
+
+OpenLayersResult open_raw_layers(const fs::path& path, const RawLayout& layout) {
+  require_readable_file(path);
+  const std::string_view type = stored_name(layout, path);
+  RawLayers source;
+  for (const std::size_t size : layout.sizes) {
+    if (size == 0) fail(ErrorCode::InvalidArgument, path, "sizes {}; expected no 0", shape_text(layout.sizes));
+    source.grid.axes.push_back(Axis::uniform(size));
+  }
+  if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
+    fail(ErrorCode::InvalidArgument, path, "{} sizes; expected those of 2, 3 or 4 axes", layout.sizes.size());
+  const auto n = static_cast<Eigen::Index>(layout.sizes.size());
+  source.grid.linear = Eigen::MatrixXd::Identity(n, n);
+  source.grid.offset = Eigen::VectorXd::Zero(n);
+  name_axes(source.grid);
+  const std::uint64_t item = std::visit([]<class T>(const std::vector<T>&) { return sizeof(T); }, array_of_type(type));
+  const std::vector<std::uint64_t> sizes(layout.sizes.begin(), layout.sizes.end());
+  const std::uint64_t needed = checked_bytes(sizes, item, path);
+  const std::uint64_t found = size_of_file(path);
+  if (layout.offset > found || needed > found - layout.offset)
+    fail(ErrorCode::MalformedFile, path, "{} bytes; expected {} from byte {} on, for {} values of type {}", found,
+         needed, layout.offset, shape_text(sizes), type);
+  const std::uint64_t per_layer = needed / item / sizes.back();
+  const bool swapped = layout.big_endian != (std::endian::native == std::endian::big);
+  source.read = [path, type, item, per_layer, swapped, offset = layout.offset](std::size_t first, std::size_t count) {
+    return read_values_at(path, offset + first * per_layer * item, type, count * per_layer, swapped);
+  };
+  source.info.format = "raw";
+  source.info.stored_type = type;
+  return to_result(std::move(source), path);
+}
+
+}  // namespace tegl

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What VTKHDF's reader and writer share.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace tegl::io_detail {
+
+/// VTK's numbers of the simplices by dimension: vertex, line, triangle, tetrahedron.
+inline constexpr std::array<unsigned char, 4> kCellTypes = {1, 3, 5, 10};
+
+/// Rows that are converted and handed to HDF5 at a time.
+inline constexpr std::size_t kMostRows = std::size_t{1} << 16;
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images read layer by layer are those that are read whole.
+#include <netcdf.h>
+
+#include <cstdlib>
+
+#include "io_support.hpp"
+#include "netcdf_files.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+template <class T>
+bool same_bits(T a, T b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+/// Expects the layers of `opened`, one after the other, to be the image.
+void expect_layers_of(const AnyImage& image, const AnyLayers& opened) {
+  ASSERT_EQ(image.index(), opened.index());
+  const auto compare = [](const auto& owned, auto& layers) {
+    using T = typename std::decay_t<decltype(owned.values)>::value_type;
+    const auto& grid = layers->grid();
+    constexpr std::size_t kLast = std::tuple_size_v<decltype(grid.axes)> - 1;
+    std::size_t size = 1;
+    for (std::size_t a = 0; a <= kLast; ++a) {
+      ASSERT_EQ(grid.axes[a].size(), owned.grid.axes[a].size());
+      for (std::size_t i = 0; i < grid.axes[a].size(); ++i) EXPECT_EQ(grid.axes[a][i], owned.grid.axes[a][i]);
+      EXPECT_EQ(grid.axes[a].name, owned.grid.axes[a].name);
+      EXPECT_EQ(grid.axes[a].unit, owned.grid.axes[a].unit);
+      if (a < kLast) size *= grid.axes[a].size();
+    }
+    EXPECT_EQ(grid.linear, owned.grid.linear);
+    std::vector<T> layer(size);
+    for (std::size_t k = 0; k < grid.axes[kLast].size(); ++k) {
+      layers->read(k, layer.data());
+      for (std::size_t i = 0; i < size; ++i)
+        ASSERT_TRUE(same_bits(layer[i], owned.values[k * size + i])) << "layer " << k << ", sample " << i;
+    }
+  };
+  std::visit(
+      [&](const auto& typed, const auto& layers) {
+        if constexpr (std::tuple_size_v<std::decay_t<decltype(std::get<0>(typed).grid.axes)>> ==
+                      std::tuple_size_v<std::decay_t<decltype(std::get<0>(layers)->grid().axes)>>)
+          std::visit(
+              [&](const auto& owned, const auto& reader) {
+                using Owned = typename std::decay_t<decltype(owned.values)>::value_type;
+                using Read = typename std::decay_t<decltype(*reader)>::value_type;
+                if constexpr (std::is_same_v<Owned, Read>)
+                  compare(owned, reader);
+                else
+                  ADD_FAILURE() << "another value type";
+              },
+              typed, layers);
+      },
+      image, opened);
+}
+
+void expect_same(const fs::path& path) { expect_layers_of(read_image(path).image, open_layers(path).layers); }
+
+enum class Order { time_first, time_last };
+
+/// t(7) y(4) x(5) of a type, time at the place that `order` says; stored in blocks of three time steps if `blocks`.
+void write_sample(const fs::path& path, int format, nc_type type, Order order, bool blocks, bool packed) {
+  NcWriter file(path, format);
+  const int t = file.dimension("time", 7);
+  const int y = file.dimension("y", 4);
+  const int x = file.dimension("x", 5);
+  const auto dimensions = order == Order::time_first ? std::vector{t, y, x} : std::vector{y, x, t};
+  const int v = file.variable("v", type, dimensions);
+  if (packed) {
+    file.number(v, "scale_factor", NC_DOUBLE, {0.25});
+    file.number(v, "_FillValue", type, {7});
+  }
+  if (blocks) {
+    const auto chunks =
+        order == Order::time_first ? std::vector<std::size_t>{3, 2, 5} : std::vector<std::size_t>{4, 5, 3};
+    NcWriter::ok(nc_def_var_chunking(file.id(), v, NC_CHUNKED, chunks.data()));
+    NcWriter::ok(nc_def_var_deflate(file.id(), v, 1, 1, 1));
+  }
+  file.end();
+  std::vector<double> values(7 * 4 * 5);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * i % 101);
+  file.values(v, values);
+}
+
+TEST(Layers, OfNetcdfAreTheImage) {
+  const TempDir dir;
+  for (const int format : {0, NC_64BIT_OFFSET, NC_NETCDF4})
+    for (const Order order : {Order::time_first, Order::time_last})
+      for (const nc_type type : {NC_BYTE, NC_SHORT, NC_INT, NC_FLOAT, NC_DOUBLE})
+        for (const bool packed : {false, true}) {
+          const bool blocks = format == NC_NETCDF4;
+          SCOPED_TRACE(testing::Message() << "format " << format << ", type " << type << ", packed " << packed
+                                          << ", time last " << (order == Order::time_last));
+          write_sample(dir / "image.nc", format, type, order, blocks, packed);
+          expect_same(dir / "image.nc");
+        }
+}
+
+TEST(Layers, OfTheExampleAreTheImage) { expect_same(fs::path(TEGL_SOURCE_DIR) / "examples/data/ocean_temperature.nc"); }
+
+TEST(Layers, OfAWholeFileThatIsCompressedAreRefused) {
+  const TempDir dir;
+  write_sample(dir / "plain.nc", 0, NC_FLOAT, Order::time_first, false, false);
+  write_file(dir / "image.nc.gz", compressed(read_file(dir / "plain.nc")));
+  const Error error = error_of([&] { open_layers(dir / "image.nc.gz"); });
+  EXPECT_EQ(error.code(), ErrorCode::UnsupportedData);
+  EXPECT_THAT(error.what(), AllOf(HasSubstr("image.nc.gz"), HasSubstr("layer by layer")));
+}
+
+TEST(Layers, OfRawValuesAreThoseOfTheFile) {
+  const TempDir dir;
+  OwnedImage<std::int16_t, 3> image{Grid<3>::unit({3, 4, 5}), {}};
+  for (int i = 0; i < 60; ++i) image.values.push_back(static_cast<std::int16_t>(i * 521 - 9000));
+  const std::array<const char*, 3> names = {"x", "y", "z"};
+  for (std::size_t a = 0; a < 3; ++a) image.grid.axes[a].name = names[a];
+  std::string bytes = bytes_of(image.values);
+  write_file(dir / "little.raw", "header" + bytes);
+  for (std::size_t i = 0; i < bytes.size(); i += 2) std::swap(bytes[i], bytes[i + 1]);
+  write_file(dir / "big.raw", bytes + "rest");
+  const AnyImage any = AnyImageN<3>(image);
+  expect_layers_of(any, open_raw_layers(dir / "little.raw", {{3, 4, 5}, "int16", 6, false}).layers);
+  expect_layers_of(any, open_raw_layers(dir / "big.raw", {{3, 4, 5}, "int16", 0, true}).layers);
+}
+
+TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
+  const TempDir dir;
+  write_file(dir / "values.raw", std::string(100, 'x'));
+  const auto error = [&](const RawLayout& layout) {
+    return error_of([&] { open_raw_layers(dir / "values.raw", layout); });
+  };
+  EXPECT_EQ(error({{10, 11}, "uint8"}).code(), ErrorCode::MalformedFile);
+  EXPECT_THAT(error({{10, 11}, "uint8"}).what(), AllOf(HasSubstr("100 bytes"), HasSubstr("110")));
+  EXPECT_EQ(error({{10, 10}, "uint8", 1}).code(), ErrorCode::MalformedFile);
+  EXPECT_EQ(error({{10, 10}, "uint8", ~std::uint64_t{0}}).code(), ErrorCode::MalformedFile);
+  EXPECT_EQ(error({{10, 0}, "uint8"}).code(), ErrorCode::InvalidArgument);
+  EXPECT_EQ(error({{100}, "uint8"}).code(), ErrorCode::InvalidArgument);
+  EXPECT_EQ(error({{2, 2, 5, 5, 1}, "uint8"}).code(), ErrorCode::InvalidArgument);
+  EXPECT_THAT(error({{5, 5}, "float16"}).what(), AllOf(HasSubstr("float16"), HasSubstr("uint16")));
+}
+
+}  // namespace
+}  // namespace tegl::test
