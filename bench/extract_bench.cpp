@@ -1,92 +1,199 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How fast contours are extracted: smooth fields and noise, 3D and 4D, both triangulations. Items are
-// simplices; the counters give tiles and samples per second beside them.
-#include <cstdint>
-#include <string>
-
+// How fast contours are made, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
+// closed or not, by number of threads, and by size (scaling/...: what bench/scaling plots).
+//
+// Time is that of the whole extraction. Beside it stand, as means over the iterations, the milliseconds of each stage,
+// and rates: samples and input bytes per second of all of it and of the classification alone, active tiles per second
+// of all of it and of finding them, simplices and output bytes per second of all of it and of their generation.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+
 #include "fields.hpp"
-#include "tegl/extract.hpp"
+#include "run.hpp"
 
 namespace tegl::bench {
 namespace {
 
+/// What to run.
+struct Case {
+  std::string field;
+  std::size_t samples = 0;
+  ExtractOptions options;
+  int threads = 1;
+};
+
+/// The field last used: benchmarks of one field run after one another, and a 512^3 image is not kept beside others.
 template <int N>
-test::Metaballs<N> metaballs() {
-  test::Metaballs<N> field;
-  field.width = 0.2;
-  std::mt19937_64 bits(7);
-  for (int i = 0; i < 12; ++i) {
-    test::Point<N> centre;
-    for (double& x : centre) x = 1.4 * test::unit_random(bits) - 0.7;
-    field.centres.push_back(centre);
+const OwnedImage<float, N>& field_image(const std::string& name, std::size_t samples) {
+  static std::map<std::string, OwnedImage<float, N>> kept;
+  const std::string key = name + std::to_string(samples);
+  if (!kept.contains(key)) {
+    kept.clear();
+    kept.emplace(key, make_field<N>(name, samples));
   }
-  return field;
+  return kept.at(key);
 }
 
-template <int N>
-OwnedImage<float, N> make_image(const std::string& field, std::size_t samples) {
-  const auto grid = test::centred_grid<N>(samples, 1.0);
-  if (field == "sphere") return test::sample_field<float, N>(grid, test::Ball<N>{{}, 0.8});
-  if (field == "gyroid") return test::sample_field<float, N>(grid, test::Gyroid<N>{});
-  if (field == "metaballs") return test::sample_field<float, N>(grid, metaballs<N>(), 1.0, -0.5);
-  auto image = test::noise<float, N>(grid, 11);
-  for (float& value : image.values) value -= 0.5f;
-  return image;
+/// The field in another value type: integers spread over the type's range, isovalue 0 in the middle of it.
+template <Value T, int N>
+OwnedImage<T, N> convert(const OwnedImage<float, N>& image) {
+  OwnedImage<T, N> converted{image.grid, std::vector<T>(image.values.size())};
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    if constexpr (std::is_floating_point_v<T>) {
+      converted.values[i] = image.values[i];
+    } else {
+      constexpr double kLow = std::numeric_limits<T>::lowest();
+      constexpr double kHigh = std::numeric_limits<T>::max();
+      const double middle = (kLow + kHigh + 1) / 2;
+      converted.values[i] =
+          static_cast<T>(std::clamp(middle + std::floor(double{image.values[i]} * (kHigh - kLow) / 8), kLow, kHigh));
+    }
+  }
+  return converted;
 }
 
-template <int N>
-void extract_field(benchmark::State& state, const std::string& field, std::size_t samples,
-                   const ExtractOptions& options) {
-  const auto image = make_image<N>(field, samples);
-  ExtractStats stats;
-  std::size_t simplices = 0;
-  std::size_t vertices = 0;
-  for (auto _ : state) {
-    const auto contour = extract<float>(image.view(), 0.0, options, &stats);
-    simplices = contour.simplices.size();
-    vertices = contour.vertices.size();
-    benchmark::DoNotOptimize(contour.simplices.data());
+/// The isovalue of `convert`ed fields: the middle of the type's range.
+template <Value T>
+constexpr double isovalue() {
+  if constexpr (std::is_floating_point_v<T>) return 0.0;
+  return (double{std::numeric_limits<T>::lowest()} + double{std::numeric_limits<T>::max()} + 1) / 2;
+}
+
+/// Sums over the iterations of one benchmark.
+struct Sums {
+  ExtractStats stages;
+  void add(const ExtractStats& stats) {
+    stages.classify_seconds += stats.classify_seconds;
+    stages.find_seconds += stats.find_seconds;
+    stages.generate_seconds += stats.generate_seconds;
+    stages.close_seconds += stats.close_seconds;
   }
+};
+
+/// The counters `stage_ms` and, where the stage took time, `rate` = units in a second of it.
+void report_stage(benchmark::State& state, const char* stage, double seconds, const char* rate, double units) {
+  const auto iterations = static_cast<double>(state.iterations());
+  state.counters[std::string(stage) + "_ms"] = 1e3 * seconds / iterations;
+  if (seconds > 0 && units > 0) state.counters[rate] = units * iterations / seconds;
+}
+
+void report(benchmark::State& state, const Sums& sums, const ExtractStats& stats, double samples, double input,
+            double simplices, double output) {
+  using benchmark::Counter;
+  constexpr auto kRate = Counter::kIsIterationInvariantRate;
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(simplices));
-  state.counters["tiles/s"] =
-      benchmark::Counter(static_cast<double>(stats.active_tiles), benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["samples/s"] =
-      benchmark::Counter(static_cast<double>(image.values.size()), benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["simplices"] = static_cast<double>(simplices);
-  state.counters["vertices"] = static_cast<double>(vertices);
-  state.counters["classify_ms"] = 1e3 * stats.classify_seconds;
-  state.counters["find_ms"] = 1e3 * stats.find_seconds;
-  state.counters["generate_ms"] = 1e3 * stats.generate_seconds;
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(input));
+  state.counters["samples/s"] = Counter(samples, kRate);
+  state.counters["tiles/s"] = Counter(static_cast<double>(stats.active_tiles), kRate);
+  state.counters["output_bytes/s"] = Counter(output, kRate);
+  state.counters["simplices"] = simplices;
+  state.counters["active_tiles"] = static_cast<double>(stats.active_tiles);
+  report_stage(state, "classify", sums.stages.classify_seconds, "classify_bytes/s", input);
+  report_stage(state, "find", sums.stages.find_seconds, "find_tiles/s", static_cast<double>(stats.tiles));
+  report_stage(state, "generate", sums.stages.generate_seconds, "generate_bytes/s", output);
+  report_stage(state, "close", sums.stages.close_seconds, "close_samples/s", 0);
+}
+
+template <Value T, int N>
+void extract_image(benchmark::State& state, const Image<T, N>& image, const Case& what) {
+  const ExtractOptions options = with_threads(what.options, what.threads);
+  ExtractStats stats;
+  Sums sums;
+  double simplices = 0;
+  double output = 0;
+  for (auto _ : state) {
+    auto contour = extract(image, isovalue<T>(), options, &stats);
+    state.PauseTiming();  // freeing the contour is the caller's
+    sums.add(stats);
+    simplices = static_cast<double>(contour.simplices.size());
+    output = static_cast<double>(contour_bytes(contour));
+    contour = {};
+    state.ResumeTiming();
+  }
+  const double samples = std::pow(static_cast<double>(what.samples), N);
+  report(state, sums, stats, samples, samples * sizeof(T), simplices, output);
+}
+
+template <Value T, int N>
+void add(const std::string& group, const Case& what) {
+  std::string name = group + "/" + what.field + "/" + std::to_string(what.samples) + "^" + std::to_string(N);
+  if (what.options.triangulation == Triangulation::barycentric) name += "/barycentric";
+  if (what.options.close) name += "/closed";
+  if constexpr (!std::is_same_v<T, float>)
+    name += std::is_same_v<T, double> ? "/double"
+                                      : (std::is_signed_v<T> ? "/int" : "/uint") + std::to_string(8 * sizeof(T));
+  name += "/threads:" + std::to_string(what.threads);
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [what](benchmark::State& state) {
+                                 const auto& image = field_image<N>(what.field, what.samples);
+                                 if constexpr (std::is_same_v<T, float>) {
+                                   extract_image<T, N>(state, image.view(), what);
+                                 } else {
+                                   const auto converted = convert<T>(image);
+                                   extract_image<T, N>(state, converted.view(), what);
+                                 }
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->UseRealTime();
 }
 
 template <int N>
-void add(const std::string& field, std::size_t samples) {
-  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
-    ExtractOptions options;
-    options.triangulation = triangulation;
-    const auto name = field + "/" + std::to_string(samples) + "^" + std::to_string(N) + "/" +
-                      (triangulation == Triangulation::compact ? "compact" : "barycentric");
-    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
-      extract_field<N>(state, field, samples, options);
-    })->Unit(benchmark::kMillisecond);
-  }
+void add_field(const std::string& field, std::size_t samples) {
+  Case what{field, samples, {}, 1};
+  add<float, N>("extract", what);
+  if (kHasThreads) add<float, N>("extract", {field, samples, {}, 4});
+  what.options.triangulation = Triangulation::barycentric;
+  add<float, N>("extract", what);
+  what.options.triangulation = Triangulation::compact;
+  what.options.close = true;
+  add<float, N>("extract", what);
+}
+
+/// One smooth field in every value type: the classification reads fewer bytes, the rest stays.
+void add_types() {
+  const Case what{"metaballs", 256, {}, 1};
+  add<std::uint8_t, 3>("types", what);
+  add<std::int8_t, 3>("types", what);
+  add<std::uint16_t, 3>("types", what);
+  add<std::int16_t, 3>("types", what);
+  add<std::int32_t, 3>("types", what);
+  add<float, 3>("types", what);
+  add<double, 3>("types", what);
+}
+
+template <int N>
+void add_scaling(const std::string& field, std::initializer_list<std::size_t> sizes) {
+  for (const std::size_t samples : sizes)
+    for (int threads = 1; threads <= (kHasThreads ? 4 : 1); ++threads)
+      add<float, N>("scaling", {field, samples, {}, threads});
+}
+
+void add_all() {
+  for (const auto& field : field_names(2)) add_field<2>(field, 4096);
+  for (const auto& field : field_names(3)) add_field<3>(field, field == "noise" ? 128 : 256);
+  for (const auto& field : field_names(4)) add_field<4>(field, field == "noise" ? 32 : 64);
+  add_types();
+  add_scaling<3>("metaballs", {32, 64, 128, 256, 512});
+  add_scaling<3>("gyroid", {32, 64, 128, 256, 512});
+  add_scaling<3>("noise", {32, 64, 128, 256});
+  add_scaling<4>("sphere", {16, 24, 32, 48, 64, 96});
+  add_scaling<4>("balls", {16, 24, 32, 48, 64, 96});
+  add_scaling<4>("noise", {16, 24, 32, 48});
 }
 
 }  // namespace
 }  // namespace tegl::bench
 
 int main(int argc, char** argv) {
-  using tegl::bench::add;
-  add<2>("metaballs", 4096);
-  add<3>("sphere", 256);
-  add<3>("metaballs", 256);
-  add<3>("gyroid", 256);
-  add<3>("noise", 128);
-  add<4>("sphere", 64);
-  add<4>("noise", 32);
+  tegl::bench::add_all();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

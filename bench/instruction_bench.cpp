@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Small fixed inputs whose instructions are counted: `instruction_bench --list` names them, `instruction_bench NAME`
+// runs one. What counts happens inside the function tegl_measured, which valgrind knows by that name (see
+// bench/instructions); making the field does not.
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fields.hpp"
+#include "run.hpp"
+#include "tegl/check.hpp"
+#include "tegl/slice.hpp"
+
+/// The function that is counted: by a C name, so that it can be found; and no tail call, which would leave it before
+/// the work begins.
+extern "C" [[gnu::noinline]] void tegl_measured(const std::function<void()>& work) {
+  work();
+  asm volatile("" : : : "memory");
+}
+
+namespace tegl::bench {
+namespace {
+
+using NamedCase = std::pair<std::string, std::function<void()>>;
+
+/// Keeps a result alive up to here.
+template <class T>
+void use(const T& result) {
+  asm volatile("" : : "g"(&result) : "memory");
+}
+
+/// Calls tegl_measured through a pointer that the compiler cannot follow, so that it makes no copies for its callers.
+void measured(const std::function<void()>& work) {
+  void (*volatile function)(const std::function<void()>&) = tegl_measured;
+  function(work);
+}
+
+template <int N>
+void count_extract(const std::string& field, std::size_t samples, ExtractOptions options) {
+  const auto image = make_field<N>(field, samples);
+  options = with_threads(options, 1);
+  measured([&] { use(extract(image.view(), 0.0, options)); });
+}
+
+template <int N>
+NamedCase extract_case(const std::string& field, std::size_t samples, const std::string& suffix = "",
+                       const ExtractOptions& options = {}) {
+  return {"extract " + field + " " + std::to_string(samples) + "^" + std::to_string(N) + suffix,
+          [=] { count_extract<N>(field, samples, options); }};
+}
+
+/// Integers of 8 bits: classification at its narrowest.
+void count_bytes() {
+  const auto field = make_field<3>("metaballs", 96);
+  OwnedImage<std::uint8_t, 3> image{field.grid, std::vector<std::uint8_t>(field.values.size())};
+  for (std::size_t i = 0; i < field.values.size(); ++i)
+    image.values[i] = static_cast<std::uint8_t>(field.values[i] >= 0.0F ? 200 : 50);
+  const ExtractOptions options = with_threads(ExtractOptions{}, 1);
+  measured([&] { use(extract(image.view(), 128.0, options)); });
+}
+
+void count_slice() {
+  const auto image = make_field<4>("balls", 24);
+  const auto contour = extract(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
+  measured([&] { use(slice(contour, 11.3)); });
+}
+
+void count_slice_image() {
+  const auto image = make_field<4>("balls", 32);
+  measured([&] { use(slice_image(image.view(), 0.0, 14.3)); });
+}
+
+void count_check() {
+  const auto image = make_field<3>("sphere", 40);
+  const auto contour = extract(image.view(), 0.0, with_threads(ExtractOptions{}, 1));
+  measured([&] { use(check(contour)); });
+}
+
+std::vector<NamedCase> all_cases() {
+  ExtractOptions barycentric;
+  barycentric.triangulation = Triangulation::barycentric;
+  ExtractOptions closed;
+  closed.close = true;
+  return {
+      extract_case<2>("gyroid", 512),
+      extract_case<2>("noise", 200),
+      extract_case<3>("metaballs", 96),
+      extract_case<3>("gyroid", 64),
+      extract_case<3>("noise", 32),
+      extract_case<3>("gyroid", 48, " closed", closed),
+      extract_case<4>("balls", 32),
+      extract_case<4>("sphere", 20),
+      extract_case<4>("noise", 10),
+      extract_case<4>("sphere", 20, " barycentric", barycentric),
+      {"extract metaballs 96^3 uint8", count_bytes},
+      {"slice balls 24^4", count_slice},
+      {"slice_image balls 32^4", count_slice_image},
+      {"check sphere 40^3", count_check},
+  };
+}
+
+int run(const std::string& name) {
+  for (const auto& [known, work] : all_cases()) {
+    if (name == "--list") std::printf("%s\n", known.c_str());
+    if (name == known) {
+      work();
+      return 0;
+    }
+  }
+  if (name == "--list") return 0;
+  std::fprintf(stderr, "no case '%s'; --list names them\n", name.c_str());
+  return 2;
+}
+
+}  // namespace
+}  // namespace tegl::bench
+
+int main(int argc, char** argv) {
+  try {
+    if (argc == 2) return tegl::bench::run(argv[1]);
+    std::fprintf(stderr, "usage: instruction_bench --list | NAME\n");
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "instruction_bench: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How much memory this process has, and had at most (Linux).
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+namespace tegl::bench {
+
+/// A value of /proc/self/status, such as VmHWM (the most memory that was resident) or VmRSS, in bytes; 0 if it has
+/// none.
+inline std::uint64_t memory_bytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind(key + ":", 0) == 0) return 1024 * std::stoull(line.substr(key.size() + 1));
+  return 0;
+}
+
+/// Starts VmHWM anew from what is resident now.
+inline void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+}  // namespace tegl::bench

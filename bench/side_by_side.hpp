@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The C interface through which side_by_side.py times tegl and VTK on memory that NumPy owns. Each function makes one
+// contour, forgets it after the clock has stopped, and returns 0, or 1 with a reason in side_error().
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" {
+
+struct SideResult {
+  double seconds = 0;  // wall clock
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+  std::uint64_t active_tiles = 0;          // tegl only
+  std::uint64_t output_bytes = 0;          // of vertices and simplices (and normals)
+  std::uint64_t extra_bytes = 0;           // most memory at any time, beside input and output
+  double stage_seconds[4] = {0, 0, 0, 0};  // tegl only: classify, find, generate, close
+};
+
+/// Whether the library has normals.
+int side_has_normals();
+const char* side_error();
+const char* side_vtk_version();
+
+/// Fills samples^dim floats with a field of fields.hpp.
+int side_field(const char* name, int dim, std::size_t samples, float* out);
+
+int side_tegl(int dim, const float* data, std::size_t samples, double isovalue, int threads, int normals,
+              SideResult* result);
+/// dim 2 or 3: FlyingEdges2D, FlyingEdges3D. One thread: VTK's sequential backend; more: its TBB backend.
+int side_vtk(int dim, const float* data, std::size_t samples, double isovalue, int threads, int normals,
+             SideResult* result);
+}
