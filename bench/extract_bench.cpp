@@ -2,22 +2,19 @@
 //
 // How fast contours are made, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
 // closed or not, by number of threads, and by size (scaling/...: what bench/scaling plots).
-//
-// Time is that of the whole extraction. Beside it stand, as means over the iterations, the milliseconds of each stage,
-// and rates: samples and input bytes per second of all of it and of the classification alone, active tiles per second
-// of all of it and of finding them, simplices and output bytes per second of all of it and of their generation.
+// stages.hpp says what is reported.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <memory>
 #include <string>
 #include <type_traits>
 
 #include "fields.hpp"
-#include "run.hpp"
+#include "stages.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -67,61 +64,6 @@ constexpr double isovalue() {
   return (double{std::numeric_limits<T>::lowest()} + double{std::numeric_limits<T>::max()} + 1) / 2;
 }
 
-/// Sums over the iterations of one benchmark.
-struct Sums {
-  ExtractStats stages;
-  void add(const ExtractStats& stats) {
-    stages.classify_seconds += stats.classify_seconds;
-    stages.find_seconds += stats.find_seconds;
-    stages.generate_seconds += stats.generate_seconds;
-    stages.close_seconds += stats.close_seconds;
-  }
-};
-
-/// The counters `stage_ms` and, where the stage took time, `rate` = units in a second of it.
-void report_stage(benchmark::State& state, const char* stage, double seconds, const char* rate, double units) {
-  const auto iterations = static_cast<double>(state.iterations());
-  state.counters[std::string(stage) + "_ms"] = 1e3 * seconds / iterations;
-  if (seconds > 0 && units > 0) state.counters[rate] = units * iterations / seconds;
-}
-
-void report(benchmark::State& state, const Sums& sums, const ExtractStats& stats, double samples, double input,
-            double simplices, double output) {
-  using benchmark::Counter;
-  constexpr auto kRate = Counter::kIsIterationInvariantRate;
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(simplices));
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(input));
-  state.counters["samples/s"] = Counter(samples, kRate);
-  state.counters["tiles/s"] = Counter(static_cast<double>(stats.active_tiles), kRate);
-  state.counters["output_bytes/s"] = Counter(output, kRate);
-  state.counters["simplices"] = simplices;
-  state.counters["active_tiles"] = static_cast<double>(stats.active_tiles);
-  report_stage(state, "classify", sums.stages.classify_seconds, "classify_bytes/s", input);
-  report_stage(state, "find", sums.stages.find_seconds, "find_tiles/s", static_cast<double>(stats.tiles));
-  report_stage(state, "generate", sums.stages.generate_seconds, "generate_bytes/s", output);
-  report_stage(state, "close", sums.stages.close_seconds, "close_samples/s", 0);
-}
-
-template <Value T, int N>
-void extract_image(benchmark::State& state, const Image<T, N>& image, const Case& what) {
-  const ExtractOptions options = with_threads(what.options, what.threads);
-  ExtractStats stats;
-  Sums sums;
-  double simplices = 0;
-  double output = 0;
-  for (auto _ : state) {
-    auto contour = extract(image, isovalue<T>(), options, &stats);
-    state.PauseTiming();  // freeing the contour is the caller's
-    sums.add(stats);
-    simplices = static_cast<double>(contour.simplices.size());
-    output = static_cast<double>(contour_bytes(contour));
-    contour = {};
-    state.ResumeTiming();
-  }
-  const double samples = std::pow(static_cast<double>(what.samples), N);
-  report(state, sums, stats, samples, samples * sizeof(T), simplices, output);
-}
-
 template <Value T, int N>
 void add(const std::string& group, const Case& what) {
   std::string name = group + "/" + what.field + "/" + std::to_string(what.samples) + "^" + std::to_string(N);
@@ -134,11 +76,12 @@ void add(const std::string& group, const Case& what) {
   benchmark::RegisterBenchmark(name.c_str(),
                                [what](benchmark::State& state) {
                                  const auto& image = field_image<N>(what.field, what.samples);
+                                 const ExtractOptions options = with_threads(what.options, what.threads);
                                  if constexpr (std::is_same_v<T, float>) {
-                                   extract_image<T, N>(state, image.view(), what);
+                                   extract_image(state, image.view(), 0.0, options);
                                  } else {
                                    const auto converted = convert<T>(image);
-                                   extract_image<T, N>(state, converted.view(), what);
+                                   extract_image(state, converted.view(), isovalue<T>(), options);
                                  }
                                })
       ->Unit(benchmark::kMillisecond)
