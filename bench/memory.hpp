@@ -3,6 +3,8 @@
 // How much memory this process has, and had at most (Linux).
 #pragma once
 
+#include <sys/resource.h>
+
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -20,5 +22,12 @@ inline std::uint64_t memory_bytes(const std::string& key) {
 
 /// Starts VmHWM anew from what is resident now.
 inline void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+/// Page faults of this process so far that needed no disk.
+inline std::uint64_t page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_minflt);
+}
 
 }  // namespace tegl::bench

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "bandwidth.hpp"
 #include "fields.hpp"
 #include "run.hpp"
 #include "side_measure.hpp"
@@ -45,6 +46,14 @@ using namespace tegl::bench;
 
 int side_has_normals() { return 0; }
 const char* side_error() { return last_error().c_str(); }
+
+int side_memory_rates(int threads, double* read, double* fresh_write) {
+  return guarded([&] {
+    constexpr std::size_t kBytes = std::size_t{512} << 20U;
+    *read = read_rate(kBytes, threads);
+    *fresh_write = fresh_write_rate(kBytes, threads, true);
+  });
+}
 
 int side_field(const char* name, int dim, std::size_t samples, float* out) {
   return guarded([&] {

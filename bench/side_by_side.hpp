@@ -16,6 +16,7 @@ struct SideResult {
   std::uint64_t active_tiles = 0;          // tegl only
   std::uint64_t output_bytes = 0;          // of vertices and simplices (and normals)
   std::uint64_t extra_bytes = 0;           // most memory at any time, beside input and output
+  std::uint64_t page_faults = 0;           // while the clock ran
   double stage_seconds[4] = {0, 0, 0, 0};  // tegl only: classify, find, generate, close
 };
 
@@ -23,6 +24,9 @@ struct SideResult {
 int side_has_normals();
 const char* side_error();
 const char* side_vtk_version();
+
+/// Bytes per second: of reading memory, and of writing fresh memory with huge pages.
+int side_memory_rates(int threads, double* read, double* fresh_write);
 
 /// Fills samples^dim floats with a field of fields.hpp.
 int side_field(const char* name, int dim, std::size_t samples, float* out);

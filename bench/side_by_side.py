@@ -26,6 +26,7 @@ class SideResult(ctypes.Structure):
 
     _fields_ = [("seconds", ctypes.c_double), ("vertices", ctypes.c_uint64), ("simplices", ctypes.c_uint64),
                 ("active_tiles", ctypes.c_uint64), ("output_bytes", ctypes.c_uint64), ("extra_bytes", ctypes.c_uint64),
+                ("page_faults", ctypes.c_uint64),
                 ("stage_seconds", ctypes.c_double * 4)]
 
 
@@ -73,6 +74,11 @@ class Core:
     def check(self, status: int) -> None:
         if status != 0:
             raise RuntimeError(self.library.side_error().decode())
+
+    def memory_rates(self, threads: int) -> dict:
+        read, fresh_write = ctypes.c_double(), ctypes.c_double()
+        self.check(self.library.side_memory_rates(threads, ctypes.byref(read), ctypes.byref(fresh_write)))
+        return {"read": read.value, "fresh_write": fresh_write.value}
 
     def field(self, case: Case, samples: int) -> np.ndarray:
         values = np.empty((samples,) * case.dim, np.float32)
@@ -141,7 +147,8 @@ def summarise(runs: list[dict]) -> dict:
     if "stages" in runs[0]:
         result["stages"] = {stage: statistics.median(run["stages"][stage] for run in runs) for stage in STAGES}
     if "extra_bytes" in runs[0]:
-        result["extra_bytes"] = runs[0]["extra_bytes"]  # of the first run, before memory is used again
+        result["extra_bytes"] = statistics.median(run["extra_bytes"] for run in runs)
+        result["page_faults"] = statistics.median(run["page_faults"] for run in runs)
     return result
 
 
@@ -150,14 +157,24 @@ def measure(core: Core, case: Case, options) -> dict:
     values = core.field(case, samples)
     sides = make_sides(core, case, values, options.threads, options)
     runs = {name: [] for name in sides}
-    for repetition in range(options.repetitions):
+    for repetition in range(-1, options.repetitions):
         for name, run in sides.items():
-            # scikit-image is an order of magnitude behind: once is enough.
-            if not name.startswith("scikit") or repetition == 0:
-                runs[name].append(run())
+            # scikit-image is an order of magnitude behind: once is enough. The round before the first is not counted: a
+            # virtual machine may find memory that it has not used before several times as slowly.
+            if name.startswith("scikit") and repetition != 0:
+                continue
+            result = run()
+            if repetition >= 0:
+                runs[name].append(result)
     name = case.name if samples == case.samples else f"{case.name}, here {samples}"
     return {"name": name, "field": case.field, "dim": case.dim, "samples": samples, "normals": case.normals,
             "input_bytes": values.nbytes, "sides": {name: summarise(list_) for name, list_ in runs.items()}}
+
+
+def set_floor(row: dict, threads: int, rates: dict) -> None:
+    """The time that memory alone takes: each sample read once, each byte of the output written once."""
+    if own := row["sides"].get(f"tegl/{threads}"):
+        own["floor"] = row["input_bytes"] / rates["read"] + own["output_bytes"] / rates["fresh_write"]
 
 
 def verdicts(case: Case, row: dict) -> list[dict]:
@@ -205,15 +222,16 @@ def counts_text(row: dict) -> str:
 
 
 def table(rows: list[dict]) -> list[str]:
-    text = ["| field | simplices | side, threads | median ms | least ms | of which classify, find, generate | memory beside "
-            "input and output, share of the input |", "|---|---|---|---|---|---|---|"]
+    text = ["| field | simplices | side, threads | median ms | least ms | of which classify, find, generate | memory's floor, "
+            "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|"]
     for row in rows:
         for i, (name, side) in enumerate(row["sides"].items()):
             stages = ", ".join(f"{1e3 * side['stages'][s]:.1f}" for s in STAGES[:3]) if name.startswith("tegl") else ""
+            floor = f"{1e3 * side['floor']:.1f}" if "floor" in side else ""
             extra = f"{100 * side['extra_bytes'] / row['input_bytes']:.1f} %" if "extra_bytes" in side else ""
             text.append(f"| {row['name'] if i == 0 else ''} | {counts_text(row) if i == 0 else ''} | "
                         f"{name.replace('/', ', ')} | {1e3 * side['median']:.1f} | {1e3 * side['least']:.1f} | {stages} | "
-                        f"{extra} |")
+                        f"{floor} | {side.get('page_faults', '')} | {extra} |")
     text += ["", "| field | threads | result |", "|---|---|---|"]
     for row in rows:
         text += [f"| {row['name']} | {v['threads']} | {verdict_text(v)} |" for v in row["verdicts"]]
@@ -242,11 +260,14 @@ def main() -> None:
     options = parse_arguments()
     core = Core(options.build)
     result = {"machine": machine.describe(options.build), "vtk": core.library.side_vtk_version().decode(),
-              "contourpy": contourpy.__version__, "skimage": skimage.__version__, "rows": []}
+              "contourpy": contourpy.__version__, "skimage": skimage.__version__,
+              "memory": {threads: core.memory_rates(threads) for threads in options.threads}, "rows": []}
     for case in CASES:
         if options.only not in case.name or (case.normals and not core.library.side_has_normals()):
             continue
         row = measure(core, case, options)
+        for threads, rates in result["memory"].items():
+            set_floor(row, threads, rates)
         row["verdicts"] = verdicts(case, row) if options.divide == 1 else []
         result["rows"].append(row)
         print(f"{case.name}: " + ", ".join(f"{name} {1e3 * side['median']:.1f} ms" for name, side in row["sides"].items()),

@@ -37,9 +37,11 @@ auto measured(SideResult& result, Make&& make) {
   malloc_trim(0);  // what earlier runs left would be used again, and not be seen
   const std::uint64_t before = memory_bytes("VmRSS");
   reset_peak_memory();
+  const std::uint64_t faults = page_faults();
   const auto start = std::chrono::steady_clock::now();
   auto made = make();
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.page_faults = page_faults() - faults;
   const std::uint64_t peak = memory_bytes("VmHWM");
   result.extra_bytes = peak > before ? peak - before : 0;
   return made;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The machine's memory by number of threads, for reading the other figures: 512 MiB read, and written for the first
+// time with small and with huge pages. Prints gigabytes (1e9) per second.
+#include <cstdio>
+#include <exception>
+
+#include "bandwidth.hpp"
+
+int main() {
+  constexpr std::size_t kBytes = std::size_t{512} << 20U;
+  constexpr double kGiga = 1e-9;
+  try {
+    std::printf("threads  read  first write, 4 KiB pages  first write, huge pages  (GB/s)\n");
+    for (int threads = 1; threads <= 4; ++threads)
+      std::printf("%7d  %4.1f  %24.1f  %23.1f\n", threads, kGiga * tegl::bench::read_rate(kBytes, threads),
+                  kGiga * tegl::bench::fresh_write_rate(kBytes, threads, false),
+                  kGiga * tegl::bench::fresh_write_rate(kBytes, threads, true));
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "memory_bench: %s\n", error.what());
+    return 1;
+  }
+}
