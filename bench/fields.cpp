@@ -123,7 +123,7 @@ void fill_noise(std::size_t count, float* out) {
 }  // namespace
 
 std::vector<std::string> field_names(int dim) {
-  std::vector<std::string> names{"sphere", "metaballs", "gyroid", "noise"};
+  std::vector<std::string> names{"sphere", "metaballs", "gyroid", "noise", "empty"};
   if (dim == 4) names.emplace_back("balls");
   return names;
 }
@@ -137,6 +137,10 @@ void fill_field(const std::string& name, std::size_t samples, float* out) {
   if (name == "metaballs") return fill_metaballs<N>(samples, out);
   if (name == "gyroid") return fill_gyroid<N>(samples, out);
   if (name == "noise") return fill_noise(count, out);
+  if (name == "empty") {
+    std::fill(out, out + count, -1.0F);
+    return;
+  }
   if constexpr (N == 4)
     if (name == "balls") return fill_balls<N>(samples, out);
   std::string known;

@@ -14,12 +14,13 @@
 
 namespace tegl::bench {
 
-/// The names that `make_field` knows: "sphere", "metaballs", "gyroid", "noise", and "balls" in 4D only.
+/// The names that `make_field` knows:
 ///   sphere     a ball in the middle, of 0.8 times the half width
 ///   metaballs  200 Gaussian bumps at seeded places
 ///   gyroid     32 periods along each axis in 2D, 8 in 3D, 2 in 4D
 ///   noise      independent and uniform in [-0.5, 0.5)
-///   balls      two balls that meet half-way along the last axis
+///   empty      -1 everywhere: no contour
+///   balls      in 4D only: two balls that meet half-way along the last axis
 std::vector<std::string> field_names(int dim);
 
 /// A field with `samples` samples along every axis (at least 2). Throws Error InvalidArgument for a name that is not

@@ -39,18 +39,23 @@ void measured(const std::function<void()>& work) {
   function(work);
 }
 
-template <int N>
-void count_extract(const std::string& field, std::size_t samples, ExtractOptions options) {
-  const auto image = make_field<N>(field, samples);
-  options = with_threads(options, 1);
-  measured([&] { use(extract(image.view(), 0.0, options)); });
+/// Counts one extraction, and prints how large it is: samples, active tiles, simplices.
+template <Value T, int N>
+void count_extract(const Image<T, N>& image, double isovalue, const ExtractOptions& base) {
+  const ExtractOptions options = with_threads(base, 1);
+  ExtractStats stats;
+  std::size_t simplices = 0;
+  measured([&] { simplices = extract(image, isovalue, options, &stats).simplices.size(); });
+  std::size_t samples = 1;
+  for (int a = 0; a < N; ++a) samples *= image.size(a);
+  std::printf("samples %zu active %zu simplices %zu\n", samples, std::size_t{stats.active_tiles}, simplices);
 }
 
 template <int N>
 NamedCase extract_case(const std::string& field, std::size_t samples, const std::string& suffix = "",
                        const ExtractOptions& options = {}) {
   return {"extract " + field + " " + std::to_string(samples) + "^" + std::to_string(N) + suffix,
-          [=] { count_extract<N>(field, samples, options); }};
+          [=] { count_extract(make_field<N>(field, samples).view(), 0.0, options); }};
 }
 
 /// Integers of 8 bits: classification at its narrowest.
@@ -59,8 +64,7 @@ void count_bytes() {
   OwnedImage<std::uint8_t, 3> image{field.grid, std::vector<std::uint8_t>(field.values.size())};
   for (std::size_t i = 0; i < field.values.size(); ++i)
     image.values[i] = static_cast<std::uint8_t>(field.values[i] >= 0.0F ? 200 : 50);
-  const ExtractOptions options = with_threads(ExtractOptions{}, 1);
-  measured([&] { use(extract(image.view(), 128.0, options)); });
+  count_extract(image.view(), 128.0, ExtractOptions{});
 }
 
 void count_slice() {
@@ -86,12 +90,15 @@ std::vector<NamedCase> all_cases() {
   ExtractOptions closed;
   closed.close = true;
   return {
+      extract_case<2>("empty", 512),
       extract_case<2>("gyroid", 512),
       extract_case<2>("noise", 200),
+      extract_case<3>("empty", 96),
       extract_case<3>("metaballs", 96),
       extract_case<3>("gyroid", 64),
       extract_case<3>("noise", 32),
       extract_case<3>("gyroid", 48, " closed", closed),
+      extract_case<4>("empty", 32),
       extract_case<4>("balls", 32),
       extract_case<4>("sphere", 20),
       extract_case<4>("noise", 10),

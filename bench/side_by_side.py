@@ -19,6 +19,7 @@ import numpy as np
 import skimage.measure
 
 import machine
+import tables
 
 
 class SideResult(ctypes.Structure):
@@ -42,7 +43,7 @@ class Case:
     dim: int
     samples: int
     ratio: dict = dataclasses.field(default_factory=dict)  # threads -> times as fast as the peer
-    tiles_per_second: dict = dataclasses.field(default_factory=dict)  # threads -> active tiles in a second
+    tiles_per_second: dict = dataclasses.field(default_factory=dict)  # threads -> tiles, active or not, in a second
     seconds: dict = dataclasses.field(default_factory=dict)  # threads -> at most so many seconds
     normals: bool = False
 
@@ -193,49 +194,18 @@ def verdicts(case: Case, row: dict) -> list[dict]:
                       "wanted": f"≥ {wanted}×", "met": ratio >= wanted})
     for threads, wanted in case.tiles_per_second.items():
         if own := sides.get(f"tegl/{threads}"):
-            rate = own["active_tiles"] / own["median"]
+            rate = (row["samples"] - 1) ** case.dim / own["median"]
             found.append({"threads": threads, "tiles_per_second": rate, "wanted": f"≥ {wanted / 1e6:.0f} M tiles/s",
                           "met": rate >= wanted})
     for threads, wanted in case.seconds.items():
         if own := sides.get(f"tegl/{threads}"):
-            found.append({"threads": threads, "wanted": f"≤ {wanted * 1e3:.0f} ms", "met": own["median"] <= wanted})
+            found.append({"threads": threads, "seconds": own["median"], "wanted": f"≤ {wanted * 1e3:.0f} ms",
+                          "met": own["median"] <= wanted})
+    for name, side in sides.items():
+        if name.startswith("tegl"):
+            share = side["extra_bytes"] / row["input_bytes"]
+            found.append({"threads": int(name.split("/")[1]), "memory": share, "wanted": "≤ 1/16", "met": share <= 1 / 16})
     return found
-
-
-def verdict_text(verdict: dict) -> str:
-    text = ""
-    if "ratio" in verdict:
-        text = f"{verdict['ratio']:.1f}× {verdict['peer']} (least: {verdict['ratio_of_least']:.1f}×), "
-    elif "tiles_per_second" in verdict:
-        text = f"{verdict['tiles_per_second'] / 1e6:.0f} M tiles/s, "
-    return f"{text}{verdict['wanted']}: {'met' if verdict['met'] else 'not met'}"
-
-
-def counts_text(row: dict) -> str:
-    """Whether all sides made as much."""
-    sides = {name: side for name, side in row["sides"].items() if name.split("/")[0] in ("tegl", "VTK")}
-    counts = {(side["vertices"], side["simplices"]) for side in sides.values()}
-    own = row["sides"][next(iter(sides))]
-    if len(counts) > 1:
-        return "DIFFERENT: " + ", ".join(f"{name} {side['simplices']:,}" for name, side in sides.items())
-    return f"{own['simplices']:,}" + (" (VTK: the same)" if any(name.startswith("VTK") for name in sides) else "")
-
-
-def table(rows: list[dict]) -> list[str]:
-    text = ["| field | simplices | side, threads | median ms | least ms | of which classify, find, generate | memory's floor, "
-            "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|"]
-    for row in rows:
-        for i, (name, side) in enumerate(row["sides"].items()):
-            stages = ", ".join(f"{1e3 * side['stages'][s]:.1f}" for s in STAGES[:3]) if name.startswith("tegl") else ""
-            floor = f"{1e3 * side['floor']:.1f}" if "floor" in side else ""
-            extra = f"{100 * side['extra_bytes'] / row['input_bytes']:.1f} %" if "extra_bytes" in side else ""
-            text.append(f"| {row['name'] if i == 0 else ''} | {counts_text(row) if i == 0 else ''} | "
-                        f"{name.replace('/', ', ')} | {1e3 * side['median']:.1f} | {1e3 * side['least']:.1f} | {stages} | "
-                        f"{floor} | {side.get('page_faults', '')} | {extra} |")
-    text += ["", "| field | threads | result |", "|---|---|---|"]
-    for row in rows:
-        text += [f"| {row['name']} | {v['threads']} | {verdict_text(v)} |" for v in row["verdicts"]]
-    return text
 
 
 def parse_arguments():
@@ -248,7 +218,6 @@ def parse_arguments():
     parser.add_argument("--divide", type=float, default=1, metavar="X", help="samples along each axis, divided by X")
     parser.add_argument("--skimage", action="store_true", help="with scikit-image, which is slow (512³: minutes)")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write all figures to FILE")
-    parser.add_argument("--table", type=pathlib.Path, metavar="FILE", help="write the table to FILE (Markdown)")
     options = parser.parse_args()
     options.threads = [int(count) for count in options.threads.split(",")]
     if options.repetitions < 1 or min(options.threads) < 1 or options.divide <= 0:
@@ -272,12 +241,9 @@ def main() -> None:
         result["rows"].append(row)
         print(f"{case.name}: " + ", ".join(f"{name} {1e3 * side['median']:.1f} ms" for name, side in row["sides"].items()),
               flush=True)
-    text = "\n".join(machine.lines(result["machine"]) + [""] + table(result["rows"])) + "\n"
-    print("\n" + text)
+    print("\n".join(["", *machine.lines(result["machine"]), "", *tables.side_by_side(result)]))
     if options.json:
         options.json.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    if options.table:
-        options.table.write_text("# Side by side\n\nMade by `bench/side_by_side`.\n\n" + text)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figures of bench/results/*.json as tables for readers: writes bench/results/README.md."""
+
+import json
+import re
+
+import machine
+
+RESULTS = machine.ROOT / "bench/results"
+
+
+def ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.1f}"
+
+
+def verdict_text(verdict: dict) -> str:
+    text = ""
+    if "ratio" in verdict:
+        text = f"{verdict['ratio']:.1f}× {verdict['peer']} (least: {verdict['ratio_of_least']:.1f}×), "
+    elif "tiles_per_second" in verdict:
+        text = f"{verdict['tiles_per_second'] / 1e6:.0f} M tiles/s, "
+    elif "memory" in verdict:
+        text = f"memory {100 * verdict['memory']:.1f} % of the input, "
+    elif "seconds" in verdict:
+        text = f"{ms(verdict['seconds'])} ms, "
+    return f"{text}{verdict['wanted']}: {'met' if verdict['met'] else 'not met'}"
+
+
+def counts_text(row: dict) -> str:
+    """The number of simplices, and whether VTK made as many vertices and simplices."""
+    sides = {name: side for name, side in row["sides"].items() if name.split("/")[0] in ("tegl", "VTK")}
+    if len({(side["vertices"], side["simplices"]) for side in sides.values()}) > 1:
+        return "DIFFERENT: " + ", ".join(f"{name} {side['simplices']:,}" for name, side in sides.items())
+    count = f"{next(iter(sides.values()))['simplices']:,}"
+    return count + (" (VTK: the same)" if any(name.startswith("VTK") for name in sides) else "")
+
+
+def side_rows(row: dict) -> list[str]:
+    text = []
+    for i, (name, side) in enumerate(row["sides"].items()):
+        stages = ", ".join(ms(side["stages"][s]) for s in ("classify", "find", "generate")) if name.startswith("tegl") else ""
+        floor = ms(side["floor"]) if "floor" in side else ""
+        extra = f"{100 * side['extra_bytes'] / row['input_bytes']:.1f} %" if "extra_bytes" in side else ""
+        faults = f"{side['page_faults']:.0f}" if "page_faults" in side else ""
+        text.append(f"| {row['name'] if i == 0 else ''} | {counts_text(row) if i == 0 else ''} | {name.replace('/', ', ')} | "
+                    f"{ms(side['median'])} | {ms(side['least'])} | {stages} | {floor} | {faults} | {extra} |")
+    return text
+
+
+def side_by_side(result: dict) -> list[str]:
+    """All figures, then what was to be reached."""
+    text = ["| field | simplices | side, threads | median ms | least ms | of which classify, find, generate | memory's floor, "
+            "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|"]
+    for row in result["rows"]:
+        text += side_rows(row)
+    if any(row["verdicts"] for row in result["rows"]):
+        text += ["", "| field | threads | result |", "|---|---|---|"]
+    for row in result["rows"]:
+        text += [f"| {row['name']} | {v['threads']} | {verdict_text(v)} |" for v in row["verdicts"]]
+    rates = ", ".join(f"{threads} thread{'s' * (int(threads) > 1)}: read {rate['read'] / 1e9:.0f}, fresh memory written "
+                      f"{rate['fresh_write'] / 1e9:.0f} GB/s" for threads, rate in result["memory"].items())
+    return text + ["", f"Memory, {rates} (huge pages). Memory's floor: the samples read once and the output written once at "
+                   "these rates."]
+
+
+def stages(result: dict) -> list[str]:
+    text = ["| benchmark | ms | classify | find | generate | close | M samples/s | M active tiles/s | M simplices/s |",
+            "|---|---|---|---|---|---|---|---|---|"]
+    for run in result["benchmarks"]:
+        name = run["name"].removesuffix("/real_time").removesuffix("_median")
+        parts = " | ".join(f"{run[stage + '_ms']:.2f}" for stage in ("classify", "find", "generate", "close"))
+        rates = " | ".join(f"{run[rate] / 1e6:.1f}" for rate in ("samples/s", "tiles/s", "items_per_second"))
+        text.append(f"| {name.removesuffix('/real_time')} | {run['real_time']:.2f} | {parts} | {rates} |")
+    return text
+
+
+def scaling(result: dict) -> list[str]:
+    threads = sorted({point["threads"] for point in result["points"]})
+    text = ["| field | size | active tiles | " + " | ".join(f"{t} thread{'s' * (t > 1)}, ms" for t in threads) + " |",
+            "|---|---|---|" + "---|" * len(threads)]
+    lines = {}
+    for point in result["points"]:
+        lines.setdefault((point["field"], point["samples"], point["dim"]), {})[point["threads"]] = point
+    for (field, samples, dim), by_threads in lines.items():
+        power = {2: "²", 3: "³", 4: "⁴"}[dim]
+        times = " | ".join(f"{by_threads[t]['ms']:.2f}" if t in by_threads else "" for t in threads)
+        text.append(f"| {field} | {samples}{power} | {next(iter(by_threads.values()))['active_tiles']:,} | {times} |")
+    return text + cost(result)
+
+
+def fit(points: list[dict]) -> tuple[float, float]:
+    """ns per sample and per active tile: the least squares of relative deviations."""
+    rows = [(p["samples"] ** p["dim"] / p["ms"], p["active_tiles"] / p["ms"]) for p in points]
+    s11, s12, s22 = (sum(r[i] * r[j] for r in rows) for i, j in ((0, 0), (0, 1), (1, 1)))
+    b1, b2 = (sum(r[i] for r in rows) for i in (0, 1))
+    determinant = s11 * s22 - s12 * s12
+    return 1e6 * (b1 * s22 - b2 * s12) / determinant, 1e6 * (b2 * s11 - b1 * s12) / determinant
+
+
+def cost(result: dict) -> list[str]:
+    """What a sample and an active tile cost, by dimension and threads."""
+    text = ["", "What a sample and an active tile cost, fitted to the smooth fields of at least 64³ or 32⁴ samples; and what "
+            "an active tile of the largest noise costs, samples included:", "",
+            "| dimension | threads | ns per sample | ns per active tile | ns per active tile of noise |", "|---|---|---|---|---|"]
+    for dim in (3, 4):
+        for threads in sorted({p["threads"] for p in result["points"]}):
+            points = [p for p in result["points"] if p["dim"] == dim and p["threads"] == threads]
+            noise = max((p for p in points if p["field"] == "noise"), key=lambda p: p["samples"])
+            smooth = [p for p in points if p["field"] != "noise" and p["samples"] >= (64 if dim == 3 else 32)]
+            text.append(f"| {dim} | {threads} | " + " | ".join(f"{value:.2f}" for value in fit(smooth)) +
+                        f" | {1e6 * noise['ms'] / noise['active_tiles']:.1f} |")
+    return text
+
+
+def page(name: str, title: str, how: str, table) -> list[str]:
+    """One section, if its file is there."""
+    path = RESULTS / f"{name}.json"
+    if not path.exists():
+        return []
+    result = json.loads(path.read_text())
+    return ["", f"## {title}", "", how, "", *machine.lines(result["machine"]), "", *table(result)]
+
+
+def main() -> None:
+    text = ["# Results", "", "Made by `bench/record`; the page on [cost](../../docs/cost.md) says what they mean. Times are "
+            "those of one machine: compare ratios, not times."]
+    text += page("side_by_side", "Side by side", "`bench/side_by_side`: the same samples, turn by turn, in one process.",
+                 side_by_side)
+    text += page("scaling", "Scaling", "`bench/scaling`: the least of three runs of each.", scaling)
+    text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
+                 stages)
+    (RESULTS / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(text)) + "\n")
+
+
+if __name__ == "__main__":
+    main()
