@@ -17,6 +17,7 @@
 namespace tegl::bench {
 namespace {
 
+constexpr int kRepetitions = 6;
 constexpr std::size_t kHugePage = std::size_t{2} << 20U;
 
 struct Unmap {
@@ -62,7 +63,7 @@ double read_rate(std::size_t bytes, int threads) {
   std::memset(memory.get(), 1, bytes);
   const std::size_t part = bytes / 8 / static_cast<std::size_t>(threads);
   double best = 0;
-  for (int repetition = 0; repetition < 3; ++repetition) {
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
     std::vector<std::uint64_t> sums(static_cast<std::size_t>(threads));
     const double seconds = time_of(threads, [&](int i) {
       const auto at = static_cast<std::size_t>(i);
@@ -77,7 +78,7 @@ double read_rate(std::size_t bytes, int threads) {
 double fresh_write_rate(std::size_t bytes, int threads, bool huge) {
   const std::size_t part = bytes / static_cast<std::size_t>(threads);
   double best = 0;
-  for (int repetition = 0; repetition < 3; ++repetition) {
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
     const Mapping memory = map(bytes, huge);
     auto* first = reinterpret_cast<unsigned char*>(memory.get());
     const double seconds =

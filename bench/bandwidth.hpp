@@ -8,11 +8,11 @@
 
 namespace tegl::bench {
 
-/// Bytes per second of reading `bytes` of memory that is there, the best of three.
+/// Bytes per second of reading `bytes` of memory that is there, the best of six.
 double read_rate(std::size_t bytes, int threads);
 
 /// Bytes per second of writing `bytes` of memory that is new, so that the kernel has to find and clear its pages: those
-/// of 4 KiB, or huge ones where the kernel gives them on request. The best of three.
+/// of 4 KiB, or huge ones where the kernel gives them on request. The best of six.
 double fresh_write_rate(std::size_t bytes, int threads, bool huge);
 
 }  // namespace tegl::bench

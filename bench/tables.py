@@ -16,7 +16,7 @@ def ms(seconds: float) -> str:
 def verdict_text(verdict: dict) -> str:
     text = ""
     if "ratio" in verdict:
-        text = f"{verdict['ratio']:.1f}× {verdict['peer']} (least: {verdict['ratio_of_least']:.1f}×), "
+        text = f"{verdict['ratio']:.1f}× {verdict['peer']} (medians: {verdict['ratio_of_medians']:.1f}×), "
     elif "tiles_per_second" in verdict:
         text = f"{verdict['tiles_per_second'] / 1e6:.0f} M tiles/s, "
     elif "memory" in verdict:
