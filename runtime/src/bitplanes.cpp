@@ -1,56 +1,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Packing of comparisons into words. The compiler turns the byte loops into vector code; eight flags
-// are then gathered by one multiplication.
-// Based on: H. S. Warren, Hacker's Delight, 2nd ed. 2012, section 7-4 (compress by multiplication).
+// Packing of comparisons into words; compiled once per instruction set (Highway's foreach_target).
 #include "bitplanes.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
-namespace tegl::detail {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bitplanes.cpp"
+#include "dispatch.hpp"
+// Highway's own headers come after this one.
+#include "hwy/highway.h"
 
-/// Bit i of the result is flags[i], each 0 or 1.
-Word pack(const std::uint8_t* flags) noexcept {
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A mask's lanes as bits, lane 0 lowest.
+template <class D, class M>
+HWY_INLINE Word bits_of(D d, M mask) {
+#if HWY_TARGET <= HWY_AVX3
+  (void)d;
+  return static_cast<Word>(mask.raw);
+#else
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
   Word word = 0;
-  for (std::size_t byte = 0; byte < 8; ++byte) {
-    Word eight = 0;
-    if constexpr (std::endian::native == std::endian::little) {
-      std::memcpy(&eight, flags + 8 * byte, 8);
+  std::memcpy(&word, bytes, sizeof(word));
+  if constexpr (hn::MaxLanes(D()) < kWordBits) word &= (Word{1} << hn::MaxLanes(D())) - 1;
+  return word;
+#endif
+}
+
+/// 64 adjacent samples against the threshold. `missing` gets the NaNs.
+template <class T>
+HWY_INLINE Word high_word(const T* samples, T threshold, Word& missing) {
+  const hn::ScalableTag<T> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const auto limit = hn::Set(d, threshold);
+  Word word = 0;
+  Word nans = 0;
+  for (std::size_t i = 0; i < kWordBits; i += kLanes) {
+    const auto values = hn::LoadU(d, samples + i);
+    if constexpr (std::is_floating_point_v<T>) {
+      word |= bits_of(d, hn::Ge(values, limit)) << i;
+      nans |= bits_of(d, hn::Ne(values, values)) << i;
     } else {
-      for (unsigned i = 0; i < 8; ++i) eight |= static_cast<Word>(flags[8 * byte + i]) << (8 * i);
+      word |= bits_of(d, hn::Lt(values, limit)) << i;
     }
-    word |= ((eight * 0x0102040810204080u) >> 56) << (8 * byte);
   }
+  if constexpr (std::is_integral_v<T>) word = ~word;
+  missing = nans;
   return word;
 }
 
-/// 64 adjacent samples.
-template <Value T>
-Word high_word(const T* samples, T threshold) noexcept {
-  alignas(64) std::uint8_t flags[kWordBits];
-  for (std::size_t i = 0; i < kWordBits; ++i) flags[i] = samples[i] >= threshold ? 1 : 0;
-  return pack(flags);
-}
-
-template <Value T>
-Word nan_word(const T* samples) noexcept {
-  alignas(64) std::uint8_t flags[kWordBits];
-  std::uint8_t any = 0;
-  for (std::size_t i = 0; i < kWordBits; ++i) {
-    flags[i] = samples[i] != samples[i] ? 1 : 0;
-    any = static_cast<std::uint8_t>(any | flags[i]);
-  }
-  return any == 0 ? 0 : pack(flags);
-}
-
-}  // namespace
-
-template <Value T>
-bool classify_row(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, Word* high,
-                  Word* missing) noexcept {
+template <class T>
+HWY_INLINE bool classify(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold,
+                         Word* high, Word* missing) {
   bool any_missing = false;
   const std::size_t words = (count + kWordBits - 1) / kWordBits;
   for (std::size_t w = 0; w < words; ++w) {
@@ -64,9 +72,11 @@ bool classify_row(const T* samples, std::ptrdiff_t stride, std::size_t count, co
       block = gathered;
     }
     const Word mask = length == kWordBits ? ~Word{0} : (Word{1} << length) - 1;
-    high[w] = threshold.never ? 0 : high_word(block, threshold.value) & mask;
+    Word nans = 0;
+    const Word word = high_word(block, threshold.value, nans) & mask;
+    high[w] = threshold.never ? 0 : word;
     if constexpr (std::is_floating_point_v<T>) {
-      const Word nans = nan_word(block) & mask;
+      nans &= mask;
       if (nans != 0 && !any_missing) {
         std::fill(missing, missing + w, Word{0});
         any_missing = true;
@@ -77,15 +87,44 @@ bool classify_row(const T* samples, std::ptrdiff_t stride, std::size_t count, co
   return any_missing;
 }
 
-#define TEGL_INSTANTIATE(T) \
-  template bool classify_row<T>(const T*, std::ptrdiff_t, std::size_t, const Threshold<T>&, Word*, Word*) noexcept;
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
+#define TEGL_CLASSIFY(T, name)                                                                                     \
+  bool name(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, Word* high, \
+            Word* missing) {                                                                                       \
+    return classify(samples, stride, count, threshold, high, missing);                                             \
+  }
+TEGL_CLASSIFY(std::uint8_t, classify_u8)
+TEGL_CLASSIFY(std::int8_t, classify_i8)
+TEGL_CLASSIFY(std::uint16_t, classify_u16)
+TEGL_CLASSIFY(std::int16_t, classify_i16)
+TEGL_CLASSIFY(std::int32_t, classify_i32)
+TEGL_CLASSIFY(float, classify_f32)
+TEGL_CLASSIFY(double, classify_f64)
+#undef TEGL_CLASSIFY
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+#define TEGL_DISPATCH(T, name)                                                                                    \
+  HWY_EXPORT(name);                                                                                               \
+  template <>                                                                                                     \
+  bool classify_row<T>(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, \
+                       Word* high, Word* missing) noexcept {                                                      \
+    return HWY_DYNAMIC_DISPATCH(name)(samples, stride, count, threshold, high, missing);                          \
+  }
+TEGL_DISPATCH(std::uint8_t, classify_u8)
+TEGL_DISPATCH(std::int8_t, classify_i8)
+TEGL_DISPATCH(std::uint16_t, classify_u16)
+TEGL_DISPATCH(std::int16_t, classify_i16)
+TEGL_DISPATCH(std::int32_t, classify_i32)
+TEGL_DISPATCH(float, classify_f32)
+TEGL_DISPATCH(double, classify_f64)
+#undef TEGL_DISPATCH
 
 }  // namespace tegl::detail
+
+#endif  // HWY_ONCE

@@ -61,6 +61,8 @@ class CellBits {
     }
   }
 
+  [[nodiscard]] const std::array<const Word*, Frame::kRows>& rows() const noexcept { return rows_; }
+
   void load(std::size_t w) noexcept {
     for (unsigned r = 0; r < Frame::kRows; ++r) {
       low_[r] = rows_[r][w];
@@ -123,6 +125,11 @@ class CellEdges {
       first_[s] = base_[s] + prefix_[s][w];
       word_[s] = bits_[s][w];
     }
+  }
+  /// By local edge: the first vertex of its stream.
+  void firsts(Index* out) const noexcept {
+    constexpr auto kPlaces = places();
+    for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = base_[kPlaces[e].stream];
   }
   /// Numbers of all edges of cell `bit`; those of edges that are not critical mean nothing.
   void ids(unsigned bit, Index* out) const noexcept {

@@ -10,7 +10,8 @@
 namespace tegl::detail {
 
 template <int N>
-Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables) : shape_(shape), tile_(*tables.tile) {
+Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows)
+    : shape_(shape), tile_(*tables.tile), rows_(rows) {
   if constexpr (N == 4)
     for (unsigned s = 0; s < 256; ++s) {
       cube_vertices_[s] = tables.cube->lists[tables.cube->list_of[s]].cone_vertices;
@@ -22,6 +23,7 @@ template <int N>
 void Counter<N>::allocate(Layer<N>& layer) const {
   layer.high.assign(shape_.rows() * shape_.pitch(), 0);
   layer.missing.assign(shape_.rows() * shape_.pitch(), 0);
+  layer.row_missing.assign(shape_.rows(), 0);
   for (EdgePlane& plane : layer.edges) plane.allocate(shape_.rows(), shape_.pitch());
   if (has_cubes_) layer.cubes.allocate(shape_.rows(), shape_.pitch());
 }
@@ -30,6 +32,8 @@ template <int N>
 void Counter<N>::allocate(Slab<N>& slab) const {
   slab.valid.assign(shape_.rows() * shape_.pitch(), 0);
   slab.active.assign(shape_.rows() * shape_.pitch(), 0);
+  slab.active_count.assign(shape_.rows(), 0);
+  if (rows_ != nullptr) slab.signatures.resize(shape_.rows() * shape_.size(0));
   slab.edges.allocate(shape_.rows(), shape_.pitch());
   if (has_cubes_)
     for (CubePlane& plane : slab.cubes) plane.allocate(shape_.rows(), shape_.pitch());
@@ -38,43 +42,40 @@ void Counter<N>::allocate(Slab<N>& slab) const {
 }
 
 template <int N>
-void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, Layer<N>& layer) const {
-  layer.any_missing = false;
-  for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    auto start = shape_.index_of(row);
-    start[N - 1] = k;
-    Word* const high = layer.high.data() + row * shape_.pitch();
-    Word* const missing = layer.missing.data() + row * shape_.pitch();
-    if (source.classify(start, high, missing)) {
-      if (!layer.any_missing) std::fill(layer.missing.data(), missing, Word{0});
-      layer.any_missing = true;
-    } else if (layer.any_missing) {
-      std::fill(missing, missing + shape_.words(), Word{0});
-    }
-    if (invert)
-      for (std::size_t w = 0; w < shape_.words(); ++w) high[w] = ~high[w] & shape_.mask(w, false);
-  }
+void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row,
+                          Layer<N>& layer) const {
+  auto start = shape_.index_of(row);
+  start[N - 1] = k;
+  Word* const high = layer.high.data() + row * shape_.pitch();
+  Word* const missing = layer.missing.data() + row * shape_.pitch();
+  const bool any = source.classify(start, high, missing);
+  if (!any && layer.row_missing[row] != 0) std::fill(missing, missing + shape_.words(), Word{0});
+  layer.row_missing[row] = any ? 1 : 0;
+  if (invert)
+    for (std::size_t w = 0; w < shape_.words(); ++w) high[w] = ~high[w] & shape_.mask(w, false);
 }
 
 template <int N>
-void Counter<N>::find_valid(const Layer<N>& lower, const Layer<N>& upper, Slab<N>& slab) const {
-  slab.all_valid = !lower.any_missing && !upper.any_missing;
-  if (slab.all_valid) return;
+void Counter<N>::find_missing(Layer<N>& layer) {
+  layer.any_missing =
+      std::find(layer.row_missing.begin(), layer.row_missing.end(), std::uint8_t{1}) != layer.row_missing.end();
+}
+
+template <int N>
+void Counter<N>::find_valid(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const {
   constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
-  for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    Word* const valid = slab.valid.data() + row * shape_.pitch();
-    std::fill(valid, valid + shape_.words(), Word{0});
-    if (!shape_.has_cells(shape_.index_of(row), kMiddle)) continue;
-    for (const Layer<N>* layer : {&lower, &upper}) {
-      if (!layer->any_missing) continue;
-      for (unsigned corner = 0; corner <= kMiddle; corner += 2) {
-        const Word* const missing = layer->missing.data() + shape_.shifted(row, corner) * shape_.pitch();
-        for (std::size_t w = 0; w < shape_.words(); ++w)
-          valid[w] |= missing[w] | missing[w] >> 1 | missing[w + 1] << (kWordBits - 1);
-      }
+  Word* const valid = slab.valid.data() + row * shape_.pitch();
+  std::fill(valid, valid + shape_.words(), Word{0});
+  if (!shape_.has_cells(shape_.index_of(row), kMiddle)) return;
+  for (const Layer<N>* layer : {&lower, &upper})
+    for (unsigned corner = 0; corner <= kMiddle; corner += 2) {
+      const std::size_t at = shape_.shifted(row, corner);
+      if (layer->row_missing[at] == 0) continue;
+      const Word* const missing = layer->missing.data() + at * shape_.pitch();
+      for (std::size_t w = 0; w < shape_.words(); ++w)
+        valid[w] |= missing[w] | missing[w] >> 1 | missing[w + 1] << (kWordBits - 1);
     }
-    for (std::size_t w = 0; w < shape_.words(); ++w) valid[w] = ~valid[w] & shape_.mask(w, true);
-  }
+  for (std::size_t w = 0; w < shape_.words(); ++w) valid[w] = ~valid[w] & shape_.mask(w, true);
 }
 
 template <int N>
@@ -105,18 +106,9 @@ bool Counter<N>::cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab
 template <int N>
 void Counter<N>::count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
                              const Word* valid) const {
-  Word* const bits = plane.bits[0].data() + row * shape_.pitch();
-  std::uint32_t* const prefix = plane.prefix.data() + row * shape_.pitch();
-  std::uint32_t count = 0;
-  for (std::size_t w = 0; w < shape_.words(); ++w) {
-    Word critical = a[w] ^ (along_row ? a[w] >> 1 | a[w + 1] << (kWordBits - 1) : b[w]);
-    if (along_row) critical &= shape_.mask(w, true);
-    if (valid != nullptr) critical &= valid[w];
-    bits[w] = critical;
-    prefix[w] = count;
-    if (critical != 0) count += static_cast<std::uint32_t>(std::popcount(critical));
-  }
-  plane.base[row] = count;
+  const std::size_t at = row * shape_.pitch();
+  plane.base[row] = count_edge_row(a, along_row ? nullptr : b, shape_.size(0), valid, plane.bits[0].data() + at,
+                                   plane.prefix.data() + at);
 }
 
 template <int N>
@@ -145,37 +137,43 @@ void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::siz
 }
 
 template <int N>
-void Counter<N>::count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) const {
-  std::vector<Word> buffer(shape_.pitch());
-  for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    const auto index = shape_.index_of(row);
-    const Word* const high = layer.high.data() + row * shape_.pitch();
-    for (int axis = 0; axis < N - 1; ++axis) {
-      const unsigned mask = 1u << axis;
-      layer.edges[axis].base[row] = 0;
-      if (!shape_.has_cells(index, mask)) continue;  // its bits have been 0 from the start
-      const bool masked = cells_of_valid_tiles(mask, row, below, above, buffer.data());
-      const Word* const next = layer.high.data() + shape_.shifted(row, mask) * shape_.pitch();
-      count_edges(layer.edges[axis], row, high, next, axis == 0, masked ? buffer.data() : nullptr);
-    }
-    if constexpr (N == 4)
-      if (has_cubes_) {
-        const bool masked = cells_of_valid_tiles(7u, row, below, above, buffer.data());
-        count_cubes<7u>(layer.cubes, {&shape_, {&layer, nullptr}, nullptr}, row, masked ? buffer.data() : nullptr);
-      }
+void Counter<N>::count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row,
+                             Word* buffer) const {
+  const auto index = shape_.index_of(row);
+  const Word* const high = layer.high.data() + row * shape_.pitch();
+  for (int axis = 0; axis < N - 1; ++axis) {
+    const unsigned mask = 1u << axis;
+    layer.edges[axis].base[row] = 0;
+    if (!shape_.has_cells(index, mask)) continue;  // its bits have been 0 from the start
+    const bool masked = cells_of_valid_tiles(mask, row, below, above, buffer);
+    const Word* const next = layer.high.data() + shape_.shifted(row, mask) * shape_.pitch();
+    count_edges(layer.edges[axis], row, high, next, axis == 0, masked ? buffer : nullptr);
   }
+  if constexpr (N == 4)
+    if (has_cubes_) {
+      const bool masked = cells_of_valid_tiles(7u, row, below, above, buffer);
+      count_cubes<7u>(layer.cubes, {&shape_, {&layer, nullptr}, nullptr}, row, masked ? buffer : nullptr);
+    }
 }
 
 template <int N>
-std::uint64_t Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const {
+void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const {
   constexpr unsigned kAll = (1u << N) - 1;
   Word* const active = slab.active.data() + row * shape_.pitch();
   slab.tile_base[row] = 0;
   slab.simplex_base[row] = 0;
-  std::fill(active, active + shape_.words(), Word{0});
-  if (!shape_.has_cells(shape_.index_of(row), kAll)) return 0;
+  slab.active_count[row] = 0;
+  if (!shape_.has_cells(shape_.index_of(row), kAll)) return;  // its bits have been 0 from the start
   CellBits<N, kAll> cells(view, row);
-  std::uint64_t tiles = 0;
+  if (rows_ != nullptr) {
+    TileRow tiles{{}, shape_.size(0) - 1, slab.all_valid ? nullptr : slab.valid.data() + row * shape_.pitch()};
+    std::copy(cells.rows().begin(), cells.rows().end(), tiles.corners.begin());
+    const TileCount count = count_tile_row<N>(tiles, *rows_, active, slab.signatures.data() + row * shape_.size(0));
+    slab.tile_base[row] = count.own_vertices;
+    slab.simplex_base[row] = count.simplices;
+    slab.active_count[row] = count.active;
+    return;
+  }
   for (std::size_t w = 0; w < shape_.words(); ++w) {
     cells.load(w);
     Word mixed = cells.mixed() & shape_.mask(w, true);
@@ -186,33 +184,27 @@ std::uint64_t Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, st
       const tables::List& list = tile_.lists[tile_.list_of[signature]];
       slab.tile_base[row] += Index{list.cone_vertices} + list.side_vertices;
       slab.simplex_base[row] += list.simplex_count;
-      ++tiles;
+      ++slab.active_count[row];
     }
   }
-  return tiles;
 }
 
 template <int N>
-std::uint64_t Counter<N>::count_slab(const SlabView<N>& view, Slab<N>& slab) const {
-  std::vector<Word> buffer(shape_.pitch());
-  std::uint64_t tiles = 0;
-  for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    const Word* const lower = view.layers[0]->high.data() + row * shape_.pitch();
-    const Word* const upper = view.layers[1]->high.data() + row * shape_.pitch();
-    const bool masked = cells_of_valid_tiles(1u << (N - 1), row, nullptr, &slab, buffer.data());
-    count_edges(slab.edges, row, lower, upper, false, masked ? buffer.data() : nullptr);
-    if constexpr (N == 4)
-      if (has_cubes_) {
-        const auto valid = [&](unsigned axes) {
-          return cells_of_valid_tiles(axes, row, nullptr, &slab, buffer.data()) ? buffer.data() : nullptr;
-        };
-        count_cubes<14u>(slab.cubes[0], view, row, valid(14u));
-        count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
-        count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
-      }
-    tiles += count_tiles(view, slab, row);
-  }
-  return tiles;
+void Counter<N>::count_slab(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const {
+  const Word* const lower = view.layers[0]->high.data() + row * shape_.pitch();
+  const Word* const upper = view.layers[1]->high.data() + row * shape_.pitch();
+  const bool masked = cells_of_valid_tiles(1u << (N - 1), row, nullptr, &slab, buffer);
+  count_edges(slab.edges, row, lower, upper, false, masked ? buffer : nullptr);
+  if constexpr (N == 4)
+    if (has_cubes_) {
+      const auto valid = [&](unsigned axes) {
+        return cells_of_valid_tiles(axes, row, nullptr, &slab, buffer) ? buffer : nullptr;
+      };
+      count_cubes<14u>(slab.cubes[0], view, row, valid(14u));
+      count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
+      count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+    }
+  count_tiles(view, slab, row);
 }
 
 namespace {

@@ -10,6 +10,7 @@
 
 #include "extract_cell.hpp"
 #include "extract_layers.hpp"
+#include "extract_rows.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
@@ -26,22 +27,27 @@ struct TableSet {
 template <int N>
 class Counter {
  public:
-  Counter(const RowShape<N>& shape, const TableSet<N>& tables);
+  /// `rows`: the table for the quick way, or null.
+  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows);
 
   /// Storage for a layer or a slab; once.
   void allocate(Layer<N>& layer) const;
   void allocate(Slab<N>& slab) const;
 
-  /// Classifies layer `k`; `invert` for the high-connected alternative.
-  void classify(const SampleSource<N>& source, std::size_t k, bool invert, Layer<N>& layer) const;
-  /// Tiles without a missing corner, between two layers.
-  void find_valid(const Layer<N>& lower, const Layer<N>& upper, Slab<N>& slab) const;
+  // By row; rows may be done in any order and side by side. A pass needs the passes before it on all rows of what it
+  // looks at.
 
-  /// Critical edges (and cubes) in a layer; `below` and `above` are its slabs, or null at the border.
-  void count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) const;
-  /// Critical edges (and cubes) along the last axis, active tiles and what they own. Returns the number
-  /// of active tiles.
-  std::uint64_t count_slab(const SlabView<N>& view, Slab<N>& slab) const;
+  /// 1. Classifies a row of layer `k`; `invert` for the high-connected alternative.
+  void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer) const;
+  /// After all rows of a layer are classified.
+  static void find_missing(Layer<N>& layer);
+  /// 2. Tiles without a missing corner, between two layers; slab.all_valid is known.
+  void find_valid(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;
+  /// 3. Critical edges (and cubes) in a layer; `below` and `above` are its slabs, or null at the border. `buffer`:
+  /// pitch words.
+  void count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row, Word* buffer) const;
+  /// 3. Critical edges (and cubes) along the last axis, active tiles and what they own.
+  void count_slab(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const;
 
   /// Turn counts into places, starting with vertex `first` (and simplex `first_simplex`); return the end.
   std::uint64_t place_layer(Layer<N>& layer, std::uint64_t first) const;
@@ -60,10 +66,11 @@ class Counter {
                    const Word* valid) const;
   template <unsigned Axes>
   void count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
-  std::uint64_t count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const;
+  void count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const;
 
   const RowShape<N>& shape_;
   const tables::TileTable& tile_;
+  const RowTable* rows_;
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
 };

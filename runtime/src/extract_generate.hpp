@@ -9,6 +9,7 @@
 #include "extract_cell.hpp"
 #include "extract_count.hpp"
 #include "extract_place.hpp"
+#include "extract_rows.hpp"
 #include "extract_tables.hpp"
 
 namespace tegl::detail {
@@ -29,27 +30,53 @@ template <int N, unsigned Axes>
                       Frame::spread(edge_base(Frame::kDim, edge)) >> (N - 1) & 1u};
     return result;
   }();
-  return edge_point<Frame::kDim>(e, view.edge_places(kWhere[e].axis, kWhere[e].up)[id][0]);
+  return edge_point<Frame::kDim>(e, view.edge_places(kWhere[e].axis, kWhere[e].up).alpha(id));
 }
 
-/// Writes the points on a row's edges of one axis.
+/// Room for vertices by number. Numbers count modulo 2^32, so that a contour may have more, if no part of it has.
+template <class Vertex>
+struct VertexRun {
+  Vertex* data;
+  Index first;
+  Vertex& operator[](Index id) const noexcept { return data[static_cast<Index>(id - first)]; }
+};
+
+/// What a thread keeps between rows: the critical edges of one, by sample and by place.
+struct EdgeScratch {
+  std::vector<std::uint32_t> at;
+  std::vector<double> alphas;
+  void resize(std::size_t samples) {
+    if (at.size() >= samples) return;
+    at.resize(samples);
+    alphas.resize(samples);
+  }
+};
+
+/// Writes the points on a row's edges of one axis. `local` null: nothing asks for their places later.
 template <int N, class Real>
 void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape,
-                    const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, LocalRun<N>& local,
-                    typename Placement<N, Real>::Vertex* vertices) noexcept {
+                    const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, LocalRun* local,
+                    EdgeScratch& scratch, VertexRun<typename Placement<N, Real>::Vertex> vertices) noexcept {
+  std::size_t count = 0;
   const Word* const bits = plane.bits[0].data() + row * shape.pitch();
+  for (std::size_t w = 0; w < shape.words(); ++w)
+    for (Word rest = bits[w]; rest != 0; rest &= rest - 1)
+      scratch.at[count++] =
+          static_cast<std::uint32_t>(w * kWordBits) + static_cast<std::uint32_t>(std::countr_zero(rest));
+  if (count == 0) return;
   auto start = shape.index_of(row);
   start[N - 1] = layer;
-  LocalPoint<N>* const places = local.points.data() + (plane.base[row] - local.first);
-  source.edge_alphas(start, axis, bits, shape.words(), places);
-  placement.edges(start, axis, bits, shape.words(), places, vertices + plane.base[row]);
+  double* const alphas =
+      local == nullptr ? scratch.alphas.data() : local->alphas.data() + (plane.base[row] - local->first);
+  source.edge_alphas(start, axis, scratch.at.data(), count, alphas);
+  placement.edges(start, axis, scratch.at.data(), count, alphas, &vertices[plane.base[row]]);
 }
 
 /// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers and slab of the edges.
 template <unsigned Axes, class Real>
 void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& placement, const SlabView<4>& view,
-                    const CubePlane& plane, std::size_t row, std::size_t layer, LocalRun<4>& local,
-                    typename Placement<4, Real>::Vertex* vertices) noexcept {
+                    const CubePlane& plane, std::size_t row, std::size_t layer, LocalRun& local,
+                    VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
   const RowShape<4>& shape = *view.shape;
   const Word* const first = plane.bits[0].data() + row * shape.pitch();
   if (std::all_of(first, first + shape.words(), [](Word word) { return word == 0; })) return;
@@ -89,23 +116,83 @@ class TileWriter {
   using Simplex = std::array<Index, N>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
-  /// `flip`: against the orientation of the tables.
-  TileWriter(const tables::TileTable& table, const Placement<N, Real>& placement, bool flip, bool has_cubes)
-      : table_(table), placement_(placement), flip_(flip), has_cubes_(has_cubes) {}
+  /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null.
+  TileWriter(const tables::TileTable& table, const RowTable* rows, const Placement<N, Real>& placement, bool flip,
+             bool has_cubes)
+      : table_(table), rows_(has_cubes ? nullptr : rows), placement_(placement), flip_(flip), has_cubes_(has_cubes) {}
 
-  void write(const SlabView<N>& view, std::size_t row, std::size_t layer, Vertex* vertices,
-             Simplex* simplices) const noexcept {
+  /// `simplices`: where simplex `first_simplex` goes.
+  void write(const SlabView<N>& view, std::size_t row, std::size_t layer, VertexRun<Vertex> vertices,
+             Simplex* simplices, std::uint64_t first_simplex) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
-    if (!shape.has_cells(index, kAll)) return;
+    if (view.slab->active_count[row] == 0) return;
     index[N - 1] = layer;
+    Simplex* const out = simplices + (view.slab->simplex_base[row] - first_simplex);
+    if (rows_ != nullptr && view.slab->all_valid)
+      write_quickly(view, row, index, vertices, out);
+    else
+      write_one_by_one(view, row, index, vertices, out);
+  }
+
+ private:
+  using Ids = std::array<Index, 256>;  // by local vertex
+
+  /// Of rows whose tiles are all valid: then every critical edge belongs to an active tile.
+  void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
+                     VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+    const RowShape<N>& shape = *view.shape;
+    TileOutput<N> output{
+        view.slab->signatures.data() + row * shape.size(0), view.slab->active_count[row], {}, flip_, out};
+    CellEdges<N, kAll>(view, row).firsts(output.first.data());
+    // The tiles with vertices of their own come in order: their places are found by walking along.
+    struct Own {
+      const TileWriter& writer;
+      const SlabView<N>& view;
+      typename RowShape<N>::Index index;
+      VertexRun<Vertex> vertices;
+      const Word* active;
+      Index next;
+      std::size_t passed = 0;  ///< active tiles before `rest`
+      std::size_t word = 0;
+      Word rest = active[0];
+
+      void go_to(std::size_t ordinal) noexcept {
+        for (; passed < ordinal || rest == 0;) {
+          if (rest == 0) {
+            rest = active[++word];
+          } else {
+            rest &= rest - 1;
+            ++passed;
+          }
+        }
+        index[0] = word * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+      }
+      static Simplex* write(void* self, unsigned signature, std::size_t ordinal, const Index* edge_ids,
+                            Simplex* out) noexcept {
+        Own& own = *static_cast<Own*>(self);
+        own.go_to(ordinal);
+        Ids ids;
+        std::copy_n(edge_ids, tables::edge_count(N), ids.data());
+        const SimplexList<N> list(own.writer.table_, signature);
+        own.writer.write_own(own.view, list, ids, own.index, own.next, own.vertices);
+        out = own.writer.write_simplices(list, ids, own.next, out);
+        own.next += list.own_vertices();
+        return out;
+      }
+    };
+    Own own{*this, view, start, vertices, view.slab->active.data() + row * shape.pitch(), view.slab->tile_base[row]};
+    write_tile_row<N>(output, *rows_, {&Own::write, &own});
+  }
+
+  void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
+                        VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+    const RowShape<N>& shape = *view.shape;
     const Word* const active = view.slab->active.data() + row * shape.pitch();
-    if (std::all_of(active, active + shape.words(), [](Word word) { return word == 0; })) return;
     CellBits<N, kAll> cells(view, row);
     CellEdges<N, kAll> edges(view, row);
     Ids ids;
     Index own = view.slab->tile_base[row];
-    Simplex* out = simplices + view.slab->simplex_base[row];
     for (std::size_t w = 0; w < shape.words(); ++w) {
       Word rest = active[w];
       if (rest == 0) continue;
@@ -124,9 +211,6 @@ class TileWriter {
       }
     }
   }
-
- private:
-  using Ids = std::array<Index, 256>;  // by local vertex
 
   /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per
   /// use: then it is as fast as the flat one.
@@ -166,13 +250,13 @@ class TileWriter {
     if constexpr (N == 4)
       if (v >= kEdges) {
         const unsigned cube = (v - kEdges) / tables::kFaceSlots;
-        return cube_point(cube, view.cube_places(static_cast<int>(cube / 2), cube % 2)[ids[v]]);
+        return cube_point(cube, view.cube_places(static_cast<int>(cube / 2), cube % 2).point(ids[v]));
       }
     return edge_place<N, kAll>(view, v, ids[v]);
   }
 
   void write_own(const SlabView<N>& view, const SimplexList<N>& list, const Ids& ids,
-                 const typename RowShape<N>::Index& index, Index own, Vertex* vertices) const noexcept {
+                 const typename RowShape<N>::Index& index, Index own, VertexRun<Vertex> vertices) const noexcept {
     constexpr unsigned kShared = tables::first_tile_vertex(N);
     std::array<TilePoint<N>, 256 - kShared> points;
     if constexpr (N == 4) {
@@ -193,6 +277,7 @@ class TileWriter {
   }
 
   const tables::TileTable& table_;
+  const RowTable* rows_;
   const Placement<N, Real>& placement_;
   bool flip_;
   bool has_cubes_;

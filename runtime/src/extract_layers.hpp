@@ -106,22 +106,25 @@ struct RankPlane {
 using EdgePlane = RankPlane<1>;
 using CubePlane = RankPlane<tables::kFaceSlots>;
 
-/// A run of vertices with the places that later passes need, by vertex number - first.
-template <int N>
+/// A run of vertices with the places that later passes need, by vertex number - first. Where none needs them, they are
+/// not kept.
 struct LocalRun {
   Index first = 0;
-  Buffer<LocalPoint<N>> points;
-  [[nodiscard]] const LocalPoint<N>& operator[](Index id) const noexcept { return points[id - first]; }
+  Buffer<double> alphas;                 ///< of points on edges: 0 at the first end, 1 at the second
+  Buffer<std::array<double, 3>> points;  ///< N = 4: of cubes' barycentres, in the cube
+  [[nodiscard]] double alpha(Index id) const noexcept { return alphas[id - first]; }
+  [[nodiscard]] const std::array<double, 3>& point(Index id) const noexcept { return points[id - first]; }
 };
 
 template <int N>
 struct Layer {
-  std::vector<Word> high;     ///< rows x pitch; inverted for the high-connected alternative
-  std::vector<Word> missing;  ///< rows x pitch, meaningful if any_missing
+  std::vector<Word> high;                 ///< rows x pitch; inverted for the high-connected alternative
+  std::vector<Word> missing;              ///< rows x pitch
+  std::vector<std::uint8_t> row_missing;  ///< by row: whether any sample is missing
   bool any_missing = false;
   std::array<EdgePlane, N - 1> edges;  ///< by axis
   CubePlane cubes;                     ///< N = 4: the cubes in the layer
-  LocalRun<N> local;
+  LocalRun local;
 };
 
 template <int N>
@@ -129,11 +132,13 @@ struct Slab {
   std::vector<Word> valid;  ///< rows x pitch: tiles without a missing corner; meaningful unless all_valid
   bool all_valid = true;
   std::vector<Word> active;                 ///< rows x pitch: valid tiles with high and low corners
+  std::vector<std::uint16_t> signatures;    ///< rows x samples of a row: of each row's active tiles, in order
+  std::vector<std::uint32_t> active_count;  ///< by row
   EdgePlane edges;                          ///< along the last axis
   std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
   std::vector<Index> tile_base;             ///< first vertex of each row's tiles; while counting: their number
   std::vector<std::uint64_t> simplex_base;  ///< first simplex of each row; while counting: their number
-  LocalRun<N> local;
+  LocalRun local;
 };
 
 /// A slab with the two layers around it: where cells find the numbers of what they share.
@@ -146,13 +151,13 @@ struct SlabView {
   [[nodiscard]] const EdgePlane& edges(int axis, unsigned up) const noexcept {
     return axis == N - 1 ? slab->edges : layers[up]->edges[static_cast<std::size_t>(axis)];
   }
-  [[nodiscard]] const LocalRun<N>& edge_places(int axis, unsigned up) const noexcept {
+  [[nodiscard]] const LocalRun& edge_places(int axis, unsigned up) const noexcept {
     return axis == N - 1 ? slab->local : layers[up]->local;
   }
   [[nodiscard]] const CubePlane& cubes(int omitted, unsigned up) const noexcept {
     return omitted == N - 1 ? layers[up]->cubes : slab->cubes[static_cast<std::size_t>(omitted)];
   }
-  [[nodiscard]] const LocalRun<N>& cube_places(int omitted, unsigned up) const noexcept {
+  [[nodiscard]] const LocalRun& cube_places(int omitted, unsigned up) const noexcept {
     return omitted == N - 1 ? layers[up]->local : slab->local;
   }
 };

@@ -65,18 +65,31 @@ class Placement {
                                                                   : inside_slab(world(point), base[N - 1]);
   }
 
-  /// The points on the edges along `axis` from the samples of a row that are set in `edges`.
-  void edges(Index start, int axis, const Word* edges, std::size_t words, const LocalPoint<N>* alphas,
+  /// The points on the edges along `axis` from the samples `at` of a row, `count` of them.
+  void edges(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
              Vertex* out) const noexcept {
     std::array<double, N> point;
     for (int a = 1; a < N; ++a) point[a] = sample(a, start[a]);
-    for (std::size_t w = 0; w < words; ++w)
-      for (Word rest = edges[w]; rest != 0; rest &= rest - 1) {
-        start[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-        point[0] = sample(0, start[0]);
-        point[axis] = between(axis, start[axis], (*alphas++)[0]);
-        *out++ = axis == N - 1 ? inside_slab(world(point), start[N - 1]) : world(point);
+    const double* const along = coordinates_[0].data();
+    if (mapped_ || axis == N - 1) {
+      for (std::size_t i = 0; i < count; ++i) {
+        point[0] = along[at[i]];
+        point[axis] = between(axis, axis == 0 ? at[i] : start[axis], alphas[i]);
+        out[i] = axis == N - 1 ? inside_slab(world(point), start[N - 1]) : world(point);
       }
+      return;
+    }
+    Vertex vertex;
+    for (int a = 1; a < N; ++a) vertex[a] = static_cast<Real>(point[a]);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (axis == 0) {
+        vertex[0] = static_cast<Real>(between(0, at[i], alphas[i]));
+      } else {
+        vertex[0] = static_cast<Real>(along[at[i]]);
+        vertex[axis] = static_cast<Real>(between(axis, start[axis], alphas[i]));
+      }
+      out[i] = vertex;
+    }
   }
 
  private:

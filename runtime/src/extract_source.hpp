@@ -6,29 +6,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "bitplanes.hpp"
 
 namespace tegl::detail {
 
-/// What the kernel keeps of a vertex for its neighbours: the place alpha on its edge in [0]; of a cube's
-/// barycentre (N = 4) its coordinates in the cube.
-template <int N>
-using LocalPoint = std::array<double, N == 4 ? 3 : 1>;
-
-/// The place of the isovalue on an edge from a value `a` to a value `b`, of which one is below the
-/// isovalue and the other is not: 0 at a, 1 at b (theory, section 1). Infinite samples are taken as
-/// limits: the point goes to the finite end, or to the middle between two infinities.
-inline double edge_alpha(double a, double b, double isovalue) noexcept {
-  const double difference = b - a;
-  if (std::isfinite(difference)) return (isovalue - a) / difference;
-  if (std::isinf(a)) return std::isinf(b) ? 0.5 : 1.0;
-  if (std::isinf(b)) return 0.0;
-  return (0.5 * isovalue - 0.5 * a) / (0.5 * b - 0.5 * a);
-}
+/// The place of the isovalue on edges from values `a` to values `b`, of which one is below the isovalue and the other
+/// is not: 0 at a, 1 at b (theory, section 1), kept `epsilon` away from both. Infinite samples are taken as limits: the
+/// point goes to the finite end, or to the middle between two infinities. Edge i has its values at a[at[i] * stride]
+/// and b[at[i] * stride].
+template <Value T>
+void edge_alphas(const T* a, const T* b, std::ptrdiff_t stride, const std::uint32_t* at, std::size_t count,
+                 double isovalue, double epsilon, double* out) noexcept;
 
 /// An image with an isovalue; rows run along axis 0.
 template <int N>
@@ -40,13 +31,19 @@ class SampleSource {
   SampleSource& operator=(const SampleSource&) = delete;
   virtual ~SampleSource() = default;
 
+  /// Makes the samples of layer k of the last axis ready, which takes the place of layer k - `kept`; called once for
+  /// each layer, in order, by the thread that called for the extraction. May throw.
+  virtual void prepare(std::size_t /*k*/) const {}
+  /// How many layers are ready at a time; 0: all of them, always.
+  [[nodiscard]] virtual std::size_t kept() const noexcept { return 0; }
+
   /// The row through `start` (start[0] = 0), as classify_row.
   virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;
 
-  /// For each bit set in `edges`, in order: the place on the edge along `axis` from that sample of the
-  /// row, kept `epsilon` away from the ends. All edges are critical.
-  virtual void edge_alphas(const Index& start, int axis, const Word* edges, std::size_t words,
-                           LocalPoint<N>* out) const noexcept = 0;
+  /// For the edges along `axis` from the samples `at` of the row, `count` of them, all critical: the place on the edge,
+  /// 0 at its first end and 1 at its second, kept `epsilon` away from both.
+  virtual void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
+                           double* out) const noexcept = 0;
 };
 
 /// The samples must outlive it; the view need not.
@@ -67,18 +64,10 @@ class ImageSource final : public SampleSource<N> {
     return classify_row(row(start), strides_[0], row_size_, threshold_, high, missing);
   }
 
-  void edge_alphas(const Index& start, int axis, const Word* edges, std::size_t words,
-                   LocalPoint<N>* out) const noexcept override {
+  void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
+                   double* out) const noexcept override {
     const T* const samples = row(start);
-    const std::ptrdiff_t along = strides_[0];
-    const std::ptrdiff_t across = strides_[axis];
-    for (std::size_t w = 0; w < words; ++w)
-      for (Word rest = edges[w]; rest != 0; rest &= rest - 1) {
-        const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-        const T* const a = samples + static_cast<std::ptrdiff_t>(i) * along;
-        const double alpha = edge_alpha(static_cast<double>(a[0]), static_cast<double>(a[across]), isovalue_);
-        (*out++)[0] = std::clamp(alpha, epsilon_, 1.0 - epsilon_);
-      }
+    detail::edge_alphas(samples, samples + strides_[axis], strides_[0], at, count, isovalue_, epsilon_, out);
   }
 
  private:

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,14 +16,34 @@
 namespace tegl {
 
 namespace detail {
+/// Blocks of this size and more come from the system as huge pages, where it has them.
+inline constexpr std::size_t kLargeBlock = std::size_t{1} << 21;
+/// Memory that is not touched before it is used: asking for more than is needed costs address space alone. Throws
+/// std::bad_alloc.
+void* allocate_large_block(std::size_t bytes);
+void free_large_block(void* block, std::size_t bytes) noexcept;
+
 /// Leaves trivial elements uninitialised on resize: outputs are written once, not twice.
 template <class T>
-struct DefaultInitAllocator : std::allocator<T> {
-  using std::allocator<T>::allocator;
+struct DefaultInitAllocator {
+  using value_type = T;
+  DefaultInitAllocator() = default;
   template <class U>
-  struct rebind {
-    using other = DefaultInitAllocator<U>;
-  };
+  DefaultInitAllocator(const DefaultInitAllocator<U>&) noexcept {}  // NOLINT(google-explicit-constructor)
+
+  T* allocate(std::size_t n) {
+    if (n > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
+    const std::size_t bytes = n * sizeof(T);
+    return static_cast<T*>(bytes < kLargeBlock ? ::operator new(bytes, std::align_val_t(alignof(T)))
+                                               : allocate_large_block(bytes));
+  }
+  void deallocate(T* block, std::size_t n) noexcept {
+    const std::size_t bytes = n * sizeof(T);
+    if (bytes < kLargeBlock)
+      ::operator delete(block, std::align_val_t(alignof(T)));
+    else
+      free_large_block(block, bytes);
+  }
   template <class U, class... Args>
   void construct(U* p, Args&&... args) {
     if constexpr (sizeof...(Args) == 0)
@@ -31,6 +51,7 @@ struct DefaultInitAllocator : std::allocator<T> {
     else
       ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
   }
+  friend bool operator==(const DefaultInitAllocator&, const DefaultInitAllocator&) noexcept { return true; }
 };
 }  // namespace detail
 
@@ -51,8 +72,8 @@ struct Contour {
   using VertexMatrix = Eigen::Matrix<Real, Eigen::Dynamic, N, Eigen::RowMajor>;
   using SimplexMatrix = Eigen::Matrix<Index, Eigen::Dynamic, N, Eigen::RowMajor>;
 
-  Buffer<Vertex> vertices;    ///< #V x N world coordinates, row = vertex; for time-varying images t is last
-  Buffer<Simplex> simplices;  ///< #S x N vertex numbers, row = simplex, consistently oriented
+  Buffer<Vertex> vertices;                ///< #V x N world coordinates, row = vertex; for time-varying images t is last
+  Buffer<Simplex> simplices;              ///< #S x N vertex numbers, row = simplex, consistently oriented
   std::array<std::string, N> axis_names;  ///< taken from the grid
   std::array<std::string, N> axis_units;
   GradientDirection direction = GradientDirection::descent;

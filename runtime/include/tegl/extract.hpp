@@ -26,6 +26,8 @@ struct ExtractOptions {
   /// 0: exact positions; where a sample equals the isovalue, simplices of zero size arise. (Whatever it is, four points
   /// of a compact 4D tile may lie in one plane.)
   double epsilon = 0.0;
+  /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
+  unsigned threads = 0;
   Progress progress;
 };
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The innermost loops of the extraction, compiled for several instruction sets of which the best is taken at run time.
+// All of them give the same bytes.
+//
+// A tile's vertices get their numbers by running counters. A *stream* is a row of edges that one row of tiles touches:
+// 2^(N-1) along the row, and for every other axis 2^(N-2), of which a tile has the edge at its own place and the one at
+// the next. As every critical edge makes the tiles around it active, the counters move at active tiles alone, and how
+// they move is known from the signature: no bit of a stream is looked at.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bitplanes.hpp"
+#include "extract_cell.hpp"
+#include "tegl/contour.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+/// A tile table in the flat layout, ready for the loops.
+class RowTable {
+ public:
+  /// Low bits of an entry: the number of simplices, then whether the tile has vertices of its own; above them, the
+  /// first simplex.
+  static constexpr unsigned kCountBits = 6;
+  static constexpr std::uint32_t kCountMask = (1u << kCountBits) - 1;
+  static constexpr std::uint32_t kOwnFlag = 1u << kCountBits;
+  static constexpr unsigned kFirstShift = kCountBits + 1;
+
+  /// Whether the loops can use a table: flat, and no larger than entries can say.
+  static bool can_use(const tables::TileTable& table) noexcept;
+
+  explicit RowTable(const tables::TileTable& table);
+
+  /// By signature.
+  [[nodiscard]] const std::uint32_t* entries() const noexcept { return entries_.data(); }
+  /// dim local vertices each.
+  [[nodiscard]] const std::uint8_t* simplices() const noexcept { return simplices_; }
+  /// The tile's own vertices.
+  [[nodiscard]] unsigned own_vertices(unsigned signature) const noexcept {
+    const tables::List& list = table_->lists[table_->list_of[signature]];
+    return unsigned{list.cone_vertices} + list.side_vertices;
+  }
+
+ private:
+  const tables::TileTable* table_;
+  std::vector<std::uint32_t> entries_;
+  const std::uint8_t* simplices_;
+};
+
+/// A row of tiles, to be counted.
+struct TileRow {
+  std::array<const Word*, 8> corners;  ///< the rows of samples around it, 2^(N-1) of them
+  std::size_t tiles;                   ///< along the row
+  const Word* valid;                   ///< null: all are
+};
+
+/// What a row of tiles comes to.
+struct TileCount {
+  std::uint32_t active = 0;
+  std::uint32_t own_vertices = 0;
+  std::uint64_t simplices = 0;
+};
+
+/// Writes the active tiles of a row as bits (ceil(tiles / 64) words, bits past the end 0) and, in order, their
+/// signatures.
+template <int N>
+TileCount count_tile_row(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* signatures) noexcept;
+
+/// A row of tiles, to be written.
+template <int N>
+struct TileOutput {
+  using Simplex = std::array<Index, N>;
+  static constexpr unsigned kEdges = tables::edge_count(N);
+
+  const std::uint16_t* signatures;
+  std::size_t active;
+  std::array<Index, kEdges> first;  ///< by local edge: the first vertex of its stream
+  bool flip;                        ///< against the orientation of the table
+  Simplex* out;
+};
+
+/// What to do for a tile with vertices of its own: `ordinal` counts the active tiles of the row; `ids` are the numbers
+/// of its edges' vertices. Returns where the next simplex goes.
+template <int N>
+struct OwnTiles {
+  using Simplex = std::array<Index, N>;
+  Simplex* (*write)(void* self, unsigned signature, std::size_t ordinal, const Index* ids, Simplex* out);
+  void* self;
+};
+
+/// Writes the simplices of a row whose tiles are all valid, and whose neighbours are.
+template <int N>
+void write_tile_row(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) noexcept;
+
+/// Critical edges of a row: a ^ b, in `critical`, with the number of them before each word in `prefix`. b null: the
+/// edges along the row, between a sample and the next. `valid` may be null. Returns how many there are.
+std::uint32_t count_edge_row(const Word* a, const Word* b, std::size_t samples, const Word* valid, Word* critical,
+                             std::uint32_t* prefix) noexcept;
+
+/// The critical edges of a cube or tesseract, bit e for local edge e, from its signature.
+template <int N>
+constexpr std::uint32_t critical_edges(unsigned signature) noexcept {
+  std::uint32_t edges = 0;
+  for (unsigned e = 0; e < tables::edge_count(N); ++e) {
+    const unsigned base = edge_base(N, e);
+    const unsigned end = base | 1u << (e >> (N - 1));
+    edges |= ((signature >> base ^ signature >> end) & 1u) << e;
+  }
+  return edges;
+}
+
+/// The local edges at the next place of their stream: displaced along axis 0 and not along it.
+template <int N>
+constexpr std::uint32_t next_edges() noexcept {
+  std::uint32_t edges = 0;
+  for (unsigned e = 0; e < tables::edge_count(N); ++e)
+    if (e >> (N - 1) != 0 && (edge_base(N, e) & 1u) != 0) edges |= 1u << e;
+  return edges;
+}
+
+}  // namespace tegl::detail

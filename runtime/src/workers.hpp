@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Threads: loops over ranges, and what each thread keeps between them.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "bitplanes.hpp"
+#include "extract_generate.hpp"
+
+namespace tegl::detail {
+
+class Workers {
+ public:
+  /// `threads`: 0 for all that the machine has.
+  explicit Workers(unsigned threads)
+      : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
+        alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)) {}
+
+  /// Calls work(from, to) for parts of 0 ... count - 1 that make up the whole, of at least `grain` (but the last).
+  template <class Work>
+  void for_range(std::size_t count, std::size_t grain, const Work& work) {
+    if (count == 0) return;
+    if (alone_ || count <= grain) return work(std::size_t{0}, count);
+    arena_.execute([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                        [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end()); });
+    });
+  }
+
+  /// This thread's own; `size` words or samples at least.
+  Word* buffer(std::size_t size) {
+    std::vector<Word>& words = own_.local().words;
+    if (words.size() < size) words.resize(size);
+    return words.data();
+  }
+  EdgeScratch& scratch(std::size_t samples) {
+    EdgeScratch& scratch = own_.local().edges;
+    scratch.resize(samples);
+    return scratch;
+  }
+
+ private:
+  struct Own {
+    std::vector<Word> words;
+    EdgeScratch edges;
+  };
+  tbb::task_arena arena_;
+  bool alone_;
+  tbb::enumerable_thread_specific<Own> own_;
+};
+
+}  // namespace tegl::detail
