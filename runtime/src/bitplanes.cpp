@@ -46,7 +46,7 @@ HWY_INLINE Word high_word(const T* samples, T threshold, Word& missing) {
     const auto values = hn::LoadU(d, samples + i);
     if constexpr (std::is_floating_point_v<T>) {
       word |= bits_of(d, hn::Ge(values, limit)) << i;
-      nans |= bits_of(d, hn::Ne(values, values)) << i;
+      nans |= bits_of(d, hn::Not(hn::Eq(values, values))) << i;  // Ne is false for NaN on some sets
     } else {
       word |= bits_of(d, hn::Lt(values, limit)) << i;
     }
