@@ -29,7 +29,7 @@ HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) 
     alpha = std::isinf(b) ? 0.5 : 1.0;
   else if (!std::isinf(b))
     alpha = (0.5 * isovalue - 0.5 * a) / (0.5 * b - 0.5 * a);
-  return std::clamp(alpha, epsilon, 1.0 - epsilon);
+  return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, of which instruction sets make this or that
 }
 
 template <class T>
@@ -57,7 +57,7 @@ HWY_INLINE void alphas(const T* a, const T* b, std::ptrdiff_t stride, const std:
       continue;
     }
     const auto alpha = hn::Div(hn::Sub(threshold, start), difference);
-    hn::StoreU(hn::Min(hn::Max(alpha, least), most), d, out + i);
+    hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least), most), hn::Zero(d)), d, out + i);
   }
   for (; i < count; ++i) {
     const std::ptrdiff_t place = stride * static_cast<std::ptrdiff_t>(at[i]);

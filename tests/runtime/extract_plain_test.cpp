@@ -153,6 +153,7 @@ void expect_plain_options(std::array<std::size_t, N> sizes, std::uint64_t seed) 
     uneven.axes[0] = Axis::rectilinear(coordinates);
     uneven.axes[N - 1] = Axis::uniform(sizes[N - 1], 0.3, 0.7);
     expect_plain<Real>(Image<float, N>(image.values.data(), uneven), 0.5, options, builder);
+    expect_plain<Real>(Image<std::int16_t, N>(coarse.values.data(), uneven), 1.0, options, builder);
     uneven.linear(0, 1) = 0.4;
     uneven.linear(N - 1, N - 1) = -1.7;
     uneven.offset(0) = 11.3;

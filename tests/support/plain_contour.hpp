@@ -186,7 +186,8 @@ class PlainExtraction {
   std::array<Real, N> point(const Corner& from, int axis) const {
     const double a = static_cast<double>(image_(from));
     const double b = static_cast<double>(image_(shifted(from, 1u << axis)));
-    const double alpha = std::clamp((isovalue_ - a) / (b - a), options_.epsilon, 1.0 - options_.epsilon);
+    const double alpha =
+        std::clamp((isovalue_ - a) / (b - a), options_.epsilon, 1.0 - options_.epsilon) + 0.0;  // no -0
     std::array<double, N> x;
     for (int i = 0; i < N; ++i) x[i] = image_.grid().axes[i][from[i]];
     const double start = x[axis];
