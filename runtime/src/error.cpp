@@ -5,18 +5,30 @@ namespace tegl {
 
 const char* error_name(ErrorCode code) noexcept {
   switch (code) {
-    case ErrorCode::InvalidArgument: return "InvalidArgument";
-    case ErrorCode::InvalidGrid: return "InvalidGrid";
-    case ErrorCode::InvalidIsovalue: return "InvalidIsovalue";
-    case ErrorCode::EmptyResult: return "EmptyResult";
-    case ErrorCode::FileNotFound: return "FileNotFound";
-    case ErrorCode::MalformedFile: return "MalformedFile";
-    case ErrorCode::UnsupportedFormat: return "UnsupportedFormat";
-    case ErrorCode::UnsupportedData: return "UnsupportedData";
-    case ErrorCode::VariableNotFound: return "VariableNotFound";
-    case ErrorCode::WriteFailed: return "WriteFailed";
-    case ErrorCode::TooLarge: return "TooLarge";
-    case ErrorCode::Cancelled: return "Cancelled";
+    case ErrorCode::InvalidArgument:
+      return "InvalidArgument";
+    case ErrorCode::InvalidGrid:
+      return "InvalidGrid";
+    case ErrorCode::InvalidIsovalue:
+      return "InvalidIsovalue";
+    case ErrorCode::EmptyResult:
+      return "EmptyResult";
+    case ErrorCode::FileNotFound:
+      return "FileNotFound";
+    case ErrorCode::MalformedFile:
+      return "MalformedFile";
+    case ErrorCode::UnsupportedFormat:
+      return "UnsupportedFormat";
+    case ErrorCode::UnsupportedData:
+      return "UnsupportedData";
+    case ErrorCode::VariableNotFound:
+      return "VariableNotFound";
+    case ErrorCode::WriteFailed:
+      return "WriteFailed";
+    case ErrorCode::TooLarge:
+      return "TooLarge";
+    case ErrorCode::Cancelled:
+      return "Cancelled";
   }
   return "Unknown";
 }

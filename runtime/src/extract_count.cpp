@@ -24,6 +24,7 @@ void Counter<N>::allocate(Layer<N>& layer) const {
   layer.high.assign(shape_.rows() * shape_.pitch(), 0);
   layer.missing.assign(shape_.rows() * shape_.pitch(), 0);
   layer.row_missing.assign(shape_.rows(), 0);
+  layer.state.assign(shape_.rows(), RowState::mixed);
   for (EdgePlane& plane : layer.edges) plane.allocate(shape_.rows(), shape_.pitch());
   if (has_cubes_) layer.cubes.allocate(shape_.rows(), shape_.pitch());
 }
@@ -53,6 +54,13 @@ void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool inv
   layer.row_missing[row] = any ? 1 : 0;
   if (invert)
     for (std::size_t w = 0; w < shape_.words(); ++w) high[w] = ~high[w] & shape_.mask(w, false);
+  Word ones = 0;
+  Word zeros = 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    ones |= high[w];
+    zeros |= ~high[w] & shape_.mask(w, false);
+  }
+  layer.state[row] = any || (ones != 0 && zeros != 0) ? RowState::mixed : ones != 0 ? RowState::high : RowState::low;
 }
 
 template <int N>
@@ -107,15 +115,15 @@ template <int N>
 void Counter<N>::count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
                              const Word* valid) const {
   const std::size_t at = row * shape_.pitch();
-  plane.base[row] = count_edge_row(a, along_row ? nullptr : b, shape_.size(0), valid, plane.bits[0].data() + at,
-                                   plane.prefix.data() + at);
+  plane.count[row] = count_edge_row(a, along_row ? nullptr : b, shape_.size(0), valid, plane.bits[0].data() + at,
+                                    plane.prefix.data() + at);
 }
 
 template <int N>
 template <unsigned Axes>
 void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
   const std::size_t pitch = shape_.pitch();
-  plane.base[row] = 0;
+  plane.count[row] = 0;
   if (!shape_.has_cells(shape_.index_of(row), Axes)) return;  // its bits have been 0 from the start
   CellBits<N, Axes> cells(view, row);
   std::uint32_t count = 0;
@@ -133,7 +141,7 @@ void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::siz
     }
     for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) plane.bits[slot][row * pitch + w] = bits[slot];
   }
-  plane.base[row] = count;
+  plane.count[row] = count;
 }
 
 template <int N>
@@ -143,8 +151,10 @@ void Counter<N>::count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N
   const Word* const high = layer.high.data() + row * shape_.pitch();
   for (int axis = 0; axis < N - 1; ++axis) {
     const unsigned mask = 1u << axis;
-    layer.edges[axis].base[row] = 0;
-    if (!shape_.has_cells(index, mask)) continue;  // its bits have been 0 from the start
+    layer.edges[axis].count[row] = 0;
+    if (!shape_.has_cells(index, mask)) continue;
+    const RowState state = layer.state[row];
+    if (state != RowState::mixed && state == layer.state[shape_.shifted(row, mask)]) continue;
     const bool masked = cells_of_valid_tiles(mask, row, below, above, buffer);
     const Word* const next = layer.high.data() + shape_.shifted(row, mask) * shape_.pitch();
     count_edges(layer.edges[axis], row, high, next, axis == 0, masked ? buffer : nullptr);
@@ -156,6 +166,19 @@ void Counter<N>::count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N
     }
 }
 
+/// Whether all corners of a row's tiles are alike.
+template <int N>
+static bool is_uniform(const SlabView<N>& view, std::size_t row) {
+  const RowState first = view.layers[0]->state[row];
+  if (first == RowState::mixed) return false;
+  constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
+  bool uniform = true;
+  for (const Layer<N>* layer : view.layers)
+    for (unsigned corner = 0; corner <= kMiddle; corner += 2)
+      uniform = uniform && layer->state[view.shape->shifted(row, corner)] == first;
+  return uniform;
+}
+
 template <int N>
 void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const {
   constexpr unsigned kAll = (1u << N) - 1;
@@ -163,7 +186,8 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   slab.tile_base[row] = 0;
   slab.simplex_base[row] = 0;
   slab.active_count[row] = 0;
-  if (!shape_.has_cells(shape_.index_of(row), kAll)) return;  // its bits have been 0 from the start
+  if (!shape_.has_cells(shape_.index_of(row), kAll)) return;
+  if (is_uniform(view, row)) return;
   CellBits<N, kAll> cells(view, row);
   if (rows_ != nullptr) {
     TileRow tiles{{}, shape_.size(0) - 1, slab.all_valid ? nullptr : slab.valid.data() + row * shape_.pitch()};
@@ -193,8 +217,12 @@ template <int N>
 void Counter<N>::count_slab(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const {
   const Word* const lower = view.layers[0]->high.data() + row * shape_.pitch();
   const Word* const upper = view.layers[1]->high.data() + row * shape_.pitch();
-  const bool masked = cells_of_valid_tiles(1u << (N - 1), row, nullptr, &slab, buffer);
-  count_edges(slab.edges, row, lower, upper, false, masked ? buffer : nullptr);
+  const RowState state = view.layers[0]->state[row];
+  slab.edges.count[row] = 0;
+  if (state == RowState::mixed || state != view.layers[1]->state[row]) {
+    const bool masked = cells_of_valid_tiles(1u << (N - 1), row, nullptr, &slab, buffer);
+    count_edges(slab.edges, row, lower, upper, false, masked ? buffer : nullptr);
+  }
   if constexpr (N == 4)
     if (has_cubes_) {
       const auto valid = [&](unsigned axes) {
@@ -209,11 +237,10 @@ void Counter<N>::count_slab(const SlabView<N>& view, Slab<N>& slab, std::size_t 
 
 namespace {
 
-/// Replaces a row's count by the number of vertices before it.
-void place(Index& base, std::uint64_t& next) {
-  const std::uint64_t count = base;
-  base = static_cast<Index>(next);
-  next += count;
+template <class Plane>
+void place(Plane& plane, std::size_t row, std::uint64_t& next) {
+  plane.base[row] = static_cast<Index>(next);
+  next += plane.count[row];
 }
 
 }  // namespace
@@ -222,8 +249,8 @@ template <int N>
 std::uint64_t Counter<N>::place_layer(Layer<N>& layer, std::uint64_t first) const {
   std::uint64_t next = first;
   for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    for (EdgePlane& plane : layer.edges) place(plane.base[row], next);
-    if (has_cubes_) place(layer.cubes.base[row], next);
+    for (EdgePlane& plane : layer.edges) place(plane, row, next);
+    if (has_cubes_) place(layer.cubes, row, next);
   }
   layer.local.first = static_cast<Index>(first);
   return next;
@@ -233,10 +260,12 @@ template <int N>
 std::uint64_t Counter<N>::place_slab(Slab<N>& slab, std::uint64_t first, std::uint64_t& first_simplex) const {
   std::uint64_t next = first;
   for (std::size_t row = 0; row < shape_.rows(); ++row) {
-    place(slab.edges.base[row], next);
+    place(slab.edges, row, next);
     if (has_cubes_)
-      for (CubePlane& plane : slab.cubes) place(plane.base[row], next);
-    place(slab.tile_base[row], next);
+      for (CubePlane& plane : slab.cubes) place(plane, row, next);
+    const std::uint64_t own_vertices = slab.tile_base[row];
+    slab.tile_base[row] = static_cast<Index>(next);
+    next += own_vertices;
     const std::uint64_t simplices = slab.simplex_base[row];
     slab.simplex_base[row] = first_simplex;
     first_simplex += simplices;

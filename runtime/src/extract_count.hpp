@@ -19,6 +19,7 @@ namespace tegl::detail {
 template <int N>
 struct TableSet {
   const tables::TileTable* tile = nullptr;      ///< of N
+  bool compact = false;                         ///< the compact triangulation
   const tables::TileTable* cube = nullptr;      ///< of 3; N = 4 only
   const tables::RegionTable* face = nullptr;    ///< of N - 1; for closed borders
   const tables::RegionTable* square = nullptr;  ///< of 2; N = 4, for closed borders

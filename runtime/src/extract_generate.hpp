@@ -43,13 +43,9 @@ struct VertexRun {
 
 /// What a thread keeps between rows: the critical edges of one, by sample and by place.
 struct EdgeScratch {
+  explicit EdgeScratch(std::size_t samples) : at(samples), alphas(samples) {}
   std::vector<std::uint32_t> at;
   std::vector<double> alphas;
-  void resize(std::size_t samples) {
-    if (at.size() >= samples) return;
-    at.resize(samples);
-    alphas.resize(samples);
-  }
 };
 
 /// Writes the points on a row's edges of one axis. `local` null: nothing asks for their places later.
@@ -57,13 +53,13 @@ template <int N, class Real>
 void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape,
                     const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, LocalRun* local,
                     EdgeScratch& scratch, VertexRun<typename Placement<N, Real>::Vertex> vertices) noexcept {
+  if (plane.count[row] == 0) return;
   std::size_t count = 0;
   const Word* const bits = plane.bits[0].data() + row * shape.pitch();
   for (std::size_t w = 0; w < shape.words(); ++w)
     for (Word rest = bits[w]; rest != 0; rest &= rest - 1)
       scratch.at[count++] =
           static_cast<std::uint32_t>(w * kWordBits) + static_cast<std::uint32_t>(std::countr_zero(rest));
-  if (count == 0) return;
   auto start = shape.index_of(row);
   start[N - 1] = layer;
   double* const alphas =
@@ -78,13 +74,13 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
                     const CubePlane& plane, std::size_t row, std::size_t layer, LocalRun& local,
                     VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
   const RowShape<4>& shape = *view.shape;
+  if (plane.count[row] == 0) return;
   const Word* const first = plane.bits[0].data() + row * shape.pitch();
-  if (std::all_of(first, first + shape.words(), [](Word word) { return word == 0; })) return;
   auto index = shape.index_of(row);
   index[3] = layer;
   CellBits<4, Axes> cells(view, row);
   CellEdges<4, Axes> edges(view, row);
-  std::array<Index, tables::edge_count(3)> ids;
+  std::array<Index, 64> ids;  // more than edges, or GCC 12 warns of numbers that tables do not have
   std::array<TilePoint<3>, tables::kFaceSlots> points;
   Index next = plane.base[row];
   for (std::size_t w = 0; w < shape.words(); ++w) {
@@ -97,7 +93,7 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
       edges.ids(bit, ids.data());
       const SimplexList<3> list(table, cells.signature(bit));
       own_places<3>(
-          list, [&](unsigned v) { return edge_place<4, Axes>(view, list.mapped(v), ids[list.mapped(v)]); },
+          list, false, [&](unsigned v) { return edge_place<4, Axes>(view, list.mapped(v), ids[list.mapped(v)]); },
           points.data());
       index[0] = w * kWordBits + bit;
       for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
@@ -117,9 +113,14 @@ class TileWriter {
   static constexpr unsigned kAll = (1u << N) - 1;
 
   /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null.
-  TileWriter(const tables::TileTable& table, const RowTable* rows, const Placement<N, Real>& placement, bool flip,
+  TileWriter(const TableSet<N>& tables, const RowTable* rows, const Placement<N, Real>& placement, bool flip,
              bool has_cubes)
-      : table_(table), rows_(has_cubes ? nullptr : rows), placement_(placement), flip_(flip), has_cubes_(has_cubes) {}
+      : table_(*tables.tile),
+        compact_(tables.compact),
+        rows_(has_cubes ? nullptr : rows),
+        placement_(placement),
+        flip_(flip),
+        has_cubes_(has_cubes) {}
 
   /// `simplices`: where simplex `first_simplex` goes.
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, VertexRun<Vertex> vertices,
@@ -267,16 +268,17 @@ class TileWriter {
         is_known[v] = true;
         return known[v];
       };
-      own_places<N>(list, place, points.data());
+      own_places<N>(list, compact_, place, points.data());
     } else {
       own_places<N>(
-          list, [&](unsigned v) { return shared_place(view, ids, list.mapped(v)); }, points.data());
+          list, compact_, [&](unsigned v) { return shared_place(view, ids, list.mapped(v)); }, points.data());
     }
     for (unsigned j = 0; j < list.own_vertices(); ++j)
       vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
   }
 
   const tables::TileTable& table_;
+  bool compact_;
   const RowTable* rows_;
   const Placement<N, Real>& placement_;
   bool flip_;

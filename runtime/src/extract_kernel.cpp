@@ -82,10 +82,10 @@ class Extraction {
         row_table_(rows_ ? &*rows_ : nullptr),
         placement_(grid),
         counter_(shape_, tables, row_table_),
-        tiles_(*tables.tile, row_table_, placement_, against_tables(grid, options) != inverted_, counter_.has_cubes()),
+        tiles_(tables, row_table_, placement_, against_tables(grid, options) != inverted_, counter_.has_cubes()),
         keeps_places_(tables.tile->max_tile_vertices > 0 || counter_.has_cubes() || options.close),
         pinches_(shape_, counter_),
-        workers_(options.threads),
+        workers_(options.threads, shape_.size(0), shape_.pitch()),
         batch_(batch_size(shape_)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
@@ -136,18 +136,19 @@ class Extraction {
       throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {} of {} layers", done, all));
   }
 
-  /// Calls work(k, row) for all rows of the layers (or slabs) first ... end - 1, side by side.
+  /// Calls work(k, row, scratch) for all rows of the layers (or slabs) first ... end - 1, side by side.
   template <class Work>
   void for_rows(std::size_t first, std::size_t end, const Work& work) {
     const std::size_t rows = shape_.rows();
-    workers_.for_range((end - first) * rows, kLeastWork / shape_.size(0) + 1, [&](std::size_t from, std::size_t to) {
-      std::size_t k = first + from / rows;
-      std::size_t row = from % rows;
-      for (std::size_t i = from; i < to; ++i) {
-        work(k, row);
-        if (++row == rows) row = 0, ++k;
-      }
-    });
+    workers_.for_range((end - first) * rows, kLeastWork / shape_.size(0) + 1,
+                       [&](std::size_t from, std::size_t to, RowScratch& scratch) {
+                         std::size_t k = first + from / rows;
+                         std::size_t row = from % rows;
+                         for (std::size_t i = from; i < to; ++i) {
+                           work(k, row, scratch);
+                           if (++row == rows) row = 0, ++k;
+                         }
+                       });
   }
 
   /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
@@ -155,8 +156,9 @@ class Extraction {
     const std::size_t from = classified_;
     classified_ = std::min(end + 2, shape_.layers());
     for (std::size_t k = from; k < classified_; ++k) source_.prepare(k);
-    for_rows(from, classified_,
-             [&](std::size_t k, std::size_t row) { counter_.classify(source_, k, inverted_, row, layer(k)); });
+    for_rows(from, classified_, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
+      counter_.classify(source_, k, inverted_, row, layer(k));
+    });
     for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
     const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
     const std::size_t valid_from = first == 0 ? 0 : first + 1;
@@ -166,7 +168,7 @@ class Extraction {
       all = all && slab(k).all_valid;
     }
     if (!all)
-      for_rows(valid_from, valid_end, [&](std::size_t k, std::size_t row) {
+      for_rows(valid_from, valid_end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
         if (!slab(k).all_valid) counter_.find_valid(layer(k), layer(k + 1), row, slab(k));
       });
   }
@@ -174,11 +176,11 @@ class Extraction {
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
-    for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row) {
-      counter_.count_layer(layer(k), slab_below(k), slab_above(k), row, workers_.buffer(shape_.pitch()));
+    for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
+      counter_.count_layer(layer(k), slab_below(k), slab_above(k), row, scratch.words.data());
     });
-    for_rows(first, end, [&](std::size_t k, std::size_t row) {
-      counter_.count_slab(view(k), slab(k), row, workers_.buffer(shape_.pitch()));
+    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
+      counter_.count_slab(view(k), slab(k), row, scratch.words.data());
     });
     batch_first_ = total_;
     batch_first_simplex_ = simplices_;
@@ -240,31 +242,31 @@ class Extraction {
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
     const VertexRun<Vertex> vertices{contour.vertices.data() + batch_first_, static_cast<Index>(batch_first_)};
     const auto local = [&](LocalRun& run) { return keeps_places_ ? &run : nullptr; };
-    for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row) {
-      EdgeScratch& scratch = workers_.scratch(shape_.size(0));
+    for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
       for (int axis = 0; axis < N - 1; ++axis)
-        generate_edges(source_, placement_, shape_, layer(k).edges[axis], row, k, axis, local(layer(k).local), scratch,
-                       vertices);
+        generate_edges(source_, placement_, shape_, layer(k).edges[axis], row, k, axis, local(layer(k).local),
+                       scratch.edges, vertices);
     });
-    for_rows(first, end, [&](std::size_t k, std::size_t row) {
-      generate_edges(source_, placement_, shape_, slab(k).edges, row, k, N - 1, local(slab(k).local),
-                     workers_.scratch(shape_.size(0)), vertices);
+    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
+      generate_edges(source_, placement_, shape_, slab(k).edges, row, k, N - 1, local(slab(k).local), scratch.edges,
+                     vertices);
     });
     if constexpr (N == 4)
       if (counter_.has_cubes()) generate_all_cubes(first, end, vertices);
     auto* const simplices = contour.simplices.data() + batch_first_simplex_;
-    for_rows(first, end, [&](std::size_t k, std::size_t row) {
+    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
       tiles_.write(view(k), row, k, vertices, simplices, batch_first_simplex_);
     });
   }
 
   void generate_all_cubes(std::size_t first, std::size_t end, VertexRun<Vertex> vertices) requires(N == 4) {
-    for_rows(first == 0 ? 0 : first + 1, end + 1, [&](std::size_t k, std::size_t row) {
-      Layer<N>& here = layer(k);
-      generate_cubes<7u>(*tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
-                         here.local, vertices);
-    });
-    for_rows(first, end, [&](std::size_t k, std::size_t row) {
+    for_rows(first == 0 ? 0 : first + 1, end + 1,
+             [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
+               Layer<N>& here = layer(k);
+               generate_cubes<7u>(*tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
+                                  here.local, vertices);
+             });
+    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
       Slab<N>& here = slab(k);
       const SlabView<N> around = view(k);
       generate_cubes<14u>(*tables_.cube, placement_, around, here.cubes[0], row, k, here.local, vertices);

@@ -35,6 +35,9 @@ class RowShape {
       stride_[a] = rows_;
       rows_ *= size[a];
     }
+    indices_.resize(rows_);
+    for (std::size_t row = 0; row < rows_; ++row)
+      for (int a = 1; a < N - 1; ++a) indices_[row][a] = row / stride_[a] % size[a];
   }
   [[nodiscard]] std::size_t size(int axis) const noexcept { return size_[axis]; }
   [[nodiscard]] std::size_t layers() const noexcept { return size_[N - 1]; }
@@ -44,14 +47,7 @@ class RowShape {
   [[nodiscard]] std::size_t pitch() const noexcept { return words_ + 1; }
 
   /// The row's index on the axes 1 ... N-2; 0 elsewhere.
-  [[nodiscard]] Index index_of(std::size_t row) const noexcept {
-    Index index{};
-    for (int a = 1; a < N - 1; ++a) {
-      index[a] = row % size_[a];
-      row /= size_[a];
-    }
-    return index;
-  }
+  [[nodiscard]] const Index& index_of(std::size_t row) const noexcept { return indices_[row]; }
   /// Row of the sample that lies one step further along the axes in `mask` (axes 0 and N-1 don't count).
   [[nodiscard]] std::size_t shifted(std::size_t row, unsigned mask) const noexcept {
     for (int a = 1; a < N - 1; ++a) row += (mask >> a & 1u) * stride_[a];
@@ -79,6 +75,7 @@ class RowShape {
   std::array<std::size_t, N> stride_{};
   std::size_t rows_ = 1;
   std::size_t words_;
+  std::vector<Index> indices_;  ///< by row: divisions are slow
 };
 
 /// Cells of one kind that own up to `Slots` vertices each: bit i of plane j in a row says that cell i
@@ -87,12 +84,14 @@ template <unsigned Slots>
 struct RankPlane {
   std::array<std::vector<Word>, Slots> bits;
   std::vector<std::uint32_t> prefix;  ///< vertices of the row before this word
-  std::vector<Index> base;            ///< first vertex of the row; while counting: their number
+  std::vector<Index> base;            ///< first vertex of the row
+  std::vector<std::uint32_t> count;   ///< vertices of the row; where there are none, its bits mean nothing
 
   void allocate(std::size_t rows, std::size_t pitch) {
     for (auto& plane : bits) plane.assign(rows * pitch, 0);
     prefix.assign(rows * pitch, 0);
     base.assign(rows, 0);
+    count.assign(rows, 0);
   }
   /// The first vertex of cell i of a row (of the next cell that has one, if it has none).
   [[nodiscard]] Index id(std::size_t row, std::size_t pitch, std::size_t i) const noexcept {
@@ -116,8 +115,12 @@ struct LocalRun {
   [[nodiscard]] const std::array<double, 3>& point(Index id) const noexcept { return points[id - first]; }
 };
 
+/// What all samples of a row have in common.
+enum class RowState : std::uint8_t { low, high, mixed };
+
 template <int N>
 struct Layer {
+  std::vector<RowState> state;            ///< by row, of `high`; with missing samples: mixed
   std::vector<Word> high;                 ///< rows x pitch; inverted for the high-connected alternative
   std::vector<Word> missing;              ///< rows x pitch
   std::vector<std::uint8_t> row_missing;  ///< by row: whether any sample is missing

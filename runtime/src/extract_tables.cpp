@@ -12,6 +12,7 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   const int alternative = options.ambiguity == Ambiguity::low ? 0 : 1;
   TableSet<N> set;
   set.tile = &tables::tile_table(N, triangulation);
+  set.compact = options.triangulation == Triangulation::compact;
   if (N == 4) set.cube = &tables::tile_table(3, triangulation);
   if (options.close) set.face = &tables::region_table(N - 1, triangulation, alternative);
   if (options.close && N == 4) set.square = &tables::region_table(2, triangulation, alternative);

@@ -181,6 +181,20 @@ TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& 
   return point;
 }
 
+/// The mean of the points that the cone from `apex` is over: what the compact triangulation puts there.
+template <int K, class Place>
+TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
+  static_assert(tables::edge_count(K) <= 64);
+  std::uint64_t points = 0;
+  for (unsigned q = 0; q < list.size(); ++q)
+    if (list.stored(q, 0) == apex)
+      for (unsigned j = 1; j < K; ++j) points |= std::uint64_t{1} << list.stored(q, j);
+  Weighted<K> sum;
+  for (; points != 0; points &= points - 1) sum.add(place(static_cast<unsigned>(std::countr_zero(points))), 1.0);
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
 /// The places of a tile's cone vertices and side vertices, in the unit tile: so they don't depend on the
 /// units of the axes. `place(v)` is the place of the stored vertex v < first_tile_vertex(K), in the frame
 /// of the signature. out: list.own_vertices() points.
@@ -188,9 +202,17 @@ TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& 
 /// One function for the tiles of a 3D image and the cubes of a 4D image: their barycentres agree bit by
 /// bit, so that a 4D contour contains the 3D contours of its steps.
 template <int K, class Place>
-void own_places(const SimplexList<K>& list, const Place& place, TilePoint<K>* out) noexcept {
+void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const Place& place,
+                TilePoint<K>* out) noexcept {
   const unsigned cones = list.list().cone_vertices;
-  for (unsigned j = 0; j < cones; ++j) out[j] = cone_place(list, tables::first_tile_vertex(K) + j, place);
+  for (unsigned j = 0; j < cones; ++j) {
+    const unsigned apex = tables::first_tile_vertex(K) + j;
+    if constexpr (K == 4) {
+      out[j] = compact ? mean_place(list, apex, place) : cone_place(list, apex, place);
+    } else {
+      out[j] = cone_place(list, apex, place);  // compact polygons have none
+    }
+  }
   for (unsigned j = 0; j < list.list().side_vertices; ++j) {
     Weighted<K> sum;
     for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {

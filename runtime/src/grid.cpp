@@ -10,8 +10,9 @@ namespace tegl {
 Axis Axis::uniform(std::size_t size, double origin, double step) {
   if (size == 0) throw Error(ErrorCode::InvalidGrid, "axis of 0 samples; expected at least 1");
   if (!std::isfinite(origin) || !std::isfinite(step) || step == 0.0)
-    throw Error(ErrorCode::InvalidGrid,
-                fmt::format("axis with origin {} and step {}; expected finite values and a step other than 0", origin, step));
+    throw Error(
+        ErrorCode::InvalidGrid,
+        fmt::format("axis with origin {} and step {}; expected finite values and a step other than 0", origin, step));
   Axis axis;
   axis.size_ = size;
   axis.origin_ = origin;

@@ -59,7 +59,7 @@ void PinchCandidates<N>::add_slab(std::size_t k, const Slab<N>& slab) {
 template <int N>
 void PinchCandidates<N>::add_row(const EdgePlane& plane, int axis, std::size_t row, const Slab<N>* below,
                                  const Slab<N>* above) {
-  if (!counter_.cells_of_valid_tiles(1u << axis, row, below, above, buffer_.data())) return;
+  if (plane.count[row] == 0 || !counter_.cells_of_valid_tiles(1u << axis, row, below, above, buffer_.data())) return;
   const Word* const bits = plane.bits[0].data() + row * shape_.pitch();
   for (std::size_t w = 0; w < shape_.words(); ++w)
     for (Word rest = bits[w] & buffer_[w]; rest != 0; rest &= rest - 1)

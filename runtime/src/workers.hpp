@@ -17,44 +17,39 @@
 
 namespace tegl::detail {
 
+/// What a thread keeps between rows.
+struct RowScratch {
+  std::vector<Word> words;
+  EdgeScratch edges;
+};
+
 class Workers {
  public:
-  /// `threads`: 0 for all that the machine has.
-  explicit Workers(unsigned threads)
+  /// `threads`: 0 for all that the machine has. Rows have `samples` samples in `words` words.
+  Workers(unsigned threads, std::size_t samples, std::size_t words)
       : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
-        alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)) {}
+        alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)),
+        own_([samples, words] {
+          return RowScratch{std::vector<Word>(words), EdgeScratch(samples)};
+        }) {}
 
-  /// Calls work(from, to) for parts of 0 ... count - 1 that make up the whole, of at least `grain` (but the last).
+  /// Calls work(from, to, scratch) for parts of 0 ... count - 1 that make up the whole, of at least `grain` (but the
+  /// last), with the thread's own scratch.
   template <class Work>
   void for_range(std::size_t count, std::size_t grain, const Work& work) {
     if (count == 0) return;
-    if (alone_ || count <= grain) return work(std::size_t{0}, count);
+    if (alone_ || count <= grain) return work(std::size_t{0}, count, own_.local());
     arena_.execute([&] {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                        [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end()); });
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, count, grain),
+          [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end(), own_.local()); });
     });
   }
 
-  /// This thread's own; `size` words or samples at least.
-  Word* buffer(std::size_t size) {
-    std::vector<Word>& words = own_.local().words;
-    if (words.size() < size) words.resize(size);
-    return words.data();
-  }
-  EdgeScratch& scratch(std::size_t samples) {
-    EdgeScratch& scratch = own_.local().edges;
-    scratch.resize(samples);
-    return scratch;
-  }
-
  private:
-  struct Own {
-    std::vector<Word> words;
-    EdgeScratch edges;
-  };
   tbb::task_arena arena_;
   bool alone_;
-  tbb::enumerable_thread_specific<Own> own_;
+  tbb::enumerable_thread_specific<RowScratch> own_;
 };
 
 }  // namespace tegl::detail

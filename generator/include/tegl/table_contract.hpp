@@ -24,7 +24,8 @@
 // t = (t_1 ... t_{n-1}) and B(t) its barycentre, it lies at sum M(t) B(t) / sum M(t) over those
 // simplices. B of a segment is its midpoint. B of a triangle (n = 4) is the position of t_1 if that is
 // a cube's barycentre (local id >= E), else sum |side| mid(side) / sum |side| over its three sides
-// (thesis, definition 10.1.4). A side vertex with mask m lies half way from the tile's centre to the
+// (thesis, definition 10.1.4). In the compact triangulation a cone vertex is the mean of the points that its
+// simplices have beside it. A side vertex with mask m lies half way from the tile's centre to the
 // mean of the corners and edge points in m.
 //
 // Orientation. Simplices are stored for the positive side facing the high corners: for a simplex
