@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The innermost loops; see extract_rows.hpp. This file is compiled once per instruction set (Highway's foreach_target).
-// Based on: H. S. Warren, Hacker's Delight, 2nd ed. 2012, section 7-3 (transposing 8 x 8 bits).
 #include "extract_rows.hpp"
 
 #include <algorithm>
@@ -17,67 +16,123 @@ HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
-/// Exchanges rows and columns: bit c of byte r becomes bit r of byte c.
-HWY_INLINE Word transposed(Word x) {
-  Word t = (x ^ (x >> 7)) & 0x00AA00AA00AA00AAu;
-  x ^= t ^ (t << 7);
-  t = (x ^ (x >> 14)) & 0x0000CCCC0000CCCCu;
-  x ^= t ^ (t << 14);
-  t = (x ^ (x >> 28)) & 0x00000000F0F0F0F0u;
-  return x ^ t ^ (t << 28);
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The tiles with high and low corners among the 64 that start at word w of `rows` (no word is looked at beyond w + 1).
+template <std::size_t Rows>
+HWY_INLINE Word mixed_word(const std::array<const Word*, Rows>& rows, std::size_t used, std::size_t w) {
+  Word any = 0, all = ~Word{0}, next_any = 0, next_all = 1;
+  for (std::size_t r = 0; r < used; ++r) {
+    any |= rows[r][w];
+    all &= rows[r][w];
+    next_any |= rows[r][w + 1];
+    next_all &= rows[r][w + 1];
+  }
+  return (any | any >> 1 | next_any << (kWordBits - 1)) & ~(all & (all >> 1 | next_all << (kWordBits - 1)));
 }
 
-/// The signatures of 8 tiles, a byte of each per word: those of the tiles' corners 8 p ... 8 p + 7 in word p.
-template <int N>
-HWY_INLINE void signatures_of_eight(const Word* low, const Word* high, unsigned shift, Word* out) {
-  constexpr unsigned kRows = 1u << (N - 1);
-  constexpr unsigned kPerWord = kRows < 4 ? kRows : 4;
-  for (unsigned p = 0; p < (kRows + 3) / 4; ++p) {
-    Word planes = 0;
-    for (unsigned r = 0; r < kPerWord; ++r) {
-      planes |= (low[4 * p + r] >> shift & 0xff) << (16 * r);
-      planes |= (high[4 * p + r] >> shift & 0xff) << (16 * r + 8);
+/// mixed_word for all words of a row.
+template <unsigned Used, std::size_t Rows>
+HWY_INLINE void mixed_row(const std::array<const Word*, Rows>& rows, std::size_t words, Word* mixed) {
+  std::size_t w = 0;
+  const hn::ScalableTag<Word> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  for (; w + kLanes <= words; w += kLanes) {
+    auto any = hn::LoadU(d, rows[0] + w), all = any;
+    auto next_any = hn::LoadU(d, rows[0] + w + 1), next_all = next_any;
+    for (unsigned r = 1; r < Used; ++r) {
+      const auto here = hn::LoadU(d, rows[r] + w);
+      const auto next = hn::LoadU(d, rows[r] + w + 1);
+      any = hn::Or(any, here);
+      all = hn::And(all, here);
+      next_any = hn::Or(next_any, next);
+      next_all = hn::And(next_all, next);
     }
-    out[p] = transposed(planes);
+    any = hn::Or(hn::Or(any, hn::ShiftRight<1>(any)), hn::ShiftLeft<kWordBits - 1>(next_any));
+    all = hn::And(all, hn::Or(hn::ShiftRight<1>(all), hn::ShiftLeft<kWordBits - 1>(next_all)));
+    hn::StoreU(hn::AndNot(all, any), d, mixed + w);
   }
+  for (; w < words; ++w) mixed[w] = mixed_word(rows, Used, w);
+}
+
+/// Eight corners of 64 tiles, a word each, to a byte for each tile.
+HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8_t* bytes) {
+  const hn::CappedTag<std::uint8_t, kWordBits> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+#if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  (void)d;
+  (void)kLanes;
+  for (unsigned i = 0; i < kWordBits; ++i) {
+    bytes[i] = 0;
+    for (unsigned c = 0; c < count; ++c) bytes[i] |= static_cast<std::uint8_t>((corners[c] >> i & 1u) << c);
+  }
+#else
+  for (std::size_t i = 0; i < kWordBits; i += kLanes) {
+    auto sum = hn::Zero(d);
+    for (unsigned c = 0; c < count; ++c) {
+      const auto* const bits = reinterpret_cast<const std::uint8_t*>(corners + c) + i / 8;
+      sum = hn::Or(sum, hn::IfThenElseZero(hn::LoadMaskBits(d, bits), hn::Set(d, static_cast<std::uint8_t>(1u << c))));
+    }
+    hn::StoreU(sum, d, bytes + i);
+  }
+#endif
+}
+
+/// The signatures of the tiles `mixed` of word w, to `signatures`; returns their end.
+template <int N>
+HWY_INLINE std::uint16_t* signatures_of(const TileRow& row, std::size_t w, Word mixed, std::uint16_t* signatures) {
+  constexpr unsigned kRows = 1u << (N - 1);
+  constexpr unsigned kCorners = 2 * kRows;
+  constexpr unsigned kFew = HWY_TARGET <= HWY_AVX3 ? 2 : HWY_TARGET <= HWY_AVX2 ? 4 : HWY_TARGET == HWY_SCALAR ? 64 : 8;
+  Word corners[kCorners];
+  for (unsigned r = 0; r < kRows; ++r) {
+    corners[2 * r] = row.corners[r][w];
+    corners[2 * r + 1] = row.corners[r][w] >> 1 | row.corners[r][w + 1] << (kWordBits - 1);
+  }
+  if (static_cast<unsigned>(std::popcount(mixed)) <= kFew) {
+    for (; mixed != 0; mixed &= mixed - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+      unsigned signature = 0;
+      for (unsigned c = 0; c < kCorners; ++c) signature |= static_cast<unsigned>(corners[c] >> bit & 1u) << c;
+      *signatures++ = static_cast<std::uint16_t>(signature);
+    }
+    return signatures;
+  }
+  alignas(64) std::uint8_t bytes[kCorners > 8 ? 2 : 1][kWordBits];
+  corners_to_bytes(corners, std::min(kCorners, 8u), bytes[0]);
+  if constexpr (kCorners > 8) corners_to_bytes(corners + 8, 8, bytes[1]);
+  for (; mixed != 0; mixed &= mixed - 1) {
+    const int bit = std::countr_zero(mixed);
+    unsigned signature = bytes[0][bit];
+    if constexpr (kCorners > 8) signature |= static_cast<unsigned>(bytes[1][bit]) << 8;
+    *signatures++ = static_cast<std::uint16_t>(signature);
+  }
+  return signatures;
 }
 
 template <int N>
 HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* signatures) {
-  constexpr unsigned kRows = 1u << (N - 1);
   const std::uint32_t* const entries = table.entries();
   const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // of the samples
+  mixed_row<1u << (N - 1)>(row.corners, words, active);
   TileCount count;
-  Word low[kRows], high[kRows], eight[2] = {};
   for (std::size_t w = 0; w < words; ++w) {
-    Word any = 0, all = ~Word{0};
-    for (unsigned r = 0; r < kRows; ++r) {
-      low[r] = row.corners[r][w];
-      high[r] = low[r] >> 1 | row.corners[r][w + 1] << (kWordBits - 1);
-      any |= low[r] | high[r];
-      all &= low[r] & high[r];
-    }
-    Word mixed = any & ~all;
+    Word mixed = active[w];
+    if (mixed == 0) continue;
     const std::size_t left = row.tiles - std::min(row.tiles, w * kWordBits);
     if (left < kWordBits) mixed &= (Word{1} << left) - 1;
     if (row.valid != nullptr) mixed &= row.valid[w];
     active[w] = mixed;
-    if (mixed == 0) continue;
-    count.active += static_cast<std::uint32_t>(std::popcount(mixed));
-    for (unsigned shift = 0; shift < kWordBits; shift += 8) {
-      Word rest = mixed >> shift & 0xff;
-      if (rest == 0) continue;
-      signatures_of_eight<N>(low, high, shift, eight);
-      for (; rest != 0; rest &= rest - 1) {
-        const int at = 8 * std::countr_zero(rest);
-        unsigned signature = static_cast<unsigned>(eight[0] >> at & 0xff);
-        if constexpr (N == 4) signature |= static_cast<unsigned>(eight[1] >> at & 0xff) << 8;
-        *signatures++ = static_cast<std::uint16_t>(signature);
-        const std::uint32_t entry = entries[signature];
-        count.simplices += entry & RowTable::kCountMask;
-        if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += table.own_vertices(signature);
-      }
+    const std::uint16_t* const first = signatures;
+    signatures = signatures_of<N>(row, w, mixed, signatures);
+    count.active += static_cast<std::uint32_t>(signatures - first);
+    std::uint32_t simplices = 0;
+    for (const std::uint16_t* s = first; s != signatures; ++s) {
+      const std::uint32_t entry = entries[*s];
+      simplices += entry & RowTable::kCountMask;
+      if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += table.own_vertices(*s);
     }
+    count.simplices += simplices;
   }
   return count;
 }
