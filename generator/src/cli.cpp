@@ -76,6 +76,30 @@ void set_triangulation(Options& options, std::string_view given) {
                         Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}});
 }
 
+/// Names separated by commas, in any order, each once.
+void set_languages(Options& options, std::string_view given) {
+  options.languages.clear();
+  for (std::size_t first = 0; first <= given.size();) {
+    const std::size_t end = std::min(given.find(',', first), given.size());
+    const std::string_view name = given.substr(first, end - first);
+    const auto* const found = std::find_if(std::begin(kLanguages), std::end(kLanguages),
+                                           [name](Language l) { return language_name(l) == name; });
+    if (found == std::end(kLanguages)) {
+      std::vector<std::string_view> names;
+      for (const Language l : kLanguages) {
+        names.push_back(language_name(l));
+      }
+      refuse(fmt::format("--language {}: '{}' is none: expected one or several, separated by commas, of {}", given,
+                         name, fmt::join(names, ", ")));
+    }
+    if (std::find(options.languages.begin(), options.languages.end(), *found) != options.languages.end()) {
+      refuse(fmt::format("--language {}: {} twice: expected each once", given, name));
+    }
+    options.languages.push_back(*found);
+    first = end + 1;
+  }
+}
+
 /// A set of commands, as bits.
 constexpr unsigned bit(Command command) { return 1U << static_cast<unsigned>(command); }
 constexpr unsigned kCount = bit(Command::Count);
@@ -104,6 +128,7 @@ constexpr std::array kOptions{
     OptionSpec{"--json", false, std::nullopt, kCount | kClasses | kCertify,
                [](Options& o, std::string_view) { o.json = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
+    OptionSpec{"--language", true, std::nullopt, kOut, set_languages},
     OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
 };
 
@@ -259,6 +284,8 @@ options of --out
                                     measured faster for this dimension
   --triangulation barycentric|compact|all
                                     which triangulations to write (default all)
+  --language cpp|json|glsl|wgsl|cuda
+                                    what to write them in (default cpp); several with commas: json,glsl
 
 Facets are cycles of edges, each written as a ternary number, axis N-1 first, with e for the axis along the edge: in 3D
 1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, where the

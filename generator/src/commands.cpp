@@ -3,6 +3,7 @@
 // `gen --classes`, `--certify` and `--out`.
 #include "tegl/gen/commands.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -173,8 +174,13 @@ int run_out(const Options& options) {
   }
   const TableSet set = make_table_set(request);
   for (const CertifiedFigures& f : set.figures) print_figures(options.dim, f);
-  auto files = emit_cpp(set);
-  files.push_back(emit_manifest(set));
+  std::vector<EmittedFile> files;
+  for (const Language language : options.languages)
+    for (EmittedFile& file : emit(set, language)) {
+      // The words for a shader's storage buffer are the same file in GLSL and WGSL.
+      const auto same = [&file](const EmittedFile& other) { return other.name == file.name; };
+      if (std::none_of(files.begin(), files.end(), same)) files.push_back(std::move(file));
+    }
   write_files(options.out, files);
   for (const EmittedFile& file : files) fmt::print("wrote {}: {} bytes\n", file.name, file.text.size());
   return 0;

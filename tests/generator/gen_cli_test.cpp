@@ -161,6 +161,10 @@ TEST(GenCli, RefusesMissingAndInvalidValues) {
   expect_refused({"--dim", "3", "--out", "t", "--layout", "tree"}, {"--layout tree", "class or flat or auto"});
   expect_refused({"--dim", "3", "--out", "t", "--triangulation", "fan"},
                  {"--triangulation fan", "barycentric or compact or all"});
+  expect_refused({"--dim", "3", "--out", "t", "--language", "json,basic"},
+                 {"--language json,basic", "'basic'", "wgsl"});
+  expect_refused({"--dim", "3", "--out", "t", "--language", "json,"}, {"--language json,", "''", "cpp"});
+  expect_refused({"--dim", "3", "--out", "t", "--language", "glsl,glsl"}, {"glsl twice"});
   expect_refused({"--dim", "3", "--count", "--json=yes"}, {"--json takes no value", "'yes'"});
 }
 
@@ -179,6 +183,7 @@ TEST(GenCli, RefusesOptionsThatTheCommandWouldIgnore) {
   expect_refused({"--dim", "3", "--classes", "--inversion"}, {"--inversion does not go with --classes", "--json"});
   expect_refused({"--dim", "3", "--certify", "--group", "full"}, {"--group does not go with --certify"});
   expect_refused({"--dim", "3", "--count", "--layout", "flat"}, {"--layout does not go with --count"});
+  expect_refused({"--dim", "3", "--certify", "--language", "json"}, {"--language does not go with --certify"});
   expect_refused({"--dim", "3", "--out", "tables", "--json"}, {"--json does not go with --out"});
   expect_refused({"--version", "--dim", "3"}, {"--dim does not go with --version", "nothing else"});
 }

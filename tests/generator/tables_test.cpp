@@ -10,52 +10,12 @@
 #include <map>
 #include <sstream>
 
+#include "decode.hpp"
 #include "tegl/gen/table_set.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::gen {
 namespace {
-
-/// A signature's contour as a reader of the contract finds it.
-struct Decoded {
-  std::vector<Simplex> simplices;
-  std::uint32_t cones = 0;
-  std::vector<std::uint64_t> masks;
-};
-
-Decoded decode(const tables::TileTable& table, Signature s) {
-  const std::uint32_t n = table.dim, corners = 1u << n, edges = tables::edge_count(n);
-  const tables::List& list = table.lists[table.list_of[s]];
-  const std::uint8_t* row =
-      table.element_of ? table.permutations + std::size_t{table.element_of[s]} * table.permutation_stride : nullptr;
-  Decoded result;
-  result.cones = list.cone_vertices;
-  for (std::uint32_t i = 0; i < list.simplex_count; ++i) {
-    Simplex simplex{};
-    for (std::uint32_t k = 0; k < n; ++k) {
-      std::uint8_t v = table.simplices[(std::size_t{list.first_simplex} + i) * n + k];
-      if (row && v < tables::first_tile_vertex(n)) {
-        v = row[corners + v];
-        if (v >= edges && ((table.slot_swaps[s] >> ((v - edges) / tables::kFaceSlots)) & 1u) != 0)
-          v = static_cast<std::uint8_t>(edges + ((v - edges) ^ 1u));
-      }
-      simplex[k] = v;
-    }
-    if (row && table.reverses[table.element_of[s]] != 0) std::swap(simplex[n - 1], simplex[n - 2]);
-    result.simplices.push_back(simplex);
-  }
-  for (std::uint32_t k = 0; k < list.side_vertices; ++k) {
-    const std::uint64_t mask = table.side_masks[list.first_side + k];
-    std::uint64_t image = 0;
-    for (std::uint32_t b = 0; b < corners + edges; ++b)
-      if (((mask >> b) & 1u) != 0) {
-        const std::uint32_t to = !row ? b : b < corners ? row[b] : corners + row[b];
-        image |= std::uint64_t{1} << to;
-      }
-    result.masks.push_back(image);
-  }
-  return result;
-}
 
 /// Sorted oriented simplices; own vertices by what they are, not by number.
 std::vector<std::vector<std::uint64_t>> canonical(std::uint32_t n, std::uint32_t own_base, const Decoded& d) {

@@ -21,7 +21,8 @@ int run_classes(const Options& options);
 /// Errors: CertificateFailed.
 int run_certify(const Options& options);
 
-/// `--out DIR`: certifies, then writes the tables into DIR. Honours `layout` and `triangulation`.
+/// `--out DIR`: certifies, then writes the tables into DIR. Honours `layout`, `triangulation` and
+/// `languages`.
 /// Errors: CertificateFailed (nothing is written), WriteFailed.
 int run_out(const Options& options);
 

@@ -23,8 +23,16 @@ struct TableSet {
 
 struct EmittedFile {
   std::string name;  ///< relative to the output folder
-  std::string text;
+  std::string text;  ///< bytes, for files of packed words
 };
+
+/// What the tables are written in.
+enum class Language { cpp, json, glsl, wgsl, cuda };
+inline constexpr Language kLanguages[] = {Language::cpp, Language::json, Language::glsl, Language::wgsl,
+                                          Language::cuda};
+
+/// The files of one language: emit_cpp and emit_manifest, emit_json or emit_packed.
+std::vector<EmittedFile> emit(const TableSet& set, Language language);
 
 /// C++ sources that define kTile<N><Triangulation> and kRegion<N-1><Triangulation><Alternative> in
 /// tegl::tables (declared in tegl/generated/tables.hpp), one file per tile table and one for the regions.
@@ -33,8 +41,16 @@ std::vector<EmittedFile> emit_cpp(const TableSet& set);
 /// The reviewable face of the tables: counts, facet statistics, the certificate's figures and a digest of each table.
 EmittedFile emit_manifest(const TableSet& set);
 
+/// One JSON file per tile table and one for the regions, as docs/tables.md describes: the contract's arrays by name.
+std::vector<EmittedFile> emit_json(const TableSet& set);
+
+/// Tile tables for GPUs (packed_table.hpp) with the functions that look them up. `language` is glsl, wgsl or cuda. In
+/// shaders only 2D and 3D tables are text, as constants; the words of 4D ones are a file (`.u32`) for a storage buffer.
+std::vector<EmittedFile> emit_packed(const TableSet& set, Language language);
+
 const char* triangulation_name(Triangulation t) noexcept;  ///< "barycentric", "compact"
 const char* alternative_name(Alternative a) noexcept;      ///< "low", "high"
 const char* layout_name(Layout l) noexcept;                ///< "class", "flat"
+const char* language_name(Language l) noexcept;            ///< "cpp", "json", "glsl", "wgsl", "cuda"
 
 }  // namespace tegl::gen

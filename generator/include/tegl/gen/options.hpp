@@ -6,7 +6,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "tegl/gen/emit.hpp"
 #include "tegl/gen/symmetry.hpp"
 
 namespace tegl::gen {
@@ -45,6 +47,7 @@ struct Options {
   std::string out;                                               ///< DIR of --out
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
   TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
+  std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out only
 };
 
 }  // namespace tegl::gen

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tables in other languages than C++: what each was emitted as is compiled (or parsed), run, and held against what the
+// runtime reads, for every signature.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "../decode.hpp"
+#include "extract_tables.hpp"
+#include "lookups.hpp"
+#include "tegl/gen/lattice.hpp"
+#include "tegl/gen/table_set.hpp"
+#include "tegl/generated/tables.hpp"
+
+namespace tegl {
+namespace {
+
+using gen::Decoded;
+using test::Lookups;
+
+const char* const kTriangulations[] = {"barycentric", "compact"};
+
+std::string table_text(const std::string& name) {
+  std::ifstream in(std::string(TEGL_TABLE_DIR) + "/" + name, std::ios::binary);
+  EXPECT_TRUE(in) << name;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The contents of the file for a shader's storage buffer.
+std::vector<std::uint32_t> words_of(int triangulation) {
+  const std::string bytes = table_text(std::string("tile4_") + kTriangulations[triangulation] + ".u32");
+  std::vector<std::uint32_t> words(bytes.size() / 4, 0);
+  for (std::size_t i = 0; i < 4 * words.size(); ++i)
+    words[i / 4] |= std::uint32_t{static_cast<std::uint8_t>(bytes[i])} << (8 * (i % 4));
+  EXPECT_EQ(bytes.size(), 4 * words.size());
+  return words;
+}
+
+/// A signature's contour by the emitted functions.
+Decoded look_up(const Lookups& table, int dim, std::uint32_t signature) {
+  Decoded result;
+  result.cones = table.cone_vertices(signature);
+  for (std::uint32_t i = 0; i < table.simplex_count(signature); ++i) {
+    gen::Simplex simplex{};
+    for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(dim); ++j)
+      simplex[j] = static_cast<std::uint8_t>(table.vertex(signature, i, j));
+    result.simplices.push_back(simplex);
+  }
+  const std::uint32_t sides = table.side_vertices == nullptr ? 0 : table.side_vertices(signature);
+  for (std::uint32_t k = 0; k < sides; ++k)
+    result.masks.push_back(table.side_mask(signature, k, 0) | std::uint64_t{table.side_mask(signature, k, 1)} << 32);
+  return result;
+}
+
+/// The first signature where the emitted functions and the compiled C++ table differ, or -1.
+long first_difference(const Lookups& emitted, const tables::TileTable& table) {
+  const int dim = static_cast<int>(table.dim);
+  for (std::uint32_t s = 0; s < 1u << (1u << dim); ++s)
+    if (look_up(emitted, dim, s) != gen::decode(table, s)) return s;
+  return -1;
+}
+
+class PackedTable : public testing::TestWithParam<std::tuple<std::string, int, int>> {
+ protected:
+  Lookups lookups() {
+    const auto& [language, dim, triangulation] = GetParam();
+    if (dim == 4) words_ = words_of(triangulation);
+    if (language == "cuda") return test::cuda_lookups(dim, triangulation);
+    return language == "glsl" ? test::glsl_lookups(dim, triangulation, words_.data())
+                              : test::wgsl_lookups(dim, triangulation, words_.data());
+  }
+  [[nodiscard]] int dim() const { return std::get<1>(GetParam()); }
+  [[nodiscard]] const tables::TileTable& compiled() const { return tables::tile_table(dim(), std::get<2>(GetParam())); }
+
+  std::vector<std::uint32_t> words_;
+};
+
+TEST_P(PackedTable, GivesTheContourOfEverySignatureThatTheRuntimeReads) {
+  EXPECT_EQ(-1, first_difference(lookups(), compiled()));
+}
+
+TEST_P(PackedTable, NamesTheEdgesAndNumbersOfItsTile) {
+  const Lookups table = lookups();
+  const gen::CubeLattice lattice(dim());
+  const auto& edges = lattice.tile(dim()).edges;
+  ASSERT_EQ(edges.size(), table.edges);
+  for (std::uint32_t e = 0; e < edges.size(); ++e)
+    for (const std::uint32_t end : {0u, 1u}) {
+      EXPECT_EQ(edges[e][end], table.edge_corner(e, end)) << e;
+    }
+  EXPECT_EQ(1u << dim(), table.corners);
+  EXPECT_EQ(tables::first_tile_vertex(static_cast<std::uint32_t>(dim())), table.first_tile_vertex);
+  EXPECT_EQ(compiled().max_simplices, table.max_simplices);
+  EXPECT_EQ(compiled().max_tile_vertices, table.max_tile_vertices);
+  if (dim() == 4) {
+    EXPECT_EQ(words_.size(), table.words);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PackedTable,
+                         testing::Combine(testing::Values(std::string("glsl"), std::string("wgsl"),
+                                                          std::string("cuda")),
+                                          testing::Values(2, 3, 4), testing::Values(0, 1)));
+
+TEST(PackedWords, OneFlippedWordIsNoticed) {
+  for (const int triangulation : {0, 1}) {
+    std::vector<std::uint32_t> words = words_of(triangulation);
+    const std::uint32_t lists = words.at(4), simplices = words.at(5);
+    std::vector<std::size_t> places{words.at(12) + 3 * (lists / 2), words.at(12) + 3 * (lists / 3) + 1};
+    if (words.at(6) != 0) places.push_back(words.at(11) + 12345);  // a signature's list, element and swaps
+    for (std::uint32_t k = 0; k < 5; ++k) places.push_back(words.at(13) + simplices / 5 * k);
+    for (const std::size_t at : places) {
+      words.at(at) ^= 1u;
+      EXPECT_NE(-1, first_difference(test::glsl_lookups(4, triangulation, words.data()),
+                                     tables::tile_table(4, triangulation)))
+          << "word " << at;
+      words.at(at) ^= 1u;
+    }
+  }
+}
+
+TEST(PackedWords, BeginWithWhatTheyAre) {
+  const auto words = words_of(0);
+  ASSERT_GT(words.size(), 18u);
+  EXPECT_EQ(0x4c474554u, words[0]);
+  EXPECT_EQ(tables::kContractVersion, words[1]);
+  EXPECT_EQ(4u, words[2]);
+  EXPECT_EQ(0u, words[3]);
+  EXPECT_EQ(1u, words_of(1)[3]);
+}
+
+/// What the runtime's own reader of tables finds is what the tests' reader finds.
+template <int N>
+void expect_same_reading(const tables::TileTable& table) {
+  for (std::uint32_t s = 0; s < 1u << (1u << N); ++s) {
+    const detail::SimplexList<N> list(table, s);
+    const Decoded decoded = gen::decode(table, s);
+    ASSERT_EQ(decoded.simplices.size(), list.size()) << s;
+    for (unsigned q = 0; q < list.size(); ++q)
+      for (unsigned j = 0; j < N; ++j) {
+        const unsigned from = list.reversed() && j + 2 >= N ? 2 * N - 3 - j : j;
+        ASSERT_EQ(decoded.simplices[q][j], list.mapped(list.stored(q, from))) << s;
+      }
+  }
+}
+
+TEST(RuntimeReader, FindsWhatTheContractSays) {
+  for (const int triangulation : {0, 1}) {
+    expect_same_reading<2>(tables::tile_table(2, triangulation));
+    expect_same_reading<3>(tables::tile_table(3, triangulation));
+    expect_same_reading<4>(tables::tile_table(4, triangulation));
+  }
+}
+
+/// A JSON file read back into the contract's structs.
+struct FromJson {
+  explicit FromJson(const nlohmann::json& file)
+      : list_of(file.at("list_of")),
+        element_of(file.at("element_of")),
+        slot_swaps(file.at("slot_swaps")),
+        permutations(file.at("permutations")),
+        reverses(file.at("reverses")),
+        simplices(file.at("simplices")),
+        side_masks(file.at("side_masks")) {
+    for (const auto& row : file.at("lists").at("rows"))
+      lists.push_back({row.at(0), row.at(1), row.at(2), row.at(3), row.at(4)});
+    const auto or_null = [](const auto& v) { return v.empty() ? nullptr : v.data(); };
+    table = {file.at("contract_version"),
+             file.at("dim"),
+             static_cast<std::uint32_t>(lists.size()),
+             static_cast<std::uint32_t>(simplices.size() / file.at("dim").get<std::size_t>()),
+             static_cast<std::uint32_t>(reverses.size()),
+             file.at("permutation_stride"),
+             file.at("max_simplices"),
+             file.at("max_tile_vertices"),
+             list_of.data(),
+             or_null(element_of),
+             or_null(slot_swaps),
+             or_null(permutations),
+             or_null(reverses),
+             lists.data(),
+             simplices.data(),
+             side_masks.data()};
+  }
+  FromJson(const FromJson&) = delete;
+  FromJson& operator=(const FromJson&) = delete;
+
+  std::vector<std::uint16_t> list_of, element_of;
+  std::vector<std::uint8_t> slot_swaps, permutations, reverses;
+  std::vector<tables::List> lists;
+  std::vector<std::uint8_t> simplices;
+  std::vector<std::uint64_t> side_masks;
+  tables::TileTable table{};
+};
+
+TEST(JsonTables, HoldTheContourOfEverySignature) {
+  for (const int dim : {2, 3, 4})
+    for (const int t : {0, 1}) {
+      const auto file =
+          nlohmann::json::parse(table_text("tile" + std::to_string(dim) + "_" + kTriangulations[t] + ".json"));
+      EXPECT_EQ(file.at("kind"), "tile");
+      EXPECT_EQ(file.at("triangulation"), kTriangulations[t]);
+      const FromJson read(file);
+      EXPECT_EQ(tables::kContractVersion, read.table.version);
+      EXPECT_EQ(tables::tile_table(dim, t).max_simplices, read.table.max_simplices);
+      long different = -1;
+      for (std::uint32_t s = 0; different < 0 && s < 1u << (1u << dim); ++s)
+        if (gen::decode(read.table, s) != gen::decode(tables::tile_table(dim, t), s)) different = s;
+      EXPECT_EQ(-1, different) << dim << " " << kTriangulations[t];
+    }
+}
+
+TEST(JsonTables, HoldTheRegions) {
+  const char* const alternatives[] = {"low", "high"};
+  for (const int k : {1, 2, 3})
+    for (const int t : {0, 1})
+      for (const int a : {0, 1}) {
+        const std::string name =
+            "region" + std::to_string(k) + "_" + kTriangulations[t] + "_" + alternatives[a] + ".json";
+        const auto file = nlohmann::json::parse(table_text(name));
+        const tables::RegionTable& table = tables::region_table(k, t, a);
+        const std::size_t count = std::size_t{1} << (1u << k);
+        ASSERT_EQ(count, file.at("lists").at("rows").size()) << name;
+        EXPECT_EQ(table.max_own_vertices, file.at("max_own_vertices"));
+        const std::vector<std::uint8_t> simplices = file.at("simplices");
+        const std::vector<std::uint32_t> masks = file.at("masks");
+        EXPECT_TRUE(std::equal(simplices.begin(), simplices.end(), table.simplices)) << name;
+        EXPECT_TRUE(std::equal(masks.begin(), masks.end(), table.masks)) << name;
+        std::size_t simplices_in_lists = 0;
+        for (std::size_t s = 0; s < count; ++s) {
+          const auto& row = file.at("lists").at("rows").at(s);
+          const tables::RegionList& list = table.lists[s];
+          EXPECT_EQ(row, (nlohmann::json{list.first_simplex, list.simplex_count, list.own_vertices, list.first_mask}));
+          simplices_in_lists += list.simplex_count;
+        }
+        EXPECT_EQ(simplices.size(), simplices_in_lists * (static_cast<std::size_t>(k) + 1)) << name;
+      }
+}
+
+TEST(Emission, IsTheSameTextEveryTimeInEveryLanguage) {
+  if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
+  gen::TableRequest request;
+  request.dim = 3;
+  request.command = "gen --dim 3";
+  const gen::TableSet set = make_table_set(request);
+  for (const gen::Language language : gen::kLanguages) {
+    const auto files = emit(set, language);
+    EXPECT_FALSE(files.empty());
+    for (const gen::EmittedFile& file : files) EXPECT_EQ(table_text(file.name), file.text) << file.name;
+  }
+}
+
+}  // namespace
+}  // namespace tegl

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The look-up functions of one emitted table, whatever language it was emitted in, behind one set of pointers.
+#pragma once
+
+#include <cstdint>
+
+namespace tegl::test {
+
+/// Null where a table has none: side vertices are in 4D alone.
+struct Lookups {
+  std::uint32_t (*simplex_count)(std::uint32_t signature);
+  std::uint32_t (*cone_vertices)(std::uint32_t signature);
+  std::uint32_t (*vertex)(std::uint32_t signature, std::uint32_t simplex, std::uint32_t corner);
+  std::uint32_t (*edge_corner)(std::uint32_t edge, std::uint32_t end);
+  std::uint32_t (*side_vertices)(std::uint32_t signature);
+  std::uint32_t (*side_mask)(std::uint32_t signature, std::uint32_t side, std::uint32_t half);
+  std::uint32_t corners, edges, first_tile_vertex, max_simplices, max_tile_vertices, words;
+};
+
+/// Triangulation 0: barycentric, 1: compact. For glsl and wgsl in 4D, `words` is what a shader's storage buffer would
+/// hold; it is not copied.
+Lookups glsl_lookups(int dim, int triangulation, const std::uint32_t* words);
+Lookups wgsl_lookups(int dim, int triangulation, const std::uint32_t* words);
+Lookups cuda_lookups(int dim, int triangulation);
+
+}  // namespace tegl::test
+
+// A table's Lookups from its prefix; `sides` are its two functions of side vertices or nullptr, nullptr.
+#define TEGL_LOOKUPS(prefix, ...)                                                                       \
+  Lookups {                                                                                             \
+    prefix##_simplex_count, prefix##_cone_vertices, prefix##_vertex, prefix##_edge_corner, __VA_ARGS__, \
+        prefix##_CORNERS, prefix##_EDGES, prefix##_FIRST_TILE_VERTEX, prefix##_MAX_SIMPLICES,           \
+        prefix##_MAX_TILE_VERTICES, prefix##_WORDS                                                      \
+  }
+#define TEGL_LOOKUPS_WITHOUT_SIDES(prefix) TEGL_LOOKUPS(prefix, nullptr, nullptr)
+#define TEGL_LOOKUPS_WITH_SIDES(prefix) TEGL_LOOKUPS(prefix, prefix##_side_vertices, prefix##_side_mask)
