@@ -153,7 +153,7 @@ void Caps<N, Real>::corner_ids(std::size_t row, std::size_t layer, std::size_t i
     if ((signature >> corner & 1u) == 0) continue;
     const unsigned mask = Frame::spread(corner);
     const EdgePlane& plane = layers_[(layer + (mask >> (N - 1) & 1u)) % 2].corners;
-    out[corner] = ~plane.id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
+    out[corner] = plane.id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
   }
 }
 
@@ -167,7 +167,7 @@ void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i
     const unsigned mask = square % 2 != 0 ? away : 0;
     const unsigned pair = kAxes ^ away;
     const CapPlanes& planes = (pair >> (N - 1) & 1u) != 0 ? slab_ : layers_[(layer + (mask >> (N - 1))) % 2];
-    out[square] = ~planes.squares[square_plane(pair)].id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
+    out[square] = planes.squares[square_plane(pair)].id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
   }
 }
 
@@ -237,7 +237,7 @@ template <unsigned Axes>
 void Caps<N, Real>::add_own(const SlabView<N>& face, const tables::RegionList& list,
                             const typename RowShape<N>::Index& index, Ids& ids) {
   for (unsigned j = 0; j < list.own_vertices; ++j) {
-    ids[tables::first_region_vertex(N - 1) + j] = ~static_cast<Index>(vertices_.size());
+    ids[tables::first_region_vertex(N - 1) + j] = static_cast<Index>(vertices_.size());
     const std::uint32_t mask = tables_.face->masks[list.first_mask + j];
     const auto place = region_place<N, Axes>(face, mask, ids.data() + (1u << (N - 1)));
     vertices_.push_back(placement_.template in_cell<CellFrame<N, Axes>>(index, place));
@@ -246,10 +246,16 @@ void Caps<N, Real>::add_own(const SlabView<N>& face, const tables::RegionList& l
 
 template <int N, class Real>
 void Caps<N, Real>::add_simplices(const tables::RegionList& list, const Ids& ids, bool flip) {
+  constexpr unsigned kFirst = 1u << (N - 1);  // of the local vertices that are on the contour
+  constexpr unsigned kEnd = kFirst + tables::edge_count(N - 1) + (N == 4 ? tables::kFaceSlots : 0);
+  const auto number = [&](unsigned v) {
+    if (v < kFirst || v >= kEnd) return kCapVertex | ids[v];
+    return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
+  };
   const std::uint8_t* stored = tables_.face->simplices + std::size_t{list.first_simplex} * N;
   for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
     Simplex simplex;
-    for (int j = 0; j < N; ++j) simplex[j] = ids[stored[j]];
+    for (int j = 0; j < N; ++j) simplex[j] = number(stored[j]);
     if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
     simplices_.push_back(simplex);
   }
@@ -287,20 +293,6 @@ void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
     add_face<1>(view, k, side);
     if constexpr (N > 2) add_face<2>(view, k, side);
     if constexpr (N > 3) add_face<3>(view, k, side);
-  }
-}
-
-template <int N, class Real>
-void Caps<N, Real>::finish(Contour<N, Real>& contour, std::uint64_t max_vertices) const {
-  const std::uint64_t first = contour.vertices.size();
-  check_vertex_count(first + vertices_.size(), max_vertices);
-  contour.vertices.insert(contour.vertices.end(), vertices_.begin(), vertices_.end());
-  contour.simplices.reserve(contour.simplices.size() + simplices_.size());
-  for (Simplex simplex : simplices_) {
-    // Numbers of the contour are below `first`; complements of cap numbers are not, by the limit.
-    for (Index& v : simplex)
-      if (v >= first) v = static_cast<Index>(first + static_cast<Index>(~v));
-    contour.simplices.push_back(simplex);
   }
 }
 

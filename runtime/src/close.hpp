@@ -25,7 +25,7 @@ template <int N, class Real>
 class Caps {
  public:
   using Vertex = std::array<Real, N>;
-  using Simplex = std::array<Index, N>;
+  using Simplex = std::array<std::uint64_t, N>;
 
   /// `inverted`: the layers' bits are. `flip`: against the orientation "positive side faces high".
   /// `closed_axes`: bit a: whether the borders across axis a get caps.
@@ -36,8 +36,16 @@ class Caps {
   void add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above);
   /// The caps between layers k and k + 1; after add_layer of both.
   void add_slab(std::size_t k, const SlabView<N>& view);
-  /// Appends the caps to the contour. Throws TooLarge.
-  void finish(Contour<N, Real>& contour, std::uint64_t max_vertices) const;
+  /// The least number that a vertex of the contour met from now on can have; the largest is below that plus 2^32.
+  void set_least(std::uint64_t least) noexcept { least_ = least; }
+
+  /// Vertices that are not on the contour.
+  [[nodiscard]] const Buffer<Vertex>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] const Buffer<Simplex>& simplices() const noexcept { return simplices_; }
+  /// The number of a simplex's vertex, if those of the caps are to begin with `first`.
+  [[nodiscard]] static std::uint64_t number(std::uint64_t stored, std::uint64_t first) noexcept {
+    return (stored & kCapVertex) != 0 ? first + (stored & ~kCapVertex) : stored;
+  }
 
  private:
   static constexpr unsigned kAll = (1u << N) - 1;
@@ -92,7 +100,9 @@ class Caps {
   std::vector<Word> border_;
   std::vector<Word> valid_;
   Buffer<Vertex> vertices_;
-  Buffer<Simplex> simplices_;  ///< cap vertex v is stored as ~v
+  static constexpr std::uint64_t kCapVertex = std::uint64_t{1} << 63;
+  Buffer<Simplex> simplices_;  ///< vertices of the caps have the bit kCapVertex
+  std::uint64_t least_ = 0;
 };
 
 }  // namespace tegl::detail

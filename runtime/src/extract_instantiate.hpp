@@ -12,7 +12,7 @@ template <class Real, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
                          ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
-  const detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   return detail::extract_source<N, Real>(source, image.grid(), detail::generated_tables<N>(options), options, stats);
 }
 

@@ -70,12 +70,13 @@ std::size_t batch_size(const RowShape<N>& shape) {
 template <int N, class Real>
 class Extraction {
  public:
-  Extraction(const SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-             const ExtractOptions& options, std::uint64_t max_vertices, unsigned closed_axes)
+  Extraction(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables, const ExtractOptions& options,
+             const ExtractPlan& plan, ContourOutput<N, Real>& output)
       : source_(source),
+        output_(output),
         options_(options),
         inverted_(options.ambiguity == Ambiguity::high),
-        max_vertices_(max_vertices),
+        max_vertices_(plan.max_vertices),
         shape_(grid.sizes()),
         tables_(tables),
         rows_(RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile) : std::nullopt),
@@ -86,39 +87,39 @@ class Extraction {
         keeps_places_(tables.tile->max_tile_vertices > 0 || counter_.has_cubes() || options.close),
         pinches_(shape_, counter_),
         workers_(options.threads, shape_.size(0), shape_.pitch()),
-        batch_(batch_size(shape_)),
+        batch_(plan.batch == 0 ? batch_size(shape_) : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
     if (options.close)
-      caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options), closed_axes);
+      caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options), plan.closed_axes);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
     for (Slab<N>& slab : slabs_) counter_.allocate(slab);
+    source.keep(layers_.size());
   }
 
-  void run(Contour<N, Real>& contour, ExtractStats& stats) {
+  void run(ExtractStats& stats) {
     const std::size_t slabs = shape_.layers() - 1;
-    reserve_output(contour);
+    expect_output();
     Stopwatch watch;
     for (std::size_t first = 0; first < slabs; first += batch_) {
       report(first, slabs);
       const std::size_t end = std::min(slabs, first + batch_);
+      prepare(end);
+      watch.add_to(stats.read_seconds);
       classify(first, end);
       watch.add_to(stats.classify_seconds);
       stats.active_tiles += count(first, end);
-      grow(contour, static_cast<double>(end) / static_cast<double>(slabs));
       watch.add_to(stats.find_seconds);
-      generate(first, end, contour);
+      part_.done = static_cast<double>(end) / static_cast<double>(slabs);
+      generate(first, end, output_.open(part_));
       watch.add_to(stats.generate_seconds);
       gather_border(first, end);
       watch.add_to(stats.close_seconds);
+      output_.close(part_, pinches_);
+      watch.add_to(stats.generate_seconds);
     }
-    if (caps_) caps_->finish(contour, max_vertices_);
+    output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
     watch.add_to(stats.close_seconds);
-    if (pinches_.any_missing()) {
-      pinches_.add_caps(static_cast<Index>(total_), static_cast<Index>(contour.vertices.size()));
-      separate_pinches(contour, pinches_.vertices(), max_vertices_);
-    }
-    watch.add_to(stats.generate_seconds);
     report(1, 1);
   }
 
@@ -151,11 +152,15 @@ class Extraction {
                        });
   }
 
+  /// The samples for classify(.., end).
+  void prepare(std::size_t end) {
+    for (; prepared_ < std::min(end + 2, shape_.layers()); ++prepared_) source_.prepare(prepared_);
+  }
+
   /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
   void classify(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
-    classified_ = std::min(end + 2, shape_.layers());
-    for (std::size_t k = from; k < classified_; ++k) source_.prepare(k);
+    classified_ = prepared_;
     for_rows(from, classified_, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
       counter_.classify(source_, k, inverted_, row, layer(k));
     });
@@ -182,25 +187,25 @@ class Extraction {
     for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
       counter_.count_slab(view(k), slab(k), row, scratch.words.data());
     });
-    batch_first_ = total_;
-    batch_first_simplex_ = simplices_;
+    part_.first_vertex = part_.end_vertex;
+    part_.first_simplex = part_.end_simplex;
     std::uint64_t active = 0;
     if (first == 0) place_layer(0);
     for (std::size_t k = first; k < end; ++k) {
-      const std::uint64_t before = total_;
-      total_ = counter_.place_slab(slab(k), total_, simplices_);
-      keep_places(slab(k).local, total_ - before);
+      const std::uint64_t before = part_.end_vertex;
+      part_.end_vertex = counter_.place_slab(slab(k), before, part_.end_simplex);
+      keep_places(slab(k).local, part_.end_vertex - before);
       for (const std::uint32_t tiles : slab(k).active_count) active += tiles;
       place_layer(k + 1);
     }
-    check_vertex_count(total_, max_vertices_);
+    check_vertex_count(part_.end_vertex, max_vertices_);
     return active;
   }
 
   void place_layer(std::size_t k) {
-    const std::uint64_t before = total_;
-    total_ = counter_.place_layer(layer(k), total_);
-    keep_places(layer(k).local, total_ - before);
+    const std::uint64_t before = part_.end_vertex;
+    part_.end_vertex = counter_.place_layer(layer(k), before);
+    keep_places(layer(k).local, part_.end_vertex - before);
   }
 
   void keep_places(LocalRun& local, std::uint64_t vertices) {
@@ -208,39 +213,16 @@ class Extraction {
     if (counter_.has_cubes()) local.points.resize(vertices);
   }
 
-  /// Address space for the largest contour that can be: memory is taken where it is written to. Where the system
-  /// gives none, outputs grow.
-  void reserve_output(Contour<N, Real>& contour) const {
-    constexpr double kMostBytes = 0x1p40;
+  void expect_output() const {
     const double samples = static_cast<double>(shape_.rows() * shape_.size(0)) * static_cast<double>(shape_.layers());
-    const auto reserve = [&](auto& output, double most, std::size_t size) {
-      try {
-        output.reserve(static_cast<std::size_t>(std::min(most, kMostBytes / static_cast<double>(size))));
-      } catch (const std::bad_alloc&) {
-      }
-    };
     const double own = tables_.tile->max_tile_vertices + (counter_.has_cubes() ? 4.0 * tables::kFaceSlots : 0.0);
-    reserve(contour.vertices, std::min(samples * (N + own), static_cast<double>(max_vertices_)), sizeof(Vertex));
-    reserve(contour.simplices, samples * tables_.tile->max_simplices, N * sizeof(Index));
+    output_.expect(std::min(samples * (N + own), static_cast<double>(max_vertices_)),
+                   samples * tables_.tile->max_simplices);
   }
 
-  /// Room for what is counted. Where an output has to move, it gets room for what the slabs so far let expect, within
-  /// bounds.
-  void grow(Contour<N, Real>& contour, double done) const {
-    const auto resize = [&](auto& output, std::uint64_t size) {
-      if (size > output.capacity()) {
-        const double expected = 1.05 * static_cast<double>(size) / done;
-        output.reserve(std::max(size + size / 2, std::min(4 * size, static_cast<std::size_t>(expected))));
-      }
-      output.resize(size);
-    };
-    resize(contour.vertices, total_);
-    resize(contour.simplices, simplices_);
-  }
-
-  void generate(std::size_t first, std::size_t end, Contour<N, Real>& contour) {
+  void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
-    const VertexRun<Vertex> vertices{contour.vertices.data() + batch_first_, static_cast<Index>(batch_first_)};
+    const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex)};
     const auto local = [&](LocalRun& run) { return keeps_places_ ? &run : nullptr; };
     for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
       for (int axis = 0; axis < N - 1; ++axis)
@@ -253,9 +235,8 @@ class Extraction {
     });
     if constexpr (N == 4)
       if (counter_.has_cubes()) generate_all_cubes(first, end, vertices);
-    auto* const simplices = contour.simplices.data() + batch_first_simplex_;
     for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      tiles_.write(view(k), row, k, vertices, simplices, batch_first_simplex_);
+      tiles_.write(view(k), row, k, vertices, room.simplices, part_.first_simplex);
     });
   }
 
@@ -277,6 +258,10 @@ class Extraction {
 
   /// What closes the contour, and what may have to be taken apart, of the slabs first ... end - 1.
   void gather_border(std::size_t first, std::size_t end) {
+    // Numbers count modulo 2^32: those met here are of this part or the one before.
+    pinches_.set_least(before_part_);
+    if (caps_) caps_->set_least(before_part_);
+    before_part_ = part_.first_vertex;
     if (first == 0) {
       pinches_.open_slab(0, slab(0));
       pinches_.add_layer(0, layer(0));
@@ -294,7 +279,8 @@ class Extraction {
 
   static constexpr std::size_t kLeastWork = 4096;  ///< samples in a task
 
-  const SampleSource<N>& source_;
+  SampleSource<N>& source_;
+  ContourOutput<N, Real>& output_;
   const ExtractOptions& options_;
   bool inverted_;
   std::uint64_t max_vertices_;
@@ -312,35 +298,106 @@ class Extraction {
   std::size_t batch_;             ///< slabs at a time
   std::vector<Layer<N>> layers_;  ///< by k modulo their number
   std::vector<Slab<N>> slabs_;
-  std::size_t classified_ = 0;   ///< layers
-  std::uint64_t total_ = 0;      ///< vertices so far
-  std::uint64_t simplices_ = 0;  ///< simplices so far
-  std::uint64_t batch_first_ = 0, batch_first_simplex_ = 0;
+  std::size_t classified_ = 0;     ///< layers
+  std::size_t prepared_ = 0;       ///< layers
+  ContourPart part_{};             ///< the last batch
+  std::uint64_t before_part_ = 0;  ///< first vertex of the batch before
+};
+
+/// A contour in memory.
+template <int N, class Real>
+class MemoryOutput final : public ContourOutput<N, Real> {
+ public:
+  using typename ContourOutput<N, Real>::Vertex;
+  using typename ContourOutput<N, Real>::Simplex;
+  using typename ContourOutput<N, Real>::Room;
+  MemoryOutput(Contour<N, Real>& contour, std::uint64_t max_vertices)
+      : contour_(contour), max_vertices_(max_vertices) {}
+
+  /// Address space for the largest contour that can be: memory is taken where it is written to. Where the system
+  /// gives none, outputs grow.
+  void expect(double vertices, double simplices) override {
+    constexpr double kMostBytes = 0x1p40;
+    const auto reserve = [&](auto& output, double most, std::size_t size) {
+      try {
+        output.reserve(static_cast<std::size_t>(std::min(most, kMostBytes / static_cast<double>(size))));
+      } catch (const std::bad_alloc&) {
+      }
+    };
+    reserve(contour_.vertices, vertices, sizeof(Vertex));
+    reserve(contour_.simplices, simplices, sizeof(Simplex));
+  }
+
+  /// Where an output has to move, it gets room for what the slabs so far let expect, within bounds.
+  Room open(const ContourPart& part) override {
+    const auto resize = [&](auto& output, std::uint64_t size) {
+      if (size > output.capacity()) {
+        const double expected = 1.05 * static_cast<double>(size) / part.done;
+        output.reserve(std::max(size + size / 2, std::min(4 * size, static_cast<std::size_t>(expected))));
+      }
+      output.resize(size);
+    };
+    resize(contour_.vertices, part.end_vertex);
+    resize(contour_.simplices, part.end_simplex);
+    return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex};
+  }
+
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) override {
+    if (caps != nullptr) add_caps(*caps, all.end_vertex);
+    if (!pinches.any_missing()) return;
+    std::vector<Index> candidates(pinches.vertices().begin(), pinches.vertices().end());
+    for (std::uint64_t v = all.end_vertex; v < contour_.vertices.size(); ++v)
+      candidates.push_back(static_cast<Index>(v));
+    separate_pinches(contour_, candidates, max_vertices_);
+  }
+
+ private:
+  void add_caps(const Caps<N, Real>& caps, std::uint64_t first) {
+    check_vertex_count(first + caps.vertices().size(), max_vertices_);
+    contour_.vertices.insert(contour_.vertices.end(), caps.vertices().begin(), caps.vertices().end());
+    contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
+    for (const auto& simplex : caps.simplices()) {
+      Simplex& narrow = contour_.simplices.emplace_back();
+      for (int j = 0; j < N; ++j) narrow[j] = static_cast<Index>(caps.number(simplex[j], first));
+    }
+  }
+
+  Contour<N, Real>& contour_;
+  std::uint64_t max_vertices_;
 };
 
 }  // namespace
 
 template <int N, class Real>
-Contour<N, Real> extract_source(const SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-                                const ExtractOptions& options, ExtractStats* stats, std::uint64_t max_vertices,
-                                unsigned closed_axes) {
+ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                        const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output) {
+  ExtractStats stats;
+  stats.tiles = 1;
+  for (const Axis& axis : grid.axes) stats.tiles *= axis.size() - 1;
+  if (stats.tiles != 0) Extraction<N, Real>(source, grid, tables, options, plan, output).run(stats);
+  return stats;
+}
+
+template <int N, class Real>
+Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                                const ExtractOptions& options, ExtractStats* stats, const ExtractPlan& plan) {
   Contour<N, Real> contour;
-  ExtractStats done;
-  done.tiles = 1;
   for (int a = 0; a < N; ++a) {
     contour.axis_names[a] = grid.axes[a].name;
     contour.axis_units[a] = grid.axes[a].unit;
-    done.tiles *= grid.axes[a].size() - 1;
   }
   contour.direction = options.direction;
-  if (done.tiles != 0) Extraction<N, Real>(source, grid, tables, options, max_vertices, closed_axes).run(contour, done);
+  MemoryOutput<N, Real> output(contour, plan.max_vertices);
+  const ExtractStats done = extract_to(source, grid, tables, options, plan, output);
   if (stats != nullptr) *stats = done;
   return contour;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                               \
-  template Contour<N, Real> extract_source<N, Real>(const SampleSource<N>&, const Grid<N>&, const TableSet<N>&, \
-                                                    const ExtractOptions&, ExtractStats*, std::uint64_t, unsigned);
+#define TEGL_INSTANTIATE(N, Real)                                                                                \
+  template ExtractStats extract_to<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,                \
+                                            const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
+  template Contour<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,        \
+                                                    const ExtractOptions&, ExtractStats*, const ExtractPlan&);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "extract_count.hpp"
 #include "extract_source.hpp"
@@ -26,11 +27,59 @@ void check_arguments(double isovalue, const ExtractOptions& options);
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options);
 
-/// The contour of `source` over `grid`. `stats` may be null. `closed_axes`: bit a: whether options.close
-/// closes the borders across axis a.
+/// A run of an extraction's vertices and simplices, by number.
+struct ContourPart {
+  std::uint64_t first_vertex, end_vertex;
+  std::uint64_t first_simplex, end_simplex;
+  double done;  ///< share of the image whose contour is counted
+};
+
 template <int N, class Real>
-Contour<N, Real> extract_source(const SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
-                                const ExtractOptions& options, ExtractStats* stats,
-                                std::uint64_t max_vertices = kMaxVertices, unsigned closed_axes = ~0u);
+class Caps;
+template <int N>
+class PinchCandidates;
+
+/// Where an extraction puts its contour: part after part, each in two steps. Vertices' numbers in simplices count
+/// modulo 2^32; those in a part's simplices belong to it or to the part before.
+template <int N, class Real>
+class ContourOutput {
+ public:
+  using Vertex = typename Contour<N, Real>::Vertex;
+  using Simplex = typename Contour<N, Real>::Simplex;
+  struct Room {
+    Vertex* vertices;
+    Simplex* simplices;
+  };
+  ContourOutput() = default;
+  ContourOutput(const ContourOutput&) = delete;
+  ContourOutput& operator=(const ContourOutput&) = delete;
+  virtual ~ContourOutput() = default;
+
+  /// The most that can come.
+  virtual void expect(double /*vertices*/, double /*simplices*/) {}
+  /// Room for a part, which is then written.
+  virtual Room open(const ContourPart& part) = 0;
+  /// A part is written. `pinches`: the vertices of this part and all before that may have to be doubled.
+  virtual void close(const ContourPart& /*part*/, const PinchCandidates<N>& /*pinches*/) {}
+  /// All parts are written; `caps` may be null.
+  virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) = 0;
+};
+
+/// How an extraction goes about its work.
+struct ExtractPlan {
+  std::uint64_t max_vertices = kMaxVertices;
+  unsigned closed_axes = ~0u;  ///< bit a: whether options.close closes the borders across axis a
+  std::size_t batch = 0;       ///< slabs at a time; 0: as many as suit the image
+};
+
+/// The contour of `source` over `grid`, put into `output`. An image without tiles leaves it alone.
+template <int N, class Real>
+ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                        const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output);
+
+/// The contour of `source` over `grid`. `stats` may be null.
+template <int N, class Real>
+Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                                const ExtractOptions& options, ExtractStats* stats, const ExtractPlan& plan = {});
 
 }  // namespace tegl::detail

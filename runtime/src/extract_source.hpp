@@ -31,11 +31,11 @@ class SampleSource {
   SampleSource& operator=(const SampleSource&) = delete;
   virtual ~SampleSource() = default;
 
-  /// Makes the samples of layer k of the last axis ready, which takes the place of layer k - `kept`; called once for
-  /// each layer, in order, by the thread that called for the extraction. May throw.
-  virtual void prepare(std::size_t /*k*/) const {}
-  /// How many layers are ready at a time; 0: all of them, always.
-  [[nodiscard]] virtual std::size_t kept() const noexcept { return 0; }
+  /// From now on, `layers` adjacent layers are needed at a time. Called once, before prepare.
+  virtual void keep(std::size_t /*layers*/) {}
+  /// Makes the samples of layer k of the last axis ready; called for each layer, in order, by the thread that called
+  /// for the extraction. May throw.
+  virtual void prepare(std::size_t /*k*/) {}
 
   /// The row through `start` (start[0] = 0), as classify_row.
   virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;

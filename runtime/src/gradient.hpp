@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Gradients of images at samples, and along edges between them: what the normals of contours are made of.
-// Based on: M. Liversage, thesis, 1994, section 8.2: differences on non-regular axes (8.4), of which central differences
-// on regular ones (8.3) are the special case; interpolation along the edge.
+// Based on: M. Liversage, thesis, 1994, section 8.2: differences on non-regular axes (8.4), of which central
+// differences on regular ones (8.3) are the special case; interpolation along the edge.
 #pragma once
 
 #include <array>

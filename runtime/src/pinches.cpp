@@ -62,14 +62,10 @@ void PinchCandidates<N>::add_row(const EdgePlane& plane, int axis, std::size_t r
   if (plane.count[row] == 0 || !counter_.cells_of_valid_tiles(1u << axis, row, below, above, buffer_.data())) return;
   const Word* const bits = plane.bits[0].data() + row * shape_.pitch();
   for (std::size_t w = 0; w < shape_.words(); ++w)
-    for (Word rest = bits[w] & buffer_[w]; rest != 0; rest &= rest - 1)
-      vertices_.push_back(
-          plane.id(row, shape_.pitch(), w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest))));
-}
-
-template <int N>
-void PinchCandidates<N>::add_caps(Index first, Index end) {
-  for (Index v = first; v < end; ++v) vertices_.push_back(v);
+    for (Word rest = bits[w] & buffer_[w]; rest != 0; rest &= rest - 1) {
+      const Index id = plane.id(row, shape_.pitch(), w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
+      vertices_.push_back(least_ + static_cast<Index>(id - static_cast<Index>(least_)));
+    }
 }
 
 template class PinchCandidates<2>;

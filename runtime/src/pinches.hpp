@@ -33,11 +33,11 @@ class PinchCandidates {
   void add_layer(std::size_t k, const Layer<N>& layer);
   /// The edges along the last axis in slab k.
   void add_slab(std::size_t k, const Slab<N>& slab);
-  /// Vertices [first, end), which caps added.
-  void add_caps(Index first, Index end);
+  /// The least number that a vertex met from now on can have; the largest is below that plus 2^32.
+  void set_least(std::uint64_t least) noexcept { least_ = least; }
 
   /// Ascending, each once.
-  [[nodiscard]] const std::vector<Index>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] const std::vector<std::uint64_t>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] bool any_missing() const noexcept { return any_missing_; }
 
  private:
@@ -49,7 +49,8 @@ class PinchCandidates {
   std::size_t slabs_ = 0;           ///< opened so far
   bool any_missing_ = false;
   std::vector<Word> buffer_;
-  std::vector<Index> vertices_;
+  std::vector<std::uint64_t> vertices_;
+  std::uint64_t least_ = 0;
 };
 
 /// Makes the contour a manifold around the candidates. New vertices and simplices come last, in an order that depends

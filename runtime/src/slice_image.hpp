@@ -76,10 +76,10 @@ Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, doub
   detail::check_arguments(isovalue, options);
   const auto [first, count] = detail::layers_around<N, Real>(image.grid(), at);
   const Image<T, N> slab = image.part(N - 1, first, count);
-  const detail::ImageSource<T, N> source(slab, isovalue, options.epsilon);
+  detail::ImageSource<T, N> source(slab, isovalue, options.epsilon);
   constexpr unsigned kAcrossOthers = (1u << (N - 1)) - 1;
   const Contour<N, Real> contour = detail::extract_source<N, Real>(
-      source, slab.grid(), detail::generated_tables<N>(options), options, stats, detail::kMaxVertices, kAcrossOthers);
+      source, slab.grid(), detail::generated_tables<N>(options), options, stats, {.closed_axes = kAcrossOthers});
   return slice(contour, at);
 }
 

@@ -35,6 +35,7 @@ struct ExtractOptions {
 struct ExtractStats {
   std::uint64_t tiles = 0;
   std::uint64_t active_tiles = 0;
+  double read_seconds = 0;      ///< layers, where they come one by one (tegl/stream.hpp)
   double classify_seconds = 0;  ///< samples against the isovalue
   double find_seconds = 0;      ///< active tiles, counts, places in the output
   double generate_seconds = 0;  ///< vertices and simplices

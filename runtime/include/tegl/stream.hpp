@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of images that are larger than memory: layer after layer along the last axis comes in, the contour goes out
+// in parts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "tegl/extract.hpp"
+#include "tegl/layers.hpp"
+
+namespace tegl {
+
+/// Takes a contour in parts, in the order of its numbers. What it throws ends the extraction and reaches its caller.
+template <int N, class Real>
+class ContourSink {
+ public:
+  using Vertex = std::array<Real, N>;
+  using Simplex = std::array<std::uint64_t, N>;
+  ContourSink() = default;
+  ContourSink(const ContourSink&) = delete;
+  ContourSink& operator=(const ContourSink&) = delete;
+  virtual ~ContourSink() = default;
+
+  /// The next vertices. The first one of all has the number 0.
+  virtual void add_vertices(std::span<const Vertex> vertices) = 0;
+  /// The next simplices, of vertices that were added before or will be.
+  virtual void add_simplices(std::span<const Simplex> simplices) = 0;
+  /// Another vertex for a corner of a simplex that was added before (next to missing values, where sheets that touch
+  /// are taken apart).
+  virtual void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) = 0;
+};
+
+/// How large a streamed contour became.
+struct StreamedSize {
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+};
+
+/// As `extract`, for an image that comes in by layers and a contour that goes out in parts: the same vertices and
+/// simplices with the same numbers, but with 64 bits to number them. Memory: three layers of samples, the contour
+/// between two layers, and what takes part in missing values' borders or the closing of the image's border. Errors:
+/// those of `extract`, but TooLarge, and what the reader and the sink throw.
+template <class Real = float, Value T, int N>
+StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
+                              ContourSink<N, Real>& sink, ExtractStats* stats = nullptr);
+
+}  // namespace tegl
