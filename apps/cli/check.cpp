@@ -45,12 +45,12 @@ class CheckCommand final : public Command {
     const std::string missed = missed_requirement(report);
     if (json()) {
       Json json;
-      add_check_keys(json, mesh, report);
+      add_check_keys(json, size_of(mesh), report);
       json["seconds"] = {{"read", read_seconds}, {"check", check_seconds}, {"total", read_seconds + check_seconds}};
       streams.out.write(dump(json));
     } else if (!quiet()) {
       streams.out.write(
-          fmt::format("{}\n{}{}{}", streams.out.bold(file()), check_text(streams.out, mesh, report),
+          fmt::format("{}\n{}{}{}", streams.out.bold(file()), check_text(streams.out, size_of(mesh), report),
                       missed.empty() ? "" : report_line("", streams.out.red(missed)),
                       report_line("seconds", fmt::format("read {:.3f} + check {:.3f}", read_seconds, check_seconds))));
     }

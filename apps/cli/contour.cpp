@@ -3,6 +3,7 @@
 // tegl contour: the contour of an image, in the dimension that the file holds.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string>
 
 #include "commands.hpp"
@@ -11,6 +12,7 @@
 #include "output.hpp"
 #include "progress.hpp"
 #include "result.hpp"
+#include "streaming.hpp"
 
 namespace tegl::cli {
 
@@ -21,6 +23,7 @@ constexpr const char* kExamples =
     "  tegl contour head.nii.gz --iso 60 -o head.ply\n"
     "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --close -o warm_water.vtkhdf\n"
+    "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
 
 /// The contour in one type for all dimensions.
@@ -42,6 +45,7 @@ class ContourCommand final : public Command {
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    streaming_.add_to(app());
     add_variable();
     add_quiet();
     app().footer(kExamples);
@@ -54,38 +58,62 @@ class ContourCommand final : public Command {
     require_output(output_, file());
 
     ProgressBar bar(streams.err, wants_progress());
-    Stopwatch watch;
-    ReadImageResult input = read(bar.stage("read"));
     ContourResult result;
     result.input = file();
-    result.variable = input.info.variable;
     result.output = output_;
     result.isovalue = isovalue;
-    result.image_dim = image_dim(input.image);
-    require_output_holds(output_, result.image_dim - 1);
-    require_contour(input, isovalue);
-    result.seconds.read = watch.lap();
-
-    options.progress = bar.stage("contour");
-    ExtractStats& stats = result.stats.emplace();
-    result.mesh = options_.single_precision() ? extract_mesh<float>(input.image, isovalue, options, stats)
-                                              : extract_mesh<double>(input.image, isovalue, options, stats);
-    result.seconds.add(stats);
-    if (result.mesh.simplices.empty()) {
-      throw Error(
-          ErrorCode::EmptyResult,
-          fmt::format("no contour at {}: every tile that it passes touches a missing sample", number(isovalue)));
-    }
-    input.image = AnyImage();  // its memory is of more use to the check
-    if (!no_check_) check_result(result, bar);
-    write_result(result, bar);
+    if (streaming_.wanted())
+      stream(options, bar, result);
+    else
+      contour(options, bar, result);
     bar.clear();
     if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
     return result.exit_code();
   }
 
  private:
+  void contour(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+    Stopwatch watch;
+    ReadImageResult input = read(bar.stage("read"));
+    result.variable = input.info.variable;
+    result.image_dim = image_dim(input.image);
+    require_output_holds(output_, result.image_dim - 1);
+    require_contour(input, *result.isovalue);
+    result.seconds.read = watch.lap();
+
+    options.progress = bar.stage("contour");
+    ExtractStats& stats = result.stats.emplace();
+    result.mesh = options_.single_precision() ? extract_mesh<float>(input.image, *result.isovalue, options, stats)
+                                              : extract_mesh<double>(input.image, *result.isovalue, options, stats);
+    result.seconds.add(stats);
+    if (result.mesh.simplices.empty()) {
+      throw Error(ErrorCode::EmptyResult,
+                  fmt::format("no contour at {}: every tile that it passes touches a missing sample",
+                              number(*result.isovalue)));
+    }
+    input.image = AnyImage();  // its memory is of more use to the check
+    if (!no_check_) check_result(result, bar);
+    write_result(result, bar);
+  }
+
+  void stream(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+    require_output_grows();
+    OpenLayersResult input = streaming_.open(file(), variable());
+    result.variable = input.info.variable;
+    options.progress = bar.stage("stream");
+    stream_contour(input, *result.isovalue, options, options_.single_precision(), result);
+    result.output_bytes = std::filesystem::file_size(result.output);
+  }
+
+  void require_output_grows() const {
+    const MeshFileFormat* const format = find_mesh_file_format(output_);
+    if (format != nullptr && format->extension == ".vtkhdf") return;
+    throw Error(ErrorCode::WriteFailed,
+                fmt::format("{}: a streamed contour needs a file that can grow; expected .vtkhdf", output_));
+  }
+
   ExtractionOptions options_;
+  StreamingOptions streaming_;
   std::string output_;
   bool no_check_ = false;
 };

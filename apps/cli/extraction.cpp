@@ -28,6 +28,9 @@ void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
       app.add_option("--epsilon", epsilon_, "keep vertices this share of an edge away from the samples, in [0, 0.5)")
           ->type_name("NUMBER")
           ->capture_default_str(),
+      app.add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
+          ->check(CLI::Range(0u, 4096u))
+          ->capture_default_str(),
       app.add_option("--precision", precision_, "arithmetic of the vertices")
           ->check(CLI::IsMember({"float", "double"}))
           ->capture_default_str(),
@@ -56,6 +59,7 @@ ExtractOptions ExtractionOptions::library_options() const {
   options.ambiguity = ambiguity_ == "low" ? Ambiguity::low : Ambiguity::high;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
+  options.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {
     throw Error(ErrorCode::InvalidArgument, fmt::format("--epsilon is {}; expected 0 <= epsilon < 0.5", epsilon_));

@@ -12,14 +12,6 @@ namespace tegl::cli {
 
 namespace {
 
-std::uint64_t vertex_count(const Mesh& mesh) {
-  return mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim);
-}
-
-std::uint64_t simplex_count(const Mesh& mesh) {
-  return mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1);
-}
-
 std::array<std::pair<const char*, double>, 8> stages(const StageSeconds& seconds) {
   return {{{"read", seconds.read},
            {"classify", seconds.classify},
@@ -66,11 +58,16 @@ std::string axis_label(const std::string& name, std::size_t axis) {
 
 std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-void add_check_keys(Json& json, const Mesh& mesh, const std::optional<MeshReport>& report) {
+MeshSize size_of(const Mesh& mesh) {
+  return {mesh.dim, mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim),
+          mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1)};
+}
+
+void add_check_keys(Json& json, const MeshSize& size, const std::optional<MeshReport>& report) {
   const auto of = [&](auto member) { return report ? Json((*report).*member) : Json(nullptr); };
-  json["dim"] = mesh.dim;
-  json["vertices"] = report ? report->vertices : vertex_count(mesh);
-  json["simplices"] = simplex_count(mesh);
+  json["dim"] = size.dim;
+  json["vertices"] = report ? report->vertices : size.vertices;
+  json["simplices"] = size.simplices;
   json["components"] = of(&MeshReport::components);
   json["euler"] = of(&MeshReport::euler);
   json["boundary_simplices"] = of(&MeshReport::boundary_simplices);
@@ -91,10 +88,10 @@ std::string counted_simplices(int dim, std::uint64_t count) {
   return counted(count, singular, plural);
 }
 
-std::string check_text(const Console& console, const Mesh& mesh, const std::optional<MeshReport>& report) {
-  std::string text = report_line("size", fmt::format("{}, {}", counted(vertex_count(mesh), "vertex", "vertices"),
-                                                     counted_simplices(mesh.dim, simplex_count(mesh))));
-  if (!report) return text + report_line("check", "left out (--no-check)");
+std::string check_text(const Console& console, const MeshSize& size, const std::optional<MeshReport>& report) {
+  std::string text = report_line("size", fmt::format("{}, {}", counted(size.vertices, "vertex", "vertices"),
+                                                     counted_simplices(size.dim, size.simplices)));
+  if (!report) return text + report_line("check", "left out");
   if (report->unused_vertices > 0) {
     text += report_line("unused", counted(report->unused_vertices, "vertex in no simplex", "vertices in no simplex"));
   }
@@ -116,6 +113,7 @@ std::string check_text(const Console& console, const Mesh& mesh, const std::opti
 MeshReport check_mesh(const Mesh& mesh) { return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates); }
 
 void StageSeconds::add(const ExtractStats& stats) {
+  read += stats.read_seconds;
   classify += stats.classify_seconds;
   find += stats.find_seconds;
   generate += stats.generate_seconds;
@@ -131,7 +129,7 @@ Json to_json(const ContourResult& result) {
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
   json["at"] = nullptr;
   if (result.cut) json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
-  add_check_keys(json, result.mesh, result.report);
+  add_check_keys(json, result.size(), result.report);
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
   json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);
   Json& seconds = json["seconds"];
@@ -151,7 +149,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
     text += report_line(
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
   }
-  text += check_text(console, result.mesh, result.report);
+  text += check_text(console, result.size(), result.report);
   text += report_line("seconds", seconds_text(result.seconds));
   text += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
   return text;

@@ -28,14 +28,22 @@ std::string axis_label(const std::string& name, std::size_t axis);
 /// The document as text with a newline at its end. Bytes that are no UTF-8 (units in old files) are replaced.
 std::string dump(const Json& json);
 
+/// How large a mesh is.
+struct MeshSize {
+  int dim = 0;  ///< of the simplices
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+};
+MeshSize size_of(const Mesh& mesh);
+
 /// Adds the ten keys of a mesh check; all but the sizes are null without a report.
-void add_check_keys(Json& json, const Mesh& mesh, const std::optional<MeshReport>& report);
+void add_check_keys(Json& json, const MeshSize& size, const std::optional<MeshReport>& report);
 
 /// True when the complex is no oriented manifold. A border is no fault, nor are simplices of zero size.
 bool has_faults(const MeshReport& report);
 
 /// The lines of a mesh check: sizes, components, border, verdict.
-std::string check_text(const Console& console, const Mesh& mesh, const std::optional<MeshReport>& report);
+std::string check_text(const Console& console, const MeshSize& size, const std::optional<MeshReport>& report);
 
 /// "segments", "triangles", "tetrahedra" for simplices of dimension 1, 2, 3; the singular for a count of 1.
 std::string counted_simplices(int dim, std::uint64_t count);
@@ -77,8 +85,10 @@ struct ContourResult {
   std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour
   std::optional<MeshReport> report;   ///< none with --no-check
   Mesh mesh;
+  std::optional<MeshSize> streamed;  ///< for what went to the file without being in memory
   StageSeconds seconds;
 
+  [[nodiscard]] MeshSize size() const { return streamed ? *streamed : size_of(mesh); }
   [[nodiscard]] ExitCode exit_code() const { return report && has_faults(*report) ? ExitCode::Faults : ExitCode::Ok; }
 };
 

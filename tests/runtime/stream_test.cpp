@@ -70,16 +70,13 @@ void expect_equal(const Collector<N, Real>& streamed, const Contour<N, Real>& co
     for (std::size_t j = 0; j < N; ++j) ASSERT_EQ(streamed.simplices[s][j], contour.simplices[s][j]) << s << ' ' << j;
 }
 
-/// Noise with a share of missing samples.
+/// Noise, with a share of missing samples where the type has such.
 template <Value T, int N>
 OwnedImage<T, N> holey_noise(const std::array<std::size_t, N>& sizes, std::uint64_t seed, unsigned missing_percent) {
-  OwnedImage<T, N> image = noise<T, N>(sizes, seed);
-  if constexpr (std::is_floating_point_v<T>) {
-    std::mt19937_64 bits(seed);
-    for (T& value : image.values)
-      if (bits() % 100 < missing_percent) value = std::numeric_limits<T>::quiet_NaN();
-  }
-  return image;
+  if constexpr (std::is_floating_point_v<T>)
+    return noise_with_missing<T, N>(Grid<N>::unit(sizes), seed, missing_percent / 100.0);
+  else
+    return noise<T, N>(sizes, seed);
 }
 
 template <class Real, Value T, int N>

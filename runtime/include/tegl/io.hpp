@@ -18,6 +18,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
 #include "tegl/layers.hpp"
+#include "tegl/stream.hpp"
 
 namespace tegl {
 
@@ -150,6 +151,29 @@ Contour<N, double> to_contour(const Mesh& mesh);
 /// contradicts itself), UnsupportedData (.gltf: coordinates beyond float), TooLarge (.glb beyond 4 GiB), WriteFailed,
 /// Cancelled.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
+
+/// A VTKHDF file (.vtkhdf) that a streamed contour goes to as it comes: what write_mesh would write of the whole
+/// contour, the same datasets with the same bytes. Written under another name beside the target: nothing is at the
+/// target before `commit`, nor ever if that is not called. Memory: a few MiB. Errors, of all functions: WriteFailed;
+/// UnsupportedFormat for another extension.
+template <int N, class Real>
+class ContourFile final : public ContourSink<N, Real> {
+ public:
+  using typename ContourSink<N, Real>::Vertex;
+  using typename ContourSink<N, Real>::Simplex;
+  /// The grid gives names and units of the axes.
+  ContourFile(const std::filesystem::path& path, const Grid<N>& grid);
+  ~ContourFile() override;
+  void add_vertices(std::span<const Vertex> vertices) override;
+  void add_simplices(std::span<const Simplex> simplices) override;
+  void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override;
+  /// Completes the file and moves it to its target. Call it once, when all has come.
+  void commit();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
 /// triangles; glTF: nodes applied), and triangles of .stl and .obj, where vertices with equal coordinates become one.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Streamed contours to VTKHDF.
+#include "common.hpp"
+#include "tegl/io.hpp"
+#include "vtkhdf.hpp"
+#include "vtkhdf_writer.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+using namespace io_detail;
+
+namespace {
+
+template <int N>
+VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid) {
+  const MeshFileFormat* const format = find_mesh_file_format(path);
+  if (format == nullptr || format->extension != ".vtkhdf")
+    fail(ErrorCode::UnsupportedFormat, path, "'{}' cannot grow; expected .vtkhdf", path.extension().string());
+  VtkhdfLayout layout;
+  layout.dim = N - 1;
+  layout.space_dim = N;
+  for (const Axis& axis : grid.axes) {
+    layout.axis_names.push_back(axis.name);
+    layout.axis_units.push_back(axis.unit);
+  }
+  return layout;
+}
+
+}  // namespace
+
+template <int N, class Real>
+struct ContourFile<N, Real>::Parts {
+  Parts(const fs::path& path, const Grid<N>& grid) : writer(path, layout_of(path, grid)) {}
+  VtkhdfWriter writer;
+  std::vector<double> coordinates;  ///< of a block
+};
+
+template <int N, class Real>
+ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid)
+    : parts_(std::make_unique<Parts>(path, grid)) {}
+
+template <int N, class Real>
+ContourFile<N, Real>::~ContourFile() = default;
+
+template <int N, class Real>
+void ContourFile<N, Real>::add_vertices(std::span<const Vertex> vertices) {
+  while (!vertices.empty()) {
+    const auto block = vertices.first(std::min(kMostRows, vertices.size()));
+    parts_->coordinates.clear();
+    for (const Vertex& vertex : block)
+      parts_->coordinates.insert(parts_->coordinates.end(), vertex.begin(), vertex.end());
+    parts_->writer.append_vertices(parts_->coordinates);
+    vertices = vertices.subspan(block.size());
+  }
+}
+
+template <int N, class Real>
+void ContourFile<N, Real>::add_simplices(std::span<const Simplex> simplices) {
+  static_assert(sizeof(Simplex) == N * sizeof(std::uint64_t));
+  if (!simplices.empty()) parts_->writer.append_simplices({simplices.data()->data(), simplices.size() * N});
+}
+
+template <int N, class Real>
+void ContourFile<N, Real>::replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) {
+  parts_->writer.replace_corner(simplex, corner, vertex);
+}
+
+template <int N, class Real>
+void ContourFile<N, Real>::commit() {
+  parts_->writer.commit();
+}
+
+template class ContourFile<2, float>;
+template class ContourFile<2, double>;
+template class ContourFile<3, float>;
+template class ContourFile<3, double>;
+template class ContourFile<4, float>;
+template class ContourFile<4, double>;
+
+}  // namespace tegl

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl contour --stream: images larger than memory.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string kOcean = TEGL_SOURCE_DIR "/examples/data/ocean_temperature.nc";
+
+class Stream : public ProgramTest {
+ protected:
+  /// Expects two saved contours to be the same, byte by byte.
+  static void expect_same(const std::string& a, const std::string& b) {
+    const Mesh x = read_mesh(a);
+    const Mesh y = read_mesh(b);
+    ASSERT_EQ(x.coordinates.size(), y.coordinates.size());
+    EXPECT_EQ(std::memcmp(x.coordinates.data(), y.coordinates.data(), x.coordinates.size() * sizeof(double)), 0);
+    EXPECT_EQ(x.simplices, y.simplices);
+    EXPECT_EQ(x.axis_names, y.axis_names);
+    EXPECT_EQ(x.axis_units, y.axis_units);
+    EXPECT_EQ(x.dim, y.dim);
+    EXPECT_EQ(x.space_dim, y.space_dim);
+  }
+};
+
+TEST_F(Stream, GivesTheFileThatTheWholeImageGives) {
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {}, {"--close"}, {"--triangulation", "barycentric", "--precision", "float"}, {"--threads", "3"}}) {
+    std::vector<std::string> whole = {"contour", kOcean, "--iso", "20", "--no-check", "-o", path("whole.vtkhdf")};
+    whole.insert(whole.end(), more.begin(), more.end());
+    std::vector<std::string> streamed = {"contour", kOcean, "--iso", "20", "--stream", "-o", path("streamed.vtkhdf"),
+                                         "--json"};
+    streamed.insert(streamed.end(), more.begin(), more.end());
+    ASSERT_EQ(run_tegl(whole).exit, 0);
+    const RunResult run = run_tegl(streamed);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    expect_same(path("whole.vtkhdf"), path("streamed.vtkhdf"));
+    EXPECT_EQ(run.json()["simplices"], read_mesh(path("whole.vtkhdf")).simplices.size() / 4);
+    EXPECT_TRUE(run.json()["euler"].is_null());
+  }
+}
+
+TEST_F(Stream, ReadsRawValues) {
+  const Samples balls = merging_balls(12, 7);
+  const std::string nrrd = write("balls.nrrd", nrrd_bytes(balls));
+  const std::vector<float> values(balls.values.begin(), balls.values.end());
+  std::string bytes(5, '?');
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  const std::string raw = write("balls.raw", bytes);
+  ASSERT_EQ(run_tegl({"contour", nrrd, "--iso", "0.25", "-o", path("whole.vtkhdf")}).exit, 0);
+  const RunResult run = run_tegl({"contour", raw, "--raw", "12x12x12x7", "--raw-type", "float", "--raw-offset", "5",
+                                  "--iso", "0.25", "-o", path("raw.vtkhdf")});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const Mesh whole = read_mesh(path("whole.vtkhdf"));
+  const Mesh streamed = read_mesh(path("raw.vtkhdf"));
+  EXPECT_EQ(whole.simplices, streamed.simplices);
+}
+
+TEST_F(Stream, NeedsLittleMemoryWhateverTheLengthOfTheLastAxis) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space";
+#endif
+  // 2 GiB of samples, almost all of them in the holes of a sparse file, with a ball in every 16th volume.
+  constexpr std::uintmax_t kSize = 256;
+  constexpr std::uintmax_t kSteps = 128;
+  constexpr int kLimitKiB = 480 * 1024;  // of address space, program and libraries included
+  static_assert(kSize * kSize * kSize * kSteps >= 4 * std::uintmax_t{kLimitKiB} * 1024);
+  const std::string raw = path("large.raw");
+  {
+    std::ofstream file(raw, std::ios::binary);
+    for (std::uintmax_t t = 3; t < kSteps; t += 16)
+      for (std::uintmax_t z = 100; z < 120; ++z)
+        for (std::uintmax_t y = 100; y < 120; ++y) {
+          std::string row(20, '\0');
+          for (std::size_t x = 0; x < row.size(); ++x) {
+            const auto square = [](double a) { return (a - 9.5) * (a - 9.5); };
+            const double r = std::sqrt(square(static_cast<double>(x)) + square(static_cast<double>(y - 100)) +
+                                       square(static_cast<double>(z - 100)));
+            row[x] = static_cast<char>(std::max(0.0, 9.0 - r) * 10);
+          }
+          file.seekp(static_cast<std::streamoff>(((t * kSize + z) * kSize + y) * kSize + 100));
+          file.write(row.data(), static_cast<std::streamsize>(row.size()));
+        }
+  }
+  std::filesystem::resize_file(raw, kSize * kSize * kSize * kSteps);
+  const std::string out = path("large.vtkhdf");
+  const std::string command = "ulimit -v " + std::to_string(kLimitKiB) + "; exec " TEGL_PROGRAM " contour " + raw +
+                              " --raw 256x256x256x128 --raw-type uint8 --iso 20.5 --threads 2 -q -o " + out;
+  const int status = std::system(command.c_str());
+  ASSERT_EQ(WEXITSTATUS(status), 0);
+  const RunResult check = run_tegl({"check", out, "--require", "closed", "--json"});
+  EXPECT_EQ(check.exit, 0) << check.out;
+  EXPECT_EQ(check.json()["components"], 8);
+}
+
+TEST_F(Stream, LeavesNoFileWhenItFails) {
+  const Samples balls = merging_balls(12, 7);
+  const std::string raw = write("short.raw", std::string(1000, '\0'));
+  const auto expect_failure = [&](int exit, std::vector<std::string> arguments, const std::string& text) {
+    const auto before = files();
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, exit) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(text));
+    EXPECT_EQ(files(), before);
+  };
+  const std::string out = path("out.vtkhdf");
+  expect_failure(4, {"contour", raw, "--raw", "10x10x11", "--raw-type", "uint8", "--iso", "1", "-o", out},
+                 "1000 bytes");
+  expect_failure(2, {"contour", raw, "--raw", "10x10", "--raw-type", "half", "--iso", "1", "-o", out}, "half");
+  expect_failure(2, {"contour", raw, "--raw", "10y10", "--raw-type", "uint8", "--iso", "1", "-o", out}, "10y10");
+  expect_failure(2, {"contour", raw, "--raw", "10x0", "--raw-type", "uint8", "--iso", "1", "-o", out}, "10x0");
+  expect_failure(2, {"contour", raw, "--raw-type", "uint8", "--iso", "1", "-o", out}, "--raw");
+  expect_failure(5, {"contour", raw, "--raw", "10x10x10", "--raw-type", "uint8", "--iso", "1", "-o", out},
+                 "no contour");
+  expect_failure(6, {"contour", raw, "--raw", "10x10x10", "--raw-type", "uint8", "--iso", "1", "-o", path("out.ply")},
+                 ".vtkhdf");
+  expect_failure(4, {"contour", write("a.nrrd", nrrd_bytes(balls)), "--stream", "--iso", "0", "-o", out}, "a.nrrd");
+  const std::string full =
+      "ulimit -f 40; exec " TEGL_PROGRAM " contour " + kOcean + " --iso 20 --stream -q -o " + out + " 2> /dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(full.c_str())), 6);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace tegl::test
