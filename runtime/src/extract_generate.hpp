@@ -43,7 +43,7 @@ struct VertexRun {
 
 /// What a thread keeps between rows: the critical edges of one, by sample and by place.
 struct EdgeScratch {
-  explicit EdgeScratch(std::size_t samples) : at(samples), alphas(samples) {}
+  explicit EdgeScratch(std::size_t samples) : at(samples + 3), alphas(samples) {}
   std::vector<std::uint32_t> at;
   std::vector<double> alphas;
 };
@@ -54,12 +54,7 @@ void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& pla
                     const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, LocalRun* local,
                     EdgeScratch& scratch, VertexRun<typename Placement<N, Real>::Vertex> vertices) noexcept {
   if (plane.count[row] == 0) return;
-  std::size_t count = 0;
-  const Word* const bits = plane.bits[0].data() + row * shape.pitch();
-  for (std::size_t w = 0; w < shape.words(); ++w)
-    for (Word rest = bits[w]; rest != 0; rest &= rest - 1)
-      scratch.at[count++] =
-          static_cast<std::uint32_t>(w * kWordBits) + static_cast<std::uint32_t>(std::countr_zero(rest));
+  const std::size_t count = list_bits(plane.bits[0].data() + row * shape.pitch(), shape.words(), scratch.at.data());
   auto start = shape.index_of(row);
   start[N - 1] = layer;
   double* const alphas =
@@ -80,7 +75,7 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
   index[3] = layer;
   CellBits<4, Axes> cells(view, row);
   CellEdges<4, Axes> edges(view, row);
-  std::array<Index, 64> ids;  // more than edges, or GCC 12 warns of numbers that tables do not have
+  std::array<Index, 64> ids{};  // more than edges, or GCC 12 warns of numbers that tables do not have
   std::array<TilePoint<3>, tables::kFaceSlots> points;
   Index next = plane.base[row];
   for (std::size_t w = 0; w < shape.words(); ++w) {

@@ -57,14 +57,16 @@ bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
   return flip != (grid.linear.determinant() < 0);
 }
 
-/// How many slabs are worked on at a time: enough for all threads, with little memory beside input and output.
+/// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
+/// the next, with little memory beside input and output.
 template <int N>
-std::size_t batch_size(const RowShape<N>& shape) {
-  constexpr std::size_t kShare = 64;                           // of the image
-  constexpr std::size_t kLeastSamples = std::size_t{1} << 16;  // less is not worth the start of a pass
+std::size_t batch_size(const RowShape<N>& shape, std::size_t threads) {
+  constexpr std::size_t kShare = 32;  // of the image
+  constexpr std::size_t kSamplesPerThread = std::size_t{1} << 18;
   const std::size_t layer = shape.rows() * shape.size(0);
   const std::size_t slabs = shape.layers() - 1;
-  return std::clamp<std::size_t>(std::max(shape.layers() / kShare, kLeastSamples / layer), 1, slabs);
+  const std::size_t most = std::max(shape.layers() / kShare, kSamplesPerThread / 8 / layer);
+  return std::clamp<std::size_t>(std::min(threads * kSamplesPerThread / layer, most), 1, slabs);
 }
 
 template <int N, class Real>
@@ -87,7 +89,7 @@ class Extraction {
         keeps_places_(tables.tile->max_tile_vertices > 0 || counter_.has_cubes() || options.close),
         pinches_(shape_, counter_),
         workers_(options.threads, shape_.size(0), shape_.pitch()),
-        batch_(plan.batch == 0 ? batch_size(shape_) : std::min(plan.batch, shape_.layers() - 1)),
+        batch_(plan.batch == 0 ? batch_size(shape_, workers_.count()) : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
     if (options.close)
@@ -126,6 +128,10 @@ class Extraction {
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
 
+  struct Rows {
+    std::size_t first, end;
+  };
+
   Layer<N>& layer(std::size_t k) noexcept { return layers_[k % layers_.size()]; }
   Slab<N>& slab(std::size_t k) noexcept { return slabs_[k % slabs_.size()]; }
   Slab<N>* slab_above(std::size_t k) noexcept { return k + 1 < shape_.layers() ? &slab(k) : nullptr; }
@@ -137,17 +143,17 @@ class Extraction {
       throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {} of {} layers", done, all));
   }
 
-  /// Calls work(k, row, scratch) for all rows of the layers (or slabs) first ... end - 1, side by side.
+  /// Calls work(k, rows, scratch) for rows of layer (or slab) k, until all rows of the layers first ... end - 1 are
+  /// done, side by side.
   template <class Work>
   void for_rows(std::size_t first, std::size_t end, const Work& work) {
     const std::size_t rows = shape_.rows();
     workers_.for_range((end - first) * rows, kLeastWork / shape_.size(0) + 1,
                        [&](std::size_t from, std::size_t to, RowScratch& scratch) {
-                         std::size_t k = first + from / rows;
-                         std::size_t row = from % rows;
-                         for (std::size_t i = from; i < to; ++i) {
-                           work(k, row, scratch);
-                           if (++row == rows) row = 0, ++k;
+                         for (std::size_t next; from < to; from = next) {
+                           const std::size_t k = from / rows;
+                           next = std::min(to, (k + 1) * rows);
+                           work(first + k, Rows{from - k * rows, next - k * rows}, scratch);
                          }
                        });
   }
@@ -161,8 +167,9 @@ class Extraction {
   void classify(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
     classified_ = prepared_;
-    for_rows(from, classified_, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      counter_.classify(source_, k, inverted_, row, layer(k));
+    for_rows(from, classified_, [&](std::size_t k, Rows rows, RowScratch&) {
+      Layer<N>& here = layer(k);
+      for (std::size_t row = rows.first; row < rows.end; ++row) counter_.classify(source_, k, inverted_, row, here);
     });
     for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
     const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
@@ -173,19 +180,27 @@ class Extraction {
       all = all && slab(k).all_valid;
     }
     if (!all)
-      for_rows(valid_from, valid_end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-        if (!slab(k).all_valid) counter_.find_valid(layer(k), layer(k + 1), row, slab(k));
+      for_rows(valid_from, valid_end, [&](std::size_t k, Rows rows, RowScratch&) {
+        if (slab(k).all_valid) return;
+        for (std::size_t row = rows.first; row < rows.end; ++row)
+          counter_.find_valid(layer(k), layer(k + 1), row, slab(k));
       });
   }
 
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
-    for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      counter_.count_layer(layer(k), slab_below(k), slab_above(k), row, scratch.words.data());
-    });
-    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      counter_.count_slab(view(k), slab(k), row, scratch.words.data());
+    for_rows(first, end + 1, [&](std::size_t k, Rows rows, RowScratch& scratch) {
+      Layer<N>& here = layer(k);
+      const Slab<N>* const below = slab_below(k);
+      const Slab<N>* const above = slab_above(k);
+      if (k >= first_layer)
+        for (std::size_t row = rows.first; row < rows.end; ++row)
+          counter_.count_layer(here, below, above, row, scratch.words.data());
+      if (k == end) return;
+      const SlabView<N> around = view(k);
+      for (std::size_t row = rows.first; row < rows.end; ++row)
+        counter_.count_slab(around, slab(k), row, scratch.words.data());
     });
     part_.first_vertex = part_.end_vertex;
     part_.first_simplex = part_.end_simplex;
@@ -224,35 +239,48 @@ class Extraction {
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex)};
     const auto local = [&](LocalRun& run) { return keeps_places_ ? &run : nullptr; };
-    for_rows(first_layer, end + 1, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      for (int axis = 0; axis < N - 1; ++axis)
-        generate_edges(source_, placement_, shape_, layer(k).edges[axis], row, k, axis, local(layer(k).local),
+    // Where tiles ask for the places of points, these come first.
+    const bool at_once = !keeps_places_;
+    for_rows(first, end + 1, [&](std::size_t k, Rows rows, RowScratch& scratch) {
+      Layer<N>& here = layer(k);
+      if (k >= first_layer)
+        for (std::size_t row = rows.first; row < rows.end; ++row)
+          for (int axis = 0; axis < N - 1; ++axis)
+            generate_edges(source_, placement_, shape_, here.edges[axis], row, k, axis, local(here.local),
+                           scratch.edges, vertices);
+      if (k == end) return;
+      const SlabView<N> around = view(k);
+      for (std::size_t row = rows.first; row < rows.end; ++row) {
+        generate_edges(source_, placement_, shape_, around.slab->edges, row, k, N - 1, local(slab(k).local),
                        scratch.edges, vertices);
+        if (at_once) tiles_.write(around, row, k, vertices, room.simplices, part_.first_simplex);
+      }
     });
-    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      generate_edges(source_, placement_, shape_, slab(k).edges, row, k, N - 1, local(slab(k).local), scratch.edges,
-                     vertices);
-    });
+    if (at_once) return;
     if constexpr (N == 4)
       if (counter_.has_cubes()) generate_all_cubes(first, end, vertices);
-    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-      tiles_.write(view(k), row, k, vertices, room.simplices, part_.first_simplex);
+    for_rows(first, end, [&](std::size_t k, Rows rows, RowScratch&) {
+      const SlabView<N> around = view(k);
+      for (std::size_t row = rows.first; row < rows.end; ++row)
+        tiles_.write(around, row, k, vertices, room.simplices, part_.first_simplex);
     });
   }
 
   void generate_all_cubes(std::size_t first, std::size_t end, VertexRun<Vertex> vertices) requires(N == 4) {
-    for_rows(first == 0 ? 0 : first + 1, end + 1,
-             [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
-               Layer<N>& here = layer(k);
-               generate_cubes<7u>(*tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
-                                  here.local, vertices);
-             });
-    for_rows(first, end, [&](std::size_t k, std::size_t row, [[maybe_unused]] RowScratch& scratch) {
+    for_rows(first == 0 ? 0 : first + 1, end + 1, [&](std::size_t k, Rows rows, RowScratch&) {
+      Layer<N>& here = layer(k);
+      const SlabView<N> in_layer{&shape_, {&here, nullptr}, nullptr};
+      for (std::size_t row = rows.first; row < rows.end; ++row)
+        generate_cubes<7u>(*tables_.cube, placement_, in_layer, here.cubes, row, k, here.local, vertices);
+    });
+    for_rows(first, end, [&](std::size_t k, Rows rows, RowScratch&) {
       Slab<N>& here = slab(k);
       const SlabView<N> around = view(k);
-      generate_cubes<14u>(*tables_.cube, placement_, around, here.cubes[0], row, k, here.local, vertices);
-      generate_cubes<13u>(*tables_.cube, placement_, around, here.cubes[1], row, k, here.local, vertices);
-      generate_cubes<11u>(*tables_.cube, placement_, around, here.cubes[2], row, k, here.local, vertices);
+      for (std::size_t row = rows.first; row < rows.end; ++row) {
+        generate_cubes<14u>(*tables_.cube, placement_, around, here.cubes[0], row, k, here.local, vertices);
+        generate_cubes<13u>(*tables_.cube, placement_, around, here.cubes[1], row, k, here.local, vertices);
+        generate_cubes<11u>(*tables_.cube, placement_, around, here.cubes[2], row, k, here.local, vertices);
+      }
     });
   }
 

@@ -135,7 +135,7 @@ struct Slab {
   std::vector<Word> valid;  ///< rows x pitch: tiles without a missing corner; meaningful unless all_valid
   bool all_valid = true;
   std::vector<Word> active;                 ///< rows x pitch: valid tiles with high and low corners
-  std::vector<std::uint16_t> signatures;    ///< rows x samples of a row: of each row's active tiles, in order
+  Buffer<std::uint16_t> signatures;         ///< rows x samples of a row: of each row's active tiles, in order
   std::vector<std::uint32_t> active_count;  ///< by row
   EdgePlane edges;                          ///< along the last axis
   std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out

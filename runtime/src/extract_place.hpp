@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
 #include "extract_layers.hpp"
+#include "extract_points.hpp"
 #include "tegl/grid.hpp"
 
 namespace tegl::detail {
@@ -24,6 +25,12 @@ class Placement {
   using Vertex = std::array<Real, N>;
 
   explicit Placement(const Grid<N>& grid) : linear_(grid.linear), offset_(grid.offset), mapped_(grid.has_world_map()) {
+    // The arithmetic along a row takes the numbers of samples for 32-bit integers.
+    is_uniform_ = grid.axes[0].is_uniform() && grid.axes[0].size() < std::numeric_limits<std::int32_t>::max();
+    if (is_uniform_) {
+      origin_ = grid.axes[0].origin();
+      step_ = grid.axes[0].step();
+    }
     for (int a = 0; a < N; ++a) {
       coordinates_[a].resize(grid.axes[a].size());
       for (std::size_t i = 0; i < coordinates_[a].size(); ++i) coordinates_[a][i] = grid.axes[a][i];
@@ -68,28 +75,17 @@ class Placement {
   /// The points on the edges along `axis` from the samples `at` of a row, `count` of them.
   void edges(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
              Vertex* out) const noexcept {
-    std::array<double, N> point;
-    for (int a = 1; a < N; ++a) point[a] = sample(a, start[a]);
-    const double* const along = coordinates_[0].data();
-    if (mapped_ || axis == N - 1) {
-      for (std::size_t i = 0; i < count; ++i) {
-        point[0] = along[at[i]];
-        point[axis] = between(axis, axis == 0 ? at[i] : start[axis], alphas[i]);
-        out[i] = axis == N - 1 ? inside_slab(world(point), start[N - 1]) : world(point);
-      }
-      return;
+    EdgeRow<N, Real> row{at, alphas, count, axis, {}, 0.0, nullptr, origin_, step_, nullptr, nullptr, {}, out};
+    for (int a = 1; a < N; ++a) row.start[a] = sample(a, start[a]);
+    if (axis > 0) row.end = sample(axis, start[axis] + 1);
+    if (!is_uniform_) row.along = coordinates_[0].data();
+    if (mapped_) {
+      row.linear = linear_.data();
+      row.offset = offset_.data();
     }
-    Vertex vertex;
-    for (int a = 1; a < N; ++a) vertex[a] = static_cast<Real>(point[a]);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (axis == 0) {
-        vertex[0] = static_cast<Real>(between(0, at[i], alphas[i]));
-      } else {
-        vertex[0] = static_cast<Real>(along[at[i]]);
-        vertex[axis] = static_cast<Real>(between(axis, start[axis], alphas[i]));
-      }
-      out[i] = vertex;
-    }
+    row.inside.fill(std::numeric_limits<Real>::quiet_NaN());
+    if (N == 4 && axis == N - 1 && !insides_.empty()) row.inside = insides_[start[N - 1]];
+    write_points<N, Real>(row);
   }
 
  private:
@@ -130,8 +126,10 @@ class Placement {
   }
 
   std::array<std::vector<double>, N> coordinates_;
-  Eigen::Matrix<double, N, N> linear_;
+  Eigen::Matrix<double, N, N, Eigen::RowMajor> linear_;
   Eigen::Matrix<double, N, 1> offset_;
+  bool is_uniform_;  ///< axis 0
+  double origin_ = 0.0, step_ = 0.0;
   bool mapped_;
   std::vector<std::array<Real, 2>> insides_;
 };

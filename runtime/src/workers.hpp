@@ -33,6 +33,8 @@ class Workers {
           return RowScratch{std::vector<Word>(words), EdgeScratch(samples)};
         }) {}
 
+  [[nodiscard]] std::size_t count() const noexcept { return static_cast<std::size_t>(arena_.max_concurrency()); }
+
   /// Calls work(from, to, scratch) for parts of 0 ... count - 1 that make up the whole, of at least `grain` (but the
   /// last), with the thread's own scratch.
   template <class Work>
