@@ -103,6 +103,7 @@ void set_languages(Options& options, std::string_view given) {
 /// A set of commands, as bits.
 constexpr unsigned bit(Command command) { return 1U << static_cast<unsigned>(command); }
 constexpr unsigned kCount = bit(Command::Count);
+constexpr unsigned kTransversal = bit(Command::Transversal);
 constexpr unsigned kClasses = bit(Command::Classes);
 constexpr unsigned kCertify = bit(Command::Certify);
 constexpr unsigned kOut = bit(Command::Out);
@@ -118,14 +119,16 @@ struct OptionSpec {
 constexpr std::array kOptions{
     OptionSpec{"--version", false, Command::Version, 0, nullptr},
     OptionSpec{"--count", false, Command::Count, 0, nullptr},
+    OptionSpec{"--transversal", false, Command::Transversal, 0, nullptr},
     OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
     OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
-    OptionSpec{"--dim", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_dim},
-    OptionSpec{"--group", true, std::nullopt, kCount, set_group},
+    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut, set_dim},
+    OptionSpec{"--group", true, std::nullopt, kCount | kTransversal, set_group},
+    OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
     OptionSpec{"--inversion", false, std::nullopt, kCount, [](Options& o, std::string_view) { o.inversion = true; }},
     OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
-    OptionSpec{"--json", false, std::nullopt, kCount | kClasses | kCertify,
+    OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kClasses | kCertify,
                [](Options& o, std::string_view) { o.json = true; }},
     OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
     OptionSpec{"--language", true, std::nullopt, kOut, set_languages},
@@ -204,7 +207,7 @@ void check_dim(const Options& options, std::string_view command) {
   }
   const bool count = options.command == Command::Count;
   const int lowest = count ? 1 : 2;
-  const int highest = count ? kMaxDim : kMaxEnumeratedDim;
+  const int highest = count ? kMaxDim : options.command == Command::Transversal ? kMaxSignatureDim : kMaxEnumeratedDim;
   if (options.dim < lowest || options.dim > highest) {
     refuse(fmt::format("--dim {}: {} expects {} to {}", options.dim, command, lowest, highest));
   }
@@ -243,6 +246,7 @@ Options parse(std::span<const std::string_view> arguments) {
     refuse(fmt::format("{} without --dim: expected --dim N", command.name));
   }
   check_dim(options, command.name);
+  if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
   return options;
 }
 
@@ -258,6 +262,8 @@ usage: gen --dim N COMMAND [OPTIONS]
 commands (one of)
   --count          orbits of the 2^(2^N) signatures under the cube's symmetries, by Burnside's lemma (N = 1 ... 8)
                    and, for N up to 4, by enumeration too: the two must agree
+  --transversal    the smallest signature of every class and its orbit's length (N = 2 ... 5), checked by Burnside's
+                   lemma and by the sum of the lengths; prints how many classes have orbits of which length
   --classes        every class of signatures under all 2^N N! symmetries (N = 2 ... 4): its smallest signature,
                    orbit length, stabiliser order, facets, components, Euler characteristics, ambiguous faces
   --certify        proves every signature of both alternatives (N = 2 ... 4): closed, manifold, oriented, matching
@@ -271,6 +277,11 @@ options of --count
   --inversion                       the exchange of high and low is a symmetry too
   --json                            one object: dim, group, inversion, order, orbits. All numbers are plain JSON
                                     integers; from N = 7 on orbits exceeds 2^53, so read it as a big integer
+
+options of --transversal
+  --group full|rotations            as above
+  --list                            prints the signatures instead, ascending, each with its orbit's length
+  --json                            for machines
 
 options of --classes
   --alternative low|high            which corners stay connected in an ambiguous face (default low)

@@ -29,6 +29,8 @@ int dispatch(const Options& options) {
       return 0;
     case Command::Count:
       return tegl::gen::run_count(options);
+    case Command::Transversal:
+      return tegl::gen::run_transversal(options);
     case Command::Classes:
       return tegl::gen::run_classes(options);
     case Command::Certify:

@@ -111,6 +111,20 @@ TEST(GenCli, CountForPeopleSaysHowItWasCounted) {
   EXPECT_THAT(burnside.out, testing::AllOf(HasSubstr("400507806843728"), testing::Not(HasSubstr("enumeration"))));
 }
 
+TEST(GenCli, TransversalCountsRepresentativesByOrbitLength) {
+  const Outcome run = gen({"--dim", "3", "--transversal", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json found = json::parse(run.out);
+  EXPECT_EQ(found["representatives"], 22);
+  EXPECT_EQ(found["signatures"], 256);
+  EXPECT_EQ(found["orbit_lengths"]["24"], 6);
+  EXPECT_EQ(gen({"--dim", "2", "--transversal", "--list"}).out, "0 1\n1 4\n3 4\n6 2\n7 4\n15 1\n");
+  EXPECT_THAT(gen({"--dim", "5", "--transversal"}).out, HasSubstr("1228158"));
+  EXPECT_EQ(gen({"--dim", "6", "--transversal"}).status, 2);
+  EXPECT_EQ(gen({"--dim", "3", "--transversal", "--list", "--json"}).status, 2);
+  EXPECT_EQ(gen({"--dim", "3", "--transversal", "--inversion"}).status, 2);
+}
+
 TEST(GenCli, OptionsMayComeInAnyOrderAndWithEqualsSigns) {
   EXPECT_EQ(gen({"--json", "--group=rotations", "--dim=3", "--inversion", "--count"}).out,
             gen({"--dim", "3", "--count", "--group", "rotations", "--inversion", "--json"}).out);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <string>
 
 #include "tegl/gen/error.hpp"
@@ -119,6 +120,47 @@ TEST(Transversal, RefusesElementsThatAreNoGroup) {
   EXPECT_EQ(transversal(3, identity).representatives.size(), 256U) << "the trivial group is one";
   const std::vector<Element> without_identity{group(2, GroupKind::Rotations, false).back()};
   EXPECT_THROW((void)transversal(2, without_identity), Error);
+}
+
+TEST(Representatives, AreThoseOfTheEnumerationWithTheirOrbits) {
+  for (int n = 2; n <= kMaxEnumeratedDim; ++n)
+    for (const GroupKind kind : {GroupKind::Full, GroupKind::Rotations}) {
+      const Transversal expected = transversal(n, group(n, kind, false));
+      std::vector<std::uint32_t> signatures, lengths;
+      const std::uint64_t sum = for_each_representative(n, kind, [&](const Representative& r) {
+        signatures.push_back(r.signature);
+        lengths.push_back(r.orbit_length);
+      });
+      EXPECT_EQ(signatures, expected.representatives);
+      EXPECT_EQ(lengths, expected.orbit_length);
+      EXPECT_EQ(sum, std::uint64_t{1} << (1u << n));
+    }
+}
+
+TEST(Representatives, Of5dAreAsManyAsTheoryHasAndTheirOrbitsMakeUpAllSignatures) {
+  for (const auto& [kind, expected] : {std::pair{GroupKind::Full, 1'228'158U}, {GroupKind::Rotations, 2'275'974U}}) {
+    const std::vector<Element> elements = group(5, kind, false);
+    std::vector<std::vector<std::uint32_t>> permutations;
+    for (const Element& g : elements) permutations.push_back(corner_permutation(g, 5));
+    std::uint32_t count = 0;
+    std::int64_t last = -1;
+    const std::uint64_t sum = for_each_representative(5, kind, [&](const Representative& r) {
+      ASSERT_GT(std::int64_t{r.signature}, last) << "ascending";
+      last = r.signature;
+      if (count++ % 50'021 != 0) return;
+      // A sample against the definition.
+      std::set<std::uint32_t> orbit;
+      for (std::size_t g = 0; g < elements.size(); ++g) orbit.insert(act(elements[g], permutations[g], r.signature));
+      EXPECT_EQ(*orbit.begin(), r.signature);
+      EXPECT_EQ(orbit.size(), r.orbit_length);
+    });
+    EXPECT_EQ(count, expected);
+    EXPECT_EQ(sum, std::uint64_t{1} << 32);
+  }
+}
+
+TEST(Representatives, OfOtherDimensionsAreRefused) {
+  for (const int n : {1, 6}) EXPECT_THROW((void)for_each_representative(n, GroupKind::Full, {}), Error);
 }
 
 TEST(Transversal, RefusesDimensionsThatItCannotEnumerate) {

@@ -13,6 +13,11 @@ namespace tegl::gen {
 /// Errors: CountMismatch if the two disagree.
 int run_count(const Options& options);
 
+/// `--transversal`: the smallest signature of every class, counted by orbit length, or listed. Honours `group`, `list`
+/// and `json`. Errors: CountMismatch if their number is not Burnside's, or their orbits do not add up to all
+/// signatures.
+int run_transversal(const Options& options);
+
 /// `--classes`: every class with its signature, orbit length, stabiliser, facets, components, Euler
 /// characteristics and ambiguous faces. Honours `alternative` and `json`.
 int run_classes(const Options& options);

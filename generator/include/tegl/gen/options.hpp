@@ -15,12 +15,13 @@ namespace tegl::gen {
 
 /// What to do. Exactly one is given.
 enum class Command {
-  Help,     ///< --help
-  Version,  ///< --version
-  Count,    ///< --count, dim 1 ... 8
-  Classes,  ///< --classes, dim 2 ... 4
-  Certify,  ///< --certify, dim 2 ... 4
-  Out,      ///< --out DIR, dim 2 ... 4
+  Help,         ///< --help
+  Version,      ///< --version
+  Count,        ///< --count, dim 1 ... 8
+  Transversal,  ///< --transversal, dim 2 ... 5
+  Classes,      ///< --classes, dim 2 ... 4
+  Certify,      ///< --certify, dim 2 ... 4
+  Out,          ///< --out DIR, dim 2 ... 4
 };
 
 /// How ambiguous faces are resolved: low or high corners stay connected (theory: the consistent method).
@@ -40,9 +41,10 @@ enum class TriangulationChoice { Barycentric, Compact, All };
 struct Options {
   Command command = Command::Help;
   int dim = 0;                                                   ///< --dim; 0 for --help and --version
-  GroupKind group = GroupKind::Full;                             ///< --group; --count only
+  GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal
   bool inversion = false;                                        ///< --inversion; --count only
-  bool json = false;                                             ///< --json; --count, --classes, --certify
+  bool list = false;                                             ///< --list; --transversal only
+  bool json = false;                                             ///< --json; all but --out, and not with --list
   AlternativeChoice alternative = AlternativeChoice::Low;        ///< --alternative; --classes only
   std::string out;                                               ///< DIR of --out
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,20 @@ struct Transversal {
 /// Errors: InvalidArgument unless 1 <= n <= 4; Internal if `group` is no group: an orbit reaches another one, or its
 /// length does not divide the group's order.
 [[nodiscard]] Transversal transversal(int n, std::span<const Element> group);
+
+/// A class of signatures by its smallest one.
+struct Representative {
+  std::uint32_t signature;
+  std::uint32_t orbit_length;
+};
+
+/// The representatives of dimension n in ascending order, handed to `take` one by one, from the classes of dimension
+/// n - 1, without a look at all 2^(2^n) signatures: a signature is a pair of opposite (n-1)-faces, (upper, lower), and
+/// the smallest one of its orbit has the smallest representative that any of its 2n faces has for its upper one, and
+/// with that the smallest lower one. The orbit lengths follow from how many symmetries give the same pair. No
+/// inversion. Returns the sum of the orbit lengths, which is 2^(2^n) if none is missing and none is there twice. O(c
+/// |G| n) time, c the classes: seconds for n = 5; O(2^(2^(n-1))) memory. Errors: InvalidArgument unless 2 <= n <= 5.
+std::uint64_t for_each_representative(int n, GroupKind kind, const std::function<void(const Representative&)>& take);
 
 /// Counts the classes a second time, by Burnside's lemma, which knows nothing of the elements that made `classes`: a
 /// group that is a wrong one shows here. Errors: CountMismatch if the two numbers differ.
