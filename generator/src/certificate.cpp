@@ -7,47 +7,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "simplex_key.hpp"
+
 namespace tegl::gen {
 
 namespace {
 
-/// A set of up to four vertices in ascending order, packed: 0xff fills up.
-using Key = std::uint32_t;
-
-Key key_of(std::array<std::uint8_t, 4> v, int count) {
-  for (int i = count; i < 4; ++i) v[i] = 0xff;
-  const auto order = [&](int i, int j) {
-    if (v[i] > v[j]) std::swap(v[i], v[j]);
-  };
-  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);  // a sorting network
-  return Key{v[0]} << 24 | Key{v[1]} << 16 | Key{v[2]} << 8 | v[3];
-}
-
-/// +1 or -1: the parity of the permutation that sorts the first `count` vertices.
-int parity(const std::array<std::uint8_t, 4>& v, int count) {
-  int sign = 1;
-  for (int i = 0; i < count; ++i)
-    for (int j = i + 1; j < count; ++j)
-      if (v[i] > v[j]) sign = -sign;
-  return sign;
-}
-
-Simplex without(const Simplex& s, int drop, int n) {
-  Simplex face{};
-  for (int i = 0, k = 0; i < n; ++i)
-    if (i != drop) face[k++] = s[i];
-  return face;
-}
-
 std::string text(const Simplex& s, int count) {
   return fmt::format("({})", fmt::join(s.begin(), s.begin() + count, " "));
 }
-
-struct SignedFace {
-  Key key;
-  int sign;
-  bool operator<(const SignedFace& other) const { return key < other.key; }
-};
 
 /// Is a 1-complex (edges by vertex pairs) a single path or cycle?
 enum class Shape { none, ball, sphere };

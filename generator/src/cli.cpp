@@ -124,9 +124,12 @@ constexpr std::array kOptions{
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
     OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut, set_dim},
-    OptionSpec{"--group", true, std::nullopt, kCount | kTransversal, set_group},
+    OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kCertify, set_group},
     OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
-    OptionSpec{"--inversion", false, std::nullopt, kCount, [](Options& o, std::string_view) { o.inversion = true; }},
+    OptionSpec{"--inversion", false, std::nullopt, kCount | kCertify,
+               [](Options& o, std::string_view) { o.inversion = true; }},
+    OptionSpec{"--table-by-class", false, std::nullopt, kCertify,
+               [](Options& o, std::string_view) { o.table_by_class = true; }},
     OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
     OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kClasses | kCertify,
                [](Options& o, std::string_view) { o.json = true; }},
@@ -213,6 +216,21 @@ void check_dim(const Options& options, std::string_view command) {
   }
 }
 
+/// `--certify` knows groups for the table by class alone, and that table in the dimensions that have one.
+void check_table_by_class(const Options& options, const std::vector<const OptionSpec*>& seen) {
+  if (options.command != Command::Certify) {
+    return;
+  }
+  if (options.table_by_class && options.dim > 3) {
+    refuse(fmt::format("--dim {}: --table-by-class expects 2 or 3", options.dim));
+  }
+  for (const OptionSpec* const spec : seen) {
+    if (!options.table_by_class && (spec->name == "--group" || spec->name == "--inversion")) {
+      refuse(fmt::format("{} does not go with --certify without --table-by-class", spec->name));
+    }
+  }
+}
+
 }  // namespace
 
 Options parse(std::span<const std::string_view> arguments) {
@@ -247,6 +265,7 @@ Options parse(std::span<const std::string_view> arguments) {
   }
   check_dim(options, command.name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
+  check_table_by_class(options, seen);
   return options;
 }
 
@@ -267,7 +286,8 @@ commands (one of)
   --classes        every class of signatures under all 2^N N! symmetries (N = 2 ... 4): its smallest signature,
                    orbit length, stabiliser order, facets, components, Euler characteristics, ambiguous faces
   --certify        proves every signature of both alternatives (N = 2 ... 4): closed, manifold, oriented, matching
-                   its neighbours; prints the figures
+                   its neighbours; prints the figures. With --table-by-class: the pairs of neighbours in a table
+                   that has one entry per class
   --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
   --help, -h       this text
   --version        version of the program and of the tables' layout
@@ -288,6 +308,9 @@ options of --classes
   --json                            for machines
 
 options of --certify
+  --table-by-class                  builds the table that a group of symmetries suggests (N = 2, 3): every signature
+                                    takes its class's contour. --group and --inversion choose the group; with inversion
+                                    it is the table of the original marching cubes, and has holes (exit status 4)
   --json                            for machines
 
 options of --out
@@ -309,6 +332,7 @@ examples
   gen --dim 3 --classes
   gen --dim 4 --certify
   gen --dim 4 --out tables
+  gen --dim 3 --certify --group rotations --inversion --table-by-class
 
 exit status
   0  done

@@ -67,11 +67,11 @@ std::string figures_json(const CertifiedFigures& f) {
       "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
       "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
       "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
-      "\"mean_simplices\": {:.4f}}}",
+      "\"mean_simplices\": {:.4f}, \"pairs\": {}, \"unmatched_pairs\": {}}}",
       alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
       f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
       f.highest_genus, f.simplices, f.max_simplices,
-      static_cast<double>(f.simplices) / static_cast<double>(f.signatures));
+      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
 }
 
 void print_figures(int dim, const CertifiedFigures& f) {
@@ -87,6 +87,7 @@ void print_figures(int dim, const CertifiedFigures& f) {
              f.by_filling[3], f.by_filling[4]);
   fmt::print("  simplices    {}: {:.2f} per signature, at most {}\n", f.simplices,
              static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.max_simplices);
+  if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);
 }
 
 /// Writes every file beside its target first and renames at the end: a failure leaves no half-written table.
@@ -141,7 +142,33 @@ int run_classes(const Options& options) {
   return 0;
 }
 
+/// `--certify --table-by-class`: prints the figures of its pairs, then throws if there are holes.
+static int certify_by_class(const Options& options) {
+  const CubeLattice lattice(options.dim);
+  const ContourBuilder builder(lattice, options.dim, Alternative::low, Triangulation::compact);
+  const auto contours = contours_by_class(builder, options.group, options.inversion);
+  const auto classes =
+      transversal(options.dim, group(options.dim, options.group, options.inversion)).representatives.size();
+  const PairFigures pairs = certify_pairs(builder, contours);
+  const char* const group_name = options.group == GroupKind::Full ? "full" : "rotations";
+  if (options.json)
+    fmt::print(
+        "{{\"dim\": {}, \"table\": \"by class\", \"group\": \"{}\", \"inversion\": {}, \"classes\": {}, \"pairs\": {}, "
+        "\"unmatched_pairs\": {}}}\n",
+        options.dim, group_name, options.inversion, classes, pairs.pairs, pairs.unmatched);
+  else
+    fmt::print("{}-tile, table by class: group {}{}, {} classes\n  neighbours   {} pairs, {} do not match\n",
+               options.dim, group_name, options.inversion ? " with inversion" : "", classes, pairs.pairs,
+               pairs.unmatched);
+  if (pairs.unmatched != 0) {
+    std::fflush(stdout);
+    throw Error(ErrorCode::CertificateFailed, unmatched_text(options.dim, pairs));
+  }
+  return 0;
+}
+
 int run_certify(const Options& options) {
+  if (options.table_by_class) return certify_by_class(options);
   const auto figures = certify_all(options.dim);
   if (!options.json) {
     for (const CertifiedFigures& f : figures) print_figures(options.dim, f);

@@ -56,6 +56,18 @@ Signature Tile::restrict_to(std::uint32_t f, Signature signature) const {
   return result;
 }
 
+std::vector<std::uint8_t> edge_permutation(const Tile& tile, std::span<const std::uint32_t> corner_images) {
+  std::vector<std::uint8_t> result;
+  for (const auto& [a, b] : tile.edges) {
+    const std::uint32_t to_a = corner_images[a], to_b = corner_images[b];
+    for (std::uint8_t e = 0; e < tile.edge_count(); ++e)
+      if ((tile.edges[e][0] == to_a && tile.edges[e][1] == to_b) ||
+          (tile.edges[e][0] == to_b && tile.edges[e][1] == to_a))
+        result.push_back(e);
+  }
+  return result;
+}
+
 CubeLattice::CubeLattice(int n) {
   if (n < 1 || n > 4) throw std::invalid_argument("cube lattice: dimension must be 1 to 4");
   tiles_.reserve(static_cast<std::size_t>(n) + 1);  // faces point at their tiles: no reallocation

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "tegl/gen/counting.hpp"
+#include "tegl/gen/error.hpp"
 #include "tegl/gen/symmetry.hpp"
 #include "tegl/gen/transversal.hpp"
 
@@ -12,12 +13,24 @@ namespace tegl::gen {
 
 namespace {
 
+/// Throws unless every pair of neighbours matches.
+PairFigures matching_pairs(const ContourBuilder& builder, const std::vector<TileContour>& contours) {
+  const PairFigures pairs = certify_pairs(builder, contours);
+  if (pairs.unmatched != 0) throw Error(ErrorCode::CertificateFailed, unmatched_text(builder.dim(), pairs));
+  return pairs;
+}
+
 /// Both alternatives of one triangulation, certified and compared; returns the low-connected one.
-std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high,
+std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high, bool pairs,
                                        std::vector<CertifiedFigures>& figures) {
   CertifiedFigures of_low, of_high;
   auto contours = certified_contours(low, of_low);
-  check_inversion(low.dim(), contours, certified_contours(high, of_high));
+  const auto high_contours = certified_contours(high, of_high);
+  check_inversion(low.dim(), contours, high_contours);
+  if (pairs) {
+    of_low.pairs = matching_pairs(low, contours);
+    of_high.pairs = matching_pairs(high, high_contours);
+  }
   figures.push_back(of_low);
   figures.push_back(of_high);
   return contours;
@@ -42,7 +55,7 @@ TableSet make_table_set(const TableRequest& request) {
   for (const Triangulation t : request.triangulations) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
-    const auto contours = certified_low(low, high, set.figures);
+    const auto contours = certified_low(low, high, false, set.figures);
     set.tiles.push_back(
         make_tile_tables(low, contours, request.layout ? request.layout(t) : preferred_layout(request.dim, t)));
     for (const Alternative a : {Alternative::low, Alternative::high}) {
@@ -58,7 +71,7 @@ std::vector<CertifiedFigures> certify_all(int dim) {
   std::vector<CertifiedFigures> figures;
   for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
     certified_low(ContourBuilder(lattice, dim, Alternative::low, t), ContourBuilder(lattice, dim, Alternative::high, t),
-                  figures);
+                  true, figures);
   return figures;
 }
 

@@ -116,11 +116,8 @@ void append_list(TileTables& table, const TileContour& contour) {
 std::vector<std::uint8_t> permutation_row(const Tile& tile, const Element& g) {
   const auto corner = corner_permutation(g, tile.dim);
   std::vector<std::uint8_t> row(corner.begin(), corner.end());
-  for (const auto& [a, b] : tile.edges)
-    for (std::uint8_t e = 0; e < tile.edge_count(); ++e)
-      if ((tile.edges[e][0] == corner[a] && tile.edges[e][1] == corner[b]) ||
-          (tile.edges[e][0] == corner[b] && tile.edges[e][1] == corner[a]))
-        row.push_back(e);
+  const auto edges = edge_permutation(tile, corner);
+  row.insert(row.end(), edges.begin(), edges.end());
   if (tile.dim != 4) return row;
   for (const SubTile& cube : tile.faces) {
     Signature image = 0;

@@ -202,6 +202,27 @@ TEST(GenCli, RefusesOptionsThatTheCommandWouldIgnore) {
   expect_refused({"--version", "--dim", "3"}, {"--dim does not go with --version", "nothing else"});
 }
 
+TEST(GenCli, TheTableByClassHasHolesWithInversionAndNoneWithout) {
+  const Outcome marching_cubes =
+      gen({"--dim", "3", "--certify", "--group", "rotations", "--inversion", "--table-by-class", "--json"});
+  EXPECT_EQ(marching_cubes.status, 4);
+  EXPECT_THAT(marching_cubes.err, HasSubstr("leave a hole"));
+  const json figures = json::parse(marching_cubes.out);
+  EXPECT_EQ(figures.at("classes"), 15);
+  EXPECT_EQ(figures.at("pairs"), 3 * 16 * 16 * 16);
+  EXPECT_GT(figures.at("unmatched_pairs"), 0);
+  const Outcome rotations = gen({"--dim", "3", "--certify", "--group", "rotations", "--table-by-class", "--json"});
+  EXPECT_EQ(rotations.status, 0) << rotations.err;
+  EXPECT_EQ(json::parse(rotations.out).at("unmatched_pairs"), 0);
+  EXPECT_EQ(json::parse(rotations.out).at("classes"), 23);
+}
+
+TEST(GenCli, TheTableByClassIsForCertifyInTwoAndThreeDimensions) {
+  expect_refused({"--dim", "4", "--certify", "--table-by-class"}, {"--dim 4", "expects 2 or 3"});
+  expect_refused({"--dim", "3", "--count", "--table-by-class"}, {"--table-by-class does not go with --count"});
+  expect_refused({"--dim", "3", "--certify", "--inversion"}, {"--inversion does not go with --certify without"});
+}
+
 TEST(GenCli, RefusesRepeatedOptions) {
   expect_refused({"--dim", "3", "--dim", "4", "--count"}, {"--dim was given more than once"});
   expect_refused({"--dim", "3", "--count", "--count"}, {"--count was given more than once"});

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct Tile {
   /// The signature that `signature` leaves on face f.
   [[nodiscard]] Signature restrict_to(std::uint32_t f, Signature signature) const;
 };
+
+/// The images of a tile's edges under a permutation of its corners that maps edges to edges.
+std::vector<std::uint8_t> edge_permutation(const Tile& tile, std::span<const std::uint32_t> corner_images);
 
 /// The unit cubes of dimension 0 to n (n <= 4), numbered as the table contract says.
 class CubeLattice {

@@ -41,8 +41,9 @@ enum class TriangulationChoice { Barycentric, Compact, All };
 struct Options {
   Command command = Command::Help;
   int dim = 0;                                                   ///< --dim; 0 for --help and --version
-  GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal
-  bool inversion = false;                                        ///< --inversion; --count only
+  GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class
+  bool inversion = false;                                        ///< --inversion; --count, table_by_class
+  bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3
   bool list = false;                                             ///< --list; --transversal only
   bool json = false;                                             ///< --json; all but --out, and not with --list
   AlternativeChoice alternative = AlternativeChoice::Low;        ///< --alternative; --classes only

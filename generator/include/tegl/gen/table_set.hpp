@@ -27,7 +27,8 @@ struct TableRequest {
 /// Builds and certifies; throws Error{CertificateFailed} or Error{Internal} before anything could be written.
 TableSet make_table_set(const TableRequest& request);
 
-/// The certificate of every signature of both alternatives in both triangulations.
+/// The certificate of every signature of both alternatives in both triangulations, and of every pair of neighbours.
+/// Throws Error{CertificateFailed} for a tile that fails, and for a pair that does not match.
 std::vector<CertifiedFigures> certify_all(int dim);
 
 /// How many of a tile's m-faces are m-ambiguous, by m (index 2 ... dim): their high corners, or their low ones, are

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tegl/gen/facets.hpp"
+#include "tegl/gen/pairs.hpp"
 #include "tegl/gen/regions.hpp"
 #include "tegl/table_contract.hpp"
 
@@ -60,6 +61,7 @@ struct CertifiedFigures {
   std::uint64_t signatures_with_others = 0;
   std::vector<Signature> classes_with_others;  ///< representatives, ascending
   std::uint64_t by_filling[5] = {};            ///< facets by Filling
+  PairFigures pairs;                           ///< of neighbours; all 0 where pairs were not looked at
 };
 
 /// The contours of all signatures of one builder, each with its certificate. Uses all processors; the result does

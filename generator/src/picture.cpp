@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Hidden lines of a convex tile need no more than the signs of its faces' normals; its facets are painted from the far
+// to the near.
+#include "tegl/gen/picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "tegl/gen/error.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+using Colour = std::array<int, 3>;
+constexpr Colour kHighSide{240, 165, 60}, kLowSide{95, 150, 215};
+
+Place operator-(const Place& a, const Place& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Place operator+(const Place& a, const Place& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Place operator*(double f, const Place& a) { return {f * a[0], f * a[1], f * a[2]}; }
+double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Place cross(const Place& a, const Place& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Place unit(const Place& a) { return 1 / std::sqrt(std::max(dot(a, a), 1e-30)) * a; }
+
+Place corner_place(const Tile& tile, std::uint32_t v) {
+  return {tile.corners[v][0], tile.corners[v][1], tile.dim > 2 ? tile.corners[v][2] : 0.0};
+}
+
+Place mean_of(const std::vector<Place>& places) {
+  Place sum{};
+  for (const Place& p : places) sum = sum + p;
+  return 1 / static_cast<double>(places.size()) * sum;
+}
+
+/// Orthographic view.
+struct View {
+  Place right, up, eye;
+
+  explicit View(int dim) {
+    eye = dim == 2 ? Place{0, 0, 1} : unit({0.55, -1.0, 0.75});
+    right = dim == 2 ? Place{1, 0, 0} : unit(cross({0, 0, 1}, eye));
+    up = cross(eye, right);
+  }
+};
+
+/// Which faces of a tile turn towards the eye, and with them which edges and corners can be seen.
+struct Visible {
+  std::vector<bool> corners, edges;
+
+  Visible(const Tile& tile, const View& view) : corners(tile.corner_count()), edges(tile.edge_count()) {
+    std::vector<Place> all;
+    for (std::uint32_t v = 0; v < tile.corner_count(); ++v) all.push_back(corner_place(tile, v));
+    const Place centre = mean_of(all);
+    for (const SubTile& face : tile.faces) {
+      if (tile.dim == 3) {
+        std::vector<Place> places;
+        for (const std::uint8_t v : face.corner) places.push_back(all[v]);
+        Place normal = cross(places[1] - places[0], places[2] - places[0]);
+        if (dot(normal, mean_of(places) - centre) < 0) normal = -1.0 * normal;
+        if (dot(normal, view.eye) <= 0) continue;
+      }
+      for (const std::uint8_t v : face.corner) corners[v] = true;
+      for (const std::uint8_t e : face.edge) edges[e] = true;
+    }
+  }
+};
+
+/// The SVG in the making: elements in picture coordinates, the frame found at the end.
+class Canvas {
+ public:
+  Canvas(const View& view, double scale) : view_(view), scale_(scale) {}
+
+  void line(const Place& a, const Place& b, const char* style) {
+    const auto [ax, ay] = project(a);
+    const auto [bx, by] = project(b);
+    add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", ax, ay, bx, by, style);
+  }
+  void dot(const Place& p, double radius, const char* style) {
+    const auto [x, y] = project(p);
+    add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>\n", x, y, radius, style);
+  }
+  void polygon(const std::vector<Place>& places, const std::string& style) {
+    std::string points;
+    for (const Place& p : places) {
+      const auto [x, y] = project(p);
+      points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", x, y);
+    }
+    add("<polygon points=\"{}\" {}/>\n", points, style);
+  }
+
+  [[nodiscard]] std::string svg(const std::string& title) const {
+    constexpr double kMargin = 14;
+    const double width = high_[0] - low_[0] + 2 * kMargin, height = high_[1] - low_[1] + 2 * kMargin;
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"{2:.1f} {3:.1f} "
+        "{0:.1f} "
+        "{1:.1f}\">\n<title>{4}</title>\n{5}</svg>\n",
+        width, height, low_[0] - kMargin, low_[1] - kMargin, title, elements_);
+  }
+
+ private:
+  template <class... Values>
+  void add(fmt::format_string<Values...> form, Values&&... values) {
+    fmt::format_to(std::back_inserter(elements_), form, std::forward<Values>(values)...);
+  }
+  std::array<double, 2> project(const Place& p) {
+    const std::array<double, 2> at{scale_ * gen::dot(p, view_.right), -scale_ * gen::dot(p, view_.up)};
+    for (std::size_t i = 0; i < 2; ++i) {
+      low_[i] = std::min(low_[i], at[i]);
+      high_[i] = std::max(high_[i], at[i]);
+    }
+    return at;
+  }
+
+  const View& view_;
+  double scale_;
+  std::string elements_;
+  std::array<double, 2> low_{1e9, 1e9}, high_{-1e9, -1e9};
+};
+
+/// Facets of one tile, far triangles first; then the facets' outlines.
+void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
+  struct Triangle {
+    double depth;
+    std::vector<Place> places;
+    std::string style;
+  };
+  std::vector<Triangle> triangles;
+  for (const Facet& facet : placed.contour->facets) {
+    for (const Simplex& s : facet.simplices) {
+      Triangle t;
+      for (int i = 0; i < 3; ++i) t.places.push_back(placed.at + place_of(*placed.tile, facet, s[i]));
+      const Place normal = unit(cross(t.places[1] - t.places[0], t.places[2] - t.places[0]));
+      const double facing = dot(normal, view.eye);
+      const double light = 0.72 + 0.28 * std::abs(dot(normal, unit({0.2, -0.4, 1.0})));
+      const Colour& base = facing > 0 ? kHighSide : kLowSide;
+      const auto shade = [&](int i) { return static_cast<int>(std::lround(base[i] * light)); };
+      t.depth = dot(mean_of(t.places), view.eye);
+      const std::string colour = fmt::format("#{:02x}{:02x}{:02x}", shade(0), shade(1), shade(2));
+      t.style = fmt::format("fill=\"{0}\" fill-opacity=\"0.93\" stroke=\"{0}\" stroke-width=\"0.7\"", colour);
+      triangles.push_back(std::move(t));
+    }
+  }
+  std::stable_sort(triangles.begin(), triangles.end(),
+                   [](const Triangle& a, const Triangle& b) { return a.depth < b.depth; });
+  for (const Triangle& t : triangles) canvas.polygon(t.places, t.style);
+  for (const Facet& facet : placed.contour->facets) {
+    std::map<std::pair<std::uint8_t, std::uint8_t>, int> sides;
+    for (const Simplex& s : facet.simplices)
+      for (int i = 0; i < 3; ++i) ++sides[std::minmax(s[i], s[(i + 1) % 3])];
+    for (const auto& [ends, count] : sides)
+      canvas.line(placed.at + place_of(*placed.tile, facet, ends.first),
+                  placed.at + place_of(*placed.tile, facet, ends.second),
+                  count == 1 ? "stroke=\"#3a3a3a\" stroke-width=\"1.6\" stroke-linecap=\"round\""
+                             : "stroke=\"#ffffff\" stroke-opacity=\"0.55\" stroke-width=\"0.8\"");
+  }
+}
+
+/// In the plane: segments, with a short stroke to their high side.
+void draw_segments(const PlacedTile& placed, Canvas& canvas) {
+  for (const Facet& facet : placed.contour->facets)
+    for (const Simplex& s : facet.simplices) {
+      const Place a = placed.at + place_of(*placed.tile, facet, s[0]),
+                  b = placed.at + place_of(*placed.tile, facet, s[1]);
+      const Place along = unit(b - a), left{-along[1], along[0], 0};
+      const Place middle = 0.5 * (a + b);
+      canvas.line(middle, middle + 0.12 * left, "stroke=\"#f0a53c\" stroke-width=\"4\"");
+      canvas.line(a, b, "stroke=\"#2f62a8\" stroke-width=\"4\" stroke-linecap=\"round\"");
+    }
+}
+
+void draw_edges(const PlacedTile& placed, const Visible& visible, bool hidden, Canvas& canvas) {
+  const Tile& tile = *placed.tile;
+  for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
+    if (visible.edges[e] != hidden)
+      canvas.line(placed.at + corner_place(tile, tile.edges[e][0]), placed.at + corner_place(tile, tile.edges[e][1]),
+                  hidden ? "stroke=\"#8a8a8a\" stroke-width=\"1.1\" stroke-dasharray=\"4 4\""
+                         : "stroke=\"#555555\" stroke-width=\"1.4\" stroke-linecap=\"round\"");
+  for (std::uint32_t v = 0; v < tile.corner_count(); ++v)
+    if (visible.corners[v] != hidden)
+      canvas.dot(placed.at + corner_place(tile, v), ((placed.signature >> v) & 1u) != 0 ? 6.0 : 4.0,
+                 ((placed.signature >> v) & 1u) != 0 ? "fill=\"#1d1d1d\" stroke=\"#ffffff\" stroke-width=\"1\""
+                                                     : "fill=\"#ffffff\" stroke=\"#555555\" stroke-width=\"1.3\"");
+}
+
+}  // namespace
+
+Place place_of(const Tile& tile, const Facet& facet, std::uint8_t vertex) {
+  const auto middle = [&tile](std::uint8_t e) {
+    return 0.5 * (corner_place(tile, tile.edges[e][0]) + corner_place(tile, tile.edges[e][1]));
+  };
+  if (vertex < tile.edge_count()) return middle(vertex);
+  std::vector<Place> places;
+  for (const std::uint8_t e : facet.points) places.push_back(middle(e));
+  return mean_of(places);
+}
+
+std::string to_svg(const Picture& picture) {
+  const int dim = picture.tiles.empty() ? 0 : picture.tiles.front().tile->dim;
+  if (dim != 2 && dim != 3)
+    throw Error(ErrorCode::Internal, fmt::format("a picture of tiles of dimension {}: expected 2 or 3", dim));
+  const View view(dim);
+  Canvas canvas(view, picture.scale);
+  std::vector<PlacedTile> tiles = picture.tiles;
+  std::stable_sort(tiles.begin(), tiles.end(), [&view](const PlacedTile& a, const PlacedTile& b) {
+    return dot(a.at, view.eye) < dot(b.at, view.eye);
+  });
+  for (const PlacedTile& placed : tiles) {
+    const Visible visible(*placed.tile, view);
+    draw_edges(placed, visible, true, canvas);
+    if (dim == 3)
+      draw_facets(placed, view, canvas);
+    else
+      draw_segments(placed, canvas);
+    draw_edges(placed, visible, false, canvas);
+  }
+  for (const auto& [a, b] : picture.marks)
+    canvas.line(a, b, "stroke=\"#d4145a\" stroke-width=\"5\" stroke-linecap=\"round\"");
+  return canvas.svg(picture.title);
+}
+
+}  // namespace tegl::gen
