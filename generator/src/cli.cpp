@@ -55,6 +55,13 @@ void set_group(Options& options, std::string_view given) {
       choose("--group", given, std::array{Pair{"full", GroupKind::Full}, Pair{"rotations", GroupKind::Rotations}});
 }
 
+void set_tile(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, TileKind>;
+  options.tile = choose("--tile", given,
+                        std::array{Pair{"cube", TileKind::cube}, Pair{"simplex", TileKind::simplex},
+                                   Pair{"octahedron", TileKind::octahedron}});
+}
+
 void set_alternative(Options& options, std::string_view given) {
   using Pair = std::pair<std::string_view, AlternativeChoice>;
   options.alternative = choose("--alternative", given,
@@ -124,6 +131,7 @@ constexpr std::array kOptions{
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
     OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
     OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut, set_dim},
+    OptionSpec{"--tile", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_tile},
     OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kCertify, set_group},
     OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
     OptionSpec{"--inversion", false, std::nullopt, kCount | kCertify,
@@ -216,6 +224,28 @@ void check_dim(const Options& options, std::string_view command) {
   }
 }
 
+/// The dimensions that a tile other than the cube has, and what it goes with.
+void check_tile(const Options& options) {
+  if (options.tile == TileKind::cube) {
+    return;
+  }
+  const char* const name = tile_kind_name(options.tile);
+  const bool octahedron = options.tile == TileKind::octahedron;
+  if (octahedron ? options.dim != 3 : options.dim < 2 || options.dim > 4) {
+    refuse(fmt::format("--dim {}: --tile {} expects {}", options.dim, name, octahedron ? "3" : "2 to 4"));
+  }
+  if (options.table_by_class || options.layout == LayoutChoice::Class) {
+    refuse(fmt::format("--tile {} does not go with {}: expected a cube", name,
+                       options.table_by_class ? "--table-by-class" : "--layout class"));
+  }
+  for (const Language language : options.languages) {
+    if (language != Language::cpp && language != Language::json) {
+      refuse(
+          fmt::format("--tile {} does not go with --language {}: expected cpp or json", name, language_name(language)));
+    }
+  }
+}
+
 /// `--certify` knows groups for the table by class alone, and that table in the dimensions that have one.
 void check_table_by_class(const Options& options, const std::vector<const OptionSpec*>& seen) {
   if (options.command != Command::Certify) {
@@ -266,6 +296,7 @@ Options parse(std::span<const std::string_view> arguments) {
   check_dim(options, command.name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
   check_table_by_class(options, seen);
+  check_tile(options);
   return options;
 }
 
@@ -291,6 +322,10 @@ commands (one of)
   --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
   --help, -h       this text
   --version        version of the program and of the tables' layout
+
+options of --count, --classes, --certify, --out
+  --tile cube|simplex|octahedron    what the tile is (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
+                                    4, the octahedron has N = 3; their tables are written as C++ and JSON
 
 options of --count
   --group full|rotations            all symmetries (default) or those of determinant +1
@@ -330,6 +365,7 @@ examples
   gen --dim 3 --count --group rotations --inversion  its famous 15
   gen --dim 8 --count --json
   gen --dim 3 --classes
+  gen --dim 3 --tile octahedron --classes
   gen --dim 4 --certify
   gen --dim 4 --out tables
   gen --dim 3 --certify --group rotations --inversion --table-by-class

@@ -14,6 +14,7 @@
 
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/table_set.hpp"
+#include "tegl/gen/tile_symmetry.hpp"
 #include "tegl/gen/transversal.hpp"
 
 namespace tegl::gen {
@@ -74,9 +75,9 @@ std::string figures_json(const CertifiedFigures& f) {
       static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
 }
 
-void print_figures(int dim, const CertifiedFigures& f) {
-  fmt::print("{}-tile, {} alternative, {} triangulation\n", dim, alternative_name(f.alternative),
-             triangulation_name(f.triangulation));
+void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
+  fmt::print("{}-{}, {} alternative, {} triangulation\n", dim, tile == TileKind::cube ? "tile" : tile_kind_name(tile),
+             alternative_name(f.alternative), triangulation_name(f.triangulation));
   fmt::print("  certified    {} of {} signatures\n", f.signatures, f.signatures);
   fmt::print("  facets       {} (at most {} in a tile): {} around spheres, {} around others", f.facets, f.max_facets,
              f.spheres, f.others);
@@ -117,15 +118,16 @@ void write_files(const std::filesystem::path& folder, const std::vector<EmittedF
 }  // namespace
 
 int run_classes(const Options& options) {
-  const CubeLattice lattice(options.dim);
+  const Lattice lattice(options.tile, options.dim);
   const Alternative alternative = options.alternative == AlternativeChoice::Low ? Alternative::low : Alternative::high;
   const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
-  const auto elements = group(options.dim, GroupKind::Full, false);
-  const Transversal classes = transversal(options.dim, elements);
-  require_burnside_count(classes, options.dim, GroupKind::Full, false);
+  const auto elements = symmetries(lattice.tile(options.dim), GroupKind::Full, false);
+  const Transversal classes = transversal(lattice.tile(options.dim), elements);
+  require_burnside_count(classes, elements);
   if (options.json)
-    fmt::print("{{\"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
-               options.dim, alternative_name(alternative), elements.size());
+    fmt::print(
+        "{{\"tile\": \"{}\", \"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
+        tile_kind_name(options.tile), options.dim, alternative_name(alternative), elements.size());
   else
     fmt::print("signature  orbit stabiliser components  Euler      ambiguous  facets\n");
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
@@ -169,21 +171,24 @@ static int certify_by_class(const Options& options) {
 
 int run_certify(const Options& options) {
   if (options.table_by_class) return certify_by_class(options);
-  const auto figures = certify_all(options.dim);
+  const auto figures = certify_all(options.dim, options.tile);
   if (!options.json) {
-    for (const CertifiedFigures& f : figures) print_figures(options.dim, f);
+    for (const CertifiedFigures& f : figures) print_figures(options.tile, options.dim, f);
     return 0;
   }
   std::vector<std::string> parts;
   for (const CertifiedFigures& f : figures) parts.push_back(figures_json(f));
-  fmt::print("{{\"dim\": {}, \"certified\": [\n  {}\n]}}\n", options.dim, fmt::join(parts, ",\n  "));
+  fmt::print("{{\"tile\": \"{}\", \"dim\": {}, \"certified\": [\n  {}\n]}}\n", tile_kind_name(options.tile),
+             options.dim, fmt::join(parts, ",\n  "));
   return 0;
 }
 
 int run_out(const Options& options) {
   TableRequest request;
+  request.tile = options.tile;
   request.dim = options.dim;
   request.command = fmt::format("gen --dim {}", options.dim);
+  if (options.tile != TileKind::cube) request.command += fmt::format(" --tile {}", tile_kind_name(options.tile));
   if (options.triangulation != TriangulationChoice::All)
     request.triangulations = {options.triangulation == TriangulationChoice::Compact ? Triangulation::compact
                                                                                     : Triangulation::barycentric};
@@ -200,7 +205,7 @@ int run_out(const Options& options) {
     request.command += fmt::format(" --layout {}", layout_name(layout));
   }
   const TableSet set = make_table_set(request);
-  for (const CertifiedFigures& f : set.figures) print_figures(options.dim, f);
+  for (const CertifiedFigures& f : set.figures) print_figures(options.tile, options.dim, f);
   std::vector<EmittedFile> files;
   for (const Language language : options.languages)
     for (EmittedFile& file : emit(set, language)) {

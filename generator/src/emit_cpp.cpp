@@ -36,11 +36,12 @@ void bytes(std::string& text, const char* name, const std::string& comment, cons
 
 /// The banner and what every C++ file of tables begins with.
 std::string opening(const TableSet& set, const std::string& what) {
+  const char* const header = set.tile == TileKind::cube ? "tegl/generated/tables.hpp" : "tegl/table_contract.hpp";
   return banner(set, Language::cpp, what) +
          fmt::format(
-             "\n#include \"tegl/generated/tables.hpp\"\n\nnamespace tegl::tables {{\n\n"
+             "\n#include \"{}\"\n\nnamespace tegl::tables {{\n\n"
              "static_assert(kContractVersion == {}u, \"tables of another contract version\");\n\nnamespace {{\n",
-             tables::kContractVersion);
+             header, tables::kContractVersion);
 }
 
 void lists(std::string& text, const std::vector<tables::List>& values) {
@@ -57,8 +58,13 @@ void lists(std::string& text, const std::vector<tables::List>& values) {
   text += "};\n";
 }
 
+std::string variable_name(const TileTables& table) {
+  return fmt::format("k{}{}", upper_camel(tile_name(table.tile, table.dim)),
+                     upper_camel(triangulation_name(table.triangulation)));
+}
+
 EmittedFile tile_file(const TableSet& set, const TileTables& table) {
-  const auto name = fmt::format("kTile{}{}", table.dim, upper_camel(triangulation_name(table.triangulation)));
+  const auto name = variable_name(table);
   std::string text =
       opening(set, fmt::format("Contours of the {}-tile, low-connected alternative, {} triangulation, {} layout.",
                                table.dim, triangulation_name(table.triangulation), layout_name(table.layout)));
@@ -74,17 +80,19 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
   array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
   const auto or_null = [](const auto& values, const char* n) { return values.empty() ? "nullptr" : n; };
   fmt::format_to(Out(text),
-                 "\n}}  // namespace\n\nconst TileTable {} = {{\n    {}u, {}u, {}u, {}u, {}u, {}u, {}u, {}u,\n    "
+                 "\n}}  // namespace\n\n{}const TileTable {} = {{\n    {}u, {}u, {}u, {}u, {}u, {}u, {}u, {}u,\n    "
                  "kListOf, {}, {}, "
                  "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n\n}}  // namespace "
                  "tegl::tables\n",
-                 name, tables::kContractVersion, table.dim, table.lists.size(),
+                 set.tile == TileKind::cube ? "" : fmt::format("extern const TileTable {};\n", name), name,
+                 tables::kContractVersion, table.dim, table.lists.size(),
                  table.simplices.size() / static_cast<std::size_t>(table.dim), table.reverses.size(),
                  table.permutation_stride, table.max_simplices, table.max_tile_vertices,
                  or_null(table.element_of, "kElementOf"), or_null(table.slot_swaps, "kSlotSwaps"),
                  or_null(table.permutations, "kPermutations"), or_null(table.reverses, "kReverses"),
                  or_null(table.side_masks, "kSideMasks"));
-  return {fmt::format("tile{}_{}.cpp", table.dim, triangulation_name(table.triangulation)), std::move(text)};
+  return {fmt::format("{}_{}.cpp", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
+          std::move(text)};
 }
 
 void region_table(std::string& text, const RegionTables& table) {
@@ -128,7 +136,7 @@ EmittedFile region_file(const TableSet& set) {
 std::vector<EmittedFile> emit_cpp(const TableSet& set) {
   std::vector<EmittedFile> files;
   for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
-  files.push_back(region_file(set));
+  if (!set.regions.empty()) files.push_back(region_file(set));
   return files;
 }
 
@@ -154,11 +162,10 @@ EmittedFile emit_manifest(const TableSet& set) {
   separator = "\n";
   for (const TileTables& t : set.tiles) {
     fmt::format_to(Out(text),
-                   "{}    {{\"name\": \"kTile{}{}\", \"layout\": \"{}\", \"lists\": {}, \"stored_simplices\": {}, "
+                   "{}    {{\"name\": \"{}\", \"layout\": \"{}\", \"lists\": {}, \"stored_simplices\": {}, "
                    "\"max_tile_vertices\": {}, \"fnv1a\": \"{:016x}\"}}",
-                   separator, t.dim, upper_camel(triangulation_name(t.triangulation)), layout_name(t.layout),
-                   t.lists.size(), t.simplices.size() / static_cast<std::size_t>(t.dim), t.max_tile_vertices,
-                   digest(t));
+                   separator, variable_name(t), layout_name(t.layout), t.lists.size(),
+                   t.simplices.size() / static_cast<std::size_t>(t.dim), t.max_tile_vertices, digest(t));
     separator = ",\n";
   }
   for (const RegionTables& t : set.regions)
@@ -167,7 +174,9 @@ EmittedFile emit_manifest(const TableSet& set) {
                    upper_camel(alternative_name(t.alternative)),
                    t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1), digest(t));
   text += "\n  ]\n}\n";
-  return {fmt::format("manifest{}.json", set.dim), std::move(text)};
+  return {set.tile == TileKind::cube ? fmt::format("manifest{}.json", set.dim)
+                                     : fmt::format("manifest_{}.json", tile_name(set.tile, set.dim)),
+          std::move(text)};
 }
 
 }  // namespace tegl::gen

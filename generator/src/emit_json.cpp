@@ -56,16 +56,26 @@ std::string opening(const TableSet& set, const char* kind, int dim) {
   return text;
 }
 
+/// Corners, edges and faces, so that the numbering need not be known from elsewhere.
+void shape(std::string& text, const TileTables& table) {
+  std::vector<std::string> corners, edges, faces;
+  for (const auto& x : table.corners)
+    corners.push_back(fmt::format("[{}]", fmt::join(x.begin(), x.begin() + table.dim, ",")));
+  for (const auto& ends : table.edges) edges.push_back(fmt::format("[{}]", fmt::join(ends, ",")));
+  for (const auto& face : table.faces) faces.push_back(fmt::format("[{}]", fmt::join(face, ",")));
+  fmt::format_to(Out(text), ",\n  \"tile\": \"{}\",\n  \"corners\": [{}],\n  \"edges\": [{}],\n  \"faces\": [{}]",
+                 tile_kind_name(table.tile), fmt::join(corners, ", "), fmt::join(edges, ", "), fmt::join(faces, ", "));
+}
+
 EmittedFile tile_file(const TableSet& set, const TileTables& table) {
   std::string text = opening(set, "tile", table.dim);
+  shape(text, table);
   fmt::format_to(Out(text),
                  ",\n  \"triangulation\": \"{}\",\n  \"alternative\": \"low\",\n  \"layout\": \"{}\",\n"
                  "  \"fnv1a\": \"{:016x}\",\n  \"edge_count\": {},\n  \"first_tile_vertex\": {},\n"
                  "  \"permutation_stride\": {},\n  \"max_simplices\": {},\n  \"max_tile_vertices\": {}",
-                 triangulation_name(table.triangulation), layout_name(table.layout), digest(table),
-                 tables::edge_count(static_cast<std::uint32_t>(table.dim)),
-                 tables::first_tile_vertex(static_cast<std::uint32_t>(table.dim)), table.permutation_stride,
-                 table.max_simplices, table.max_tile_vertices);
+                 triangulation_name(table.triangulation), layout_name(table.layout), digest(table), table.edges.size(),
+                 table.first_tile_vertex, table.permutation_stride, table.max_simplices, table.max_tile_vertices);
   array(text, "list_of", table.list_of);
   array(text, "element_of", table.element_of);
   array(text, "slot_swaps", table.slot_swaps);
@@ -79,7 +89,8 @@ EmittedFile tile_file(const TableSet& set, const TileTables& table) {
   array(text, "simplices", table.simplices);
   array(text, "side_masks", table.side_masks);
   text += "\n}\n";
-  return {fmt::format("tile{}_{}.json", table.dim, triangulation_name(table.triangulation)), std::move(text)};
+  return {fmt::format("{}_{}.json", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
+          std::move(text)};
 }
 
 EmittedFile region_file(const TableSet& set, const RegionTables& table) {

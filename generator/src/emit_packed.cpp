@@ -242,6 +242,9 @@ void data(Writer& out, const Dialect& dialect, const TileTables& table, const Pa
 
 std::vector<EmittedFile> emit_packed(const TableSet& set, Language language) {
   const Dialect& dialect = dialect_of(language);
+  if (set.tile != TileKind::cube)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("tables of the {} in {}: expected cpp or json",
+                                                        tile_kind_name(set.tile), language_name(language)));
   std::vector<EmittedFile> files;
   for (const TileTables& table : set.tiles) {
     const PackedTable packed = pack(table);

@@ -15,10 +15,15 @@ namespace tegl::gen {
 
 using Out = std::back_insert_iterator<std::string>;
 
-inline std::string upper_camel(const char* name) {
+inline std::string upper_camel(const std::string& name) {
   std::string result(name);
   result[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(result[0])));
   return result;
+}
+
+/// What a tile's tables are called: "tile3", "simplex3", "octahedron3".
+inline std::string tile_name(TileKind kind, int dim) {
+  return fmt::format("{}{}", kind == TileKind::cube ? "tile" : tile_kind_name(kind), dim);
 }
 
 /// The generated-file banner in `//` comments: command, licence, `what`, and the certificate.

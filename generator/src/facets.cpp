@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "determinant.hpp"
 #include "filling.hpp"
 #include "hull.hpp"
 #include "tegl/gen/regions.hpp"
@@ -53,29 +54,9 @@ TileContour contour_of_edge(Signature signature) {
   return result;
 }
 
-double determinant(std::array<std::array<double, 4>, 4> m, int n) {
-  double det = 1;
-  for (int c = 0; c < n; ++c) {
-    int pivot = c;
-    for (int r = c + 1; r < n; ++r)
-      if (std::abs(m[r][c]) > std::abs(m[pivot][c])) pivot = r;
-    if (m[pivot][c] == 0) return 0;
-    if (pivot != c) {
-      std::swap(m[pivot], m[c]);
-      det = -det;
-    }
-    det *= m[c][c];
-    for (int r = c + 1; r < n; ++r) {
-      const double factor = m[r][c] / m[c][c];
-      for (int k = c; k < n; ++k) m[r][k] -= factor * m[c][k];
-    }
-  }
-  return det;
-}
-
 }  // namespace
 
-ContourBuilder::ContourBuilder(const CubeLattice& lattice, int n, Alternative alternative, Triangulation triangulation)
+ContourBuilder::ContourBuilder(const Lattice& lattice, int n, Alternative alternative, Triangulation triangulation)
     : tile_(&lattice.tile(n)), alternative_(alternative), triangulation_(triangulation) {
   if (n < 1 || n > 4) throw std::invalid_argument("contour builder: dimension must be 1 to 4");
   if (n == 1) return;
@@ -90,7 +71,7 @@ ContourBuilder::ContourBuilder(const CubeLattice& lattice, int n, Alternative al
         faces_of_[tile_->edge_count() + f * tables::kFaceSlots + j] |= 1u << f;
   }
   if (n >= 3 && triangulation == Triangulation::compact) hulls_ = std::make_unique<HullContours>(*tile_);
-  if (n == 4)
+  if (n == 4 && tile_->kind == TileKind::cube)  // a 4-simplex has no component that is no sphere
     side_regions_ = std::make_unique<RegionBuilder>(lattice, 3, Alternative::low, triangulation, RegionStyle::cone);
   find_orientation();
 }
@@ -98,7 +79,8 @@ ContourBuilder::ContourBuilder(const CubeLattice& lattice, int n, Alternative al
 ContourBuilder::~ContourBuilder() = default;
 
 std::uint32_t ContourBuilder::own_base() const {
-  return tables::first_tile_vertex(static_cast<std::uint32_t>(tile_->dim));
+  const std::uint32_t slots = tile_->dim == 4 ? tables::kFaceSlots : 0;
+  return tile_->edge_count() + slots * static_cast<std::uint32_t>(tile_->faces.size());
 }
 
 const TileContour& ContourBuilder::face_contour(std::uint32_t f, Signature signature) const {
@@ -114,13 +96,20 @@ std::uint8_t ContourBuilder::lift(std::uint32_t f, std::uint8_t vertex) const {
   return static_cast<std::uint8_t>(tile_->edge_count() + f * tables::kFaceSlots + slot);
 }
 
-/// The contour around a single high corner is one simplex; its orientation fixes the sign for all.
+/// The contour around a single high corner is convex, so that one of its simplices fixes the sign for all.
 void ContourBuilder::find_orientation() {
   const TileContour one = build(1);
-  const Simplex& simplex = one.facets.at(0).simplices.at(0);
+  const Facet& facet = one.facets.at(0);
+  const Simplex& simplex = facet.simplices.at(0);
   const int n = tile_->dim;
-  const auto midpoint = [&](std::uint8_t e, int i) {
+  const auto on_edge = [&](std::uint8_t e, int i) {
     return 0.5 * (tile_->corners[tile_->edges[e][0]][i] + tile_->corners[tile_->edges[e][1]][i]);
+  };
+  const auto midpoint = [&](std::uint8_t v, int i) {  // a barycentre: about the middle of the facet
+    if (v < tile_->edge_count()) return on_edge(v, i);
+    double sum = 0;
+    for (const std::uint8_t e : facet.points) sum += on_edge(e, i);
+    return sum / static_cast<double>(facet.points.size());
   };
   std::array<std::array<double, 4>, 4> m{};
   for (int i = 0; i < n; ++i) {

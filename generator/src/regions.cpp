@@ -12,7 +12,7 @@
 
 namespace tegl::gen {
 
-RegionBuilder::RegionBuilder(const CubeLattice& lattice, int k, Alternative alternative, Triangulation triangulation,
+RegionBuilder::RegionBuilder(const Lattice& lattice, int k, Alternative alternative, Triangulation triangulation,
                              RegionStyle style)
     : tile_(&lattice.tile(k)),
       style_(style),

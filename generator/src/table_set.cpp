@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tegl/gen/table_set.hpp"
 
+#include <bit>
+#include <cmath>
 #include <map>
 #include <numeric>
 
 #include "tegl/gen/counting.hpp"
 #include "tegl/gen/error.hpp"
-#include "tegl/gen/symmetry.hpp"
+#include "tegl/gen/tile_symmetry.hpp"
 #include "tegl/gen/transversal.hpp"
 
 namespace tegl::gen {
@@ -38,26 +40,29 @@ std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourB
 
 }  // namespace
 
-Layout preferred_layout(int dim, Triangulation triangulation) {
-  return dim == 4 && triangulation == Triangulation::barycentric ? Layout::by_class : Layout::flat;
+Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation) {
+  return tile == TileKind::cube && dim == 4 && triangulation == Triangulation::barycentric ? Layout::by_class
+                                                                                           : Layout::flat;
 }
 
 TableSet make_table_set(const TableRequest& request) {
-  const CubeLattice lattice(request.dim);
+  const Lattice lattice(request.tile, request.dim);
   TableSet set;
+  set.tile = request.tile;
   set.dim = request.dim;
   set.command = request.command;
-  const auto elements = group(request.dim, GroupKind::Full, false);
+  const auto elements = symmetries(lattice.tile(request.dim), GroupKind::Full, false);
   set.group_order = elements.size();
-  const Transversal classes = transversal(request.dim, elements);
-  require_burnside_count(classes, request.dim, GroupKind::Full, false);
+  const Transversal classes = transversal(lattice.tile(request.dim), elements);
+  require_burnside_count(classes, elements);
   set.orbits = classes.representatives.size();
   for (const Triangulation t : request.triangulations) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
     const auto contours = certified_low(low, high, false, set.figures);
-    set.tiles.push_back(
-        make_tile_tables(low, contours, request.layout ? request.layout(t) : preferred_layout(request.dim, t)));
+    set.tiles.push_back(make_tile_tables(
+        low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t)));
+    if (request.tile != TileKind::cube) continue;  // regions close the contours of images, whose tiles are cubes
     for (const Alternative a : {Alternative::low, Alternative::high}) {
       const RegionStyle style = t == Triangulation::compact ? RegionStyle::fan : RegionStyle::cone;
       set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, style), t, a));
@@ -66,20 +71,27 @@ TableSet make_table_set(const TableRequest& request) {
   return set;
 }
 
-std::vector<CertifiedFigures> certify_all(int dim) {
-  const CubeLattice lattice(dim);
+std::vector<CertifiedFigures> certify_all(int dim, TileKind tile) {
+  const Lattice lattice(tile, dim);
   std::vector<CertifiedFigures> figures;
   for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
     certified_low(ContourBuilder(lattice, dim, Alternative::low, t), ContourBuilder(lattice, dim, Alternative::high, t),
-                  true, figures);
+                  tile == TileKind::cube, figures);
   return figures;
 }
 
-std::vector<std::uint32_t> ambiguous_faces(const CubeLattice& lattice, int dim, Signature signature) {
+std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature) {
   const auto is_diagonal = [](const Tile& tile, Signature s) {
-    for (std::uint32_t v = 0; v < tile.corner_count() / 2; ++v)
-      if (s == (1u << v | 1u << (tile.corner_count() - 1 - v))) return true;
-    return false;
+    if (std::popcount(s) != 2) return false;  // the two ends, and the tile's centre between them
+    for (std::size_t i = 0; i < 4; ++i) {
+      double ends = 0, all = 0;
+      for (std::uint32_t v = 0; v < tile.corner_count(); ++v) {
+        all += tile.corners[v][i];
+        if (((s >> v) & 1u) != 0) ends += tile.corners[v][i];
+      }
+      if (std::abs(ends * tile.corner_count() - 2 * all) > 1e-9) return false;
+    }
+    return true;
   };
   struct Face {
     std::vector<std::uint8_t> corners;  // as the whole tile numbers them

@@ -14,6 +14,7 @@
 #include "tegl/gen/certificate.hpp"
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/symmetry.hpp"
+#include "tegl/gen/tile_symmetry.hpp"
 #include "tegl/gen/transversal.hpp"
 
 namespace tegl::gen {
@@ -285,7 +286,7 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder, Certi
   figures.alternative = builder.alternative();
   figures.triangulation = builder.triangulation();
   figures.signatures = count;
-  const Transversal classes = transversal(builder.dim(), group(builder.dim(), GroupKind::Full, false));
+  const Transversal classes = transversal(builder.tile(), symmetries(builder.tile(), GroupKind::Full, false));
   const int sphere = builder.dim() == 3 ? 0 : 2;
   for (std::uint32_t s = 0; s < count; ++s) {
     std::uint32_t simplices = 0;
@@ -325,10 +326,19 @@ void check_inversion(int dim, const std::vector<TileContour>& low, const std::ve
 
 TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout) {
   TileTables table;
+  const Tile& tile = builder.tile();
+  table.tile = tile.kind;
+  table.corners = tile.corners;
+  table.edges = tile.edges;
+  for (const SubTile& face : tile.faces) table.faces.push_back(face.corner);
+  table.first_tile_vertex = builder.own_base();
   table.dim = builder.dim();
   table.triangulation = builder.triangulation();
   table.layout = layout;
   for (const TileContour& c : contours) table.total_simplices += all_simplices(c).size();
+  if (layout == Layout::by_class && tile.kind != TileKind::cube)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("class layout for a table of the {}: expected a cube", tile_kind_name(tile.kind)));
   if (layout == Layout::by_class) {
     pack_by_class(builder, contours, table);
   } else {

@@ -9,6 +9,7 @@
 
 #include <limits>
 
+#include "orbits.hpp"
 #include "tegl/gen/counting.hpp"
 #include "tegl/gen/error.hpp"
 
@@ -19,17 +20,8 @@ constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
-Transversal transversal(int n, std::span<const Element> group) {
-  if (n < 1 || n > kMaxEnumeratedDim) {
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("enumerating signatures in dimension {}: expected 1 to {}", n, kMaxEnumeratedDim));
-  }
-  std::vector<std::vector<std::uint32_t>> permutations;
-  permutations.reserve(group.size());
-  for (const Element& g : group) {
-    permutations.push_back(corner_permutation(g, n));
-  }
-  const std::size_t signatures = std::size_t{1} << (std::size_t{1} << n);
+Transversal orbits(std::size_t corners, std::span<const CornerMap> group) {
+  const std::size_t signatures = std::size_t{1} << corners;
   Transversal result;
   result.class_of.assign(signatures, kUnreached);
   result.element_of.assign(signatures, kUnreached);
@@ -40,7 +32,9 @@ Transversal transversal(int n, std::span<const Element> group) {
     const auto index = static_cast<std::uint32_t>(result.representatives.size());
     std::uint32_t length = 0;
     for (std::uint32_t g = 0; g < group.size(); ++g) {
-      const std::uint32_t s = act(group[g], permutations[g], representative);
+      Element exchange;
+      exchange.inverts = group[g].inverts;
+      const std::uint32_t s = act(exchange, group[g].corner, representative);
       if (result.class_of[s] == kUnreached) {
         result.class_of[s] = index;
         result.element_of[s] = g;
@@ -61,6 +55,19 @@ Transversal transversal(int n, std::span<const Element> group) {
     result.orbit_length.push_back(length);
   }
   return result;
+}
+
+Transversal transversal(int n, std::span<const Element> group) {
+  if (n < 1 || n > kMaxEnumeratedDim) {
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("enumerating signatures in dimension {}: expected 1 to {}", n, kMaxEnumeratedDim));
+  }
+  std::vector<CornerMap> maps;
+  maps.reserve(group.size());
+  for (const Element& g : group) {
+    maps.push_back({corner_permutation(g, n), g.inverts});
+  }
+  return orbits(std::size_t{1} << n, maps);
 }
 
 void require_burnside_count(const Transversal& classes, int n, GroupKind kind, bool inversion) {

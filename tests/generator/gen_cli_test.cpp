@@ -86,7 +86,8 @@ TEST(GenCli, CountsTheClassesOfEveryGroupAsJson) {
         expected.inversion ? gen({"--dim", expected.dim, "--count", "--group", expected.group, "--inversion", "--json"})
                            : gen({"--dim", expected.dim, "--count", "--group", expected.group, "--json"});
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_EQ(json::parse(run.out), (json{{"dim", std::stoi(expected.dim)},
+    EXPECT_EQ(json::parse(run.out), (json{{"tile", "cube"},
+                                          {"dim", std::stoi(expected.dim)},
                                           {"group", expected.group},
                                           {"inversion", expected.inversion},
                                           {"order", expected.order},
@@ -221,6 +222,44 @@ TEST(GenCli, TheTableByClassIsForCertifyInTwoAndThreeDimensions) {
   expect_refused({"--dim", "4", "--certify", "--table-by-class"}, {"--dim 4", "expects 2 or 3"});
   expect_refused({"--dim", "3", "--count", "--table-by-class"}, {"--table-by-class does not go with --count"});
   expect_refused({"--dim", "3", "--certify", "--inversion"}, {"--inversion does not go with --certify without"});
+}
+
+TEST(GenCli, OtherTilesAreCountedAndCertified) {
+  struct Expected {
+    const char* tile;
+    const char* dim;
+    int order, orbits, with_inversion, signatures;
+  };
+  for (const Expected& expected :
+       {Expected{"simplex", "2", 6, 4, 2, 8}, Expected{"simplex", "3", 24, 5, 3, 16},
+        Expected{"simplex", "4", 120, 6, 3, 32}, Expected{"octahedron", "3", 48, 10, 6, 64}}) {
+    const Outcome count = gen({"--tile", expected.tile, "--dim", expected.dim, "--count", "--json"});
+    EXPECT_EQ(json::parse(count.out), (json{{"tile", expected.tile},
+                                            {"dim", std::stoi(expected.dim)},
+                                            {"group", "full"},
+                                            {"inversion", false},
+                                            {"order", expected.order},
+                                            {"orbits", expected.orbits}}));
+    const Outcome inverted = gen({"--tile", expected.tile, "--dim", expected.dim, "--count", "--inversion", "--json"});
+    EXPECT_EQ(json::parse(inverted.out).at("orbits"), expected.with_inversion);
+    const Outcome classes = gen({"--tile", expected.tile, "--dim", expected.dim, "--classes", "--json"});
+    EXPECT_EQ(json::parse(classes.out).at("classes").size(), static_cast<std::size_t>(expected.orbits));
+    const Outcome certify = gen({"--tile", expected.tile, "--dim", expected.dim, "--certify", "--json"});
+    EXPECT_EQ(certify.status, 0) << certify.err;
+    const json certified = json::parse(certify.out).at("certified");
+    EXPECT_EQ(certified.size(), 4u);
+    for (const json& figures : certified) EXPECT_EQ(figures.at("passed"), expected.signatures);
+  }
+}
+
+TEST(GenCli, RefusesTilesAndWhatTheyDoNotHave) {
+  expect_refused({"--dim", "3", "--count", "--tile", "prism"}, {"--tile prism", "cube or simplex or octahedron"});
+  expect_refused({"--dim", "5", "--count", "--tile", "simplex"}, {"--dim 5", "2 to 4"});
+  expect_refused({"--dim", "4", "--certify", "--tile", "octahedron"}, {"--dim 4", "expects 3"});
+  expect_refused({"--dim", "3", "--out", "t", "--tile", "simplex", "--language", "json,glsl"}, {"glsl", "cpp or json"});
+  expect_refused({"--dim", "3", "--out", "t", "--tile", "simplex", "--layout", "class"}, {"--layout class"});
+  expect_refused({"--dim", "3", "--certify", "--tile", "simplex", "--table-by-class"}, {"--table-by-class"});
+  expect_refused({"--dim", "3", "--transversal", "--tile", "simplex"}, {"--tile does not go with --transversal"});
 }
 
 TEST(GenCli, RefusesRepeatedOptions) {

@@ -12,6 +12,7 @@ namespace tegl::gen {
 
 /// Everything that one run of `gen --dim N --out DIR` writes.
 struct TableSet {
+  TileKind tile = TileKind::cube;
   int dim = 0;
   std::string command;  ///< the command line, for the banner
   std::uint64_t group_order = 0;
@@ -46,6 +47,7 @@ std::vector<EmittedFile> emit_json(const TableSet& set);
 
 /// Tile tables for GPUs (packed_table.hpp) with the functions that look them up. `language` is glsl, wgsl or cuda. In
 /// shaders only 2D and 3D tables are text, as constants; the words of 4D ones are a file (`.u32`) for a storage buffer.
+/// Errors: InvalidArgument for tiles other than cubes.
 std::vector<EmittedFile> emit_packed(const TableSet& set, Language language);
 
 const char* triangulation_name(Triangulation t) noexcept;  ///< "barycentric", "compact"

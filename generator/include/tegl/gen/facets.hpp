@@ -52,11 +52,11 @@ struct TileContour {
 class HullContours;
 class RegionBuilder;
 
-/// Builds the contour of any signature of the n-cube, n = 1 ... 4, by one rule.
+/// Builds the contour of any signature of a lattice's n-tile, n = 1 ... 4, by one rule.
 /// The result depends on the signature alone, and in each face on the face's own signature alone.
 class ContourBuilder {
  public:
-  ContourBuilder(const CubeLattice& lattice, int n, Alternative alternative, Triangulation triangulation);
+  ContourBuilder(const Lattice& lattice, int n, Alternative alternative, Triangulation triangulation);
   ~ContourBuilder();
   ContourBuilder(const ContourBuilder&) = delete;
   ContourBuilder& operator=(const ContourBuilder&) = delete;

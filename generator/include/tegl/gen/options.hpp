@@ -41,6 +41,7 @@ enum class TriangulationChoice { Barycentric, Compact, All };
 struct Options {
   Command command = Command::Help;
   int dim = 0;                                                   ///< --dim; 0 for --help and --version
+  TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal
   GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class
   bool inversion = false;                                        ///< --inversion; --count, table_by_class
   bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3

@@ -26,8 +26,7 @@ struct TileRegions {
 /// Builds the regions of any signature of the k-cube, k = 1, 2, 3.
 class RegionBuilder {
  public:
-  RegionBuilder(const CubeLattice& lattice, int k, Alternative alternative, Triangulation triangulation,
-                RegionStyle style);
+  RegionBuilder(const Lattice& lattice, int k, Alternative alternative, Triangulation triangulation, RegionStyle style);
   ~RegionBuilder();
   RegionBuilder(const RegionBuilder&) = delete;
   RegionBuilder& operator=(const RegionBuilder&) = delete;

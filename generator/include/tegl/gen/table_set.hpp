@@ -14,10 +14,11 @@ namespace tegl::gen {
 
 /// The layout that measured faster for a dimension and triangulation: by class where the triangulation is
 /// equivariant and flat tables would not fit the cache (4D barycentric), else flat.
-Layout preferred_layout(int dim, Triangulation triangulation);
+Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation);
 
 /// What to make.
 struct TableRequest {
+  TileKind tile = TileKind::cube;
   int dim = 0;
   std::vector<Triangulation> triangulations{Triangulation::barycentric, Triangulation::compact};
   std::function<Layout(Triangulation)> layout;  ///< empty: preferred_layout
@@ -27,12 +28,13 @@ struct TableRequest {
 /// Builds and certifies; throws Error{CertificateFailed} or Error{Internal} before anything could be written.
 TableSet make_table_set(const TableRequest& request);
 
-/// The certificate of every signature of both alternatives in both triangulations, and of every pair of neighbours.
+/// The certificate of every signature of both alternatives in both triangulations, and, for cubes, of every pair of
+/// neighbours.
 /// Throws Error{CertificateFailed} for a tile that fails, and for a pair that does not match.
-std::vector<CertifiedFigures> certify_all(int dim);
+std::vector<CertifiedFigures> certify_all(int dim, TileKind tile = TileKind::cube);
 
 /// How many of a tile's m-faces are m-ambiguous, by m (index 2 ... dim): their high corners, or their low ones, are
 /// the two ends of one m-diagonal (thesis, definition 7.3.7).
-std::vector<std::uint32_t> ambiguous_faces(const CubeLattice& lattice, int dim, Signature signature);
+std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature);
 
 }  // namespace tegl::gen

@@ -4,6 +4,7 @@
 // certified, and checked against each other before anything is written.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,6 +20,11 @@ enum class Layout { by_class, flat };
 
 /// The owning form of tables::TileTable; see there for every member's meaning.
 struct TileTables {
+  TileKind tile = TileKind::cube;
+  std::vector<std::array<double, 4>> corners;      ///< coordinates; the first `dim` count
+  std::vector<std::array<std::uint8_t, 2>> edges;  ///< corners at the lower and upper end
+  std::vector<std::vector<std::uint8_t>> faces;    ///< corners of each face
+  std::uint32_t first_tile_vertex = 0;
   int dim = 0;
   Triangulation triangulation = Triangulation::barycentric;
   Layout layout = Layout::flat;
