@@ -58,15 +58,20 @@ bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
 }
 
 /// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
-/// the next, with little memory beside input and output.
+/// the next, and needs little memory beside the image.
 template <int N>
-std::size_t batch_size(const RowShape<N>& shape, std::size_t threads) {
-  constexpr std::size_t kShare = 32;  // of the image
+std::size_t batch_size(const RowShape<N>& shape, std::size_t sample_bytes, std::size_t threads) {
   constexpr std::size_t kSamplesPerThread = std::size_t{1} << 18;
+  constexpr double kShare = 0.04;  // of the image
   const std::size_t layer = shape.rows() * shape.size(0);
-  const std::size_t slabs = shape.layers() - 1;
-  const std::size_t most = std::max(shape.layers() / kShare, kSamplesPerThread / 8 / layer);
-  return std::clamp<std::size_t>(std::min(threads * kSamplesPerThread / layer, most), 1, slabs);
+  const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
+  const std::size_t row_bytes = 2 * shape.size(0) + 4 * (8 + 3 * N) * shape.pitch() + 64;  // signatures, bits, ranks
+  // Two layers more than slabs are in memory. Where little is gained from it, a small image may take more.
+  const double most = std::max(kShare * image / static_cast<double>(shape.rows() * row_bytes) - 2.0,
+                               static_cast<double>(kSamplesPerThread / 16 / layer));
+  const std::size_t slabs =
+      std::min(threads * kSamplesPerThread / layer, static_cast<std::size_t>(std::max(1.0, most)));
+  return std::clamp<std::size_t>(slabs, 1, shape.layers() - 1);
 }
 
 template <int N, class Real>
@@ -89,7 +94,8 @@ class Extraction {
         keeps_places_(tables.tile->max_tile_vertices > 0 || counter_.has_cubes() || options.close),
         pinches_(shape_, counter_),
         workers_(options.threads, shape_.size(0), shape_.pitch()),
-        batch_(plan.batch == 0 ? batch_size(shape_, workers_.count()) : std::min(plan.batch, shape_.layers() - 1)),
+        batch_(plan.batch == 0 ? batch_size(shape_, source.sample_bytes(), workers_.count())
+                               : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
     if (options.close)
@@ -236,6 +242,7 @@ class Extraction {
   }
 
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
+    if (room.vertices == nullptr && room.simplices == nullptr) return;
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex)};
     const auto local = [&](LocalRun& run) { return keeps_places_ ? &run : nullptr; };

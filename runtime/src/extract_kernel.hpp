@@ -57,7 +57,7 @@ class ContourOutput {
 
   /// The most that can come.
   virtual void expect(double /*vertices*/, double /*simplices*/) {}
-  /// Room for a part, which is then written.
+  /// Room for a part, which is then written; two null pointers: it is not.
   virtual Room open(const ContourPart& part) = 0;
   /// A part is written. `pinches`: the vertices of this part and all before that may have to be doubled.
   virtual void close(const ContourPart& /*part*/, const PinchCandidates<N>& /*pinches*/) {}

@@ -37,6 +37,8 @@ class SampleSource {
   /// for the extraction. May throw.
   virtual void prepare(std::size_t /*k*/) {}
 
+  [[nodiscard]] virtual std::size_t sample_bytes() const noexcept = 0;
+
   /// The row through `start` (start[0] = 0), as classify_row.
   virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;
 
@@ -59,6 +61,8 @@ class ImageSource final : public SampleSource<N> {
         isovalue_(isovalue),
         epsilon_(epsilon),
         threshold_(make_threshold<T>(isovalue)) {}
+
+  [[nodiscard]] std::size_t sample_bytes() const noexcept override { return sizeof(T); }
 
   bool classify(const Index& start, Word* high, Word* missing) const noexcept override {
     return classify_row(row(start), strides_[0], row_size_, threshold_, high, missing);

@@ -49,6 +49,8 @@ class LayerSource final : public SampleSource<N> {
     reader_.read(k, layer.data());
   }
 
+  [[nodiscard]] std::size_t sample_bytes() const noexcept override { return sizeof(T); }
+
   bool classify(const Index& start, Word* high, Word* missing) const noexcept override {
     return classify_row(row(start), 1, row_size_, threshold_, high, missing);
   }

@@ -60,6 +60,13 @@ using Buffer = std::vector<T, detail::DefaultInitAllocator<T>>;
 
 using Index = std::uint32_t;
 
+/// How large a contour is.
+struct ContourSize {
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+  bool operator==(const ContourSize&) const = default;
+};
+
 /// Which way the orientation of a contour points: normals towards low (descent), or towards high (ascent).
 enum class GradientDirection { descent, ascent };
 

@@ -3,7 +3,10 @@
 // Contours of 2D, 3D and 4D images.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
+#include <type_traits>
 
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
@@ -54,5 +57,32 @@ struct ExtractStats {
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
+
+/// The size of the contour that `extract` with these options would make, exactly. Needs little memory, and less time
+/// than `extract`: nothing is written (but where the border is closed or samples are missing, all but the writing is
+/// done). Errors: those of `extract`, but TooLarge.
+template <Value T, int N>
+ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
+                  ExtractStats* stats = nullptr);
+
+/// A type that vertices can be numbered by.
+template <class I>
+concept VertexNumber = std::is_same_v<I, std::uint32_t> || std::is_same_v<I, std::uint64_t>;
+
+/// Memory of the caller's for a contour.
+template <int N, class Real, VertexNumber I = Index>
+struct ContourRoom {
+  std::span<std::array<Real, N>> vertices;
+  std::span<std::array<I, N>> simplices;
+};
+
+/// As `extract`, into memory of the caller's, which has to have room for the contour's size (`count` tells it) or more;
+/// returns that size. With numbers of 64 bits a contour may have any number of vertices. Vertices and simplices are the
+/// same, byte by byte but for the width of the numbers. Images with missing values are gone through twice. Errors:
+/// those of `extract`; InvalidArgument if there is no room; what the memory holds then, or after any error, is not
+/// defined.
+template <Value T, int N, class Real, VertexNumber I>
+ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
+                         const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
 
 }  // namespace tegl

@@ -34,10 +34,7 @@ class ContourSink {
 };
 
 /// How large a streamed contour became.
-struct StreamedSize {
-  std::uint64_t vertices = 0;
-  std::uint64_t simplices = 0;
-};
+using StreamedSize = ContourSize;
 
 /// As `extract`, for an image that comes in by layers and a contour that goes out in parts: the same vertices and
 /// simplices with the same numbers, but with 64 bits to number them. Memory: three layers of samples, the contour
