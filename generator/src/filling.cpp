@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include "hull.hpp"
+#include "shelling.hpp"
 #include "side_filling.hpp"
 #include "sigma_complex.hpp"
 
@@ -300,17 +301,62 @@ bool fill_simplex(int n, const Component& c, Facet& facet) {
   return true;
 }
 
+/// Orients tetrahedra that fill a component so that its triangles are their boundary.
+std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& c) {
+  std::map<Simplex, int> known;  // triangles by ascending vertices, with the sign that a tetrahedron on them needs
+  for (const Simplex& s : c.boundary) {
+    const auto [key, sign] = sorted_face({s[0], s[1], s[2], 0}, 3);
+    known[key] = sign;
+  }
+  std::vector<Simplex> result;
+  while (!tetrahedra.empty()) {
+    const std::size_t before = tetrahedra.size();
+    std::erase_if(tetrahedra, [&](const Simplex& t) {
+      std::array<SignedFace, 4> faces;
+      int sign = 0;
+      for (int drop = 0; drop < 4; ++drop) {
+        Simplex face{};
+        for (int i = 0, k = 0; i < 4; ++i)
+          if (i != drop) face[k++] = t[i];
+        faces[drop] = sorted_face(face, 3);
+        if (drop % 2 != 0) faces[drop].second = -faces[drop].second;
+        const auto found = known.find(faces[drop].first);
+        if (found != known.end() && sign == 0) sign = found->second * faces[drop].second;
+      }
+      if (sign == 0) return false;
+      for (const auto& [face, own] : faces) known.try_emplace(face, -sign * own);  // for the one on the other side
+      result.push_back(t);
+      if (sign < 0) std::swap(result.back()[2], result.back()[3]);
+      return true;
+    });
+    if (tetrahedra.size() == before) throw std::logic_error("a filling that does not hang together");
+  }
+  return result;
+}
+
 /// Fills without adding a vertex: from the hull, or as a cone from one of the component's own vertices (a polygon: by
 /// chords), whichever needs fewer simplices.
-bool fill_compact(const ContourBuilder& builder, Signature signature, const Component& c, Facet& facet) {
+bool fill_compact(const ContourBuilder& builder, Signature signature, const Component& c, std::uint8_t own_vertex,
+                  Facet& facet) {
   Facet other;
+  facet.filling = Filling::pulled;
   const bool from_hull = fill_from_hull(builder, signature, c, facet);
   const bool from_own = builder.dim() == 3 ? !from_hull && cut_by_chords(builder, facet.points, other)
                         : c.euler == 2     ? pull(builder, c, other)
                                            : false;
   if (from_own && (!from_hull || other.simplices.size() < facet.simplices.size()))
     facet.simplices = std::move(other.simplices);
-  return from_hull || from_own;
+  if (builder.dim() == 4 && c.euler == 2) {
+    const std::size_t limit = facet.simplices.empty() ? c.boundary.size() - 1 : facet.simplices.size() - 1;
+    Shelling shelled = shell_sphere(c.boundary, SigmaComplex(builder, c.boundary), limit);
+    if (!shelled.empty()) {
+      for (const Simplex& t : shelled.rest)
+        shelled.tetrahedra.push_back({own_vertex, t[0], t[1], t[2]});  // the cone vertex first
+      facet.simplices = oriented(std::move(shelled.tetrahedra), c);
+      facet.filling = shelled.rest.empty() ? Filling::pulled : Filling::cone;
+    }
+  }
+  return !facet.simplices.empty();
 }
 
 }  // namespace
@@ -327,8 +373,9 @@ void fill(const ContourBuilder& builder, Signature signature, TileContour& conto
     if (n == 3) facet.points = cycle_of(c);
     if (fill_simplex(n, c, facet)) {
       facet.filling = Filling::simplex;
-    } else if (compact && fill_compact(builder, signature, c, facet)) {
-      facet.filling = Filling::pulled;
+    } else if (const auto own = static_cast<std::uint8_t>(builder.own_base() + contour.cone_vertices);
+               compact && fill_compact(builder, signature, c, own, facet)) {
+      if (facet.filling == Filling::cone) ++contour.cone_vertices;
     } else if (n == 4 && c.euler != 2) {
       facet.filling = Filling::side;
       fill_by_side(builder, signature, c.boundary, contour, facet);
