@@ -82,6 +82,15 @@ const Word* Caps<N, Real>::border_cells(unsigned axes, const Row& at) {
 }
 
 template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_vertex(const typename RowShape<N>::Index& index,
+                               const std::array<double, std::popcount(Axes)>& place) {
+  using Frame = CellFrame<N, Axes>;
+  vertices_.push_back(placement_.template in_cell<Frame>(index, place));
+  if (placement_.normals() != nullptr) normals_.push_back(placement_.normals()->template in_cell<Frame>(index, place));
+}
+
+template <int N, class Real>
 void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at) {
   const Word* const border = border_cells(0, at);
   const std::size_t first = at.row * shape_.pitch();
@@ -93,7 +102,7 @@ void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const R
     plane.bits[0][first + w] = (inverted_ ? ~layer.high[first + w] : layer.high[first + w]) & border[w];
     for (Word rest = plane.bits[0][first + w]; rest != 0; rest &= rest - 1) {
       index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-      vertices_.push_back(placement_.template in_cell<CellFrame<N, 0>>(index, {}));
+      add_vertex<0>(index, {});
     }
   }
 }
@@ -124,7 +133,7 @@ void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const
       edges.ids(bit, ids.data());
       index[0] = w * kWordBits + bit;
       const auto place = region_place<N, Axes>(view, tables_.square->masks[list.first_mask], ids.data());
-      vertices_.push_back(placement_.template in_cell<CellFrame<N, Axes>>(index, place));
+      add_vertex<Axes>(index, place);
     }
   }
 }
@@ -240,7 +249,7 @@ void Caps<N, Real>::add_own(const SlabView<N>& face, const tables::RegionList& l
     ids[tables::first_region_vertex(N - 1) + j] = static_cast<Index>(vertices_.size());
     const std::uint32_t mask = tables_.face->masks[list.first_mask + j];
     const auto place = region_place<N, Axes>(face, mask, ids.data() + (1u << (N - 1)));
-    vertices_.push_back(placement_.template in_cell<CellFrame<N, Axes>>(index, place));
+    add_vertex<Axes>(index, place);
   }
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,8 @@ class Caps {
 
   /// Vertices that are not on the contour.
   [[nodiscard]] const Buffer<Vertex>& vertices() const noexcept { return vertices_; }
+  /// As many, or none.
+  [[nodiscard]] const Buffer<Vertex>& normals() const noexcept { return normals_; }
   [[nodiscard]] const Buffer<Simplex>& simplices() const noexcept { return simplices_; }
   /// The number of a simplex's vertex, if those of the caps are to begin with `first`.
   [[nodiscard]] static std::uint64_t number(std::uint64_t stored, std::uint64_t first) noexcept {
@@ -60,6 +63,8 @@ class Caps {
 
   /// Cells along `axes` based in this row that lie in the border and belong to a valid tile.
   const Word* border_cells(unsigned axes, const Row& at);
+  template <unsigned Axes>
+  void add_vertex(const typename RowShape<N>::Index& index, const std::array<double, std::popcount(Axes)>& place);
   void add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at);
   template <unsigned Axes>
   void add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at);
@@ -100,6 +105,7 @@ class Caps {
   std::vector<Word> border_;
   std::vector<Word> valid_;
   Buffer<Vertex> vertices_;
+  Buffer<Vertex> normals_;
   static constexpr std::uint64_t kCapVertex = std::uint64_t{1} << 63;
   Buffer<Simplex> simplices_;  ///< vertices of the caps have the bit kCapVertex
   std::uint64_t least_ = 0;

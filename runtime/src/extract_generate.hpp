@@ -38,7 +38,9 @@ template <class Vertex>
 struct VertexRun {
   Vertex* data;
   Index first;
+  Vertex* normals = nullptr;  ///< null: none are wanted
   Vertex& operator[](Index id) const noexcept { return data[static_cast<Index>(id - first)]; }
+  Vertex& normal(Index id) const noexcept { return normals[static_cast<Index>(id - first)]; }
 };
 
 /// What a thread keeps between rows: the critical edges of one, by sample and by place.
@@ -61,6 +63,8 @@ void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& pla
       local == nullptr ? scratch.alphas.data() : local->alphas.data() + (plane.base[row] - local->first);
   source.edge_alphas(start, axis, scratch.at.data(), count, alphas);
   placement.edges(start, axis, scratch.at.data(), count, alphas, &vertices[plane.base[row]]);
+  if (placement.normals() != nullptr)
+    placement.normals()->edges(start, axis, scratch.at.data(), count, alphas, &vertices.normal(plane.base[row]));
 }
 
 /// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers and slab of the edges.
@@ -94,6 +98,8 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
       for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
         local.points[next - local.first] = points[j];
         vertices[next] = placement.template in_cell<CellFrame<4, Axes>>(index, points[j]);
+        if (placement.normals() != nullptr)
+          vertices.normal(next) = placement.normals()->template in_cell<CellFrame<4, Axes>>(index, points[j]);
       }
     }
   }
@@ -268,8 +274,11 @@ class TileWriter {
       own_places<N>(
           list, compact_, [&](unsigned v) { return shared_place(view, ids, list.mapped(v)); }, points.data());
     }
-    for (unsigned j = 0; j < list.own_vertices(); ++j)
+    for (unsigned j = 0; j < list.own_vertices(); ++j) {
       vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
+      if (placement_.normals() != nullptr)
+        vertices.normal(own + j) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, points[j]);
+    }
   }
 
   const tables::TileTable& table_;

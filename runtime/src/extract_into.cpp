@@ -134,8 +134,10 @@ class MemorySink final : public ContourSink<N, Real> {
 }  // namespace detail
 
 template <Value T, int N>
-ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& options, ExtractStats* stats) {
-  detail::check_arguments(isovalue, options);
+ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& asked, ExtractStats* stats) {
+  detail::check_arguments(isovalue, asked);
+  ExtractOptions options = asked;
+  options.normals = false;  // as many as vertices
   const auto tables = detail::generated_tables<N>(options);
   const detail::ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
   ExtractStats done;
@@ -158,6 +160,7 @@ template <Value T, int N, class Real, VertexNumber I>
 ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
                          const ExtractOptions& options, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
+  detail::check_no_normals(options, "extract_into");
   const auto tables = detail::generated_tables<N>(options);
   detail::ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};

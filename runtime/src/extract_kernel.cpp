@@ -32,6 +32,12 @@ void check_arguments(double isovalue, const ExtractOptions& options) {
                 fmt::format("epsilon {}; expected at least 0 and below 0.5", options.epsilon));
 }
 
+void check_no_normals(const ExtractOptions& options, const char* function) {
+  if (options.normals)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} with normals; expected none: only extract makes them", function));
+}
+
 namespace {
 
 /// Adds the time since the last call to one of several counters.
@@ -98,6 +104,7 @@ class Extraction {
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
+    if (options.normals) placement_.want_normals(source.gradients(grid), grid, options.direction);
     if (options.close)
       caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options), plan.closed_axes);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
@@ -244,7 +251,7 @@ class Extraction {
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
     if (room.vertices == nullptr && room.simplices == nullptr) return;
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
-    const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex)};
+    const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
     const auto local = [&](LocalRun& run) { return keeps_places_ ? &run : nullptr; };
     // Where tiles ask for the places of points, these come first.
     const bool at_once = !keeps_places_;
@@ -346,8 +353,8 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   using typename ContourOutput<N, Real>::Vertex;
   using typename ContourOutput<N, Real>::Simplex;
   using typename ContourOutput<N, Real>::Room;
-  MemoryOutput(Contour<N, Real>& contour, std::uint64_t max_vertices)
-      : contour_(contour), max_vertices_(max_vertices) {}
+  MemoryOutput(Contour<N, Real>& contour, bool normals, std::uint64_t max_vertices)
+      : contour_(contour), normals_(normals), max_vertices_(max_vertices) {}
 
   /// Address space for the largest contour that can be: memory is taken where it is written to. Where the system
   /// gives none, outputs grow.
@@ -361,6 +368,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     };
     reserve(contour_.vertices, vertices, sizeof(Vertex));
     reserve(contour_.simplices, simplices, sizeof(Simplex));
+    if (normals_) reserve(contour_.normals, vertices, sizeof(Vertex));
   }
 
   /// Where an output has to move, it gets room for what the slabs so far let expect, within bounds.
@@ -374,7 +382,9 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     };
     resize(contour_.vertices, part.end_vertex);
     resize(contour_.simplices, part.end_simplex);
-    return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex};
+    if (normals_) resize(contour_.normals, part.end_vertex);
+    return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex,
+            normals_ ? contour_.normals.data() + part.first_vertex : nullptr};
   }
 
   void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) override {
@@ -390,6 +400,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   void add_caps(const Caps<N, Real>& caps, std::uint64_t first) {
     check_vertex_count(first + caps.vertices().size(), max_vertices_);
     contour_.vertices.insert(contour_.vertices.end(), caps.vertices().begin(), caps.vertices().end());
+    contour_.normals.insert(contour_.normals.end(), caps.normals().begin(), caps.normals().end());
     contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
     for (const auto& simplex : caps.simplices()) {
       Simplex& narrow = contour_.simplices.emplace_back();
@@ -398,6 +409,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   }
 
   Contour<N, Real>& contour_;
+  bool normals_;
   std::uint64_t max_vertices_;
 };
 
@@ -422,7 +434,7 @@ Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, co
     contour.axis_units[a] = grid.axes[a].unit;
   }
   contour.direction = options.direction;
-  MemoryOutput<N, Real> output(contour, plan.max_vertices);
+  MemoryOutput<N, Real> output(contour, options.normals, plan.max_vertices);
   const ExtractStats done = extract_to(source, grid, tables, options, plan, output);
   if (stats != nullptr) *stats = done;
   return contour;

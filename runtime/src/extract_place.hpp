@@ -8,9 +8,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "extract_layers.hpp"
+#include "extract_normals.hpp"
 #include "extract_points.hpp"
 #include "tegl/grid.hpp"
 
@@ -36,6 +39,12 @@ class Placement {
       for (std::size_t i = 0; i < coordinates_[a].size(); ++i) coordinates_[a][i] = grid.axes[a][i];
     }
     if constexpr (N == 4) find_insides();
+  }
+
+  /// Null: none are wanted.
+  [[nodiscard]] const NormalWriter<N, Real>* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
+  void want_normals(std::unique_ptr<const GradientField<N>> field, const Grid<N>& grid, GradientDirection direction) {
+    normals_.emplace(std::move(field), grid, direction);
   }
 
   [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }
@@ -132,6 +141,7 @@ class Placement {
   double origin_ = 0.0, step_ = 0.0;
   bool mapped_;
   std::vector<std::array<Real, 2>> insides_;
+  std::optional<NormalWriter<N, Real>> normals_;
 };
 
 }  // namespace tegl::detail

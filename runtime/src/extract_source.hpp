@@ -8,8 +8,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "bitplanes.hpp"
+#include "gradient.hpp"
 
 namespace tegl::detail {
 
@@ -39,6 +41,11 @@ class SampleSource {
 
   [[nodiscard]] virtual std::size_t sample_bytes() const noexcept = 0;
 
+  /// The samples' gradients over `grid`; null where samples come and go.
+  [[nodiscard]] virtual std::unique_ptr<const GradientField<N>> gradients(const Grid<N>& /*grid*/) const {
+    return nullptr;
+  }
+
   /// The row through `start` (start[0] = 0), as classify_row.
   virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;
 
@@ -63,6 +70,9 @@ class ImageSource final : public SampleSource<N> {
         threshold_(make_threshold<T>(isovalue)) {}
 
   [[nodiscard]] std::size_t sample_bytes() const noexcept override { return sizeof(T); }
+  [[nodiscard]] std::unique_ptr<const GradientField<N>> gradients(const Grid<N>& grid) const override {
+    return std::make_unique<Gradient<T, N>>(data_, strides_, grid);
+  }
 
   bool classify(const Index& start, Word* high, Word* missing) const noexcept override {
     return classify_row(row(start), strides_[0], row_size_, threshold_, high, missing);

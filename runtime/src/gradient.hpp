@@ -15,25 +15,45 @@
 
 namespace tegl::detail {
 
+/// Gradients, whatever the type of the samples.
+template <int N>
+class GradientField {
+ public:
+  using Index = std::array<std::size_t, N>;
+  using Vector = std::array<double, N>;
+  GradientField() = default;
+  GradientField(const GradientField&) = delete;
+  GradientField& operator=(const GradientField&) = delete;
+  virtual ~GradientField() = default;
+
+  /// At one sample.
+  [[nodiscard]] virtual Vector at(const Index& index) const noexcept = 0;
+
+  /// On the edges along `axis` from the samples `from` of the row through `start` (start[0] = 0), `count` of them: the
+  /// gradients at both ends, interpolated with `alphas`.
+  virtual void on_edges(Index start, int axis, const std::uint32_t* from, std::size_t count, const double* alphas,
+                        Vector* out) const noexcept = 0;
+};
+
 /// The gradient of an image by axis coordinates (before the map to the world): along each axis the mean of the forward
 /// and the backward difference quotient. At the border, and where a sample is missing or a difference not finite, the
 /// one that there is; 0 if there is none. The samples must outlive it.
 template <Value T, int N>
-class Gradient {
+class Gradient final : public GradientField<N> {
  public:
-  using Index = std::array<std::size_t, N>;
-  using Vector = std::array<double, N>;
+  using typename GradientField<N>::Index;
+  using typename GradientField<N>::Vector;
 
-  explicit Gradient(const Image<T, N>& image) : data_(image.data()), strides_(image.strides()) {
+  Gradient(const T* data, const typename Image<T, N>::Strides& strides, const Grid<N>& grid)
+      : data_(data), strides_(strides) {
     for (int a = 0; a < N; ++a) {
-      const Axis& axis = image.grid().axes[a];
+      const Axis& axis = grid.axes[a];
       inverse_steps_[a].resize(axis.size() - 1);
       for (std::size_t i = 0; i + 1 < axis.size(); ++i) inverse_steps_[a][i] = 1.0 / (axis[i + 1] - axis[i]);
     }
   }
 
-  /// At one sample.
-  [[nodiscard]] Vector at(const Index& index) const noexcept {
+  [[nodiscard]] Vector at(const Index& index) const noexcept override {
     const T* const sample = place(index);
     Vector result;
     for (int a = 0; a < N; ++a) {
@@ -43,10 +63,8 @@ class Gradient {
     return result;
   }
 
-  /// On the edges along `axis` from the samples `from` of the row through `start` (start[0] = 0), `count` of them: the
-  /// gradients at both ends, interpolated with `alphas`.
   void on_edges(Index start, int axis, const std::uint32_t* from, std::size_t count, const double* alphas,
-                Vector* out) const noexcept {
+                Vector* out) const noexcept override {
     const T* const row = place(start);
     // What differs along the row is found for each sample; what does not, once.
     std::array<Axial, N> first, second;

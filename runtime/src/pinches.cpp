@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -184,10 +185,26 @@ class Separation {
       if (faces_[i].others == faces_[i - 1].others) join(faces_[i - 1], faces_[i]);
   }
 
-  Index add_vertex(typename Contour<N, Real>::Vertex at) {  // a copy: `at` may lie in what grows
+  /// A vertex half-way between two, or at both.
+  Index add_vertex(Index v, Index w) {
     check_vertex_count(contour_.vertices.size() + 1, max_vertices_);
-    contour_.vertices.push_back(at);
+    const auto add_middle = [&](auto& points) {
+      auto middle = points[v];
+      for (int a = 0; a < N && v != w; ++a) middle[a] = (middle[a] + points[w][a]) / 2;
+      points.push_back(middle);
+    };
+    add_middle(contour_.vertices);
+    if (!contour_.normals.empty()) {
+      add_middle(contour_.normals);
+      if (v != w) normalize(contour_.normals.back());
+    }
     return static_cast<Index>(contour_.vertices.size() - 1);
+  }
+
+  static void normalize(typename Contour<N, Real>::Vertex& normal) {
+    double square = 0;
+    for (const Real x : normal) square += static_cast<double>(x) * static_cast<double>(x);
+    for (Real& x : normal) x = square > 0 ? static_cast<Real>(static_cast<double>(x) / std::sqrt(square)) : Real{0};
   }
 
   /// Gives every part of the star but the first a vertex of its own. Parts hang together by faces. As simplices with a
@@ -201,7 +218,7 @@ class Separation {
     for (std::size_t i = 0; i < star.size(); ++i) {
       const std::size_t leader = sets_.find(i);
       if (leader == 0) continue;
-      if (leader == i) own_[i] = add_vertex(contour_.vertices[v]);  // comes before its followers
+      if (leader == i) own_[i] = add_vertex(v, v);  // comes before its followers
       Simplex& simplex = contour_.simplices[star[i]];
       *std::find(simplex.begin(), simplex.end(), v) = own_[leader];
     }
@@ -251,9 +268,7 @@ class Separation {
   }
 
   void split_fan(const Fan& fan) {
-    auto middle = contour_.vertices[fan.from];
-    for (int a = 0; a < N; ++a) middle[a] = (middle[a] + contour_.vertices[fan.to][a]) / 2;
-    const Index m = add_vertex(middle);
+    const Index m = add_vertex(fan.from, fan.to);
     for (const Index s : fan.simplices) {
       Simplex half = contour_.simplices[s];
       *std::find(half.begin(), half.end(), fan.from) = m;
@@ -306,7 +321,7 @@ class Separation {
     for (std::size_t i = 1; i < rim_.size(); ++i) {
       const Rim& rim = rim_[i];
       if (rim.hole == rim_.front().hole) continue;
-      if (rim.hole != rim_[i - 1].hole) own = add_vertex(contour_.vertices[v]);
+      if (rim.hole != rim_[i - 1].hole) own = add_vertex(v, v);
       // The neighbour's mirror image in their common face: its fourth vertex replaced, and two exchanged.
       Simplex filling = contour_.simplices[rim.simplex];
       for (Index& w : filling)

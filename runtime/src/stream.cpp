@@ -54,6 +54,7 @@ template <class Real, Value T, int N>
 StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
                               ContourSink<N, Real>& sink, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
+  detail::check_no_normals(options, "extract_streamed");
   detail::LayerSource<T, N> source(layers, isovalue, options.epsilon);
   detail::StreamOutput<N, Real> output(sink);
   const ExtractStats done = detail::extract_to<N, Real>(source, layers.grid(), detail::generated_tables<N>(options),

@@ -81,6 +81,7 @@ struct Contour {
 
   Buffer<Vertex> vertices;                ///< #V x N world coordinates, row = vertex; for time-varying images t is last
   Buffer<Simplex> simplices;              ///< #S x N vertex numbers, row = simplex, consistently oriented
+  Buffer<Vertex> normals;                 ///< #V x N of length 1, if asked for (ExtractOptions::normals); else empty
   std::array<std::string, N> axis_names;  ///< taken from the grid
   std::array<std::string, N> axis_units;
   GradientDirection direction = GradientDirection::descent;

@@ -29,6 +29,11 @@ struct ExtractOptions {
   /// 0: exact positions; where a sample equals the isovalue, simplices of zero size arise. (Whatever it is, four points
   /// of a compact 4D tile may lie in one plane.)
   double epsilon = 0.0;
+  /// Whether vertices get normals: in the contour's `direction`, along the image's gradient there; of length 1, or 0
+  /// where it vanishes. At samples it is the mean of the difference quotients forward and backward, at
+  /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
+  /// along edges). For `extract` alone: what makes contours by parts or in memory of the caller's refuses it.
+  bool normals = false;
   /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
   Progress progress;
