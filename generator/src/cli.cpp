@@ -114,6 +114,7 @@ constexpr unsigned kTransversal = bit(Command::Transversal);
 constexpr unsigned kClasses = bit(Command::Classes);
 constexpr unsigned kCertify = bit(Command::Certify);
 constexpr unsigned kOut = bit(Command::Out);
+constexpr unsigned kCases = bit(Command::Cases);
 
 struct OptionSpec {
   std::string_view name;
@@ -130,7 +131,8 @@ constexpr std::array kOptions{
     OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
     OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
     OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
-    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut, set_dim},
+    OptionSpec{"--cases", true, Command::Cases, 0, [](Options& o, std::string_view given) { o.out = given; }},
+    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut | kCases, set_dim},
     OptionSpec{"--tile", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_tile},
     OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kCertify, set_group},
     OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
@@ -320,6 +322,7 @@ commands (one of)
                    its neighbours; prints the figures. With --table-by-class: the pairs of neighbours in a table
                    that has one entry per class
   --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
+  --cases DIR      writes the catalogue of cases (N = 2 ... 4) into DIR: a Markdown page and its pictures
   --help, -h       this text
   --version        version of the program and of the tables' layout
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "tegl/gen/cases.hpp"
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/table_set.hpp"
 #include "tegl/gen/tile_symmetry.hpp"
@@ -104,6 +105,8 @@ void write_files(const std::filesystem::path& folder, const std::vector<EmittedF
   std::filesystem::create_directories(folder, error);
   if (error) fail(folder, "cannot make the folder: " + error.message());
   for (const EmittedFile& file : files) {
+    std::filesystem::create_directories((folder / file.name).parent_path(), error);
+    if (error) fail(folder / file.name, "cannot make its folder: " + error.message());
     std::ofstream out(folder / (file.name + ".part"), std::ios::binary);
     out.write(file.text.data(), static_cast<std::streamsize>(file.text.size()));
     out.close();
@@ -180,6 +183,13 @@ int run_certify(const Options& options) {
   for (const CertifiedFigures& f : figures) parts.push_back(figures_json(f));
   fmt::print("{{\"tile\": \"{}\", \"dim\": {}, \"certified\": [\n  {}\n]}}\n", tile_kind_name(options.tile),
              options.dim, fmt::join(parts, ",\n  "));
+  return 0;
+}
+
+int run_cases(const Options& options) {
+  const auto files = emit_cases(options.dim);
+  write_files(options.out, files);
+  fmt::print("wrote {} and {} pictures\n", files.front().name, files.size() - 1);
   return 0;
 }
 

@@ -37,6 +37,8 @@ int dispatch(const Options& options) {
       return tegl::gen::run_certify(options);
     case Command::Out:
       return tegl::gen::run_out(options);
+    case Command::Cases:
+      return tegl::gen::run_cases(options);
   }
   throw Error(ErrorCode::Internal, fmt::format("command {} is not dispatched", static_cast<int>(options.command)));
 }

@@ -18,6 +18,17 @@ namespace tegl::gen {
 
 namespace {
 
+/// How things are drawn, by class.
+constexpr const char* kStyle =
+    "<style>.edge,.rim,.segment,.mark{stroke-linecap:round}.edge{stroke:#555;stroke-width:1.4}.hidden{stroke:#8a8a8a;"
+    "stroke-width:1.1;"
+    "stroke-dasharray:4 "
+    "4;stroke-linecap:butt}.high{fill:#1d1d1d;stroke:#fff}.low{fill:#fff;stroke:#555;stroke-width:1.3}"
+    ".side{fill-opacity:.93;stroke-width:.7}.rim{stroke:#3a3a3a;stroke-width:1.6}"
+    ".mesh{stroke:#fff;stroke-opacity:.55;stroke-width:.8}.segment{stroke:#2f62a8;stroke-width:4}"
+    ".towards{stroke:#f0a53c;stroke-width:4}.mark{stroke:#d4145a;stroke-width:5}"
+    "text{font:13px sans-serif;fill:#555;text-anchor:middle}</style>\n";
+
 using Colour = std::array<int, 3>;
 constexpr Colour kHighSide{240, 165, 60}, kLowSide{95, 150, 215};
 
@@ -45,7 +56,7 @@ struct View {
   Place right, up, eye;
 
   explicit View(int dim) {
-    eye = dim == 2 ? Place{0, 0, 1} : unit({0.55, -1.0, 0.75});
+    eye = dim == 2 ? Place{0, 0, 1} : unit({-0.28, -1.0, 0.48});
     right = dim == 2 ? Place{1, 0, 0} : unit(cross({0, 0, 1}, eye));
     up = cross(eye, right);
   }
@@ -81,11 +92,11 @@ class Canvas {
   void line(const Place& a, const Place& b, const char* style) {
     const auto [ax, ay] = project(a);
     const auto [bx, by] = project(b);
-    add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", ax, ay, bx, by, style);
+    add("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"{}\"/>\n", ax, ay, bx, by, style);
   }
   void dot(const Place& p, double radius, const char* style) {
     const auto [x, y] = project(p);
-    add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>\n", x, y, radius, style);
+    add("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" class=\"{}\"/>\n", x, y, radius, style);
   }
   void polygon(const std::vector<Place>& places, const std::string& style) {
     std::string points;
@@ -96,14 +107,22 @@ class Canvas {
     add("<polygon points=\"{}\" {}/>\n", points, style);
   }
 
-  [[nodiscard]] std::string svg(const std::string& title) const {
-    constexpr double kMargin = 14;
-    const double width = high_[0] - low_[0] + 2 * kMargin, height = high_[1] - low_[1] + 2 * kMargin;
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"{2:.1f} {3:.1f} "
-        "{0:.1f} "
-        "{1:.1f}\">\n<title>{4}</title>\n{5}</svg>\n",
-        width, height, low_[0] - kMargin, low_[1] - kMargin, title, elements_);
+  /// The element, alone or at a place within another one; its size is added to what `width` and `height` cover so far.
+  [[nodiscard]] std::string svg(const Picture& picture, bool alone, double x, double& width, double& height) const {
+    constexpr double kMargin = 12, kCaption = 18;
+    const double w = std::ceil(high_[0] - low_[0]) + 2 * kMargin;
+    const double h = std::ceil(high_[1] - low_[1]) + 2 * kMargin + (picture.caption.empty() ? 0 : kCaption);
+    const double left = low_[0] - kMargin, top = low_[1] - kMargin;
+    std::string text = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" x=\"{0:.0f}\" width=\"{1:.0f}\" height=\"{2:.0f}\" "
+        "viewBox=\"{3:.1f} {4:.1f} "
+        "{1:.1f} {2:.1f}\">\n<title>{5}</title>\n{6}{7}",
+        x, w, h, left, top, picture.title, alone ? kStyle : "", elements_);
+    if (!picture.caption.empty())
+      text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left + w / 2, top + h - 5, picture.caption);
+    width = std::max(width, x + w);
+    height = std::max(height, h);
+    return text + "</svg>\n";
   }
 
  private:
@@ -126,6 +145,11 @@ class Canvas {
   std::array<double, 2> low_{1e9, 1e9}, high_{-1e9, -1e9};
 };
 
+const std::vector<Facet>& facets_of(const PlacedTile& placed) {
+  static const std::vector<Facet> none{};
+  return placed.contour == nullptr ? none : placed.contour->facets;
+}
+
 /// Facets of one tile, far triangles first; then the facets' outlines.
 void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
   struct Triangle {
@@ -134,46 +158,44 @@ void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
     std::string style;
   };
   std::vector<Triangle> triangles;
-  for (const Facet& facet : placed.contour->facets) {
-    for (const Simplex& s : facet.simplices) {
-      Triangle t;
-      for (int i = 0; i < 3; ++i) t.places.push_back(placed.at + place_of(*placed.tile, facet, s[i]));
-      const Place normal = unit(cross(t.places[1] - t.places[0], t.places[2] - t.places[0]));
-      const double facing = dot(normal, view.eye);
-      const double light = 0.72 + 0.28 * std::abs(dot(normal, unit({0.2, -0.4, 1.0})));
-      const Colour& base = facing > 0 ? kHighSide : kLowSide;
-      const auto shade = [&](int i) { return static_cast<int>(std::lround(base[i] * light)); };
-      t.depth = dot(mean_of(t.places), view.eye);
-      const std::string colour = fmt::format("#{:02x}{:02x}{:02x}", shade(0), shade(1), shade(2));
-      t.style = fmt::format("fill=\"{0}\" fill-opacity=\"0.93\" stroke=\"{0}\" stroke-width=\"0.7\"", colour);
-      triangles.push_back(std::move(t));
-    }
+  std::vector<std::array<Place, 3>> all;
+  for (const Facet& facet : facets_of(placed))
+    for (const Simplex& s : facet.simplices)
+      all.push_back({place_of(*placed.tile, facet, s[0]), place_of(*placed.tile, facet, s[1]),
+                     place_of(*placed.tile, facet, s[2])});
+  all.insert(all.end(), placed.patches.begin(), placed.patches.end());
+  std::map<std::pair<Place, Place>, int> sides;
+  for (const auto& corners : all) {
+    for (std::size_t i = 0; i < 3; ++i) ++sides[std::minmax(corners[i], corners[(i + 1) % 3])];
+    Triangle t;
+    for (const Place& p : corners) t.places.push_back(placed.at + p);
+    const Place normal = unit(cross(t.places[1] - t.places[0], t.places[2] - t.places[0]));
+    const double facing = dot(normal, view.eye);
+    const double light = 0.72 + 0.28 * std::abs(dot(normal, unit({0.2, -0.4, 1.0})));
+    const Colour& base = facing > 0 ? kHighSide : kLowSide;
+    const auto shade = [&](int i) { return static_cast<int>(std::lround(base[i] * light)); };
+    t.depth = dot(mean_of(t.places), view.eye);
+    const std::string colour = fmt::format("#{:02x}{:02x}{:02x}", shade(0), shade(1), shade(2));
+    t.style = fmt::format("fill=\"{0}\" stroke=\"{0}\" class=\"side\"", colour);
+    triangles.push_back(std::move(t));
   }
   std::stable_sort(triangles.begin(), triangles.end(),
                    [](const Triangle& a, const Triangle& b) { return a.depth < b.depth; });
   for (const Triangle& t : triangles) canvas.polygon(t.places, t.style);
-  for (const Facet& facet : placed.contour->facets) {
-    std::map<std::pair<std::uint8_t, std::uint8_t>, int> sides;
-    for (const Simplex& s : facet.simplices)
-      for (int i = 0; i < 3; ++i) ++sides[std::minmax(s[i], s[(i + 1) % 3])];
-    for (const auto& [ends, count] : sides)
-      canvas.line(placed.at + place_of(*placed.tile, facet, ends.first),
-                  placed.at + place_of(*placed.tile, facet, ends.second),
-                  count == 1 ? "stroke=\"#3a3a3a\" stroke-width=\"1.6\" stroke-linecap=\"round\""
-                             : "stroke=\"#ffffff\" stroke-opacity=\"0.55\" stroke-width=\"0.8\"");
-  }
+  for (const auto& [ends, count] : sides)
+    canvas.line(placed.at + ends.first, placed.at + ends.second, count == 1 ? "rim" : "mesh");
 }
 
 /// In the plane: segments, with a short stroke to their high side.
 void draw_segments(const PlacedTile& placed, Canvas& canvas) {
-  for (const Facet& facet : placed.contour->facets)
+  for (const Facet& facet : facets_of(placed))
     for (const Simplex& s : facet.simplices) {
       const Place a = placed.at + place_of(*placed.tile, facet, s[0]),
                   b = placed.at + place_of(*placed.tile, facet, s[1]);
       const Place along = unit(b - a), left{-along[1], along[0], 0};
       const Place middle = 0.5 * (a + b);
-      canvas.line(middle, middle + 0.12 * left, "stroke=\"#f0a53c\" stroke-width=\"4\"");
-      canvas.line(a, b, "stroke=\"#2f62a8\" stroke-width=\"4\" stroke-linecap=\"round\"");
+      canvas.line(middle, middle + 0.12 * left, "towards");
+      canvas.line(a, b, "segment");
     }
 }
 
@@ -182,13 +204,11 @@ void draw_edges(const PlacedTile& placed, const Visible& visible, bool hidden, C
   for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
     if (visible.edges[e] != hidden)
       canvas.line(placed.at + corner_place(tile, tile.edges[e][0]), placed.at + corner_place(tile, tile.edges[e][1]),
-                  hidden ? "stroke=\"#8a8a8a\" stroke-width=\"1.1\" stroke-dasharray=\"4 4\""
-                         : "stroke=\"#555555\" stroke-width=\"1.4\" stroke-linecap=\"round\"");
+                  hidden ? "hidden" : "edge");
   for (std::uint32_t v = 0; v < tile.corner_count(); ++v)
     if (visible.corners[v] != hidden)
       canvas.dot(placed.at + corner_place(tile, v), ((placed.signature >> v) & 1u) != 0 ? 6.0 : 4.0,
-                 ((placed.signature >> v) & 1u) != 0 ? "fill=\"#1d1d1d\" stroke=\"#ffffff\" stroke-width=\"1\""
-                                                     : "fill=\"#ffffff\" stroke=\"#555555\" stroke-width=\"1.3\"");
+                 ((placed.signature >> v) & 1u) != 0 ? "high" : "low");
 }
 
 }  // namespace
@@ -203,7 +223,10 @@ Place place_of(const Tile& tile, const Facet& facet, std::uint8_t vertex) {
   return mean_of(places);
 }
 
-std::string to_svg(const Picture& picture) {
+namespace {
+
+/// One picture as an element at x.
+std::string drawn(const Picture& picture, bool alone, double x, double& width, double& height) {
   const int dim = picture.tiles.empty() ? 0 : picture.tiles.front().tile->dim;
   if (dim != 2 && dim != 3)
     throw Error(ErrorCode::Internal, fmt::format("a picture of tiles of dimension {}: expected 2 or 3", dim));
@@ -222,9 +245,26 @@ std::string to_svg(const Picture& picture) {
       draw_segments(placed, canvas);
     draw_edges(placed, visible, false, canvas);
   }
-  for (const auto& [a, b] : picture.marks)
-    canvas.line(a, b, "stroke=\"#d4145a\" stroke-width=\"5\" stroke-linecap=\"round\"");
-  return canvas.svg(picture.title);
+  for (const auto& [a, b] : picture.marks) canvas.line(a, b, "mark");
+  return canvas.svg(picture, alone, x, width, height);
+}
+
+}  // namespace
+
+std::string to_svg(const Picture& picture) {
+  double width = 0, height = 0;
+  return drawn(picture, true, 0, width, height);
+}
+
+std::string to_svg(std::span<const Picture> row, const std::string& title) {
+  double width = 0, height = 0;
+  std::string elements;
+  for (const Picture& picture : row) elements += drawn(picture, false, width, width, height);
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
+      "{1:.0f}\">\n"
+      "<title>{2}</title>\n{3}{4}</svg>\n",
+      width, height, title, kStyle, elements);
 }
 
 }  // namespace tegl::gen

@@ -21,7 +21,6 @@
 namespace tegl::gen {
 namespace {
 
-constexpr Alternative kAlternatives[] = {Alternative::low, Alternative::high};
 constexpr Triangulation kTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
 
 std::vector<int> polygon_sizes(const TileContour& contour) {

@@ -191,6 +191,7 @@ TEST(GenCli, RefusesDimensionsOutsideOfTheCommandsRange) {
     expect_refused({"--dim", dim, "--classes"}, {"--classes expects 2 to 4"});
     expect_refused({"--dim", dim, "--certify"}, {"--certify expects 2 to 4"});
     expect_refused({"--dim", dim, "--out", "tables"}, {"--out expects 2 to 4"});
+    expect_refused({"--dim", dim, "--cases", "docs"}, {"--cases expects 2 to 4"});
   }
 }
 
@@ -260,6 +261,16 @@ TEST(GenCli, RefusesTilesAndWhatTheyDoNotHave) {
   expect_refused({"--dim", "3", "--out", "t", "--tile", "simplex", "--layout", "class"}, {"--layout class"});
   expect_refused({"--dim", "3", "--certify", "--tile", "simplex", "--table-by-class"}, {"--table-by-class"});
   expect_refused({"--dim", "3", "--transversal", "--tile", "simplex"}, {"--tile does not go with --transversal"});
+}
+
+TEST(GenCli, WritesTheCatalogueOfCases) {
+  const std::string folder = testing::TempDir() + "gen_cases";
+  const Outcome run = gen({"--dim", "2", "--cases", folder});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("2d.md and 7 pictures"));
+  EXPECT_TRUE(std::filesystem::exists(folder + "/2d/006_high.svg"));
+  std::filesystem::remove_all(folder);
+  expect_refused({"--dim", "2", "--cases", folder, "--layout", "flat"}, {"--layout does not go with --cases"});
 }
 
 TEST(GenCli, RefusesRepeatedOptions) {

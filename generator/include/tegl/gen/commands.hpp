@@ -32,4 +32,7 @@ int run_certify(const Options& options);
 /// Errors: CertificateFailed (nothing is written), WriteFailed.
 int run_out(const Options& options);
 
+/// `--cases DIR`: writes the catalogue's page and pictures of a dimension into DIR. Errors: WriteFailed.
+int run_cases(const Options& options);
+
 }  // namespace tegl::gen

@@ -22,6 +22,7 @@ enum class Command {
   Classes,      ///< --classes, dim 2 ... 4
   Certify,      ///< --certify, dim 2 ... 4
   Out,          ///< --out DIR, dim 2 ... 4
+  Cases,        ///< --cases DIR, dim 2 ... 4
 };
 
 /// How ambiguous faces are resolved: low or high corners stay connected (theory: the consistent method).
@@ -48,7 +49,7 @@ struct Options {
   bool list = false;                                             ///< --list; --transversal only
   bool json = false;                                             ///< --json; all but --out, and not with --list
   AlternativeChoice alternative = AlternativeChoice::Low;        ///< --alternative; --classes only
-  std::string out;                                               ///< DIR of --out
+  std::string out;                                               ///< DIR of --out and --cases
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
   TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
   std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out only

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,13 +20,16 @@ using Place = std::array<double, 3>;
 struct PlacedTile {
   const Tile* tile;
   Signature signature;
-  const TileContour* contour;
-  Place at{};  ///< of the tile's frame
+  const TileContour* contour;  ///< null: none but the patches
+  Place at{};                  ///< of the tile's frame
+  std::vector<std::array<Place, 3>>
+      patches{};  ///< triangles in the tile's frame, seen from their positive side if counter-clockwise
 };
 
 /// Tiles of dimension 2 or 3 in one picture, and segments drawn over them as marks.
 struct Picture {
-  std::string title;  ///< for readers that cannot see it
+  std::string title;    ///< for readers that cannot see it
+  std::string caption;  ///< below the picture; may be empty
   std::vector<PlacedTile> tiles;
   std::vector<std::array<Place, 2>> marks;
   double scale = 130;  ///< pixels per unit
@@ -38,5 +42,8 @@ struct Picture {
 /// The picture as one SVG element, the same bytes for the same picture. In space it is seen from in front, from above
 /// and a little from the right: x to the right, y into the picture, z upwards. Errors: Internal for another dimension.
 [[nodiscard]] std::string to_svg(const Picture& picture);
+
+/// Pictures side by side, as one SVG element with a title.
+[[nodiscard]] std::string to_svg(std::span<const Picture> row, const std::string& title);
 
 }  // namespace tegl::gen
