@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <iomanip>
 #include <map>
 #include <sstream>
 
@@ -76,7 +77,132 @@ TEST_P(CompiledTableTest, HoldsTheBuildersContourOfEverySignature) {
 
 INSTANTIATE_TEST_SUITE_P(All, CompiledTableTest, testing::Combine(testing::Values(2, 3, 4), testing::Values(0, 1)));
 
+/// A compiled table in owning form, to be digested, and to be spoilt.
+TileTables owning(const tables::TileTable& t, Triangulation triangulation) {
+  const std::size_t signatures = std::size_t{1} << (1u << t.dim);
+  TileTables table;
+  table.dim = static_cast<int>(t.dim);
+  table.triangulation = triangulation;
+  table.layout = t.element_of == nullptr ? Layout::flat : Layout::by_class;
+  table.permutation_stride = t.permutation_stride;
+  table.max_simplices = t.max_simplices;
+  table.max_tile_vertices = t.max_tile_vertices;
+  table.list_of.assign(t.list_of, t.list_of + signatures);
+  if (t.element_of != nullptr) {
+    table.element_of.assign(t.element_of, t.element_of + signatures);
+    table.slot_swaps.assign(t.slot_swaps, t.slot_swaps + signatures);
+    table.permutations.assign(t.permutations, t.permutations + std::size_t{t.element_count} * t.permutation_stride);
+    table.reverses.assign(t.reverses, t.reverses + t.element_count);
+  }
+  table.lists.assign(t.lists, t.lists + t.list_count);
+  table.simplices.assign(t.simplices, t.simplices + std::size_t{t.simplex_count} * t.dim);
+  std::uint32_t masks = 0;
+  for (const tables::List& list : table.lists)
+    if (list.side_vertices != 0) masks = std::max(masks, list.first_side + list.side_vertices);
+  if (masks != 0) table.side_masks.assign(t.side_masks, t.side_masks + masks);
+  return table;
+}
+
+RegionTables owning(const tables::RegionTable& t) {
+  RegionTables table;
+  table.dim = static_cast<int>(t.dim);
+  table.lists.assign(t.lists, t.lists + (std::size_t{1} << (1u << t.dim)));
+  std::size_t simplices = 0, masks = 0;
+  for (const tables::RegionList& list : table.lists) {
+    simplices = std::max<std::size_t>(simplices, list.first_simplex + list.simplex_count);
+    if (list.own_vertices != 0) masks = std::max<std::size_t>(masks, list.first_mask + list.own_vertices);
+  }
+  table.simplices.assign(t.simplices, t.simplices + simplices * (t.dim + 1));
+  if (masks != 0) table.masks.assign(t.masks, t.masks + masks);
+  return table;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  EXPECT_TRUE(in) << path;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// The digest that the reviewed manifest has for a table.
+std::string reviewed_digest(const std::string& name) {
+  const std::string manifest = text_of(TEGL_SOURCE_DIR "/generated/MANIFEST.json");
+  const std::size_t at = manifest.find("fnv1a", manifest.find('"' + name + '"'));
+  return manifest.substr(manifest.find(": ", at) + 3, 16);
+}
+
+std::string hexadecimal(std::uint64_t number) {
+  std::ostringstream text;
+  text << std::hex << std::setw(16) << std::setfill('0') << number;
+  return text.str();
+}
+
+/// Every compiled table, entry by entry, is the one whose digest was reviewed; so a flipped entry is noticed, also
+/// where it would change no contour. The test before this one says that the contours are the builder's.
+TEST(Tables, CompiledOnesAreThoseOfTheManifest) {
+  if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
+  for (const int dim : {2, 3, 4})
+    for (const int t : {0, 1}) {
+      const std::string name = "kTile" + std::to_string(dim) + (t == 0 ? "Barycentric" : "Compact");
+      const auto table =
+          owning(tables::tile_table(dim, t), t == 0 ? Triangulation::barycentric : Triangulation::compact);
+      EXPECT_EQ(hexadecimal(digest(table)), reviewed_digest(name)) << name;
+      for (const int alternative : {0, 1}) {
+        const std::string region = "kRegion" + std::to_string(dim - 1) + (t == 0 ? "Barycentric" : "Compact") +
+                                   (alternative == 0 ? "Low" : "High");
+        EXPECT_EQ(hexadecimal(digest(owning(tables::region_table(dim - 1, t, alternative)))), reviewed_digest(region))
+            << region;
+      }
+    }
+}
+
+/// Changes every `step`-th entry in turn and expects another digest each time.
+template <class Table, class Entries, class Change>
+void expect_noticed(Table& table, Entries& entries, const char* what, const Change& change) {
+  const std::uint64_t good = digest(table);
+  const std::size_t step = std::max<std::size_t>(1, entries.size() / 12);
+  for (std::size_t at = 0; at < entries.size(); at += step) {
+    const auto before = entries[at];
+    change(entries[at]);
+    EXPECT_NE(digest(table), good) << what << ", entry " << at;
+    entries[at] = before;
+  }
+  EXPECT_EQ(digest(table), good);
+}
+
 TEST(Tables, OneFlippedEntryIsNoticed) {
+  const auto flip = [](auto& entry) { entry ^= 1; };
+  for (const int dim : {2, 3, 4})
+    for (const int t : {0, 1}) {
+      TileTables table =
+          owning(tables::tile_table(dim, t), t == 0 ? Triangulation::barycentric : Triangulation::compact);
+      expect_noticed(table, table.list_of, "list_of", flip);
+      expect_noticed(table, table.element_of, "element_of", flip);
+      expect_noticed(table, table.slot_swaps, "slot_swaps", flip);
+      expect_noticed(table, table.permutations, "permutations", flip);
+      expect_noticed(table, table.reverses, "reverses", flip);
+      expect_noticed(table, table.simplices, "simplices", flip);
+      expect_noticed(table, table.side_masks, "side_masks", flip);
+      expect_noticed(table, table.lists, "first_simplex", [](tables::List& list) { ++list.first_simplex; });
+      expect_noticed(table, table.lists, "simplex_count", [](tables::List& list) { ++list.simplex_count; });
+      expect_noticed(table, table.lists, "cone_vertices", [](tables::List& list) { ++list.cone_vertices; });
+      expect_noticed(table, table.lists, "side_vertices", [](tables::List& list) { ++list.side_vertices; });
+      expect_noticed(table, table.lists, "first_side", [](tables::List& list) { ++list.first_side; });
+      for (const int alternative : {0, 1}) {
+        RegionTables region = owning(tables::region_table(dim - 1, t, alternative));
+        expect_noticed(region, region.simplices, "region simplices", flip);
+        expect_noticed(region, region.masks, "masks", flip);
+        expect_noticed(region, region.lists, "first", [](tables::RegionList& list) { ++list.first_simplex; });
+        expect_noticed(region, region.lists, "count", [](tables::RegionList& list) { ++list.simplex_count; });
+        expect_noticed(region, region.lists, "own", [](tables::RegionList& list) { ++list.own_vertices; });
+        expect_noticed(region, region.lists, "mask", [](tables::RegionList& list) { ++list.first_mask; });
+      }
+    }
+}
+
+/// What a flipped entry does to contours is seen by the test that decodes them.
+TEST(Tables, AFlippedSimplexIsADifferentContour) {
   const tables::TileTable& good = tables::tile_table(3, 1);
   std::vector<std::uint8_t> simplices(good.simplices, good.simplices + std::size_t{good.simplex_count} * 3);
   tables::TileTable bad = good;
@@ -106,14 +232,6 @@ TEST(Tables, ACompactTriangulationIsRefusedByClassBecauseItDoesNotMoveWithTheSym
   std::vector<TileContour> contours;
   for (Signature s = 0; s <= builder.tile().full(); ++s) contours.push_back(builder.build(s));
   EXPECT_ANY_THROW(make_tile_tables(builder, contours, Layout::by_class));
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  EXPECT_TRUE(in) << path;
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 TEST(Manifest, IsWhatTheBuildGenerated) {
