@@ -63,9 +63,9 @@ void set_tile(Options& options, std::string_view given) {
 }
 
 void set_alternative(Options& options, std::string_view given) {
-  using Pair = std::pair<std::string_view, AlternativeChoice>;
-  options.alternative = choose("--alternative", given,
-                               std::array{Pair{"low", AlternativeChoice::Low}, Pair{"high", AlternativeChoice::High}});
+  using Pair = std::pair<std::string_view, Alternative>;
+  options.alternative =
+      choose("--alternative", given, std::array{Pair{"low", Alternative::low}, Pair{"high", Alternative::high}});
 }
 
 void set_layout(Options& options, std::string_view given) {

@@ -4,10 +4,12 @@
 #include "tegl/gen/commands.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -92,29 +94,73 @@ void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
   if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);
 }
 
-/// Writes every file beside its target first and renames at the end: a failure leaves no half-written table.
-void write_files(const std::filesystem::path& folder, const std::vector<EmittedFile>& files) {
+/// Seconds since the last call.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// A file to write, and the seconds that its text took.
+struct TimedFile {
+  EmittedFile file;
+  double seconds;
+};
+
+/// The files of all languages, each once.
+std::vector<TimedFile> emit_all(const TableSet& set, const std::vector<Language>& languages) {
+  std::vector<TimedFile> files;
+  for (const Language language : languages) {
+    Stopwatch watch;
+    std::vector<EmittedFile> emitted = emit(set, language);
+    const double seconds = watch.lap();
+    double bytes = 0;
+    for (const EmittedFile& file : emitted) bytes += static_cast<double>(file.text.size());
+    for (EmittedFile& file : emitted) {
+      // The words for a shader's storage buffer are the same file in GLSL and WGSL.
+      const auto same = [&file](const TimedFile& other) { return other.file.name == file.name; };
+      if (std::any_of(files.begin(), files.end(), same)) continue;
+      const double share = static_cast<double>(file.text.size()) / bytes;  // texts take time by their length
+      files.push_back({std::move(file), seconds * share});
+    }
+  }
+  return files;
+}
+
+/// Writes every file beside its target first and renames at the end: a failure leaves no half-written table. Adds the
+/// time that writing takes.
+void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& files) {
+  const auto part = [&](const TimedFile& timed) { return folder / (timed.file.name + ".part"); };
   const auto fail = [&](const std::filesystem::path& path, const std::string& why) {
-    for (const EmittedFile& file : files) {
+    for (const TimedFile& timed : files) {
       std::error_code ignored;
-      std::filesystem::remove(folder / (file.name + ".part"), ignored);
+      std::filesystem::remove(part(timed), ignored);
     }
     throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", path.string(), why));
   };
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail(folder, "cannot make the folder: " + error.message());
-  for (const EmittedFile& file : files) {
-    std::filesystem::create_directories((folder / file.name).parent_path(), error);
-    if (error) fail(folder / file.name, "cannot make its folder: " + error.message());
-    std::ofstream out(folder / (file.name + ".part"), std::ios::binary);
-    out.write(file.text.data(), static_cast<std::streamsize>(file.text.size()));
+  for (TimedFile& timed : files) {
+    const auto target = folder / timed.file.name;
+    std::filesystem::create_directories(target.parent_path(), error);
+    if (error) fail(target, "cannot make its folder: " + error.message());
+    if (std::filesystem::is_directory(target, error)) fail(target, "is a directory; expected a file, or nothing");
+    Stopwatch watch;
+    std::ofstream out(part(timed), std::ios::binary);
+    out.write(timed.file.text.data(), static_cast<std::streamsize>(timed.file.text.size()));
     out.close();
-    if (!out) fail(folder / file.name, "cannot be written");
+    if (!out) fail(target, "cannot be written");
+    timed.seconds += watch.lap();
   }
-  for (const EmittedFile& file : files) {
-    std::filesystem::rename(folder / (file.name + ".part"), folder / file.name, error);
-    if (error) fail(folder / file.name, error.message());
+  for (const TimedFile& timed : files) {
+    std::filesystem::rename(part(timed), folder / timed.file.name, error);
+    if (error) fail(folder / timed.file.name, error.message());
   }
 }
 
@@ -122,7 +168,7 @@ void write_files(const std::filesystem::path& folder, const std::vector<EmittedF
 
 int run_classes(const Options& options) {
   const Lattice lattice(options.tile, options.dim);
-  const Alternative alternative = options.alternative == AlternativeChoice::Low ? Alternative::low : Alternative::high;
+  const Alternative alternative = options.alternative;
   const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
   const auto elements = symmetries(lattice.tile(options.dim), GroupKind::Full, false);
   const Transversal classes = transversal(lattice.tile(options.dim), elements);
@@ -187,9 +233,10 @@ int run_certify(const Options& options) {
 }
 
 int run_cases(const Options& options) {
-  const auto files = emit_cases(options.dim);
+  std::vector<TimedFile> files;
+  for (EmittedFile& file : emit_cases(options.dim)) files.push_back({std::move(file), 0.0});
   write_files(options.out, files);
-  fmt::print("wrote {} and {} pictures\n", files.front().name, files.size() - 1);
+  fmt::print("wrote {} and {} pictures\n", files.front().file.name, files.size() - 1);
   return 0;
 }
 
@@ -214,17 +261,14 @@ int run_out(const Options& options) {
     request.layout = [layout](Triangulation) { return layout; };
     request.command += fmt::format(" --layout {}", layout_name(layout));
   }
+  Stopwatch watch;
   const TableSet set = make_table_set(request);
   for (const CertifiedFigures& f : set.figures) print_figures(options.tile, options.dim, f);
-  std::vector<EmittedFile> files;
-  for (const Language language : options.languages)
-    for (EmittedFile& file : emit(set, language)) {
-      // The words for a shader's storage buffer are the same file in GLSL and WGSL.
-      const auto same = [&file](const EmittedFile& other) { return other.name == file.name; };
-      if (std::none_of(files.begin(), files.end(), same)) files.push_back(std::move(file));
-    }
+  fmt::print("made and certified in {:.2f} s\n", watch.lap());
+  std::vector<TimedFile> files = emit_all(set, options.languages);
   write_files(options.out, files);
-  for (const EmittedFile& file : files) fmt::print("wrote {}: {} bytes\n", file.name, file.text.size());
+  for (const auto& [file, seconds] : files)
+    fmt::print("wrote {}: {} bytes in {:.3f} s\n", file.name, file.text.size(), seconds);
   return 0;
 }
 

@@ -3,6 +3,7 @@
 // The program `gen` as its users meet it: run as a process, judged by exit status, output and messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -408,6 +409,33 @@ TEST(GenCli, OutWritesTheSameBytesWhereverAndHoweverOften) {
     EXPECT_EQ(text.find(folder.file("")), std::string::npos) << name << " names the folder";
   }
   EXPECT_EQ(first, contents(folder.file("a/second")));
+}
+
+TEST(GenCli, OutSaysHowLargeEachFileIsAndHowLongItTook) {
+  const Folder folder;
+  const Outcome run = gen({"--dim", "2", "--out", folder.file("out")});
+  for (const auto& [name, text] : contents(folder.file("out")))
+    EXPECT_THAT(run.out, testing::ContainsRegex("wrote " + name + ": " + std::to_string(text.size()) +
+                                                " bytes in [0-9]+\\.[0-9]+ s"));
+}
+
+TEST(GenCli, OutOf4dOnOneProcessorIsWhatTheBuildWroteOnAll) {
+  if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
+  const Folder folder;
+  cpu_set_t before, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(before), &before), 0);
+  CPU_ZERO(&one);
+  for (int cpu = 0; CPU_COUNT(&one) == 0; ++cpu)
+    if (CPU_ISSET(cpu, &before)) CPU_SET(cpu, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);  // inherited by gen
+  const Outcome run = gen({"--dim", "4", "--out", folder.file("one")});
+  ASSERT_EQ(sched_setaffinity(0, sizeof(before), &before), 0);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto built = contents(TEGL_TABLE_DIR);
+  for (const auto& [name, text] : contents(folder.file("one"))) {
+    ASSERT_TRUE(built.contains(name)) << name;
+    EXPECT_TRUE(built.at(name) == text) << name;
+  }
 }
 
 TEST(GenCli, OutHonoursTriangulationAndLayout) {

@@ -25,9 +25,6 @@ enum class Command {
   Cases,        ///< --cases DIR, dim 2 ... 4
 };
 
-/// How ambiguous faces are resolved: low or high corners stay connected (theory: the consistent method).
-enum class AlternativeChoice { Low, High };
-
 /// How emitted tables are stored.
 enum class LayoutChoice {
   Class,  ///< one list per symmetry class and a group element per signature
@@ -48,7 +45,7 @@ struct Options {
   bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3
   bool list = false;                                             ///< --list; --transversal only
   bool json = false;                                             ///< --json; all but --out, and not with --list
-  AlternativeChoice alternative = AlternativeChoice::Low;        ///< --alternative; --classes only
+  Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
   std::string out;                                               ///< DIR of --out and --cases
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
   TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
