@@ -67,8 +67,11 @@ HWY_INLINE bool classify(const T* samples, std::ptrdiff_t stride, std::size_t co
     const T* block = samples + static_cast<std::ptrdiff_t>(first) * stride;
     T gathered[kWordBits];
     if (stride != 1 || length < kWordBits) {
-      for (std::size_t i = 0; i < length; ++i) gathered[i] = block[static_cast<std::ptrdiff_t>(i) * stride];
-      std::fill(gathered + length, gathered + kWordBits, T{});
+      if (stride == 1)
+        std::memcpy(gathered, block, length * sizeof(T));
+      else
+        for (std::size_t i = 0; i < length; ++i) gathered[i] = block[static_cast<std::ptrdiff_t>(i) * stride];
+      std::memset(gathered + length, 0, (kWordBits - length) * sizeof(T));
       block = gathered;
     }
     const Word mask = length == kWordBits ? ~Word{0} : (Word{1} << length) - 1;

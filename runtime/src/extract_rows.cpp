@@ -272,11 +272,57 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
   }
 }
 
+#if HWY_TARGET != HWY_SCALAR
+
+/// The four numbers of a 2D tile, and how they move on, in a register each.
+void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) {
+  struct Moves {
+    alignas(16) std::array<std::array<Index, 4>, 16> moved{}, advance{};
+  };
+  static constexpr auto kMoves = [] {
+    Moves moves;
+    constexpr std::uint32_t kNext = next_edges<2>();
+    for (unsigned s = 0; s < 16; ++s) {
+      const std::uint32_t edges = critical_edges<2>(s);
+      const std::uint32_t moved = edges << 1 & kNext;
+      for (unsigned e = 0; e < 4; ++e) {
+        moves.moved[s][e] = moved >> e & 1u;
+        moves.advance[s][e] = ((edges & ~kNext) | moved) >> e & 1u;
+      }
+    }
+    return moves;
+  }();
+  const hn::FixedTag<Index, 4> d;
+  const hn::FixedTag<std::uint8_t, 16> bytes;
+  const std::uint32_t* const entries = table.entries();
+  auto first = hn::LoadU(d, row.first.data());
+  TileOutput<2> last = row;
+  // A segment too many takes the place of the next tile's, which comes later: so not for the last tile.
+  for (std::size_t i = 0; i + 1 < row.active; ++i) {
+    const unsigned signature = row.signatures[i];
+    const auto ids = hn::Add(first, hn::Load(d, kMoves.moved[signature].data()));
+    const auto chosen = hn::LoadU(bytes, table.segment_bytes(signature, row.flip));
+    hn::StoreU(hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(bytes, ids), chosen)), d, last.out->data());
+    last.out += entries[signature] & RowTable::kCountMask;
+    first = hn::Add(first, hn::Load(d, kMoves.advance[signature].data()));
+  }
+  if (row.active == 0) return;
+  hn::StoreU(first, d, last.first.data());
+  last.signatures += row.active - 1;
+  last.active = 1;
+  write_generic<2>(last, table, own);
+}
+
+#endif
+
 template <int N>
 HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
 #if HWY_TARGET <= HWY_AVX3
   if constexpr (N >= 3)
     return row.flip ? write_lanes<N, true>(row, table, own) : write_lanes<N, false>(row, table, own);
+#endif
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (N == 2) return write_segments(row, table, own);
 #endif
   return write_generic<N>(row, table, own);
 }
@@ -334,6 +380,18 @@ RowTable::RowTable(const tables::TileTable& table)
     const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
     entries_[s] = list.first_simplex << kFirstShift | (own ? kOwnFlag : 0) | list.simplex_count;
   }
+  if (table.dim == 2) choose_segment_bytes();
+}
+
+void RowTable::choose_segment_bytes() {
+  for (unsigned s = 0; s < 16; ++s)
+    for (unsigned v = 0; v < 2 * (entries_[s] & kCountMask); ++v) {
+      const unsigned edge = simplices_[2 * (entries_[s] >> kFirstShift) + v];
+      for (unsigned byte = 0; byte < 4; ++byte) {
+        segment_bytes_[0][s][4 * v + byte] = static_cast<std::uint8_t>(4 * edge + byte);
+        segment_bytes_[1][s][4 * (v ^ 1) + byte] = static_cast<std::uint8_t>(4 * edge + byte);
+      }
+    }
 }
 
 template <>

@@ -41,6 +41,11 @@ class RowTable {
   [[nodiscard]] const std::uint32_t* entries() const noexcept { return entries_.data(); }
   /// dim local vertices each.
   [[nodiscard]] const std::uint8_t* simplices() const noexcept { return simplices_; }
+  /// dim = 2: for each signature, which bytes of its edges' four vertex numbers make two segments (those of the second
+  /// mean nothing where there is but one); in the order of the table, or against it.
+  [[nodiscard]] const std::uint8_t* segment_bytes(unsigned signature, bool flip) const noexcept {
+    return segment_bytes_[flip ? 1 : 0][signature].data();
+  }
   /// The tile's own vertices.
   [[nodiscard]] unsigned own_vertices(unsigned signature) const noexcept {
     const tables::List& list = table_->lists[table_->list_of[signature]];
@@ -48,9 +53,12 @@ class RowTable {
   }
 
  private:
+  void choose_segment_bytes();
+
   const tables::TileTable* table_;
   std::vector<std::uint32_t> entries_;
   const std::uint8_t* simplices_;
+  std::array<std::array<std::array<std::uint8_t, 16>, 16>, 2> segment_bytes_{};
 };
 
 /// A row of tiles, to be counted.
