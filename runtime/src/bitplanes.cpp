@@ -21,17 +21,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A mask's lanes as bits, lane 0 lowest.
 template <class D, class M>
 HWY_INLINE Word bits_of(D d, M mask) {
-#if HWY_TARGET <= HWY_AVX3
-  (void)d;
-  return static_cast<Word>(mask.raw);
-#else
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  Word word = 0;
-  std::memcpy(&word, bytes, sizeof(word));
-  if constexpr (hn::MaxLanes(D()) < kWordBits) word &= (Word{1} << hn::MaxLanes(D())) - 1;
-  return word;
-#endif
+  constexpr std::size_t kLanes = hn::MaxLanes(D());
+  using Bits = std::conditional_t<
+      kLanes <= 8, std::uint8_t,
+      std::conditional_t<kLanes == 16, std::uint16_t, std::conditional_t<kLanes == 32, std::uint32_t, std::uint64_t>>>;
+  Bits bits = 0;
+  hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
 }
 
 /// 64 adjacent samples against the threshold. `missing` gets the NaNs.
@@ -41,19 +37,25 @@ HWY_INLINE Word high_word(const T* samples, T threshold, Word& missing) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const auto limit = hn::Set(d, threshold);
   Word word = 0;
-  Word nans = 0;
-  for (std::size_t i = 0; i < kWordBits; i += kLanes) {
-    const auto values = hn::LoadU(d, samples + i);
-    if constexpr (std::is_floating_point_v<T>) {
+  missing = 0;
+  if constexpr (std::is_floating_point_v<T>) {
+    auto none_missing = hn::Eq(limit, limit);
+    for (std::size_t i = 0; i < kWordBits; i += kLanes) {
+      const auto values = hn::LoadU(d, samples + i);
       word |= bits_of(d, hn::Ge(values, limit)) << i;
-      nans |= bits_of(d, hn::Not(hn::Eq(values, values))) << i;  // Ne is false for NaN on some sets
-    } else {
-      word |= bits_of(d, hn::Lt(values, limit)) << i;
+      none_missing = hn::And(none_missing, hn::Eq(values, values));
     }
+    if (HWY_UNLIKELY(!hn::AllTrue(d, none_missing)))
+      for (std::size_t i = 0; i < kWordBits; i += kLanes) {
+        const auto values = hn::LoadU(d, samples + i);
+        missing |= bits_of(d, hn::Not(hn::Eq(values, values))) << i;  // Ne is false for NaN on some sets
+      }
+    return word;
+  } else {
+    for (std::size_t i = 0; i < kWordBits; i += kLanes)
+      word |= bits_of(d, hn::Lt(hn::LoadU(d, samples + i), limit)) << i;
+    return ~word;
   }
-  if constexpr (std::is_integral_v<T>) word = ~word;
-  missing = nans;
-  return word;
 }
 
 template <class T>

@@ -246,13 +246,32 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
 
 #endif
 
+/// Adds 1 to the numbers where a bit is set, into `to`.
+template <std::size_t Count>
+HWY_INLINE void add_bits(const Index* numbers, std::uint32_t bits, Index* to) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t e = 0; e < Count; ++e) to[e] = numbers[e] + (bits >> e & 1u);
+#else
+  const hn::CappedTag<Index, 8> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  alignas(32) static constexpr Index kBits[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+  const auto bit = hn::Load(d, kBits);
+  for (std::size_t e = 0; e < Count; e += kLanes) {
+    const auto chosen = hn::Eq(hn::And(hn::Set(d, bits >> e), bit), bit);
+    // A mask as a number is -1.
+    const auto minus = hn::VecFromMask(d, chosen);
+    hn::Store(hn::Sub(hn::Load(d, numbers + e), minus), d, to + e);
+  }
+#endif
+}
+
 template <int N>
 HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
   constexpr std::uint32_t kNext = next_edges<N>();
-  constexpr unsigned kEdges = TileOutput<N>::kEdges;
+  constexpr unsigned kEdges = (TileOutput<N>::kEdges + 7) / 8 * 8;  // whole registers
   const std::uint32_t* const entries = table.entries();
   const std::uint8_t* const simplices = table.simplices();
-  alignas(64) Index first[kEdges];
+  alignas(64) Index first[kEdges] = {};
   alignas(64) Index ids[kEdges];
   std::copy(row.first.begin(), row.first.end(), first);
   auto* out = row.out;
@@ -261,14 +280,13 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
     const std::uint32_t edges = edges_of<N>(signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[signature];
-    for (unsigned e = 0; e < kEdges; ++e) ids[e] = first[e] + (moved >> e & 1u);
+    add_bits<kEdges>(first, moved, ids);
     if ((entry & RowTable::kOwnFlag) != 0)
       out = own.write(own.self, signature, i, ids, out);
     else
       out = write_plain<N>(simplices + std::size_t{entry >> RowTable::kFirstShift} * N, entry & RowTable::kCountMask,
                            row.flip, ids, out);
-    const std::uint32_t advance = (edges & ~kNext) | moved;
-    for (unsigned e = 0; e < kEdges; ++e) first[e] += advance >> e & 1u;
+    add_bits<kEdges>(first, (edges & ~kNext) | moved, first);
   }
 }
 
