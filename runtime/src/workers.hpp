@@ -12,6 +12,20 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+// The thread sanitizer does not see how the installed TBB, which is not built for it, orders things: there, plain
+// threads do the same work in the same parts.
+#ifdef __SANITIZE_THREAD__
+#define TEGL_PLAIN_THREADS
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define TEGL_PLAIN_THREADS
+#endif
+#endif
+#ifdef TEGL_PLAIN_THREADS
+#include <atomic>
+#include <thread>
+#endif
+
 #include "bitplanes.hpp"
 #include "extract_generate.hpp"
 
@@ -41,11 +55,23 @@ class Workers {
   void for_range(std::size_t count, std::size_t grain, const Work& work) {
     if (count == 0) return;
     if (alone_ || count <= grain) return work(std::size_t{0}, count, own_.local());
+#ifdef TEGL_PLAIN_THREADS
+    std::atomic<std::size_t> next = 0;
+    const auto take_parts = [&] {
+      for (std::size_t from; (from = next.fetch_add(grain)) < count;)
+        work(from, std::min(count, from + grain), own_.local());
+    };
+    std::vector<std::thread> others(this->count() - 1);
+    for (std::thread& other : others) other = std::thread(take_parts);
+    take_parts();
+    for (std::thread& other : others) other.join();
+#else
     arena_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, count, grain),
           [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end(), own_.local()); });
     });
+#endif
   }
 
  private:
