@@ -39,18 +39,20 @@ def side_rows(row: dict) -> list[str]:
     text = []
     for i, (name, side) in enumerate(row["sides"].items()):
         stages = ", ".join(ms(side["stages"][s]) for s in ("classify", "find", "generate")) if name.startswith("tegl") else ""
+        own = row["sides"].get("tegl/" + name.split("/")[1])
+        ratio = f"{side['least'] / own['least']:.1f}×" if own and own is not side else ""
         floor = ms(side["floor"]) if "floor" in side else ""
         extra = f"{100 * side['extra_bytes'] / row['input_bytes']:.1f} %" if "extra_bytes" in side else ""
         faults = f"{side['page_faults']:.0f}" if "page_faults" in side else ""
         text.append(f"| {row['name'] if i == 0 else ''} | {counts_text(row) if i == 0 else ''} | {name.replace('/', ', ')} | "
-                    f"{ms(side['median'])} | {ms(side['least'])} | {stages} | {floor} | {faults} | {extra} |")
+                    f"{ms(side['median'])} | {ms(side['least'])} | {ratio} | {stages} | {floor} | {faults} | {extra} |")
     return text
 
 
 def side_by_side(result: dict) -> list[str]:
     """All figures, then what was to be reached."""
-    text = ["| field | simplices | side, threads | median ms | least ms | of which classify, find, generate | memory's floor, "
-            "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|"]
+    text = ["| field | simplices | side, threads | median ms | least ms | of tegl's | of which classify, find, generate | memory's floor, "
+            "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|---|"]
     for row in result["rows"]:
         text += side_rows(row)
     if any(row["verdicts"] for row in result["rows"]):
