@@ -18,20 +18,40 @@ concept Threaded = requires(Options options) {
 };
 inline constexpr bool kHasThreads = Threaded<ExtractOptions>;
 
+/// Whether it has normals at the vertices: an option to ask for them.
+template <class Options>
+concept WithNormals = requires(Options options) {
+  options.normals = true;
+};
+inline constexpr bool kHasNormals = WithNormals<ExtractOptions>;
+
+/// The options with normals, or without. Throws InvalidArgument where the library has none.
+template <class Options = ExtractOptions>
+Options with_normals(Options options, bool normals) {
+  if constexpr (WithNormals<Options>)
+    options.normals = normals;
+  else if (normals)
+    throw Error(ErrorCode::InvalidArgument, "the library has no normals");
+  return options;
+}
+
 /// The options with a number of threads. Throws InvalidArgument for more than one where the library has no threads.
 template <class Options = ExtractOptions>
 Options with_threads(Options options, int threads) {
   if constexpr (Threaded<Options>)
-    options.threads = threads;
+    options.threads = static_cast<decltype(options.threads)>(threads);
   else if (threads != 1)
     throw Error(ErrorCode::InvalidArgument, std::to_string(threads) + " threads; the library has one");
   return options;
 }
 
-/// Bytes of a contour's vertices and simplices.
+/// Bytes of a contour's vertices, normals and simplices.
 template <int N, class Real>
 std::uint64_t contour_bytes(const Contour<N, Real>& contour) {
-  return contour.vertices.size() * sizeof(typename Contour<N, Real>::Vertex) +
+  std::uint64_t normals = 0;
+  if constexpr (requires { contour.normals.size(); })
+    normals = contour.normals.size() * sizeof(typename Contour<N, Real>::Vertex);
+  return normals + contour.vertices.size() * sizeof(typename Contour<N, Real>::Vertex) +
          contour.simplices.size() * sizeof(typename Contour<N, Real>::Simplex);
 }
 

@@ -16,11 +16,10 @@ namespace {
 
 template <int N>
 void run_tegl(const float* data, std::size_t samples, double isovalue, int threads, int normals, SideResult& result) {
-  if (normals != 0) throw std::runtime_error("tegl has no normals");
   std::array<std::size_t, N> sizes;
   sizes.fill(samples);
   const Image<float, N> image(data, Grid<N>::unit(sizes));
-  const ExtractOptions options = with_threads(ExtractOptions{}, threads);
+  const ExtractOptions options = with_normals(with_threads(ExtractOptions{}, threads), normals != 0);
   ExtractStats stats;
   const auto contour = measured(result, [&] { return extract(image, isovalue, options, &stats); });
   result.vertices = contour.vertices.size();
@@ -44,7 +43,7 @@ std::string& last_error() {
 
 using namespace tegl::bench;
 
-int side_has_normals() { return 0; }
+int side_has_normals() { return kHasNormals ? 1 : 0; }
 const char* side_error() { return last_error().c_str(); }
 
 int side_memory_rates(int threads, double* read, double* fresh_write) {
