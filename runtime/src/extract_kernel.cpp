@@ -67,16 +67,17 @@ bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
 /// the next, and needs little memory beside the image.
 template <int N>
 std::size_t batch_size(const RowShape<N>& shape, std::size_t sample_bytes, std::size_t threads) {
-  constexpr std::size_t kSamplesPerThread = std::size_t{1} << 18;
+  // Several threads meet after every pass, which takes longer than the way from one cache to the next.
+  const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
   constexpr double kShare = 0.04;  // of the image
   const std::size_t layer = shape.rows() * shape.size(0);
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
   const std::size_t row_bytes = 2 * shape.size(0) + 4 * (8 + 3 * N) * shape.pitch() + 64;  // signatures, bits, ranks
   // Two layers more than slabs are in memory. Where little is gained from it, a small image may take more.
   const double most = std::max(kShare * image / static_cast<double>(shape.rows() * row_bytes) - 2.0,
-                               static_cast<double>(kSamplesPerThread / 16 / layer));
+                               static_cast<double>(samples_per_thread / 16 / layer));
   const std::size_t slabs =
-      std::min(threads * kSamplesPerThread / layer, static_cast<std::size_t>(std::max(1.0, most)));
+      std::min(threads * samples_per_thread / layer, static_cast<std::size_t>(std::max(1.0, most)));
   return std::clamp<std::size_t>(slabs, 1, shape.layers() - 1);
 }
 
