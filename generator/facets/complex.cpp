@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Recognition of balls and spheres: pseudomanifold, links by recursion, collapse.
+#include "tegl/facets/complex.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <utility>
+
+namespace tegl::facets {
+
+namespace {
+
+/// All faces, of every dimension: faces[d] has those of d + 1 vertices, sorted.
+std::vector<Simplices> all_faces(const Simplices& simplices) {
+  std::vector<Simplices> faces(static_cast<std::size_t>(size(simplices.front())));
+  faces.back() = simplices;
+  std::sort(faces.back().begin(), faces.back().end());
+  for (std::size_t d = faces.size() - 1; d > 0; --d) {
+    for (const Simplex& s : faces[d])
+      for (int i = 0; i <= static_cast<int>(d); ++i) faces[d - 1].push_back(without(s, i));
+    std::sort(faces[d - 1].begin(), faces[d - 1].end());
+    faces[d - 1].erase(std::unique(faces[d - 1].begin(), faces[d - 1].end()), faces[d - 1].end());
+  }
+  return faces;
+}
+
+int euler_of(const std::vector<Simplices>& faces) {
+  int sum = 0;
+  for (std::size_t d = 0; d < faces.size(); ++d) sum += (d % 2 == 0 ? 1 : -1) * static_cast<int>(faces[d].size());
+  return sum;
+}
+
+std::size_t index_in(const Simplices& sorted, const Simplex& s) {
+  return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), s) - sorted.begin());
+}
+
+/// The faces of a complex as a graph of incidences, for collapses.
+class Collapse {
+ public:
+  explicit Collapse(const std::vector<Simplices>& faces) : start_(faces.size()) {
+    std::size_t total = 0;
+    for (std::size_t d = 0; d < faces.size(); ++d) start_[d] = total, total += faces[d].size();
+    down_.resize(total), up_.resize(total);
+    top_ = start_.back();
+    for (std::size_t d = 1; d < faces.size(); ++d)
+      for (std::size_t j = 0; j < faces[d].size(); ++j)
+        for (int i = 0; i <= static_cast<int>(d); ++i) {
+          const std::size_t face = start_[d - 1] + index_in(faces[d - 1], without(faces[d][j], i));
+          down_[start_[d] + j].push_back(face);
+          up_[face].push_back(start_[d] + j);
+        }
+  }
+
+  /// Does the complex, without its first top simplex if `open`, collapse to a point in one of some seeded tries?
+  [[nodiscard]] bool to_a_point(bool open) const {
+    constexpr unsigned kTries = 8;
+    for (unsigned seed = 0; seed < kTries; ++seed)
+      if (one_try(open, seed) == 1) return true;
+    return false;
+  }
+
+ private:
+  /// How many faces remain when none is free any more.
+  [[nodiscard]] std::size_t one_try(bool open, unsigned seed) const {
+    std::vector<std::uint16_t> cofaces(down_.size());
+    std::vector<bool> gone(down_.size());
+    std::vector<std::size_t> free;
+    std::size_t left = down_.size();
+    for (std::size_t f = 0; f < down_.size(); ++f) cofaces[f] = static_cast<std::uint16_t>(up_[f].size());
+    const auto remove = [&](std::size_t f) {
+      gone[f] = true, --left;
+      for (const std::size_t g : down_[f])
+        if (--cofaces[g] == 1) free.push_back(g);
+    };
+    for (std::size_t f = 0; f < down_.size(); ++f)
+      if (cofaces[f] == 1) free.push_back(f);
+    if (open) remove(top_);
+    std::mt19937 random(seed);
+    while (!free.empty()) {
+      std::swap(free[random() % free.size()], free.back());
+      const std::size_t f = free.back();
+      free.pop_back();
+      if (gone[f] || cofaces[f] != 1) continue;
+      const std::size_t over = *std::find_if(up_[f].begin(), up_[f].end(), [&](std::size_t u) { return !gone[u]; });
+      remove(over);  // in no other face: with one above it, f would be in two
+      remove(f);
+    }
+    return left;
+  }
+
+  std::vector<std::size_t> start_;
+  std::vector<std::vector<std::size_t>> down_, up_;
+  std::size_t top_ = 0;
+};
+
+/// Every face of codimension one in one or two simplices? Gives the vertices of the boundary, and connectedness.
+struct Ridges {
+  bool branching = false;
+  bool connected = true;
+  std::vector<VertexId> boundary_vertices{};  ///< sorted
+};
+
+Ridges ridges_of(const Simplices& simplices) {
+  Ridges result;
+  std::vector<std::pair<Simplex, std::size_t>> ridges;
+  for (std::size_t j = 0; j < simplices.size(); ++j)
+    for (int i = 0; i < size(simplices[j]); ++i) ridges.emplace_back(without(simplices[j], i), j);
+  std::sort(ridges.begin(), ridges.end());
+  std::vector<std::size_t> parent(simplices.size());
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root = [&](std::size_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (std::size_t i = 0; i < ridges.size();) {
+    std::size_t j = i + 1;
+    while (j < ridges.size() && ridges[j].first == ridges[i].first) ++j;
+    if (j - i > 2) result.branching = true;
+    if (j - i == 2) parent[root(ridges[i].second)] = root(ridges[i + 1].second);
+    if (j - i == 1)
+      for (int v = 0; v < size(ridges[i].first); ++v) result.boundary_vertices.push_back(ridges[i].first[v]);
+    i = j;
+  }
+  for (std::size_t j = 1; j < simplices.size(); ++j) result.connected &= root(j) == root(0);
+  auto& b = result.boundary_vertices;
+  std::sort(b.begin(), b.end());
+  b.erase(std::unique(b.begin(), b.end()), b.end());
+  return result;
+}
+
+bool links_are_right(const Simplices& simplices, const Simplices& vertices, const std::vector<VertexId>& boundary) {
+  for (const Simplex& v : vertices) {
+    Simplices link;
+    for (const Simplex& s : simplices)
+      if (const auto at = std::find(s.begin(), s.end(), v[0]); at != s.end())
+        link.push_back(without(s, static_cast<int>(at - s.begin())));
+    const bool on_boundary = std::binary_search(boundary.begin(), boundary.end(), v[0]);
+    if (shape_of(link) != (on_boundary ? Shape::ball : Shape::sphere)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int size(const Simplex& simplex) noexcept {
+  int n = 0;
+  while (n < kMaxVertices && simplex[n] != kNoVertex) ++n;
+  return n;
+}
+
+Simplex without(const Simplex& simplex, int i) noexcept {
+  Simplex rest = simplex;
+  std::copy(simplex.begin() + i + 1, simplex.end(), rest.begin() + i);
+  rest.back() = kNoVertex;
+  return rest;
+}
+
+Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
+  Simplex result;
+  result[0] = vertex;
+  std::copy(simplex.begin(), simplex.end() - 1, result.begin() + 1);
+  return result;
+}
+
+int sort_vertices(Simplex& simplex) noexcept {
+  int sign = 1;
+  for (int i = 1; i < kMaxVertices; ++i)
+    for (int j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) std::swap(simplex[j], simplex[j - 1]), sign = -sign;
+  return sign;
+}
+
+Shape shape_of(const Simplices& simplices) {
+  if (simplices.empty()) return Shape::other;
+  const int vertices = size(simplices.front());
+  if (vertices == 1) return simplices.size() == 1 ? Shape::ball : simplices.size() == 2 ? Shape::sphere : Shape::other;
+  const Ridges ridges = ridges_of(simplices);
+  if (ridges.branching || !ridges.connected) return Shape::other;
+  const bool closed = ridges.boundary_vertices.empty();
+  const std::vector<Simplices> faces = all_faces(simplices);
+  const int even_sphere = vertices % 2 == 1 ? 2 : 0;
+  if (euler_of(faces) != (closed ? even_sphere : 1)) return Shape::other;
+  if (!links_are_right(simplices, faces[0], ridges.boundary_vertices)) return Shape::other;
+  // Curves and surfaces are known by their Euler characteristic.
+  if (vertices > 3 && !Collapse(faces).to_a_point(closed)) return Shape::other;
+  return closed ? Shape::sphere : Shape::ball;
+}
+
+int euler_characteristic(const Simplices& simplices) { return simplices.empty() ? 0 : euler_of(all_faces(simplices)); }
+
+}  // namespace tegl::facets

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Face lattices from the corner sets of the maximal faces: all intersections, graded, oriented.
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <string>
+
+#include "tegl/facets/facets.hpp"
+
+namespace tegl::facets {
+
+namespace {
+
+/// Do the ascending corners of a come before those of b?
+bool corners_before(Signature a, Signature b) {
+  const Signature differ = a ^ b, lowest = differ & (~differ + 1);
+  const bool in_a = (a & lowest) != 0;
+  // The set without the lowest different corner comes later, unless it has nothing left.
+  const Signature other = in_a ? b : a;
+  const bool other_ends = (other & ~(lowest | (lowest - 1))) == 0;
+  return in_a != other_ends;
+}
+
+std::vector<Signature> intersections(Signature whole, std::span<const Signature> maximal) {
+  std::vector<Signature> sets = {whole};
+  for (std::size_t i = 0; i < sets.size(); ++i)
+    for (const Signature m : maximal)
+      if (const Signature s = sets[i] & m; s != 0 && std::find(sets.begin(), sets.end(), s) == sets.end())
+        sets.push_back(s);
+  return sets;
+}
+
+/// 1 ... 6, or a message.
+int checked(int n, int least) {
+  if (n < least || n > 6)
+    throw std::invalid_argument("dimension " + std::to_string(n) + ", expected " + std::to_string(least) + " to 6");
+  return n;
+}
+
+}  // namespace
+
+FaceLattice::FaceLattice(int dim, std::span<const Signature> maximal_faces) {
+  Signature whole = 0;
+  for (const Signature m : maximal_faces) whole |= m;
+  std::vector<Signature> sets = intersections(whole, maximal_faces);
+  std::sort(sets.begin(), sets.end(), [](Signature a, Signature b) { return std::popcount(a) < std::popcount(b); });
+  for (const Signature s : sets) {
+    Face face{.dim = 0, .corners = s};
+    for (const Face& below : faces_)
+      if (below.corners != s && (below.corners & s) == below.corners) face.dim = std::max(face.dim, below.dim + 1);
+    faces_.push_back(std::move(face));
+  }
+  std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) {
+    return a.dim != b.dim ? a.dim < b.dim : a.corners != b.corners && corners_before(a.corners, b.corners);
+  });
+  if (faces_.empty() || faces_.back().dim != dim)
+    throw std::invalid_argument("faces of a polytope of dimension " +
+                                std::to_string(faces_.empty() ? 0 : faces_.back().dim) + ", expected " +
+                                std::to_string(dim));
+  for (Face& face : faces_) {
+    for (std::uint32_t g = 0; g < faces_.size() && faces_[g].dim < face.dim; ++g)
+      if (faces_[g].dim == face.dim - 1 && (faces_[g].corners & face.corners) == faces_[g].corners)
+        face.faces.push_back(g);
+    orient(face);
+  }
+}
+
+/// The first face has the sign that outward-normal-first gives to cubes and simplices; two faces induce opposite
+/// orientations on the face that they share.
+void FaceLattice::orient(Face& face) {
+  if (face.dim == 0) return;
+  face.signs.assign(face.faces.size(), 0);
+  std::vector<std::size_t> reached = {0};
+  face.signs[0] = face.dim % 2 == 0 ? 1 : -1;
+  if (face.dim == 1 && face.faces.size() == 2) face.signs[1] = 1, reached.push_back(1);
+  for (std::size_t r = 0; face.dim > 1 && r < reached.size(); ++r) {
+    const Face& g = faces_[face.faces[reached[r]]];
+    for (std::size_t j = 0; j < face.faces.size(); ++j) {
+      if (face.signs[j] != 0) continue;
+      const Face& h = faces_[face.faces[j]];
+      for (std::size_t a = 0; a < g.faces.size(); ++a)
+        for (std::size_t b = 0; b < h.faces.size(); ++b)
+          if (g.faces[a] == h.faces[b] && face.signs[j] == 0) {
+            face.signs[j] = -face.signs[reached[r]] * g.signs[a] * h.signs[b];
+            reached.push_back(j);
+          }
+    }
+  }
+  if (reached.size() != face.faces.size())
+    throw std::invalid_argument("a face's boundary that is not connected: no polytope");
+}
+
+FaceLattice FaceLattice::cube(int n) {
+  checked(n, 1);
+  std::vector<Signature> maximal;
+  for (int axis = 0; axis < n; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      Signature corners = 0;
+      for (int v = 0; v < 1 << n; ++v)
+        if (((v >> axis) & 1) == side) corners |= Signature{1} << v;
+      maximal.push_back(corners);
+    }
+  return {n, maximal};
+}
+
+FaceLattice FaceLattice::simplex(int n) {
+  checked(n, 1);
+  std::vector<Signature> maximal;
+  for (int v = 0; v <= n; ++v) maximal.push_back(((Signature{2} << n) - 1) & ~(Signature{1} << v));
+  return {n, maximal};
+}
+
+FaceLattice FaceLattice::octahedron(int n) {
+  checked(n, 2);
+  std::vector<Signature> maximal;
+  for (int sides = 0; sides < 1 << n; ++sides) {
+    Signature corners = 0;
+    for (int axis = 0; axis < n; ++axis) corners |= Signature{1} << (2 * axis + ((sides >> axis) & 1));
+    maximal.push_back(corners);
+  }
+  return {n, maximal};
+}
+
+}  // namespace tegl::facets

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The certificate of a filled tile of any dimension: shown by computation, without trust in how it was filled.
+#pragma once
+
+#include <cstdint>
+
+#include "tegl/facets/facets.hpp"
+
+namespace tegl::facets {
+
+/// Why a filled tile fails. `none`: it passed.
+enum class Fault : std::uint8_t {
+  none,
+  repeated_vertex,   ///< a simplex with a vertex twice, or two equal simplices
+  branching,         ///< an (n-2)-simplex in more than two simplices
+  orientation,       ///< two simplices that induce the same orientation on the one they share
+  boundary,          ///< (1) the boundary is not Sigma, simplex by simplex and with its orientation
+  link,              ///< (2) an interior vertex whose link is not shown to be a sphere, or one on Sigma, a ball
+  in_tile_boundary,  ///< (4) a simplex in the tile's boundary that is not one of Sigma's own
+};
+
+const char* fault_name(Fault fault) noexcept;
+
+/// Checks the contour of one tile of dimension n >= 2: (1) its boundary is Sigma exactly; (2) the link of every
+/// interior vertex is an (n-2)-sphere, of every vertex on Sigma an (n-2)-ball; (3) orientations agree; (4) every
+/// simplex whose vertices all lie in one face of the tile belongs to the contour in that face.
+Fault certify(const FaceLattice& lattice, const TileFacets& tile);
+
+}  // namespace tegl::facets

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Small simplicial complexes, and whether one is a ball or a sphere. From dimension 3 on this is shown, not guessed:
+// links are recognised by recursion, and a combinatorial manifold that collapses to a point is a PL ball
+// (J. H. C. Whitehead, Simplicial spaces, nuclei and m-groups, 1939). What cannot be shown is `other`.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tegl::facets {
+
+/// Number of a vertex within one tile.
+using VertexId = std::uint16_t;
+inline constexpr VertexId kNoVertex = 0xffff;
+inline constexpr int kMaxVertices = 7;
+
+/// The vertices of a simplex; what is not used is kNoVertex, at the end.
+using Simplex = std::array<VertexId, kMaxVertices>;
+inline constexpr Simplex kNoSimplex = {kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex};
+using Simplices = std::vector<Simplex>;
+
+/// Number of vertices.
+int size(const Simplex& simplex) noexcept;
+/// Without vertex i, the others in their order.
+Simplex without(const Simplex& simplex, int i) noexcept;
+/// With `vertex` in front. At most 6 vertices before.
+Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept;
+/// Sorts the vertices; the sign of the permutation.
+int sort_vertices(Simplex& simplex) noexcept;
+
+enum class Shape { other, ball, sphere };
+
+/// The shape of the pure complex of some simplices of equal size, 1 to 6, their vertices sorted, none twice.
+/// `ball` and `sphere` are proved; a sphere of dimension 3 or more that resists some tries to collapse is `other`.
+Shape shape_of(const Simplices& simplices);
+
+/// Euler characteristic of the complex.
+int euler_characteristic(const Simplices& simplices);
+
+}  // namespace tegl::facets

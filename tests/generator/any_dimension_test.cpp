@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tiles of any dimension: certified for all signatures where that is cheap, for seeded ones elsewhere, and held
+// against the builder that the tables come from.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <set>
+#include <tuple>
+
+#include "tegl/facets/certificate.hpp"
+#include "tegl/gen/facets.hpp"
+
+namespace tegl::facets {
+namespace {
+
+std::vector<Choice> random_choices(const FaceLattice& lattice, std::mt19937_64& random) {
+  std::vector<Choice> choices(lattice.faces().size());
+  for (Choice& c : choices) c = static_cast<Choice>(random() % 3);
+  return choices;
+}
+
+void expect_all_certified(const FaceLattice& lattice, Alternative alternative) {
+  const Signature last = lattice.faces()[lattice.tile()].corners;
+  for (Signature s = 0; s <= last; ++s)
+    ASSERT_EQ(certify(lattice, build_facets(lattice, s, {.choices = {}, .alternative = alternative})), Fault::none)
+        << "signature " << s;
+}
+
+void expect_random_certified(const FaceLattice& lattice, int count, unsigned seed) {
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < count; ++i) {
+    const Signature s = random() & lattice.faces()[lattice.tile()].corners;
+    const std::vector<Choice> choices = random_choices(lattice, random);
+    ASSERT_EQ(certify(lattice, build_facets(lattice, s, {choices, Alternative::low})), Fault::none)
+        << "signature " << s << ", number " << i << " of seed " << seed;
+  }
+}
+
+TEST(AnyDimension, CubesHaveTheirFaces) {
+  EXPECT_EQ(FaceLattice::cube(2).faces().size(), 9u);
+  EXPECT_EQ(FaceLattice::cube(4).faces().size(), 81u);
+  EXPECT_EQ(FaceLattice::cube(6).faces().size(), 729u);
+  EXPECT_EQ(FaceLattice::simplex(4).faces().size(), 31u);
+  EXPECT_EQ(FaceLattice::octahedron(3).faces().size(), 27u);
+}
+
+TEST(AnyDimension, EverySquareAndCubeIsCertifiedInBothAlternatives) {
+  for (const int n : {2, 3})
+    for (const Alternative a : {Alternative::low, Alternative::high}) expect_all_certified(FaceLattice::cube(n), a);
+}
+
+TEST(AnyDimension, EverySimplexAndOctahedronIsCertified) {
+  for (int n = 2; n <= 5; ++n) expect_all_certified(FaceLattice::simplex(n), Alternative::low);
+  for (const Alternative a : {Alternative::low, Alternative::high}) expect_all_certified(FaceLattice::octahedron(3), a);
+}
+
+TEST(AnyDimension, EveryCubeIsCertifiedUnderEveryResolutionOfItsSquaresAndItself) {
+  const FaceLattice cube = FaceLattice::cube(3);
+  std::vector<Choice> choices(cube.faces().size());
+  for (Signature s = 0; s < 256; ++s)
+    for (unsigned squares = 0; squares < 64; ++squares)
+      for (const Choice own : {Choice::separate, Choice::low, Choice::high}) {
+        for (unsigned i = 0; i < 6; ++i)
+          choices[cube.faces().back().faces[i]] = ((squares >> i) & 1u) != 0 ? Choice::high : Choice::low;
+        choices.back() = own;
+        ASSERT_EQ(certify(cube, build_facets(cube, s, {choices, Alternative::low})), Fault::none) << s;
+      }
+}
+
+TEST(AnyDimension, SeededTilesWithRandomResolutionsAreCertified) {
+  expect_random_certified(FaceLattice::cube(4), 300, 4);
+  expect_random_certified(FaceLattice::cube(5), 4, 5);
+}
+
+/// A vertex by what a neighbouring tile knows of it as well: its face's corners, kind and number.
+using Name = std::tuple<Signature, VertexKind, std::uint32_t>;
+
+std::multiset<std::set<Name>> named(const FaceLattice& lattice, const TileFacets& tile, const Simplices& simplices,
+                                    const std::vector<int>& corner) {
+  std::multiset<std::set<Name>> result;
+  for (const Simplex& s : simplices) {
+    std::set<Name> names;
+    for (int i = 0; i < size(s); ++i) {
+      const Vertex& v = tile.vertices[s[i]];
+      Signature corners = 0;
+      for (std::size_t c = 0; c < corner.size(); ++c)
+        if (((lattice.faces()[v.face].corners >> c) & 1u) != 0) corners |= Signature{1} << corner[c];
+      names.emplace(corners, v.kind, v.number);
+    }
+    result.insert(names);
+  }
+  return result;
+}
+
+TEST(AnyDimension, ContourInAFaceDependsOnTheFaceAlone) {
+  std::mt19937_64 random(7);
+  for (const int n : {3, 4}) {
+    const FaceLattice lattice = FaceLattice::cube(n), below = FaceLattice::cube(n - 1);
+    std::vector<int> same(std::size_t{1} << n);
+    std::iota(same.begin(), same.end(), 0);
+    for (int i = 0; i < 30; ++i) {
+      const Signature s = random() & lattice.faces().back().corners;
+      const std::vector<Choice> choices = random_choices(lattice, random);
+      const TileFacets tile = build_facets(lattice, s, {choices, Alternative::high});
+      for (std::size_t f = 0; f < tile.in_face.size(); ++f) {
+        const Signature face = lattice.faces()[lattice.faces().back().faces[f]].corners;
+        std::vector<int> corner;
+        Signature own = 0;
+        for (int v = 0; v < 1 << n; ++v) {
+          if (((face >> v) & 1u) == 0) continue;
+          own |= ((s >> v) & 1u) << corner.size();
+          corner.push_back(v);
+        }
+        std::vector<Choice> own_choices;  // the faces of a face keep their order
+        for (std::size_t g = 0; g < choices.size(); ++g)
+          if ((lattice.faces()[g].corners & ~face) == 0) own_choices.push_back(choices[g]);
+        const TileFacets alone = build_facets(below, own, {own_choices, Alternative::high});
+        Simplices simplices;
+        for (const Facet& facet : alone.facets)
+          simplices.insert(simplices.end(), facet.simplices.begin(), facet.simplices.end());
+        ASSERT_EQ(named(lattice, tile, tile.in_face[f], same), named(below, alone, simplices, corner)) << s << " " << f;
+      }
+    }
+  }
+}
+
+TEST(AnyDimension, SpheresOfDimensionThreeAreShownAndConed) {
+  const FaceLattice lattice = FaceLattice::cube(5);
+  std::mt19937_64 random(55);
+  int coned = 0;
+  for (int i = 0; i < 10; ++i) {
+    const Signature s = random() & random() & lattice.faces().back().corners;
+    const TileFacets tile = build_facets(lattice, s);
+    for (const Facet& f : tile.facets) coned += f.filling == Filling::cone ? 1 : 0;
+    ASSERT_EQ(certify(lattice, tile), Fault::none) << "signature " << s;
+  }
+  EXPECT_GT(coned, 0);
+}
+
+TEST(AnyDimension, BoundariesOfFacetsAreThoseOfTheTableBuilder) {
+  for (const int n : {2, 3, 4})
+    for (const bool high : {false, true}) {
+      const FaceLattice lattice = FaceLattice::cube(n);
+      const gen::CubeLattice table_lattice(n);
+      const gen::ContourBuilder builder(table_lattice, n, high ? gen::Alternative::high : gen::Alternative::low,
+                                        gen::Triangulation::barycentric);
+      const Signature step = n == 4 ? 37 : 1;
+      for (Signature s = 0; s < Signature{1} << (1 << n); s += step) {
+        const Resolution resolution{.choices = {}, .alternative = high ? Alternative::high : Alternative::low};
+        std::vector<int> ours, theirs;
+        for (const Facet& f : build_facets(lattice, s, resolution).facets) ours.push_back(f.boundary_euler);
+        for (const gen::Facet& f : builder.build(static_cast<gen::Signature>(s)).facets)
+          theirs.push_back(f.boundary_euler);
+        ASSERT_THAT(ours, testing::UnorderedElementsAreArray(theirs)) << n << "D, signature " << s;
+      }
+    }
+}
+
+TEST(AnyDimension, ATorusIsFilledFromTheSideAndCertified) {
+  const FaceLattice tesseract = FaceLattice::cube(4);
+  for (const Signature s : {1910u, 6076u, 28662u}) {
+    const TileFacets tile = build_facets(tesseract, s);
+    EXPECT_TRUE(std::any_of(tile.facets.begin(), tile.facets.end(),
+                            [](const Facet& f) { return f.filling == Filling::side && f.boundary_euler == 0; }));
+    EXPECT_EQ(certify(tesseract, tile), Fault::none);
+  }
+}
+
+TEST(AnyDimension, WrongFillingsFailEachInItsWay) {
+  const FaceLattice cube = FaceLattice::cube(3);
+  const TileFacets right = build_facets(cube, 15);
+  ASSERT_EQ(certify(cube, right), Fault::none);
+  TileFacets wrong = right;
+  wrong.facets[0].simplices[0][0] = wrong.facets[0].simplices[0][1];
+  EXPECT_EQ(certify(cube, wrong), Fault::repeated_vertex);
+  wrong = right;
+  std::swap(wrong.facets[0].simplices[0][0], wrong.facets[0].simplices[0][1]);
+  EXPECT_EQ(certify(cube, wrong), Fault::orientation);
+  wrong = right;
+  for (Simplex& s : wrong.facets[0].simplices) std::swap(s[0], s[1]);
+  EXPECT_EQ(certify(cube, wrong), Fault::boundary);
+  wrong = right;
+  wrong.facets[0].simplices.pop_back();
+  EXPECT_EQ(certify(cube, wrong), Fault::boundary);
+  wrong = right;
+  Simplex more = wrong.facets[0].simplices[0];
+  for (const VertexId extra : {VertexId{0}, VertexId{1}}) {  // corners of the cube, in no contour
+    more[2] = extra;
+    wrong.facets[0].simplices.push_back(more);
+  }
+  EXPECT_EQ(certify(cube, wrong), Fault::branching);
+}
+
+TEST(AnyDimension, AConeOverATorusFailsByItsApex) {
+  const FaceLattice tesseract = FaceLattice::cube(4);
+  TileFacets tile = build_facets(tesseract, 1910);
+  const auto apex = static_cast<VertexId>(tile.vertices.size());
+  tile.vertices.push_back({VertexKind::barycentre, tesseract.tile(), 1000, kNoVertex, tile.sigma});
+  tile.facets = {{Filling::cone, 0, {}}};
+  for (std::size_t j = 0; j < tile.sigma.size(); ++j) {
+    Simplex cone = with_apex(apex, tile.sigma[j]);
+    if (tile.sigma_sign[j] < 0) std::swap(cone[0], cone[1]);
+    tile.facets[0].simplices.push_back(cone);
+  }
+  EXPECT_EQ(certify(tesseract, tile), Fault::link);
+}
+
+TEST(AnyDimension, AChordAcrossAFaceFails) {
+  const FaceLattice cube = FaceLattice::cube(3);
+  TileFacets tile = build_facets(cube, 1);
+  // The middle of the triangle, said to lie in one of the squares.
+  const Simplex triangle = tile.facets[0].simplices[0];
+  const auto middle = static_cast<VertexId>(tile.vertices.size());
+  tile.vertices.push_back({VertexKind::barycentre, cube.faces().back().faces[0], 1000, kNoVertex, tile.sigma});
+  tile.facets[0].simplices.clear();
+  for (int i = 0; i < 3; ++i) {
+    Simplex part = triangle;
+    part[i] = middle;
+    tile.facets[0].simplices.push_back(part);
+  }
+  EXPECT_EQ(certify(cube, tile), Fault::in_tile_boundary);
+}
+
+TEST(AnyDimension, WrongArgumentsAreSaid) {
+  EXPECT_THROW(FaceLattice::cube(7), std::invalid_argument);
+  EXPECT_THROW(build_facets(FaceLattice::cube(2), 16), std::invalid_argument);
+  const std::vector<Choice> few(3);
+  EXPECT_THROW(build_facets(FaceLattice::cube(2), 1, {few, Alternative::low}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tegl::facets
