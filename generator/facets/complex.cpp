@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Recognition of balls and spheres: pseudomanifold, links by recursion, collapse.
+// Recognition of balls and spheres: by a shelling, else pseudomanifold, links by recursion, collapse.
 #include "tegl/facets/complex.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <random>
 #include <utility>
+
+#include "shelling.hpp"
 
 namespace tegl::facets {
 
@@ -142,49 +144,30 @@ bool links_are_right(const Simplices& simplices, const Simplices& vertices, cons
   return true;
 }
 
-}  // namespace
-
-int size(const Simplex& simplex) noexcept {
-  int n = 0;
-  while (n < kMaxVertices && simplex[n] != kNoVertex) ++n;
-  return n;
-}
-
-Simplex without(const Simplex& simplex, int i) noexcept {
-  Simplex rest = simplex;
-  std::copy(simplex.begin() + i + 1, simplex.end(), rest.begin() + i);
-  rest.back() = kNoVertex;
-  return rest;
-}
-
-Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
-  Simplex result;
-  result[0] = vertex;
-  std::copy(simplex.begin(), simplex.end() - 1, result.begin() + 1);
-  return result;
-}
-
-int sort_vertices(Simplex& simplex) noexcept {
-  int sign = 1;
-  for (int i = 1; i < kMaxVertices; ++i)
-    for (int j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) std::swap(simplex[j], simplex[j - 1]), sign = -sign;
-  return sign;
-}
-
-Shape shape_of(const Simplices& simplices) {
-  if (simplices.empty()) return Shape::other;
-  const int vertices = size(simplices.front());
-  if (vertices == 1) return simplices.size() == 1 ? Shape::ball : simplices.size() == 2 ? Shape::sphere : Shape::other;
+/// Slower than a shelling, but finds what has none.
+Shape shape_by_collapse(const Simplices& simplices) {
   const Ridges ridges = ridges_of(simplices);
   if (ridges.branching || !ridges.connected) return Shape::other;
   const bool closed = ridges.boundary_vertices.empty();
   const std::vector<Simplices> faces = all_faces(simplices);
-  const int even_sphere = vertices % 2 == 1 ? 2 : 0;
+  const int even_sphere = faces.size() % 2 == 1 ? 2 : 0;
   if (euler_of(faces) != (closed ? even_sphere : 1)) return Shape::other;
   if (!links_are_right(simplices, faces[0], ridges.boundary_vertices)) return Shape::other;
-  // Curves and surfaces are known by their Euler characteristic.
-  if (vertices > 3 && !Collapse(faces).to_a_point(closed)) return Shape::other;
+  if (!Collapse(faces).to_a_point(closed)) return Shape::other;
   return closed ? Shape::sphere : Shape::ball;
+}
+
+}  // namespace
+
+Shape shape_of(const Simplices& simplices) {
+  if (simplices.empty()) return Shape::other;
+  const int vertices = size(simplices.front());
+  std::vector<std::uint32_t> all(simplices.size());
+  std::iota(all.begin(), all.end(), std::uint32_t{0});
+  Adjacency adjacency;
+  if (!adjacency.build(simplices)) return Shape::other;
+  const Shape shelled = Shelling().shape(simplices, adjacency, all, kNoVertex);
+  return vertices <= 3 || shelled != Shape::other ? shelled : shape_by_collapse(simplices);
 }
 
 int euler_characteristic(const Simplices& simplices) { return simplices.empty() ? 0 : euler_of(all_faces(simplices)); }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Small simplicial complexes, and whether one is a ball or a sphere. From dimension 3 on this is shown, not guessed:
-// links are recognised by recursion, and a combinatorial manifold that collapses to a point is a PL ball
-// (J. H. C. Whitehead, Simplicial spaces, nuclei and m-groups, 1939). What cannot be shown is `other`.
+// by a shelling, or else links are recognised by recursion, and a combinatorial manifold that collapses to a point is a
+// PL ball (J. H. C. Whitehead, Simplicial spaces, nuclei and m-groups, 1939). What cannot be shown is `other`.
 #pragma once
 
 #include <array>
@@ -22,13 +22,39 @@ inline constexpr Simplex kNoSimplex = {kNoVertex, kNoVertex, kNoVertex, kNoVerte
 using Simplices = std::vector<Simplex>;
 
 /// Number of vertices.
-int size(const Simplex& simplex) noexcept;
+constexpr int size(const Simplex& simplex) noexcept {
+  int n = 0;
+  while (n < kMaxVertices && simplex[n] != kNoVertex) ++n;
+  return n;
+}
+
 /// Without vertex i, the others in their order.
-Simplex without(const Simplex& simplex, int i) noexcept;
+constexpr Simplex without(const Simplex& simplex, int i) noexcept {
+  Simplex rest = simplex;
+  for (; i + 1 < kMaxVertices; ++i) rest[i] = rest[i + 1];
+  rest[kMaxVertices - 1] = kNoVertex;
+  return rest;
+}
+
 /// With `vertex` in front. At most 6 vertices before.
-Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept;
+constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
+  Simplex result = kNoSimplex;
+  result[0] = vertex;
+  for (int i = 1; i < kMaxVertices; ++i) result[i] = simplex[i - 1];
+  return result;
+}
+
 /// Sorts the vertices; the sign of the permutation.
-int sort_vertices(Simplex& simplex) noexcept;
+constexpr int sort_vertices(Simplex& simplex) noexcept {
+  int sign = 1;
+  for (int i = 1; i < kMaxVertices; ++i)
+    for (int j = i; j > 0 && simplex[j] < simplex[j - 1]; --j) {
+      const VertexId larger = simplex[j - 1];
+      simplex[j - 1] = simplex[j], simplex[j] = larger;
+      sign = -sign;
+    }
+  return sign;
+}
 
 enum class Shape { other, ball, sphere };
 

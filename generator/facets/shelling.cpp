@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Adjacency by hashing, and the greedy search for shellings.
+#include "shelling.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <random>
+
+namespace tegl::facets {
+
+std::uint64_t vertex_hash(VertexId vertex) noexcept {
+  // The finaliser of splitmix64: sums of its values behave like random ones.
+  std::uint64_t x = (vertex + std::uint64_t{1}) * 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+std::uint64_t vertex_hash(const Simplex& simplex) noexcept {
+  std::uint64_t sum = 0;
+  for (int i = 0; i < size(simplex); ++i) sum += vertex_hash(simplex[i]);
+  return sum;
+}
+
+void SimplexMap::clear(std::size_t entries) {
+  if (const std::size_t needed = std::bit_ceil(2 * entries + 16); needed > slots_.size() || epoch_ + 1 == 0) {
+    slots_.assign(std::max(needed, slots_.size()), Slot{0, 0, kNone});
+    epoch_ = 0;
+  }
+  // A small complex after a large one shall not walk through the large one's memory.
+  mask_ = std::bit_ceil(2 * entries + 16) - 1;
+  ++epoch_;
+}
+
+bool Adjacency::build(std::span<const Simplex> simplices) {
+  width_ = simplices.empty() ? 0 : static_cast<std::size_t>(size(simplices.front()));
+  neighbours_.assign(simplices.size() * width_, kNone);
+  open_.clear(simplices.size() * width_);
+  const auto face = [&](std::size_t of) { return without(simplices[of / width_], static_cast<int>(of % width_)); };
+  for (std::size_t j = 0; j < simplices.size(); ++j) {
+    const std::uint64_t whole = vertex_hash(simplices[j]);
+    for (std::size_t i = 0; i < width_; ++i) {
+      const std::size_t here = j * width_ + i;
+      const Simplex own = face(here);
+      SimplexMap::Slot& slot =
+          open_.at(whole - vertex_hash(simplices[j][i]), [&](std::uint32_t there) { return face(there) == own; });
+      if (slot.value == kNone) {
+        slot.value = static_cast<std::uint32_t>(here);
+        continue;
+      }
+      if (neighbours_[slot.value] != kNone) return false;
+      neighbours_[slot.value] = static_cast<std::uint32_t>(j);
+      neighbours_[here] = static_cast<std::uint32_t>(slot.value / width_);
+    }
+  }
+  return true;
+}
+
+Shape Shelling::shape(std::span<const Simplex> simplices, const Adjacency& adjacency,
+                      std::span<const std::uint32_t> members, VertexId apex) {
+  if (members.empty()) return Shape::other;
+  simplices_ = simplices, adjacency_ = &adjacency, apex_ = apex;
+  const std::size_t own = adjacency.vertices_per_simplex() - (apex == kNoVertex ? 0 : 1);
+  if (own == 1) return members.size() == 1 ? Shape::ball : members.size() == 2 ? Shape::sphere : Shape::other;
+  state_.resize(std::max(state_.size(), simplices.size()), State::outside);
+  for (const std::uint32_t m : members) state_[m] = State::waiting;
+  bool closed = true;
+  for (const std::uint32_t m : members)
+    for (std::size_t i = 0; i < adjacency.vertices_per_simplex(); ++i)
+      if (simplices[m][i] != apex) closed &= other_side(m, i) != Adjacency::kNone;
+  // In dimension 1 and 2 the first try decides.
+  const unsigned tries = own <= 3 ? 1 : 6;
+  bool shelled = false;
+  for (unsigned seed = 0; seed < tries && !shelled; ++seed) shelled = one_try(members, seed, closed);
+  for (const std::uint32_t m : members) state_[m] = State::outside;
+  return !shelled ? Shape::other : closed ? Shape::sphere : Shape::ball;
+}
+
+/// kNone if that is no member.
+std::uint32_t Shelling::other_side(std::uint32_t simplex, std::size_t vertex) const {
+  const std::uint32_t n = adjacency_->neighbour(simplex, vertex);
+  return n != Adjacency::kNone && state_[n] != State::outside ? n : Adjacency::kNone;
+}
+
+bool Shelling::one_try(std::span<const std::uint32_t> members, unsigned seed, bool closed) {
+  const std::size_t width = adjacency_->vertices_per_simplex();
+  for (const std::uint32_t m : members) state_[m] = State::waiting;
+  used_.clear(members.size() << (width - 1));
+  queue_.assign(1, members[0]);
+  std::mt19937 random(seed);
+  if (seed != 0) queue_[0] = members[random() % members.size()];
+  std::size_t taken = 0;
+  for (std::size_t head = 0; head < queue_.size(); ++head) {
+    if (seed != 0) std::swap(queue_[head], queue_[head + random() % (queue_.size() - head)]);
+    const std::uint32_t m = queue_[head];
+    if (state_[m] == State::done) continue;
+    unsigned shared = 0;
+    for (std::size_t i = 0; i < width; ++i)
+      if (simplices_[m][i] != apex_)
+        if (const std::uint32_t n = other_side(m, i); n != Adjacency::kNone && state_[n] == State::done)
+          shared |= 1u << i;
+    if (taken != 0 && !fits(m, shared, closed && taken + 1 == members.size())) continue;
+    take(m), ++taken;
+    // Those that did not fit are tried again whenever they share one face more.
+    for (std::size_t i = 0; i < width; ++i)
+      if (simplices_[m][i] != apex_)
+        if (const std::uint32_t n = other_side(m, i); n != Adjacency::kNone && state_[n] == State::waiting)
+          queue_.push_back(n);
+  }
+  return taken == members.size();
+}
+
+/// The simplex meets those taken in the faces opposite to the vertices `shared`, and in nothing else, if and only if
+/// the face that these vertices span is not taken.
+bool Shelling::fits(std::uint32_t simplex, unsigned shared, bool last) const {
+  const std::size_t width = adjacency_->vertices_per_simplex();
+  const auto own = static_cast<int>(width) - (apex_ == kNoVertex ? 0 : 1);
+  const int count = std::popcount(shared);
+  if (count == own) return last;
+  if (count == own - 1) return true;  // that face is of codimension one, and not shared
+  std::uint64_t hash = 0;
+  for (std::size_t i = 0; i < width; ++i)
+    if (((shared >> i) & 1u) != 0) hash += vertex_hash(simplices_[simplex][i]);
+  return used_.find(hash, [](std::uint32_t) { return true; }) == SimplexMap::kNone;
+}
+
+void Shelling::take(std::uint32_t simplex) {
+  state_[simplex] = State::done;
+  std::uint64_t hashes[kMaxVertices];
+  int own = 0;
+  for (std::size_t i = 0; i < adjacency_->vertices_per_simplex(); ++i)
+    if (simplices_[simplex][i] != apex_) hashes[own++] = vertex_hash(simplices_[simplex][i]);
+  for (unsigned face = 1; face < 1u << own; ++face) {
+    if (std::popcount(face) > own - 2) continue;  // `fits` never asks for larger ones
+    std::uint64_t hash = 0;
+    for (int i = 0; i < own; ++i)
+      if (((face >> i) & 1u) != 0) hash += hashes[i];
+    used_.at(hash, [](std::uint32_t) { return true; }).value = 0;
+  }
+}
+
+}  // namespace tegl::facets

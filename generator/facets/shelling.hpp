@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which simplices of a complex meet in a face of codimension one, and shellings: an order of the simplices in which
+// each meets those before it in a ball. A shellable complex without branching is a PL ball or sphere (G. Danaraj and
+// V. Klee, Shellings of spheres and polytopes, 1974), and on balls and spheres of dimension 2 no order runs into a
+// dead end (Danaraj and Klee, Which spheres are shellable?, 1978).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tegl/facets/complex.hpp"
+
+namespace tegl::facets {
+
+/// A hash of a set of vertices: the sum of one number per vertex, so that one vertex more or less is one addition.
+std::uint64_t vertex_hash(VertexId vertex) noexcept;
+std::uint64_t vertex_hash(const Simplex& simplex) noexcept;
+
+/// Numbers of simplices by their vertices: open addressing, its memory kept from use to use.
+class SimplexMap {
+ public:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// Empties it and makes room for so many entries.
+  void clear(std::size_t entries);
+  struct Slot {
+    std::uint64_t hash;
+    std::uint32_t epoch;
+    std::uint32_t value;
+  };
+  /// The slot of the first entry with this hash for which `equal(value)` holds, else a new one with kNone.
+  template <class Equal>
+  Slot& at(std::uint64_t hash, const Equal& equal) {
+    for (std::size_t i = (hash >> 20) & mask_;; i = (i + 1) & mask_) {
+      Slot& slot = slots_[i];
+      if (slot.epoch != epoch_) return slot = {hash, epoch_, kNone};
+      if (slot.hash == hash && slot.value != kNone && equal(slot.value)) return slot;
+    }
+  }
+  template <class Equal>
+  [[nodiscard]] std::uint32_t find(std::uint64_t hash, const Equal& equal) const {
+    for (std::size_t i = (hash >> 20) & mask_;; i = (i + 1) & mask_) {
+      const Slot& slot = slots_[i];
+      if (slot.epoch != epoch_) return kNone;
+      if (slot.hash == hash && equal(slot.value)) return slot.value;
+    }
+  }
+
+ private:
+  std::vector<Slot> slots_;
+  std::size_t mask_ = 0;
+  std::uint32_t epoch_ = 0;
+};
+
+/// For each simplex and each of its vertices, the simplex on the other side of the face opposite to that vertex.
+class Adjacency {
+ public:
+  static constexpr std::uint32_t kNone = SimplexMap::kNone;
+  /// Simplices of equal size, their vertices sorted. False if a face of codimension one is in more than two.
+  bool build(std::span<const Simplex> simplices);
+  [[nodiscard]] std::size_t vertices_per_simplex() const { return width_; }
+  /// kNone: no other simplex.
+  [[nodiscard]] std::uint32_t neighbour(std::size_t simplex, std::size_t vertex) const {
+    return neighbours_[simplex * width_ + vertex];
+  }
+
+ private:
+  std::size_t width_ = 0;
+  std::vector<std::uint32_t> neighbours_;
+  SimplexMap open_;
+};
+
+/// Searches for shellings. Its memory is kept from use to use.
+class Shelling {
+ public:
+  /// The shape of the link of `apex` in a complex without branching, or with kNoVertex that of the complex itself.
+  /// `members`: the simplices with that vertex, or all. `other`: no shelling found in some seeded tries.
+  Shape shape(std::span<const Simplex> simplices, const Adjacency& adjacency, std::span<const std::uint32_t> members,
+              VertexId apex);
+
+ private:
+  enum class State : std::uint8_t { outside, waiting, done };
+  [[nodiscard]] std::uint32_t other_side(std::uint32_t simplex, std::size_t vertex) const;
+  bool one_try(std::span<const std::uint32_t> members, unsigned seed, bool closed);
+  [[nodiscard]] bool fits(std::uint32_t simplex, unsigned shared, bool last) const;
+  void take(std::uint32_t simplex);
+
+  std::span<const Simplex> simplices_;
+  const Adjacency* adjacency_ = nullptr;
+  VertexId apex_ = kNoVertex;
+  std::vector<State> state_;
+  std::vector<std::uint32_t> queue_;
+  SimplexMap used_;  ///< faces of those taken, by hash alone: one too many can only make a try fail
+};
+
+}  // namespace tegl::facets
