@@ -29,14 +29,12 @@ constexpr std::size_t square_plane(unsigned axes) noexcept {
 
 /// The mean of the corners and edge points in a region's mask, in the frame of the cell.
 template <int N, unsigned Axes>
-TilePoint<std::popcount(Axes)> region_place(const SlabView<N>& view, std::uint32_t mask,
-                                            const Index* edge_ids) noexcept {
+TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, std::uint32_t mask) noexcept {
   constexpr int kDim = std::popcount(Axes);
   Weighted<kDim> sum;
   for (; mask != 0; mask &= mask - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(mask));
-    const unsigned e = v - (1u << kDim);
-    sum.add(v < (1u << kDim) ? corner_point<kDim>(v) : edge_place<N, Axes>(view, e, edge_ids[e]), 1.0);
+    sum.add(v < (1u << kDim) ? corner_point<kDim>(v) : places(v - (1u << kDim)), 1.0);
   }
   for (double& x : sum.point) x /= sum.weight;
   return sum.point;
@@ -45,9 +43,11 @@ TilePoint<std::popcount(Axes)> region_place(const SlabView<N>& view, std::uint32
 }  // namespace
 
 template <int N, class Real>
-Caps<N, Real>::Caps(const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
-                    const Placement<N, Real>& placement, bool inverted, bool flip, unsigned closed_axes)
-    : shape_(shape),
+Caps<N, Real>::Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables,
+                    const Counter<N>& counter, const Placement<N, Real>& placement, bool inverted, bool flip,
+                    unsigned closed_axes)
+    : source_(source),
+      shape_(shape),
       tables_(tables),
       counter_(counter),
       placement_(placement),
@@ -116,24 +116,21 @@ void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const
   if (!shape_.has_cells(index, Axes)) return;
   const Word* const border = border_cells(Axes, at);
   CellBits<N, Axes> cells(view, at.row);
-  CellEdges<N, Axes> edges(view, at.row);
-  std::array<Index, tables::edge_count(2)> ids;
   for (std::size_t w = 0; w < shape_.words(); ++w) {
     const std::size_t word = at.row * shape_.pitch() + w;
     plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.base[at.row];
     plane.bits[0][word] = 0;
     if (border[w] == 0) continue;
     cells.load(w);
-    edges.load(w);
     for (Word rest = border[w]; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      const tables::RegionList& list = tables_.square->lists[original(cells.signature(bit), 4)];
+      const unsigned signature = cells.signature(bit);
+      const tables::RegionList& list = tables_.square->lists[original(signature, 4)];
       if (list.own_vertices == 0) continue;
       plane.bits[0][word] |= Word{1} << bit;
-      edges.ids(bit, ids.data());
       index[0] = w * kWordBits + bit;
-      const auto place = region_place<N, Axes>(view, tables_.square->masks[list.first_mask], ids.data());
-      add_vertex<Axes>(index, place);
+      const EdgePlaces<N, Axes> places(source_, index, signature);
+      add_vertex<Axes>(index, region_place<N, Axes>(places, tables_.square->masks[list.first_mask]));
     }
   }
 }
@@ -221,7 +218,7 @@ void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, s
       index[0] = w * kWordBits + bit;
       edges.ids(bit, ids.data() + kCorners);
       shared_ids<Omitted>(face, row, layer, index[0], signature, ids);
-      add_own<kAxes>(face, list, index, ids);
+      add_own<kAxes>(list, signature, index, ids);
       add_simplices(list, ids, flip);
     }
   }
@@ -243,13 +240,13 @@ void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::si
 
 template <int N, class Real>
 template <unsigned Axes>
-void Caps<N, Real>::add_own(const SlabView<N>& face, const tables::RegionList& list,
+void Caps<N, Real>::add_own(const tables::RegionList& list, unsigned signature,
                             const typename RowShape<N>::Index& index, Ids& ids) {
+  if (list.own_vertices == 0) return;
+  const EdgePlaces<N, Axes> places(source_, index, signature);
   for (unsigned j = 0; j < list.own_vertices; ++j) {
     ids[tables::first_region_vertex(N - 1) + j] = static_cast<Index>(vertices_.size());
-    const std::uint32_t mask = tables_.face->masks[list.first_mask + j];
-    const auto place = region_place<N, Axes>(face, mask, ids.data() + (1u << (N - 1)));
-    add_vertex<Axes>(index, place);
+    add_vertex<Axes>(index, region_place<N, Axes>(places, tables_.face->masks[list.first_mask + j]));
   }
 }
 

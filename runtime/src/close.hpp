@@ -30,7 +30,7 @@ class Caps {
 
   /// `inverted`: the layers' bits are. `flip`: against the orientation "positive side faces high".
   /// `closed_axes`: bit a: whether the borders across axis a get caps.
-  Caps(const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
+  Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
        const Placement<N, Real>& placement, bool inverted, bool flip, unsigned closed_axes);
 
   /// The cap vertices of layer k, between its slabs (or null); after its contour points are known.
@@ -81,8 +81,7 @@ class Caps {
   void shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
                   Ids& ids) const;
   template <unsigned Axes>
-  void add_own(const SlabView<N>& face, const tables::RegionList& list, const typename RowShape<N>::Index& index,
-               Ids& ids);
+  void add_own(const tables::RegionList& list, unsigned signature, const typename RowShape<N>::Index& index, Ids& ids);
   void add_simplices(const tables::RegionList& list, const Ids& ids, bool flip);
   template <int Omitted>
   void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
@@ -93,6 +92,7 @@ class Caps {
     return inverted_ ? ~signature & ((1u << corners) - 1) : signature;
   }
 
+  const SampleSource<N>& source_;
   const RowShape<N>& shape_;
   TableSet<N> tables_;
   const Counter<N>& counter_;

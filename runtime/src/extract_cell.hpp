@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "corners.hpp"
 #include "extract_layers.hpp"
 
 namespace tegl::detail {
@@ -38,14 +39,6 @@ struct CellFrame {
   /// First corner of the r-th row of corners.
   static constexpr unsigned row_corner(unsigned r) noexcept { return kAlongRow ? 2 * r : r; }
 };
-
-/// Base corner of edge `e` of a k-cube: undoes squeeze (table contract).
-constexpr unsigned edge_base(unsigned k, unsigned e) noexcept {
-  const unsigned axis = e >> (k - 1);
-  const unsigned squeezed = e & ((1u << (k - 1)) - 1);
-  const unsigned low = squeezed & ((1u << axis) - 1);
-  return low | (squeezed >> axis) << (axis + 1);
-}
 
 /// The corners' bits of 64 cells of a row at a time.
 template <int N, unsigned Axes>

@@ -252,7 +252,6 @@ std::uint64_t Counter<N>::place_layer(Layer<N>& layer, std::uint64_t first) cons
     for (EdgePlane& plane : layer.edges) place(plane, row, next);
     if (has_cubes_) place(layer.cubes, row, next);
   }
-  layer.local.first = static_cast<Index>(first);
   return next;
 }
 
@@ -270,7 +269,6 @@ std::uint64_t Counter<N>::place_slab(Slab<N>& slab, std::uint64_t first, std::ui
     slab.simplex_base[row] = first_simplex;
     first_simplex += simplices;
   }
-  slab.local.first = static_cast<Index>(first);
   return next;
 }
 

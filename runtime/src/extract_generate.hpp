@@ -8,30 +8,12 @@
 
 #include "extract_cell.hpp"
 #include "extract_count.hpp"
+#include "extract_own.hpp"
 #include "extract_place.hpp"
 #include "extract_rows.hpp"
 #include "extract_tables.hpp"
 
 namespace tegl::detail {
-
-/// The place of edge `e` of a cell in its frame; `id` is its vertex.
-template <int N, unsigned Axes>
-[[gnu::always_inline]] inline TilePoint<std::popcount(Axes)> edge_place(const SlabView<N>& view, unsigned e,
-                                                                        Index id) noexcept {
-  using Frame = CellFrame<N, Axes>;
-  struct Where {
-    int axis;
-    unsigned up;
-  };
-  static constexpr auto kWhere = [] {
-    std::array<Where, Frame::kEdges> result{};
-    for (unsigned edge = 0; edge < Frame::kEdges; ++edge)
-      result[edge] = {Frame::axes()[edge >> (Frame::kDim - 1)],
-                      Frame::spread(edge_base(Frame::kDim, edge)) >> (N - 1) & 1u};
-    return result;
-  }();
-  return edge_point<Frame::kDim>(e, view.edge_places(kWhere[e].axis, kWhere[e].up).alpha(id));
-}
 
 /// Room for vertices by number. Numbers count modulo 2^32, so that a contour may have more, if no part of it has.
 template <class Vertex>
@@ -50,27 +32,26 @@ struct EdgeScratch {
   std::vector<double> alphas;
 };
 
-/// Writes the points on a row's edges of one axis. `local` null: nothing asks for their places later.
+/// Writes the points on a row's edges of one axis.
 template <int N, class Real>
 void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape,
-                    const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, LocalRun* local,
-                    EdgeScratch& scratch, VertexRun<typename Placement<N, Real>::Vertex> vertices) noexcept {
+                    const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, EdgeScratch& scratch,
+                    VertexRun<typename Placement<N, Real>::Vertex> vertices) noexcept {
   if (plane.count[row] == 0) return;
   const std::size_t count = list_bits(plane.bits[0].data() + row * shape.pitch(), shape.words(), scratch.at.data());
   auto start = shape.index_of(row);
   start[N - 1] = layer;
-  double* const alphas =
-      local == nullptr ? scratch.alphas.data() : local->alphas.data() + (plane.base[row] - local->first);
+  double* const alphas = scratch.alphas.data();
   source.edge_alphas(start, axis, scratch.at.data(), count, alphas);
   placement.edges(start, axis, scratch.at.data(), count, alphas, &vertices[plane.base[row]]);
   if (placement.normals() != nullptr)
     placement.normals()->edges(start, axis, scratch.at.data(), count, alphas, &vertices.normal(plane.base[row]));
 }
 
-/// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers and slab of the edges.
+/// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers around them.
 template <unsigned Axes, class Real>
-void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& placement, const SlabView<4>& view,
-                    const CubePlane& plane, std::size_t row, std::size_t layer, LocalRun& local,
+void generate_cubes(const SampleSource<4>& source, const tables::TileTable& table, const Placement<4, Real>& placement,
+                    const SlabView<4>& view, const CubePlane& plane, std::size_t row, std::size_t layer,
                     VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
   const RowShape<4>& shape = *view.shape;
   if (plane.count[row] == 0) return;
@@ -78,25 +59,21 @@ void generate_cubes(const tables::TileTable& table, const Placement<4, Real>& pl
   auto index = shape.index_of(row);
   index[3] = layer;
   CellBits<4, Axes> cells(view, row);
-  CellEdges<4, Axes> edges(view, row);
-  std::array<Index, 64> ids{};  // more than edges, or GCC 12 warns of numbers that tables do not have
   std::array<TilePoint<3>, tables::kFaceSlots> points;
   Index next = plane.base[row];
   for (std::size_t w = 0; w < shape.words(); ++w) {
     Word rest = first[w];
     if (rest == 0) continue;
     cells.load(w);
-    edges.load(w);
     for (; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      edges.ids(bit, ids.data());
-      const SimplexList<3> list(table, cells.signature(bit));
-      own_places<3>(
-          list, false, [&](unsigned v) { return edge_place<4, Axes>(view, list.mapped(v), ids[list.mapped(v)]); },
-          points.data());
+      const unsigned signature = cells.signature(bit);
       index[0] = w * kWordBits + bit;
+      const SimplexList<3> list(table, signature);
+      const EdgePlaces<4, Axes> places(source, index, signature);
+      own_places<3>(
+          list, false, [&](unsigned v) { return places(list.mapped(v)); }, points.data());
       for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
-        local.points[next - local.first] = points[j];
         vertices[next] = placement.template in_cell<CellFrame<4, Axes>>(index, points[j]);
         if (placement.normals() != nullptr)
           vertices.normal(next) = placement.normals()->template in_cell<CellFrame<4, Axes>>(index, points[j]);
@@ -114,9 +91,11 @@ class TileWriter {
   static constexpr unsigned kAll = (1u << N) - 1;
 
   /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null.
-  TileWriter(const TableSet<N>& tables, const RowTable* rows, const Placement<N, Real>& placement, bool flip,
-             bool has_cubes)
-      : table_(*tables.tile),
+  TileWriter(const SampleSource<N>& source, const TableSet<N>& tables, const RowTable* rows,
+             const Placement<N, Real>& placement, bool flip, bool has_cubes)
+      : source_(source),
+        table_(*tables.tile),
+        cube_(tables.cube),
         compact_(tables.compact),
         rows_(has_cubes ? nullptr : rows),
         placement_(placement),
@@ -150,7 +129,6 @@ class TileWriter {
     // The tiles with vertices of their own come in order: their places are found by walking along.
     struct Own {
       const TileWriter& writer;
-      const SlabView<N>& view;
       typename RowShape<N>::Index index;
       VertexRun<Vertex> vertices;
       const Word* active;
@@ -177,13 +155,13 @@ class TileWriter {
         Ids ids;
         std::copy_n(edge_ids, tables::edge_count(N), ids.data());
         const SimplexList<N> list(own.writer.table_, signature);
-        own.writer.write_own(own.view, list, ids, own.index, own.next, own.vertices);
+        own.writer.write_own(list, signature, own.index, own.next, own.vertices);
         out = own.writer.write_simplices(list, ids, own.next, out);
         own.next += list.own_vertices();
         return out;
       }
     };
-    Own own{*this, view, start, vertices, view.slab->active.data() + row * shape.pitch(), view.slab->tile_base[row]};
+    Own own{*this, start, vertices, view.slab->active.data() + row * shape.pitch(), view.slab->tile_base[row]};
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
@@ -202,12 +180,13 @@ class TileWriter {
       edges.load(w);
       for (; rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-        const SimplexList<N> list(table_, cells.signature(bit));
+        const unsigned signature = cells.signature(bit);
+        const SimplexList<N> list(table_, signature);
         edges.ids(bit, ids.data());
         index[0] = w * kWordBits + bit;
         if constexpr (N == 4)
           if (has_cubes_) cube_ids(view, row, index[0], ids);
-        if (list.own_vertices() != 0) write_own(view, list, ids, index, own, vertices);
+        if (list.own_vertices() != 0) write_own(list, signature, index, own, vertices);
         out = write_simplices(list, ids, own, out);
         own += list.own_vertices();
       }
@@ -245,35 +224,12 @@ class TileWriter {
     }
   }
 
-  /// The place in the tile of a vertex that it shares with its neighbours.
-  [[gnu::always_inline]] static TilePoint<N> shared_place(const SlabView<N>& view, const Ids& ids,
-                                                          unsigned v) noexcept {
-    constexpr unsigned kEdges = tables::edge_count(N);
-    if constexpr (N == 4)
-      if (v >= kEdges) {
-        const unsigned cube = (v - kEdges) / tables::kFaceSlots;
-        return cube_point(cube, view.cube_places(static_cast<int>(cube / 2), cube % 2).point(ids[v]));
-      }
-    return edge_place<N, kAll>(view, v, ids[v]);
-  }
-
-  void write_own(const SlabView<N>& view, const SimplexList<N>& list, const Ids& ids,
-                 const typename RowShape<N>::Index& index, Index own, VertexRun<Vertex> vertices) const noexcept {
-    constexpr unsigned kShared = tables::first_tile_vertex(N);
-    std::array<TilePoint<N>, 256 - kShared> points;
-    if constexpr (N == 4) {
-      std::array<TilePoint<N>, kShared> known;  // each is asked for by many simplices
-      std::array<bool, kShared> is_known{};
-      const auto place = [&](unsigned v) -> const TilePoint<N>& {
-        if (!is_known[v]) known[v] = shared_place(view, ids, list.mapped(v));
-        is_known[v] = true;
-        return known[v];
-      };
-      own_places<N>(list, compact_, place, points.data());
-    } else {
-      own_places<N>(
-          list, compact_, [&](unsigned v) { return shared_place(view, ids, list.mapped(v)); }, points.data());
-    }
+  void write_own(const SimplexList<N>& list, unsigned signature, const typename RowShape<N>::Index& index, Index own,
+                 VertexRun<Vertex> vertices) const noexcept {
+    std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
+    SharedPlaces<N> places(source_, index, signature, cube_);
+    own_places<N>(
+        list, compact_, [&](unsigned v) -> decltype(auto) { return places(list.mapped(v)); }, points.data());
     for (unsigned j = 0; j < list.own_vertices(); ++j) {
       vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
       if (placement_.normals() != nullptr)
@@ -281,7 +237,9 @@ class TileWriter {
     }
   }
 
+  const SampleSource<N>& source_;
   const tables::TileTable& table_;
+  const tables::TileTable* cube_;
   bool compact_;
   const RowTable* rows_;
   const Placement<N, Real>& placement_;

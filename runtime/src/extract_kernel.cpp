@@ -97,8 +97,8 @@ class Extraction {
         row_table_(rows_ ? &*rows_ : nullptr),
         placement_(grid),
         counter_(shape_, tables, row_table_),
-        tiles_(tables, row_table_, placement_, against_tables(grid, options) != inverted_, counter_.has_cubes()),
-        keeps_places_(tables.tile->max_tile_vertices > 0 || counter_.has_cubes() || options.close),
+        tiles_(source, tables, row_table_, placement_, against_tables(grid, options) != inverted_,
+               counter_.has_cubes()),
         pinches_(shape_, counter_),
         workers_(options.threads, shape_.size(0), shape_.pitch()),
         batch_(plan.batch == 0 ? batch_size(shape_, source.sample_bytes(), workers_.count())
@@ -107,7 +107,8 @@ class Extraction {
         slabs_(batch_ + 1) {
     if (options.normals) placement_.want_normals(source.gradients(grid), grid, options.direction);
     if (options.close)
-      caps_.emplace(shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options), plan.closed_axes);
+      caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
+                    plan.closed_axes);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
     for (Slab<N>& slab : slabs_) counter_.allocate(slab);
     source.keep(layers_.size());
@@ -221,9 +222,7 @@ class Extraction {
     std::uint64_t active = 0;
     if (first == 0) place_layer(0);
     for (std::size_t k = first; k < end; ++k) {
-      const std::uint64_t before = part_.end_vertex;
-      part_.end_vertex = counter_.place_slab(slab(k), before, part_.end_simplex);
-      keep_places(slab(k).local, part_.end_vertex - before);
+      part_.end_vertex = counter_.place_slab(slab(k), part_.end_vertex, part_.end_simplex);
       for (const std::uint32_t tiles : slab(k).active_count) active += tiles;
       place_layer(k + 1);
     }
@@ -231,16 +230,7 @@ class Extraction {
     return active;
   }
 
-  void place_layer(std::size_t k) {
-    const std::uint64_t before = part_.end_vertex;
-    part_.end_vertex = counter_.place_layer(layer(k), before);
-    keep_places(layer(k).local, part_.end_vertex - before);
-  }
-
-  void keep_places(LocalRun& local, std::uint64_t vertices) {
-    if (keeps_places_) local.alphas.resize(vertices);
-    if (counter_.has_cubes()) local.points.resize(vertices);
-  }
+  void place_layer(std::size_t k) { part_.end_vertex = counter_.place_layer(layer(k), part_.end_vertex); }
 
   void expect_output() const {
     const double samples = static_cast<double>(shape_.rows() * shape_.size(0)) * static_cast<double>(shape_.layers());
@@ -253,50 +243,40 @@ class Extraction {
     if (room.vertices == nullptr && room.simplices == nullptr) return;
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
-    const auto local = [&](LocalRun& run) { return keeps_places_ ? &run : nullptr; };
-    // Where tiles ask for the places of points, these come first.
-    const bool at_once = !keeps_places_;
     for_rows(first, end + 1, [&](std::size_t k, Rows rows, RowScratch& scratch) {
-      Layer<N>& here = layer(k);
       if (k >= first_layer)
-        for (std::size_t row = rows.first; row < rows.end; ++row)
-          for (int axis = 0; axis < N - 1; ++axis)
-            generate_edges(source_, placement_, shape_, here.edges[axis], row, k, axis, local(here.local),
-                           scratch.edges, vertices);
+        for (std::size_t row = rows.first; row < rows.end; ++row) generate_layer(k, row, scratch.edges, vertices);
       if (k == end) return;
       const SlabView<N> around = view(k);
       for (std::size_t row = rows.first; row < rows.end; ++row) {
-        generate_edges(source_, placement_, shape_, around.slab->edges, row, k, N - 1, local(slab(k).local),
-                       scratch.edges, vertices);
-        if (at_once) tiles_.write(around, row, k, vertices, room.simplices, part_.first_simplex);
-      }
-    });
-    if (at_once) return;
-    if constexpr (N == 4)
-      if (counter_.has_cubes()) generate_all_cubes(first, end, vertices);
-    for_rows(first, end, [&](std::size_t k, Rows rows, RowScratch&) {
-      const SlabView<N> around = view(k);
-      for (std::size_t row = rows.first; row < rows.end; ++row)
+        generate_slab(around, k, row, scratch.edges, vertices);
         tiles_.write(around, row, k, vertices, room.simplices, part_.first_simplex);
+      }
     });
   }
 
-  void generate_all_cubes(std::size_t first, std::size_t end, VertexRun<Vertex> vertices) requires(N == 4) {
-    for_rows(first == 0 ? 0 : first + 1, end + 1, [&](std::size_t k, Rows rows, RowScratch&) {
-      Layer<N>& here = layer(k);
-      const SlabView<N> in_layer{&shape_, {&here, nullptr}, nullptr};
-      for (std::size_t row = rows.first; row < rows.end; ++row)
-        generate_cubes<7u>(*tables_.cube, placement_, in_layer, here.cubes, row, k, here.local, vertices);
-    });
-    for_rows(first, end, [&](std::size_t k, Rows rows, RowScratch&) {
-      Slab<N>& here = slab(k);
-      const SlabView<N> around = view(k);
-      for (std::size_t row = rows.first; row < rows.end; ++row) {
-        generate_cubes<14u>(*tables_.cube, placement_, around, here.cubes[0], row, k, here.local, vertices);
-        generate_cubes<13u>(*tables_.cube, placement_, around, here.cubes[1], row, k, here.local, vertices);
-        generate_cubes<11u>(*tables_.cube, placement_, around, here.cubes[2], row, k, here.local, vertices);
+  /// The vertices in a row of layer k.
+  void generate_layer(std::size_t k, std::size_t row, EdgeScratch& scratch, VertexRun<Vertex> vertices) noexcept {
+    const Layer<N>& here = layer(k);
+    for (int axis = 0; axis < N - 1; ++axis)
+      generate_edges(source_, placement_, shape_, here.edges[axis], row, k, axis, scratch, vertices);
+    if constexpr (N == 4)
+      if (counter_.has_cubes())
+        generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
+                           vertices);
+  }
+
+  /// The vertices in a row of slab k that its tiles share.
+  void generate_slab(const SlabView<N>& around, std::size_t k, std::size_t row, EdgeScratch& scratch,
+                     VertexRun<Vertex> vertices) const noexcept {
+    generate_edges(source_, placement_, shape_, around.slab->edges, row, k, N - 1, scratch, vertices);
+    if constexpr (N == 4)
+      if (counter_.has_cubes()) {
+        const auto& cubes = around.slab->cubes;
+        generate_cubes<14u>(source_, *tables_.cube, placement_, around, cubes[0], row, k, vertices);
+        generate_cubes<13u>(source_, *tables_.cube, placement_, around, cubes[1], row, k, vertices);
+        generate_cubes<11u>(source_, *tables_.cube, placement_, around, cubes[2], row, k, vertices);
       }
-    });
   }
 
   /// What closes the contour, and what may have to be taken apart, of the slabs first ... end - 1.
@@ -334,7 +314,6 @@ class Extraction {
   Placement<N, Real> placement_;
   Counter<N> counter_;
   TileWriter<N, Real> tiles_;
-  bool keeps_places_;  ///< whether anything asks for the places of points on edges once they are written
   std::optional<Caps<N, Real>> caps_;
   PinchCandidates<N> pinches_;
   Workers workers_;

@@ -105,16 +105,6 @@ struct RankPlane {
 using EdgePlane = RankPlane<1>;
 using CubePlane = RankPlane<tables::kFaceSlots>;
 
-/// A run of vertices with the places that later passes need, by vertex number - first. Where none needs them, they are
-/// not kept.
-struct LocalRun {
-  Index first = 0;
-  Buffer<double> alphas;                 ///< of points on edges: 0 at the first end, 1 at the second
-  Buffer<std::array<double, 3>> points;  ///< N = 4: of cubes' barycentres, in the cube
-  [[nodiscard]] double alpha(Index id) const noexcept { return alphas[id - first]; }
-  [[nodiscard]] const std::array<double, 3>& point(Index id) const noexcept { return points[id - first]; }
-};
-
 /// What all samples of a row have in common.
 enum class RowState : std::uint8_t { low, high, mixed };
 
@@ -127,7 +117,6 @@ struct Layer {
   bool any_missing = false;
   std::array<EdgePlane, N - 1> edges;  ///< by axis
   CubePlane cubes;                     ///< N = 4: the cubes in the layer
-  LocalRun local;
 };
 
 template <int N>
@@ -141,7 +130,6 @@ struct Slab {
   std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
   std::vector<Index> tile_base;             ///< first vertex of each row's tiles; while counting: their number
   std::vector<std::uint64_t> simplex_base;  ///< first simplex of each row; while counting: their number
-  LocalRun local;
 };
 
 /// A slab with the two layers around it: where cells find the numbers of what they share.
@@ -154,14 +142,8 @@ struct SlabView {
   [[nodiscard]] const EdgePlane& edges(int axis, unsigned up) const noexcept {
     return axis == N - 1 ? slab->edges : layers[up]->edges[static_cast<std::size_t>(axis)];
   }
-  [[nodiscard]] const LocalRun& edge_places(int axis, unsigned up) const noexcept {
-    return axis == N - 1 ? slab->local : layers[up]->local;
-  }
   [[nodiscard]] const CubePlane& cubes(int omitted, unsigned up) const noexcept {
     return omitted == N - 1 ? layers[up]->cubes : slab->cubes[static_cast<std::size_t>(omitted)];
-  }
-  [[nodiscard]] const LocalRun& cube_places(int omitted, unsigned up) const noexcept {
-    return omitted == N - 1 ? layers[up]->local : slab->local;
   }
 };
 

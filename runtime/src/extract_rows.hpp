@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bitplanes.hpp"
+#include "corners.hpp"
 #include "extract_cell.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/table_contract.hpp"
@@ -110,18 +111,6 @@ void write_tile_row(const TileOutput<N>& row, const RowTable& table, const OwnTi
 /// edges along the row, between a sample and the next. `valid` may be null. Returns how many there are.
 std::uint32_t count_edge_row(const Word* a, const Word* b, std::size_t samples, const Word* valid, Word* critical,
                              std::uint32_t* prefix) noexcept;
-
-/// The critical edges of a cube or tesseract, bit e for local edge e, from its signature.
-template <int N>
-constexpr std::uint32_t critical_edges(unsigned signature) noexcept {
-  std::uint32_t edges = 0;
-  for (unsigned e = 0; e < tables::edge_count(N); ++e) {
-    const unsigned base = edge_base(N, e);
-    const unsigned end = base | 1u << (e >> (N - 1));
-    edges |= ((signature >> base ^ signature >> end) & 1u) << e;
-  }
-  return edges;
-}
 
 /// The local edges at the next place of their stream: displaced along axis 0 and not along it.
 template <int N>

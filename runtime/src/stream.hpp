@@ -62,6 +62,16 @@ class LayerSource final : public SampleSource<N> {
     detail::edge_alphas(row(start), row(next) + (axis == 0 ? 1 : 0), 1, at, count, isovalue_, epsilon_, out);
   }
 
+  void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept override {
+    auto above = base;
+    ++above[N - 1];
+    // A cell within the last layer has nothing above.
+    const T* const next = (axes >> (N - 1) & 1u) != 0 ? row(above) + base[0] : nullptr;
+    std::array<std::ptrdiff_t, N> strides;
+    for (int a = 0; a < N; ++a) strides[a] = static_cast<std::ptrdiff_t>(strides_[a]);
+    detail::cell_alphas<T, N>({row(base) + base[0], next}, strides, axes, edges, isovalue_, epsilon_, out);
+  }
+
  private:
   const T* row(const Index& start) const noexcept {
     const T* at = ring_[start[N - 1] % ring_.size()].data();

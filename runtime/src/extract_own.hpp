@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The places of what a cell shares with its neighbours, found anew from the samples for the cells that ask for them:
+// few tiles have vertices of their own, and to keep the places of all points for them takes more memory than an image.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "corners.hpp"
+#include "extract_source.hpp"
+#include "extract_tables.hpp"
+
+namespace tegl::detail {
+
+/// The places of the points on the critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
+template <int N, unsigned Axes>
+class EdgePlaces {
+ public:
+  static constexpr int kDim = std::popcount(Axes);
+
+  EdgePlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
+    source.cell_alphas(base, Axes, critical_edges<kDim>(signature), alphas_.data());
+  }
+  [[nodiscard]] TilePoint<kDim> operator()(unsigned edge) const noexcept {
+    return edge_point<kDim>(edge, alphas_[edge]);
+  }
+  [[nodiscard]] double alpha(unsigned edge) const noexcept { return alphas_[edge]; }
+
+ private:
+  std::array<double, tables::edge_count(kDim)> alphas_;  ///< of edges that are not critical: nothing
+};
+
+/// The places of all vertices that a tile shares, by local vertex.
+template <int N>
+class SharedPlaces {
+ public:
+  SharedPlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature,
+               const tables::TileTable* /*cube*/) noexcept
+      : edges_(source, base, signature) {}
+  [[nodiscard]] TilePoint<N> operator()(unsigned v) noexcept { return edges_(v); }
+
+ private:
+  EdgePlaces<N, (1u << N) - 1> edges_;
+};
+
+/// In 4D, barycentres of cubes too: each by the arithmetic of the cube's own vertices, as it is asked for.
+template <>
+class SharedPlaces<4> {
+ public:
+  SharedPlaces(const SampleSource<4>& source, const std::array<std::size_t, 4>& base, unsigned signature,
+               const tables::TileTable* cube) noexcept
+      : edges_(source, base, signature), signature_(signature), cube_(cube) {}
+
+  [[nodiscard]] const TilePoint<4>& operator()(unsigned v) noexcept {
+    if ((known_ >> v & 1u) == 0) {
+      if (v < kEdges) {
+        places_[v] = edges_(v);
+        known_ |= std::uint64_t{1} << v;
+      } else {
+        find_cube((v - kEdges) / tables::kFaceSlots);
+      }
+    }
+    return places_[v];
+  }
+
+ private:
+  static constexpr unsigned kEdges = tables::edge_count(4);
+  static constexpr unsigned kShared = tables::first_tile_vertex(4);
+  static_assert(kShared <= 64);
+
+  /// By cube and edge of the cube: the edge of the tile.
+  static constexpr auto kEdgesOfCubes = [] {
+    std::array<std::array<std::uint8_t, tables::edge_count(3)>, 8> result{};
+    for (unsigned cube = 0; cube < 8; ++cube)
+      for (unsigned e = 0; e < tables::edge_count(3); ++e) {
+        const unsigned omitted = cube / 2;
+        const unsigned base = unsqueeze(edge_base(3, e), omitted) | (cube % 2) << omitted;
+        const unsigned axis = e >> 2 < omitted ? e >> 2 : (e >> 2) + 1;
+        result[cube][e] = static_cast<std::uint8_t>(axis << 3 | squeeze(base, axis));
+      }
+    return result;
+  }();
+
+  void find_cube(unsigned cube) noexcept {
+    const SimplexList<3> list(*cube_, squeezed_corners<4>(signature_ >> (cube % 2 << cube / 2), cube / 2));
+    std::array<TilePoint<3>, tables::kFaceSlots> points{};
+    own_places<3>(
+        list, false,
+        [&](unsigned v) {
+          const unsigned edge = list.mapped(v);
+          return edge_point<3>(edge, edges_.alpha(kEdgesOfCubes[cube][edge]));
+        },
+        points.data());
+    for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) {
+      const unsigned v = kEdges + tables::kFaceSlots * cube + slot;
+      places_[v] = cube_point(cube, points[slot]);
+      known_ |= std::uint64_t{1} << v;
+    }
+  }
+
+  EdgePlaces<4, 15> edges_;
+  unsigned signature_;
+  const tables::TileTable* cube_;
+  std::uint64_t known_ = 0;
+  std::array<TilePoint<4>, kShared> places_;  ///< those known: each is asked for by many simplices
+};
+
+}  // namespace tegl::detail
