@@ -4,89 +4,189 @@
 #include "tegl/facets/certificate.hpp"
 
 #include <algorithm>
-#include <map>
-#include <utility>
+#include <bit>
+#include <numeric>
+
+#include "shelling.hpp"
 
 namespace tegl::facets {
 
-namespace {
-
-using Signed = std::pair<Simplex, int>;
-
-/// The non-empty subsets of a simplex's vertices.
-template <class Visit>
-void for_each_subset(const Simplex& s, const Visit& visit) {
-  for (unsigned subset = 1; subset < 1u << size(s); ++subset) {
-    Simplex part = kNoSimplex;
-    int count = 0;
-    for (int i = 0; i < size(s); ++i)
-      if (((subset >> i) & 1u) != 0) part[count++] = s[i];
-    visit(part);
+/// Memory is kept from tile to tile.
+class Certifier::Impl {
+ public:
+  Fault certify(const FaceLattice& lattice, const TileFacets& tile) {
+    simplices_.clear(), signs_.clear();
+    for (const Facet& facet : tile.facets)
+      for (Simplex s : facet.simplices) {
+        signs_.push_back(sort_vertices(s));
+        simplices_.push_back(s);
+      }
+    Fault fault = check_simplices();
+    if (fault == Fault::none) fault = check_ridges(tile);
+    if (fault == Fault::none) fault = check_links(tile);
+    if (fault == Fault::none) fault = check_tile_boundary(lattice, tile);
+    return fault;
   }
-}
 
-Fault check_simplices(Simplices sorted) {
-  for (const Simplex& s : sorted)
-    if (std::adjacent_find(s.begin(), s.begin() + size(s)) != s.begin() + size(s)) return Fault::repeated_vertex;
-  std::sort(sorted.begin(), sorted.end());
-  return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end() ? Fault::none : Fault::repeated_vertex;
-}
-
-/// (1), (3) and branching, from the signed faces of codimension one.
-Fault check_faces(const Simplices& simplices, const std::vector<int>& signs, const TileFacets& tile) {
-  std::vector<Signed> faces, boundary, sigma;
-  for (std::size_t j = 0; j < simplices.size(); ++j)
-    for (int i = 0; i < size(simplices[j]); ++i)
-      faces.emplace_back(without(simplices[j], i), (i % 2 == 0 ? 1 : -1) * signs[j]);
-  std::sort(faces.begin(), faces.end());
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t j = i + 1;
-    while (j < faces.size() && faces[j].first == faces[i].first) ++j;
-    if (j - i > 2) return Fault::branching;
-    if (j - i == 2 && faces[i].second == faces[i + 1].second) return Fault::orientation;
-    if (j - i == 1) boundary.push_back(faces[i]);
-    i = j;
+ private:
+  Fault check_simplices() {
+    map_.clear(simplices_.size());
+    for (std::uint32_t j = 0; j < simplices_.size(); ++j) {
+      const Simplex& s = simplices_[j];
+      if (std::adjacent_find(s.begin(), s.begin() + size(s)) != s.begin() + size(s)) return Fault::repeated_vertex;
+      SimplexMap::Slot& slot = map_.at(vertex_hash(s), [&](std::uint32_t other) { return simplices_[other] == s; });
+      if (slot.value != SimplexMap::kNone) return Fault::repeated_vertex;
+      slot.value = j;
+    }
+    return Fault::none;
   }
-  for (std::size_t i = 0; i < tile.sigma.size(); ++i) sigma.emplace_back(tile.sigma[i], tile.sigma_sign[i]);
-  std::sort(sigma.begin(), sigma.end());
-  return boundary == sigma ? Fault::none : Fault::boundary;
-}
 
-/// (2)
-Fault check_links(const Simplices& simplices, const TileFacets& tile) {
-  std::map<VertexId, Simplices> links;
-  for (const Simplex& s : simplices)
-    for (int i = 0; i < size(s); ++i) links[s[i]].push_back(without(s, i));
-  std::vector<bool> on_sigma(tile.vertices.size());
-  for (const Simplex& s : tile.sigma)
-    for (int i = 0; i < size(s); ++i) on_sigma[s[i]] = true;
-  for (const auto& [vertex, link] : links)
-    if (shape_of(link) != (on_sigma[vertex] ? Shape::ball : Shape::sphere)) return Fault::link;
-  return Fault::none;
-}
+  /// The sign with which a simplex induces an orientation on its face without vertex i.
+  [[nodiscard]] int induced(std::size_t j, std::size_t i) const { return i % 2 == 0 ? signs_[j] : -signs_[j]; }
 
-/// (4)
-Fault check_tile_boundary(const FaceLattice& lattice, const Simplices& simplices, const TileFacets& tile) {
-  const std::vector<std::uint32_t>& faces = lattice.faces()[lattice.tile()].faces;
-  std::vector<Simplices> own(faces.size());
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (const Simplex& s : tile.in_face[f]) for_each_subset(s, [&](const Simplex& part) { own[f].push_back(part); });
-    std::sort(own[f].begin(), own[f].end());
+  [[nodiscard]] int induced(std::size_t j, const Simplex& face) const {
+    std::size_t i = 0;
+    while (simplices_[j][i] == face[i]) ++i;
+    return induced(j, i);
   }
-  Fault fault = Fault::none;
-  for (const Simplex& s : simplices)
-    for_each_subset(s, [&](const Simplex& part) {
-      Signature corners = 0;
-      for (int i = 0; i < size(part); ++i) corners |= lattice.faces()[tile.vertices[part[i]].face].corners;
-      for (std::size_t f = 0; f < faces.size(); ++f)
-        if ((corners & ~lattice.faces()[faces[f]].corners) == 0 &&
-            !std::binary_search(own[f].begin(), own[f].end(), part))
-          fault = Fault::in_tile_boundary;
-    });
-  return fault;
-}
 
-}  // namespace
+  /// (1), (3) and branching, from the faces of codimension one.
+  Fault check_ridges(const TileFacets& tile) {
+    if (!adjacency_.build(simplices_)) return Fault::branching;
+    map_.clear(tile.sigma.size());
+    for (std::uint32_t j = 0; j < tile.sigma.size(); ++j)
+      map_.at(vertex_hash(tile.sigma[j]), [&](std::uint32_t k) { return tile.sigma[k] == tile.sigma[j]; }).value = j;
+    std::size_t boundary = 0;
+    Fault fault = Fault::none;
+    for (std::size_t j = 0; j < simplices_.size(); ++j)
+      for (std::size_t i = 0; i < adjacency_.vertices_per_simplex(); ++i) {
+        const Simplex face = without(simplices_[j], static_cast<int>(i));
+        if (const std::uint32_t n = adjacency_.neighbour(j, i); n != Adjacency::kNone) {
+          if (induced(j, i) == induced(n, face)) return Fault::orientation;
+          continue;
+        }
+        ++boundary;
+        const std::uint32_t at = map_.find(vertex_hash(face), [&](std::uint32_t k) { return tile.sigma[k] == face; });
+        if (at == SimplexMap::kNone || tile.sigma_sign[at] != induced(j, i)) fault = Fault::boundary;
+      }
+    return boundary == tile.sigma.size() ? fault : Fault::boundary;
+  }
+
+  /// (2)
+  Fault check_links(const TileFacets& tile) {
+    const std::size_t width = adjacency_.vertices_per_simplex();
+    start_.assign(tile.vertices.size() + 1, 0);
+    for (const Simplex& s : simplices_)
+      for (std::size_t i = 0; i < width; ++i) ++start_[s[i] + std::size_t{1}];
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    star_.resize(simplices_.size() * width);
+    next_.assign(start_.begin(), start_.end());
+    for (std::uint32_t j = 0; j < simplices_.size(); ++j)
+      for (std::size_t i = 0; i < width; ++i) star_[next_[simplices_[j][i]]++] = j;
+    on_sigma_.assign(tile.vertices.size(), false);
+    for (const Simplex& s : tile.sigma)
+      for (int i = 0; i < size(s); ++i) on_sigma_[s[i]] = true;
+    for (std::size_t v = 0; v < tile.vertices.size(); ++v) {
+      const auto star = std::span(star_).subspan(start_[v], start_[v + 1] - start_[v]);
+      if (star.empty()) continue;
+      const Shape right = on_sigma_[v] ? Shape::ball : Shape::sphere;
+      const auto vertex = static_cast<VertexId>(v);
+      if (shelling_.shape(simplices_, adjacency_, star, vertex) == right) continue;
+      // Not every sphere of dimension 3 or more has a shelling that a few tries find.
+      if (width <= 4 || shape_of(link(star, vertex)) != right) return Fault::link;
+    }
+    return Fault::none;
+  }
+
+  [[nodiscard]] Simplices link(std::span<const std::uint32_t> star, VertexId vertex) const {
+    Simplices result;
+    for (const std::uint32_t j : star) {
+      const Simplex& s = simplices_[j];
+      result.push_back(without(s, static_cast<int>(std::find(s.begin(), s.end(), vertex) - s.begin())));
+    }
+    return result;
+  }
+
+  /// (4): of every simplex the part in each maximal face of the tile. Smaller parts then belong as well.
+  Fault check_tile_boundary(const FaceLattice& lattice, const TileFacets& tile) {
+    const std::vector<std::uint32_t>& maximal = lattice.faces()[lattice.tile()].faces;
+    collect_own(tile);
+    inside_.clear();
+    for (const Face& f : lattice.faces()) {
+      std::uint64_t in = 0;
+      for (std::size_t g = 0; g < maximal.size(); ++g)
+        if ((f.corners & ~lattice.faces()[maximal[g]].corners) == 0) in |= std::uint64_t{1} << g;
+      inside_.push_back(in);
+    }
+    for (const Simplex& s : simplices_) {
+      std::uint64_t in[kMaxVertices] = {}, any = 0;
+      const int width = size(s);
+      for (int i = 0; i < width; ++i) any |= in[i] = inside_[tile.vertices[s[i]].face];
+      for (; any != 0; any &= any - 1) {
+        const auto g = static_cast<std::uint32_t>(std::countr_zero(any));
+        Simplex part = kNoSimplex;
+        int count = 0;
+        for (int i = 0; i < width; ++i)
+          if (((in[i] >> g) & 1u) != 0) part[count++] = s[i];
+        if (!is_own(g, part)) return Fault::in_tile_boundary;
+      }
+    }
+    return Fault::none;
+  }
+
+  struct Own {
+    std::uint32_t face;
+    Simplex simplex;
+    friend bool operator==(const Own&, const Own&) = default;
+  };
+
+  static std::uint64_t hash(const Own& own) { return vertex_hash(own.simplex) + own.face * 0x9e3779b97f4a7c15u; }
+
+  /// All simplices, of every dimension, of the contours in the maximal faces.
+  void collect_own(const TileFacets& tile) {
+    std::size_t total = 0;
+    for (const Simplices& in_face : tile.in_face)
+      if (!in_face.empty()) total += in_face.size() << size(in_face[0]);
+    own_.clear();
+    map_.clear(total);
+    for (std::uint32_t g = 0; g < tile.in_face.size(); ++g)
+      for (const Simplex& s : tile.in_face[g])
+        for (unsigned subset = 1; subset < 1u << size(s); ++subset) {
+          Own own{g, kNoSimplex};
+          int count = 0;
+          for (int i = 0; i < size(s); ++i)
+            if (((subset >> i) & 1u) != 0) own.simplex[count++] = s[i];
+          SimplexMap::Slot& slot = map_.at(hash(own), [&](std::uint32_t k) { return own_[k] == own; });
+          if (slot.value != SimplexMap::kNone) continue;
+          slot.value = static_cast<std::uint32_t>(own_.size());
+          own_.push_back(own);
+        }
+  }
+
+  [[nodiscard]] bool is_own(std::uint32_t face, const Simplex& simplex) const {
+    const Own own{face, simplex};
+    return map_.find(hash(own), [&](std::uint32_t k) { return own_[k] == own; }) != SimplexMap::kNone;
+  }
+
+  Simplices simplices_;
+  std::vector<int> signs_;
+  Adjacency adjacency_;
+  Shelling shelling_;
+  SimplexMap map_;
+  std::vector<std::uint32_t> start_, next_, star_;
+  std::vector<bool> on_sigma_;
+  std::vector<Own> own_;
+  std::vector<std::uint64_t> inside_;  ///< by face: the maximal faces that contain it
+};
+
+Certifier::Certifier() : impl_(std::make_unique<Impl>()) {}
+Certifier::~Certifier() = default;
+Certifier::Certifier(Certifier&&) noexcept = default;
+Certifier& Certifier::operator=(Certifier&&) noexcept = default;
+
+Fault Certifier::certify(const FaceLattice& lattice, const TileFacets& tile) { return impl_->certify(lattice, tile); }
+
+Fault certify(const FaceLattice& lattice, const TileFacets& tile) { return Certifier().certify(lattice, tile); }
 
 const char* fault_name(Fault fault) noexcept {
   switch (fault) {
@@ -106,21 +206,6 @@ const char* fault_name(Fault fault) noexcept {
       return "simplex in the tile's boundary that is not Sigma's";
   }
   return "unknown";
-}
-
-Fault certify(const FaceLattice& lattice, const TileFacets& tile) {
-  Simplices simplices;
-  std::vector<int> signs;
-  for (const Facet& facet : tile.facets)
-    for (Simplex s : facet.simplices) {
-      signs.push_back(sort_vertices(s));
-      simplices.push_back(s);
-    }
-  Fault fault = check_simplices(simplices);
-  if (fault == Fault::none) fault = check_faces(simplices, signs, tile);
-  if (fault == Fault::none) fault = check_links(simplices, tile);
-  if (fault == Fault::none) fault = check_tile_boundary(lattice, simplices, tile);
-  return fault;
 }
 
 }  // namespace tegl::facets

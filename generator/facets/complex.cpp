@@ -57,7 +57,7 @@ class Collapse {
 
   /// Does the complex, without its first top simplex if `open`, collapse to a point in one of some seeded tries?
   [[nodiscard]] bool to_a_point(bool open) const {
-    constexpr unsigned kTries = 8;
+    constexpr unsigned kTries = 4;
     for (unsigned seed = 0; seed < kTries; ++seed)
       if (one_try(open, seed) == 1) return true;
     return false;

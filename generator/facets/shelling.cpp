@@ -9,20 +9,6 @@
 
 namespace tegl::facets {
 
-std::uint64_t vertex_hash(VertexId vertex) noexcept {
-  // The finaliser of splitmix64: sums of its values behave like random ones.
-  std::uint64_t x = (vertex + std::uint64_t{1}) * 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-std::uint64_t vertex_hash(const Simplex& simplex) noexcept {
-  std::uint64_t sum = 0;
-  for (int i = 0; i < size(simplex); ++i) sum += vertex_hash(simplex[i]);
-  return sum;
-}
-
 void SimplexMap::clear(std::size_t entries) {
   if (const std::size_t needed = std::bit_ceil(2 * entries + 16); needed > slots_.size() || epoch_ + 1 == 0) {
     slots_.assign(std::max(needed, slots_.size()), Slot{0, 0, kNone});
@@ -86,9 +72,10 @@ std::uint32_t Shelling::other_side(std::uint32_t simplex, std::size_t vertex) co
 bool Shelling::one_try(std::span<const std::uint32_t> members, unsigned seed, bool closed) {
   const std::size_t width = adjacency_->vertices_per_simplex();
   for (const std::uint32_t m : members) state_[m] = State::waiting;
-  used_.clear(members.size() << (width - 1));
+  if (++try_ == 0) used_vertex_.assign(used_vertex_.size(), 0), try_ = 1;
+  used_.clear(members.size() << width);
   queue_.assign(1, members[0]);
-  std::mt19937 random(seed);
+  std::minstd_rand random(seed);
   if (seed != 0) queue_[0] = members[random() % members.size()];
   std::size_t taken = 0;
   for (std::size_t head = 0; head < queue_.size(); ++head) {
@@ -96,17 +83,21 @@ bool Shelling::one_try(std::span<const std::uint32_t> members, unsigned seed, bo
     const std::uint32_t m = queue_[head];
     if (state_[m] == State::done) continue;
     unsigned shared = 0;
-    for (std::size_t i = 0; i < width; ++i)
-      if (simplices_[m][i] != apex_)
-        if (const std::uint32_t n = other_side(m, i); n != Adjacency::kNone && state_[n] == State::done)
-          shared |= 1u << i;
+    std::uint32_t waiting[kMaxVertices];
+    std::size_t waiting_count = 0;
+    for (std::size_t i = 0; i < width; ++i) {
+      if (simplices_[m][i] == apex_) continue;
+      const std::uint32_t n = other_side(m, i);
+      if (n == Adjacency::kNone) continue;
+      if (state_[n] == State::done)
+        shared |= 1u << i;
+      else
+        waiting[waiting_count++] = n;
+    }
     if (taken != 0 && !fits(m, shared, closed && taken + 1 == members.size())) continue;
     take(m), ++taken;
     // Those that did not fit are tried again whenever they share one face more.
-    for (std::size_t i = 0; i < width; ++i)
-      if (simplices_[m][i] != apex_)
-        if (const std::uint32_t n = other_side(m, i); n != Adjacency::kNone && state_[n] == State::waiting)
-          queue_.push_back(n);
+    queue_.insert(queue_.end(), waiting, waiting + waiting_count);
   }
   return taken == members.size();
 }
@@ -115,28 +106,39 @@ bool Shelling::one_try(std::span<const std::uint32_t> members, unsigned seed, bo
 /// the face that these vertices span is not taken.
 bool Shelling::fits(std::uint32_t simplex, unsigned shared, bool last) const {
   const std::size_t width = adjacency_->vertices_per_simplex();
-  const auto own = static_cast<int>(width) - (apex_ == kNoVertex ? 0 : 1);
-  const int count = std::popcount(shared);
+  const std::size_t own = width - (apex_ == kNoVertex ? 0 : 1);
+  std::uint64_t hash = 0;
+  std::size_t count = 0;
+  VertexId vertex = 0;
+  for (std::size_t i = 0; i < width; ++i)
+    if (((shared >> i) & 1u) != 0) vertex = simplices_[simplex][i], hash += vertex_hash(vertex), ++count;
   if (count == own) return last;
   if (count == own - 1) return true;  // that face is of codimension one, and not shared
-  std::uint64_t hash = 0;
-  for (std::size_t i = 0; i < width; ++i)
-    if (((shared >> i) & 1u) != 0) hash += vertex_hash(simplices_[simplex][i]);
+  if (count == 1) return vertex >= used_vertex_.size() || used_vertex_[vertex] != try_;
   return used_.find(hash, [](std::uint32_t) { return true; }) == SimplexMap::kNone;
 }
 
 void Shelling::take(std::uint32_t simplex) {
   state_[simplex] = State::done;
+  const std::size_t width = adjacency_->vertices_per_simplex();
+  const std::size_t largest = simplices_[simplex][width - 1];  // vertices ascend
+  if (largest >= used_vertex_.size()) used_vertex_.resize(largest + 1, 0);
+  for (std::size_t i = 0; i < width; ++i) used_vertex_[simplices_[simplex][i]] = try_;
+  if (width - (apex_ == kNoVertex ? 0 : 1) >= 4) take_large_faces(simplex);
+}
+
+void Shelling::take_large_faces(std::uint32_t simplex) {
   std::uint64_t hashes[kMaxVertices];
   int own = 0;
   for (std::size_t i = 0; i < adjacency_->vertices_per_simplex(); ++i)
     if (simplices_[simplex][i] != apex_) hashes[own++] = vertex_hash(simplices_[simplex][i]);
   for (unsigned face = 1; face < 1u << own; ++face) {
-    if (std::popcount(face) > own - 2) continue;  // `fits` never asks for larger ones
+    int count = 0;
     std::uint64_t hash = 0;
     for (int i = 0; i < own; ++i)
-      if (((face >> i) & 1u) != 0) hash += hashes[i];
-    used_.at(hash, [](std::uint32_t) { return true; }).value = 0;
+      if (((face >> i) & 1u) != 0) hash += hashes[i], ++count;
+    // `fits` never asks for others.
+    if (count >= 2 && count <= own - 2) used_.at(hash, [](std::uint32_t) { return true; }).value = 0;
   }
 }
 

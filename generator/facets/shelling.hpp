@@ -15,8 +15,19 @@
 namespace tegl::facets {
 
 /// A hash of a set of vertices: the sum of one number per vertex, so that one vertex more or less is one addition.
-std::uint64_t vertex_hash(VertexId vertex) noexcept;
-std::uint64_t vertex_hash(const Simplex& simplex) noexcept;
+inline std::uint64_t vertex_hash(VertexId vertex) noexcept {
+  // The finaliser of splitmix64: sums of its values behave like random ones.
+  std::uint64_t x = (vertex + std::uint64_t{1}) * 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+inline std::uint64_t vertex_hash(const Simplex& simplex) noexcept {
+  std::uint64_t sum = 0;
+  for (int i = 0; i < kMaxVertices && simplex[i] != kNoVertex; ++i) sum += vertex_hash(simplex[i]);
+  return sum;
+}
 
 /// Numbers of simplices by their vertices: open addressing, its memory kept from use to use.
 class SimplexMap {
@@ -85,13 +96,17 @@ class Shelling {
   bool one_try(std::span<const std::uint32_t> members, unsigned seed, bool closed);
   [[nodiscard]] bool fits(std::uint32_t simplex, unsigned shared, bool last) const;
   void take(std::uint32_t simplex);
+  void take_large_faces(std::uint32_t simplex);
 
   std::span<const Simplex> simplices_;
   const Adjacency* adjacency_ = nullptr;
   VertexId apex_ = kNoVertex;
   std::vector<State> state_;
   std::vector<std::uint32_t> queue_;
-  SimplexMap used_;  ///< faces of those taken, by hash alone: one too many can only make a try fail
+  // Faces of those taken. Larger ones by hash alone: one too many can only make a try fail.
+  std::vector<std::uint32_t> used_vertex_;  ///< by vertex: the try that took it last
+  std::uint32_t try_ = 0;
+  SimplexMap used_;
 };
 
 }  // namespace tegl::facets

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "tegl/facets/facets.hpp"
 
@@ -22,9 +23,25 @@ enum class Fault : std::uint8_t {
 
 const char* fault_name(Fault fault) noexcept;
 
-/// Checks the contour of one tile of dimension n >= 2: (1) its boundary is Sigma exactly; (2) the link of every
-/// interior vertex is an (n-2)-sphere, of every vertex on Sigma an (n-2)-ball; (3) orientations agree; (4) every
-/// simplex whose vertices all lie in one face of the tile belongs to the contour in that face.
+/// Checks tiles, one after the other; its memory is kept. One thread at a time.
+class Certifier {
+ public:
+  Certifier();
+  ~Certifier();
+  Certifier(Certifier&&) noexcept;
+  Certifier& operator=(Certifier&&) noexcept;
+
+  /// Checks the contour of one tile of dimension n >= 2: (1) its boundary is Sigma exactly; (2) the link of every
+  /// interior vertex is an (n-2)-sphere, of every vertex on Sigma an (n-2)-ball; (3) orientations agree; (4) every
+  /// simplex whose vertices all lie in one face of the tile belongs to the contour in that face.
+  Fault certify(const FaceLattice& lattice, const TileFacets& tile);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The same for a single tile.
 Fault certify(const FaceLattice& lattice, const TileFacets& tile);
 
 }  // namespace tegl::facets

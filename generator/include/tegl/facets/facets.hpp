@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -55,8 +56,8 @@ class FaceLattice {
 /// How a face of dimension 2 or more fills its contour.
 enum class Choice : std::uint8_t {
   separate,  ///< spheres are coned; what is none, and an ambiguous polygon, takes the default alternative
-  low,       ///< the centre is low: copies of the high regions of the boundary
-  high,      ///< the centre is high: copies of the low regions
+  low,       ///< the centre is low: copies of the high regions of the boundary, cones where one sphere bounds a region
+  high,      ///< the centre is high: the same of the low regions
 };
 
 enum class Alternative : std::uint8_t { low, high };
@@ -96,14 +97,39 @@ struct Facet {
 struct TileFacets {
   std::vector<Vertex> vertices;
   std::vector<Facet> facets;  ///< simplices of n vertices
-  Simplices sigma;            ///< simplices of n - 1 vertices, sorted
+  Simplices sigma;            ///< simplices of n - 1 vertices
   std::vector<int> sigma_sign;
   /// The contour in each face of codimension one, in the order of the tile's `faces`; not oriented.
   std::vector<Simplices> in_face;
 };
 
-/// The contour of a tile of dimension 2 or more. Thread safe. Time: about linear in the simplices of all faces.
-/// Throws std::invalid_argument for a signature with bits beyond the corners or a wrong number of choices.
+enum class Geometry : std::uint8_t {
+  with,
+  without,  ///< vertices lack `copied` and `of`: enough for topology, and faster
+};
+
+/// Builds tiles of one lattice, one after the other. What it has built in faces of dimension up to 3 it keeps, and in
+/// those of dimension 4 up to 256 MiB of it as long as no choices are given. One thread at a time.
+class FacetBuilder {
+ public:
+  /// Throws std::invalid_argument for a lattice of dimension less than 2.
+  explicit FacetBuilder(FaceLattice lattice);
+  ~FacetBuilder();
+  FacetBuilder(FacetBuilder&&) noexcept;
+  FacetBuilder& operator=(FacetBuilder&&) noexcept;
+
+  [[nodiscard]] const FaceLattice& lattice() const;
+
+  /// The contour of a tile, valid until the next call. Time: about linear in the simplices of all faces.
+  /// Throws std::invalid_argument for a signature with bits beyond the corners or a wrong number of choices.
+  const TileFacets& build(Signature signature, const Resolution& resolution = {}, Geometry geometry = Geometry::with);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The same for a single tile.
 TileFacets build_facets(const FaceLattice& lattice, Signature signature, const Resolution& resolution = {});
 
 }  // namespace tegl::facets

@@ -1,0 +1,422 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The step of the recursion over dimension: contour, high part and low part of a face from those of its own faces.
+#include "pieces.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace tegl::facets {
+
+namespace {
+
+Simplex mapped(const Simplex& simplex, const std::vector<VertexId>& map) {
+  Simplex result = kNoSimplex;
+  for (int i = 0; i < kMaxVertices && simplex[i] != kNoVertex; ++i) result[i] = map[simplex[i]];
+  return result;  // maps ascend
+}
+
+/// With a vertex beyond all others.
+Simplex with_last(const Simplex& simplex, VertexId last) {
+  Simplex result = simplex;
+  result[static_cast<std::size_t>(size(simplex))] = last;
+  return result;
+}
+
+/// Puts simplices in the order of their components; start[c] is where component c begins, its last entry their end.
+template <class Visit>
+void group(const Simplices& simplices, VertexSets& sets, std::vector<std::uint32_t>& number_of,
+           std::vector<std::uint32_t>& start, const Visit& visit) {
+  constexpr std::uint32_t kNew = ~std::uint32_t{0};
+  start.assign(1, 0);
+  for (const Simplex& s : simplices) {
+    std::uint32_t& number = number_of[sets.root(s[0])];
+    if (number == kNew) {
+      number = static_cast<std::uint32_t>(start.size() - 1);
+      start.push_back(0);
+    }
+    ++start[number + 1];
+  }
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  std::vector<std::uint32_t> next(start.begin(), start.end());
+  for (std::size_t j = 0; j < simplices.size(); ++j) visit(j, next[number_of[sets.root(simplices[j][0])]]++);
+}
+
+/// Of a closed manifold, from its simplices; without a look at them for curves and 3-manifolds.
+int closed_euler_characteristic(std::span<const Simplex> simplices, std::size_t vertices) {
+  switch (size(simplices.front())) {
+    case 1:
+      return 2;  // with its other end
+    case 2:
+    case 4:
+      return 0;
+    case 3:
+      return static_cast<int>(vertices) - static_cast<int>(simplices.size() / 2);
+    default:
+      return euler_characteristic({simplices.begin(), simplices.end()});
+  }
+}
+
+}  // namespace
+
+void Piece::clear() {
+  own.clear(), of.clear(), facets.clear(), contour.clear(), sign.clear(), high.clear(), low.clear();
+}
+
+std::size_t Piece::bytes() const {
+  return sizeof(Piece) + own.capacity() * sizeof(OwnVertex) + facets.capacity() * sizeof(PieceFacet) + sign.capacity() +
+         (of.capacity() + contour.capacity() + high.capacity() + low.capacity()) * sizeof(Simplex);
+}
+
+void VertexSets::reset(std::size_t vertices) {
+  parent_.resize(vertices);
+  std::iota(parent_.begin(), parent_.end(), VertexId{0});
+}
+
+VertexId VertexSets::root(VertexId v) {
+  while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+  return v;
+}
+
+void VertexSets::join(const Simplices& simplices) {
+  for (const Simplex& s : simplices)
+    for (int i = 1; i < kMaxVertices && s[i] != kNoVertex; ++i) parent_[root(s[i])] = root(s[0]);
+}
+
+void PieceBuilder::number(std::uint32_t face, std::vector<VertexId>& map) const {
+  map.clear();
+  for (const std::uint32_t h : (*closures_)[face]) {
+    const std::size_t count = h == face_ ? piece_->own.size() : pieces_[h]->own.size();
+    for (std::size_t k = 0; k < count; ++k) map.push_back(static_cast<VertexId>(base_[h] + k));
+  }
+}
+
+void PieceBuilder::build(std::uint32_t face, std::span<const Piece* const> pieces, Choice choice,
+                         Alternative alternative, bool with_parts, Piece& piece) {
+  face_ = face, pieces_ = pieces, piece_ = &piece, with_parts_ = with_parts;
+  piece.clear();
+  next_number_ = next_centre_ = 0;
+  centre_high_ = choice == Choice::separate ? alternative == Alternative::high : choice == Choice::high;
+  number_vertices();
+  if (this->face().dim == 1) return build_edge();
+  collect_sigma();
+  const bool separate = choice == Choice::separate;
+  if (this->face().dim > 2 && separate)
+    for (Component& c : components_)
+      if (shown_to_be_sphere(c)) cap(c);
+  const bool all_coned = std::all_of(components_.begin(), components_.end(), [](auto& c) { return c.coned(); });
+  if (all_coned && !with_parts) return;
+  collect_regions();
+  if (this->face().dim > 2 && !separate) cap_what_stands_apart();
+  fill_parts();
+}
+
+void PieceBuilder::number_vertices() {
+  base_.resize(lattice_->faces().size());
+  owner_.clear();
+  for (const std::uint32_t h : (*closures_)[face_]) {
+    base_[h] = static_cast<VertexId>(owner_.size());
+    if (h != face_) owner_.insert(owner_.end(), pieces_[h]->own.size(), h);
+  }
+  if (owner_.size() >= kNoVertex) throw std::length_error("more than 65535 vertices in a tile");
+}
+
+VertexId PieceBuilder::new_vertex(VertexKind kind, VertexId copied, std::span<const Simplex> of) {
+  const std::size_t id = owner_.size();
+  if (id >= kNoVertex) throw std::length_error("more than 65535 vertices in a tile");
+  // Centres are counted apart: the tile itself has none, and its contour has the same numbers as where it is a face.
+  std::uint32_t& number = kind == VertexKind::centre ? next_centre_ : next_number_;
+  const auto begin = static_cast<std::uint32_t>(piece_->of.size());
+  piece_->of.insert(piece_->of.end(), of.begin(), of.end());
+  piece_->own.push_back({kind, number++, copied, begin, static_cast<std::uint32_t>(piece_->of.size())});
+  owner_.push_back(face_);
+  return static_cast<VertexId>(id);
+}
+
+void PieceBuilder::build_edge() {
+  const bool first = !pieces_[face().faces[0]]->high.empty(), second = !pieces_[face().faces[1]]->high.empty();
+  const auto corner = [&](std::size_t i) { return base_[face().faces[i]]; };
+  const auto simplex = [](VertexId a, VertexId b) {
+    Simplex s = kNoSimplex;
+    s[0] = a, s[1] = b;
+    return s;
+  };
+  if (first == second) {
+    side(first).push_back(simplex(corner(0), corner(1)));
+    return;
+  }
+  const VertexId point = new_vertex(VertexKind::edge);
+  piece_->contour = {simplex(point, kNoVertex)};
+  piece_->sign = {static_cast<std::int8_t>(second ? 1 : -1)};
+  piece_->facets = {{Filling::simplex, 2, 0, 1}};
+  side(first).push_back(simplex(corner(0), point));
+  side(second).push_back(simplex(corner(1), point));
+}
+
+void PieceBuilder::collect_sigma() {
+  unsorted_.clear(), unsorted_sign_.clear();
+  for (std::size_t j = 0; j < face().faces.size(); ++j) {
+    const Piece& piece = *pieces_[face().faces[j]];
+    number(face().faces[j], map_);
+    for (std::size_t i = 0; i < piece.contour.size(); ++i) {
+      unsorted_.push_back(mapped(piece.contour[i], map_));
+      unsorted_sign_.push_back(static_cast<std::int8_t>(piece.sign[i] * face().signs[j]));
+    }
+  }
+  sets_.reset(owner_.size());
+  sets_.join(unsorted_);
+  group_.assign(owner_.size(), ~std::uint32_t{0});
+  sigma_.resize(unsorted_.size()), sigma_sign_.resize(unsorted_.size());
+  group(unsorted_, sets_, group_, start_, [&](std::size_t from, std::size_t to) {
+    sigma_[to] = unsorted_[from], sigma_sign_[to] = unsorted_sign_[from];
+  });
+  components_.clear();
+  for (std::size_t c = 0; c + 1 < start_.size(); ++c) components_.push_back({.begin = start_[c], .end = start_[c + 1]});
+}
+
+/// Regions, and which components of Sigma bound them.
+void PieceBuilder::collect_regions() {
+  regions_.clear();
+  for (const bool high : {true, false}) {
+    unsorted_.clear();
+    for (const std::uint32_t g : face().faces) {
+      const Simplices& part = high ? pieces_[g]->high : pieces_[g]->low;
+      if (part.empty()) continue;
+      number(g, map_);
+      for (const Simplex& s : part) unsorted_.push_back(mapped(s, map_));
+    }
+    sets_.reset(owner_.size());
+    sets_.join(unsorted_);
+    group_.assign(owner_.size(), ~std::uint32_t{0});
+    Simplices& sorted = sides_[high ? 1 : 0];
+    sorted.resize(unsorted_.size());
+    group(unsorted_, sets_, group_, start_, [&](std::size_t from, std::size_t to) { sorted[to] = unsorted_[from]; });
+    const auto first = static_cast<std::uint32_t>(regions_.size());
+    for (std::size_t r = 0; r + 1 < start_.size(); ++r)
+      regions_.push_back({high, start_[r], start_[r + 1], {}, static_cast<std::uint32_t>(regions_.size())});
+    for (std::uint32_t c = 0; c < components_.size(); ++c) {
+      const std::uint32_t r = first + group_[sets_.root(sigma_[components_[c].begin][0])];
+      components_[c].region[high ? 1 : 0] = r;
+      regions_[r].around.push_back(c);
+    }
+  }
+}
+
+/// By construction Sigma is a closed manifold; a connected curve is a circle, a surface is known by its Euler number.
+bool PieceBuilder::shown_to_be_sphere(const Component& component) {
+  const std::span<const Simplex> simplices = sigma_of(component);
+  const int vertices = size(simplices.front());
+  if (vertices <= 2) return true;
+  if (vertices == 3) {
+    find_vertices(simplices);
+    return closed_euler_characteristic(simplices, found_.size()) == 2;
+  }
+  if (!adjacency_.build(simplices)) return false;
+  all_.resize(simplices.size());
+  std::iota(all_.begin(), all_.end(), std::uint32_t{0});
+  return shelling_.shape(simplices, adjacency_, all_, kNoVertex) == Shape::sphere ||
+         shape_of({simplices.begin(), simplices.end()}) == Shape::sphere;
+}
+
+/// The vertices of these, in the order of their first use, to found_.
+void PieceBuilder::find_vertices(std::span<const Simplex> simplices) {
+  mark_.resize(std::max(mark_.size(), owner_.size()));
+  ++epoch_;
+  found_.clear();
+  for (const Simplex& s : simplices)
+    for (int i = 0; i < kMaxVertices && s[i] != kNoVertex; ++i)
+      if (mark_[s[i]] != epoch_) mark_[s[i]] = epoch_, found_.push_back(s[i]);
+}
+
+/// Do all vertices found lie in one proper face?
+bool PieceBuilder::in_one_face() const {
+  Signature corners = 0;
+  for (const VertexId v : found_) corners |= lattice_->faces()[owner_[v]].corners;
+  return std::any_of(face().faces.begin(), face().faces.end(),
+                     [&](std::uint32_t g) { return (corners & ~lattice_->faces()[g].corners) == 0; });
+}
+
+/// The ball with this boundary: the simplex if it is one's, else a cone from a new vertex.
+void PieceBuilder::ball(std::span<const Simplex> boundary, VertexKind kind, Simplices& to) {
+  find_vertices(boundary);
+  const auto width = static_cast<std::size_t>(size(boundary[0]));
+  if (found_.size() == width + 1 && boundary.size() == width + 1 && !in_one_face()) {
+    Simplex simplex = kNoSimplex;
+    std::copy(found_.begin(), found_.end(), simplex.begin());
+    std::sort(simplex.begin(), simplex.begin() + static_cast<std::ptrdiff_t>(width + 1));
+    to.push_back(simplex);
+    return;
+  }
+  const VertexId apex = new_vertex(kind, kNoVertex, boundary);
+  for (const Simplex& s : boundary) to.push_back(with_last(s, apex));
+}
+
+void PieceBuilder::cap(Component& component) {
+  component.cap_begin = static_cast<std::uint32_t>(piece_->contour.size());
+  const std::span<const Simplex> boundary = sigma_of(component);
+  ball(boundary, VertexKind::barycentre, piece_->contour);
+  component.cap_end = static_cast<std::uint32_t>(piece_->contour.size());
+  const auto bounds_sign = std::span(sigma_sign_).subspan(component.begin, boundary.size());
+  const int euler = closed_euler_characteristic(boundary, found_.size());
+  if (component.cap_end - component.cap_begin == 1)
+    return orient(component.cap_begin, euler, Filling::simplex, boundary, bounds_sign);
+  // Without its apex, the last vertex, a simplex of the cone is Sigma's.
+  const int apex_sign = size(boundary[0]) % 2 == 0 ? 1 : -1;
+  for (const int s : bounds_sign) piece_->sign.push_back(static_cast<std::int8_t>(s * apex_sign));
+  piece_->facets.push_back({Filling::cone, euler, component.cap_begin, component.cap_end});
+}
+
+/// A copy of a region that one sphere bounds joins nothing: a cone is smaller.
+void PieceBuilder::cap_what_stands_apart() {
+  for (Component& c : components_)
+    if (regions_[c.region[centre_high_ ? 0 : 1]].around.size() == 1 && shown_to_be_sphere(c)) cap(c);
+}
+
+/// A region with the caps of the components of Sigma around it that have one.
+void PieceBuilder::capped(const Region& region, Simplices& to) const {
+  const Simplices& simplices = sides_[region.high ? 1 : 0];
+  to.insert(to.end(), simplices.begin() + region.begin, simplices.begin() + region.end);
+  for (const std::uint32_t c : region.around)
+    to.insert(to.end(), piece_->contour.begin() + components_[c].cap_begin,
+              piece_->contour.begin() + components_[c].cap_end);
+}
+
+/// Caps cut the face apart; each part is filled by itself.
+void PieceBuilder::fill_parts() {
+  for (const Component& c : components_) {
+    if (c.coned()) continue;
+    const std::uint32_t from = regions_[c.region[0]].part, to = regions_[c.region[1]].part;
+    for (Region& region : regions_)
+      if (region.part == from) region.part = to;
+  }
+  for (std::uint32_t r = 0; r < regions_.size(); ++r) {
+    // Once for each part: at its first region.
+    const std::uint32_t part = regions_[r].part;
+    const auto same = [&](const Region& region) { return region.part == part; };
+    const auto end = regions_.end(), here = regions_.begin() + r;
+    if (std::find_if(regions_.begin(), here, same) != here) continue;
+    if (std::find_if(here + 1, end, same) != end) {
+      fill_around_centre(part);
+    } else if (with_parts_) {
+      original_.clear();
+      capped(regions_[r], original_);
+      ball(original_, VertexKind::centre, side(regions_[r].high));
+    }
+  }
+}
+
+/// The regions of one sign are copied inwards; between the copies and the others lies the part with the centre.
+void PieceBuilder::fill_around_centre(std::uint32_t part) {
+  around_.clear();
+  for (const Region& region : regions_) {
+    if (region.part != part) continue;
+    if (region.high == centre_high_) {
+      if (with_parts_) capped(region, around_);
+      continue;
+    }
+    const std::size_t begin = piece_->contour.size();
+    face().dim == 2 ? cut_corner(region) : copy_inwards(region);
+    around_.insert(around_.end(), piece_->contour.begin() + static_cast<std::ptrdiff_t>(begin), piece_->contour.end());
+  }
+  if (with_parts_) ball(around_, VertexKind::centre, side(centre_high_));
+}
+
+/// Dimension 2: a run of corners of one sign is cut off by the segment between its ends.
+void PieceBuilder::cut_corner(const Region& region) {
+  Simplex segment = kNoSimplex;
+  Simplex ends[2];
+  std::int8_t signs[2] = {};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::uint32_t at = components_[region.around[i]].begin;
+    ends[i] = sigma_[at], signs[i] = sigma_sign_[at];
+    segment[i] = ends[i][0];
+  }
+  if (segment[0] > segment[1]) std::swap(segment[0], segment[1]);
+  const auto begin = static_cast<std::uint32_t>(piece_->contour.size());
+  piece_->contour.push_back(segment);
+  orient(begin, 2, Filling::simplex, ends, signs);
+  if (!with_parts_) return;
+  original_.clear();
+  capped(region, original_);
+  original_.push_back(segment);
+  ball(original_, VertexKind::centre, side(region.high));
+}
+
+/// The copy keeps the vertices of Sigma that it bounds and has new ones else. Between region and copy lies a prism
+/// over each simplex, pinched where vertices are kept.
+void PieceBuilder::copy_inwards(const Region& region) {
+  original_.clear();
+  capped(region, original_);
+  unsorted_.clear(), unsorted_sign_.clear();
+  for (const std::uint32_t c : region.around) {
+    const Component& component = components_[c];
+    if (component.coned()) continue;
+    unsorted_.insert(unsorted_.end(), sigma_.begin() + component.begin, sigma_.begin() + component.end);
+    unsorted_sign_.insert(unsorted_sign_.end(), sigma_sign_.begin() + component.begin,
+                          sigma_sign_.begin() + component.end);
+  }
+  find_vertices(unsorted_);
+  const int euler = closed_euler_characteristic(unsorted_, found_.size());
+  image_.assign(owner_.size(), kNoVertex);
+  for (const VertexId v : found_) image_[v] = v;
+  const auto begin = static_cast<std::uint32_t>(piece_->contour.size());
+  Simplices& part = side(region.high);
+  for (const Simplex& s : original_) {
+    Simplex copy = s;
+    for (int i = 0; i < kMaxVertices && s[i] != kNoVertex; ++i) {
+      VertexId& image = image_[s[i]];
+      if (image == kNoVertex) image = new_vertex(VertexKind::side, s[i]);
+      copy[i] = image;
+    }
+    for (int i = 0; with_parts_ && i < kMaxVertices && s[i] != kNoVertex; ++i) {
+      if (copy[i] == s[i]) continue;
+      Simplex prism = with_apex(s[0], copy);
+      std::copy(s.begin(), s.begin() + i + 1, prism.begin());
+      sort_vertices(prism);
+      part.push_back(prism);
+    }
+    sort_vertices(copy);
+    piece_->contour.push_back(copy);
+  }
+  orient(begin, euler, Filling::side, unsorted_, unsorted_sign_);
+}
+
+/// Signs for the facet of the contour's simplices from `begin` on: one at Sigma agrees with it, two that share a face
+/// induce opposite ones.
+void PieceBuilder::orient(std::uint32_t begin, int boundary_euler, Filling filling, std::span<const Simplex> bounds,
+                          std::span<const std::int8_t> bounds_sign) {
+  const std::span<const Simplex> simplices = std::span(piece_->contour).subspan(begin);
+  if (!adjacency_.build(simplices)) throw std::logic_error("a facet that branches");
+  const std::size_t width = adjacency_.vertices_per_simplex();
+  const auto induced = [&](std::size_t j, const Simplex& face) {  // the sign of a face in a simplex's boundary
+    for (std::size_t i = 0; i < width; ++i)
+      if (simplices[j][i] != face[i]) return i % 2 == 0 ? 1 : -1;
+    return 0;
+  };
+  piece_->sign.resize(piece_->contour.size(), 0);
+  std::int8_t* const sign = piece_->sign.data() + begin;
+  all_.clear();
+  for (std::uint32_t j = 0; j < simplices.size() && all_.empty(); ++j)
+    for (std::size_t i = 0; i < width && all_.empty(); ++i) {
+      if (adjacency_.neighbour(j, i) != Adjacency::kNone) continue;
+      const Simplex face = without(simplices[j], static_cast<int>(i));
+      const auto at = std::find(bounds.begin(), bounds.end(), face);
+      if (at == bounds.end()) continue;
+      sign[j] = static_cast<std::int8_t>(bounds_sign[static_cast<std::size_t>(at - bounds.begin())] * induced(j, face));
+      all_.push_back(j);
+    }
+  for (std::size_t k = 0; k < all_.size(); ++k)
+    for (std::size_t i = 0; i < width; ++i) {
+      const std::uint32_t j = all_[k], n = adjacency_.neighbour(j, i);
+      if (n == Adjacency::kNone || sign[n] != 0) continue;
+      const Simplex face = without(simplices[j], static_cast<int>(i));
+      sign[n] = static_cast<std::int8_t>(-sign[j] * induced(j, face) * induced(n, face));
+      all_.push_back(n);
+    }
+  if (all_.size() != simplices.size()) throw std::logic_error("a facet that does not hang together");
+  piece_->facets.push_back({filling, boundary_euler, begin, static_cast<std::uint32_t>(piece_->contour.size())});
+}
+
+}  // namespace tegl::facets

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is built in one face of a tile, in a numbering of the face's own: equal faces have equal pieces, so that a piece
+// is built once and carried to wherever its face is found.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "shelling.hpp"
+#include "tegl/facets/facets.hpp"
+
+namespace tegl::facets {
+
+/// A vertex of a piece that is in none of the face's own faces. Vertices are numbered by the face's faces, in the
+/// lattice's order, the face itself last; within each in the order in which they were made.
+struct OwnVertex {
+  VertexKind kind = VertexKind::corner;
+  std::uint32_t number = 0;
+  VertexId copied = kNoVertex;
+  std::uint32_t of_begin = 0, of_end = 0;  ///< in Piece::of
+};
+
+struct PieceFacet {
+  Filling filling = Filling::simplex;
+  int boundary_euler = 0;
+  std::uint32_t begin = 0, end = 0;  ///< in Piece::contour
+};
+
+/// Vertices of simplices ascend.
+struct Piece {
+  std::vector<OwnVertex> own{};
+  Simplices of{};
+  std::vector<PieceFacet> facets{};
+  Simplices contour{};
+  std::vector<std::int8_t> sign{};
+  Simplices high{}, low{};
+
+  void clear();
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+/// Disjoint sets of vertices.
+class VertexSets {
+ public:
+  void reset(std::size_t vertices);
+  void join(const Simplices& simplices);
+  VertexId root(VertexId v);
+
+ private:
+  std::vector<VertexId> parent_;
+};
+
+/// Builds the piece of a face from those of its own faces. Its memory is kept from use to use.
+class PieceBuilder {
+ public:
+  /// For each face of the lattice the faces it has, of every dimension, ascending, itself last.
+  using Closures = std::vector<std::vector<std::uint32_t>>;
+
+  PieceBuilder(const FaceLattice& lattice, const Closures& closures) : lattice_(&lattice), closures_(&closures) {}
+
+  /// `pieces`: those of all lower faces. `with_parts`: high and low part as well as the contour.
+  void build(std::uint32_t face, std::span<const Piece* const> pieces, Choice choice, Alternative alternative,
+             bool with_parts, Piece& piece);
+
+  // Of the face built last.
+  /// Sigma, by components, and its signs.
+  [[nodiscard]] const Simplices& sigma() const { return sigma_; }
+  [[nodiscard]] const std::vector<std::int8_t>& sigma_sign() const { return sigma_sign_; }
+  /// Writes to `map` the face's numbers of the vertices of one of its faces.
+  void number(std::uint32_t face, std::vector<VertexId>& map) const;
+
+ private:
+  /// A component of Sigma.
+  struct Component {
+    std::uint32_t begin = 0, end = 0;          ///< in sigma_
+    std::uint32_t region[2] = {0, 0};          ///< beside it: low, high
+    std::uint32_t cap_begin = 0, cap_end = 0;  ///< in the piece's contour, if it is coned
+    [[nodiscard]] bool coned() const { return cap_end > cap_begin; }
+  };
+  /// A component of the high or the low part of the face's boundary.
+  struct Region {
+    bool high = false;
+    std::uint32_t begin = 0, end = 0;  ///< in sides_[high]
+    std::vector<std::uint32_t> around{};
+    std::uint32_t part = 0;
+  };
+
+  [[nodiscard]] const Face& face() const { return lattice_->faces()[face_]; }
+  [[nodiscard]] std::span<const Simplex> sigma_of(const Component& c) const {
+    return std::span(sigma_).subspan(c.begin, c.end - c.begin);
+  }
+  VertexId new_vertex(VertexKind kind, VertexId copied = kNoVertex, std::span<const Simplex> of = {});
+  void build_corner(bool high);
+  void build_edge();
+  void number_vertices();
+  void collect_sigma();
+  void collect_regions();
+  bool shown_to_be_sphere(const Component& component);
+  [[nodiscard]] bool in_one_face() const;
+  void find_vertices(std::span<const Simplex> simplices);
+  void ball(std::span<const Simplex> boundary, VertexKind kind, Simplices& to);
+  void cap(Component& component);
+  void cap_what_stands_apart();
+  void capped(const Region& region, Simplices& to) const;
+  void fill_parts();
+  void fill_around_centre(std::uint32_t part);
+  void cut_corner(const Region& region);
+  void copy_inwards(const Region& region);
+  void orient(std::uint32_t begin, int boundary_euler, Filling filling, std::span<const Simplex> bounds,
+              std::span<const std::int8_t> bounds_sign);
+  Simplices& side(bool high) { return high ? piece_->high : piece_->low; }
+
+  const FaceLattice* lattice_;
+  const Closures* closures_;
+  std::span<const Piece* const> pieces_;
+
+  // Of the face at hand.
+  std::uint32_t face_ = 0;
+  bool with_parts_ = false;
+  bool centre_high_ = false;
+  Piece* piece_ = nullptr;
+  std::uint32_t next_number_ = 0, next_centre_ = 0;
+  std::vector<VertexId> base_;        ///< by face of the lattice: its first own vertex
+  std::vector<std::uint32_t> owner_;  ///< by vertex: the face that has it
+  Simplices sigma_;
+  std::vector<std::int8_t> sigma_sign_;
+  std::vector<Component> components_;
+  Simplices sides_[2];  ///< low and high part of the boundary, by regions
+  std::vector<Region> regions_;
+
+  // Scratch.
+  VertexSets sets_;
+  std::vector<VertexId> map_, found_, image_;
+  std::vector<std::uint32_t> group_, mark_, start_;
+  std::uint32_t epoch_ = 0;
+  Simplices unsorted_, around_, original_;
+  std::vector<std::int8_t> unsorted_sign_;
+  std::vector<std::uint32_t> all_;
+  Adjacency adjacency_;
+  Shelling shelling_;
+};
+
+}  // namespace tegl::facets
