@@ -10,32 +10,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "faces.hpp"
 #include "pieces.hpp"
 
 namespace tegl::facets {
 
 namespace {
-
-/// The faces of a face of the lattice.
-std::vector<std::uint32_t> closure(const FaceLattice& lattice, std::uint32_t face) {
-  std::vector<std::uint32_t> result;
-  for (std::uint32_t g = 0; g <= face; ++g)
-    if ((lattice.faces()[g].corners & ~lattice.faces()[face].corners) == 0) result.push_back(g);
-  return result;
-}
-
-std::vector<int> corner_list(Signature corners) {
-  std::vector<int> list;
-  for (int v = 0; v < 64; ++v)
-    if (((corners >> v) & 1u) != 0) list.push_back(v);
-  return list;
-}
-
-Signature compressed(Signature signature, const std::vector<int>& corners) {
-  Signature result = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) result |= ((signature >> corners[i]) & 1u) << i;
-  return result;
-}
 
 /// How many bits say how a face is resolved: ambiguous squares have two ways, other faces up to four.
 int choice_bits(int dim) { return dim < 2 ? 0 : dim == 2 ? 1 : 2; }
@@ -201,6 +181,7 @@ class FacetBuilder::Impl {
         if (tile.sign[from.begin + j] < 0) std::swap(to.simplices[j][0], to.simplices[j][1]);
     }
     result_.sigma = builder_->sigma();
+    builder_->euler_characteristics(result_.sigma_euler);
     result_.sigma_sign.assign(builder_->sigma_sign().begin(), builder_->sigma_sign().end());
     const std::vector<std::uint32_t>& faces = lattice_.faces().back().faces;
     result_.in_face.resize(faces.size());

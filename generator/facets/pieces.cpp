@@ -220,6 +220,14 @@ bool PieceBuilder::shown_to_be_sphere(const Component& component) {
          shape_of({simplices.begin(), simplices.end()}) == Shape::sphere;
 }
 
+void PieceBuilder::euler_characteristics(std::vector<int>& result) {
+  result.clear();
+  for (const Component& c : components_) {
+    find_vertices(sigma_of(c));
+    result.push_back(closed_euler_characteristic(sigma_of(c), found_.size()));
+  }
+}
+
 /// The vertices of these, in the order of their first use, to found_.
 void PieceBuilder::find_vertices(std::span<const Simplex> simplices) {
   mark_.resize(std::max(mark_.size(), owner_.size()));
@@ -345,13 +353,16 @@ void PieceBuilder::cut_corner(const Region& region) {
 }
 
 /// The copy keeps the vertices of Sigma that it bounds and has new ones else. Between region and copy lies a prism
-/// over each simplex, pinched where vertices are kept.
+/// over each simplex, pinched where vertices are kept. From a region with a cap there are two prisms, one upon the
+/// other: a single one had edges from the cap to the copy, and the contour, which has both, were not full in the part.
 void PieceBuilder::copy_inwards(const Region& region) {
   original_.clear();
   capped(region, original_);
   unsorted_.clear(), unsorted_sign_.clear();
+  bool has_cap = false;
   for (const std::uint32_t c : region.around) {
     const Component& component = components_[c];
+    has_cap |= component.coned();
     if (component.coned()) continue;
     unsorted_.insert(unsorted_.end(), sigma_.begin() + component.begin, sigma_.begin() + component.end);
     unsorted_sign_.insert(unsorted_sign_.end(), sigma_sign_.begin() + component.begin,
@@ -361,26 +372,43 @@ void PieceBuilder::copy_inwards(const Region& region) {
   const int euler = closed_euler_characteristic(unsorted_, found_.size());
   image_.assign(owner_.size(), kNoVertex);
   for (const VertexId v : found_) image_[v] = v;
+  between_ = image_;
   const auto begin = static_cast<std::uint32_t>(piece_->contour.size());
-  Simplices& part = side(region.high);
   for (const Simplex& s : original_) {
-    Simplex copy = s;
-    for (int i = 0; i < kMaxVertices && s[i] != kNoVertex; ++i) {
-      VertexId& image = image_[s[i]];
-      if (image == kNoVertex) image = new_vertex(VertexKind::side, s[i]);
-      copy[i] = image;
-    }
-    for (int i = 0; with_parts_ && i < kMaxVertices && s[i] != kNoVertex; ++i) {
-      if (copy[i] == s[i]) continue;
-      Simplex prism = with_apex(s[0], copy);
-      std::copy(s.begin(), s.begin() + i + 1, prism.begin());
-      sort_vertices(prism);
-      part.push_back(prism);
+    Simplex copy = image(s, image_, VertexKind::side);
+    if (with_parts_ && has_cap) {
+      const Simplex middle = image(s, between_, VertexKind::centre);
+      add_prism(s, middle, side(region.high));
+      add_prism(middle, copy, side(region.high));
+    } else if (with_parts_) {
+      add_prism(s, copy, side(region.high));
     }
     sort_vertices(copy);
     piece_->contour.push_back(copy);
   }
   orient(begin, euler, Filling::side, unsorted_, unsorted_sign_);
+}
+
+/// The simplex of the images, not sorted; those that are missing are made.
+Simplex PieceBuilder::image(const Simplex& simplex, std::vector<VertexId>& images, VertexKind kind) {
+  Simplex result = simplex;
+  for (int i = 0; i < kMaxVertices && simplex[i] != kNoVertex; ++i) {
+    VertexId& to = images[simplex[i]];
+    if (to == kNoVertex) to = new_vertex(kind, simplex[i]);
+    result[i] = to;
+  }
+  return result;
+}
+
+/// Between two simplices whose vertices correspond, in the order of the vertices.
+void PieceBuilder::add_prism(const Simplex& from, const Simplex& to, Simplices& part) {
+  for (int i = 0; i + 1 < kMaxVertices && from[i] != kNoVertex; ++i) {
+    if (from[i] == to[i]) continue;
+    Simplex prism = with_apex(from[0], to);
+    std::copy(from.begin(), from.begin() + i + 1, prism.begin());
+    sort_vertices(prism);
+    part.push_back(prism);
+  }
 }
 
 /// Signs for the facet of the contour's simplices from `begin` on: one at Sigma agrees with it, two that share a face

@@ -69,6 +69,8 @@ class PieceBuilder {
   /// Sigma, by components, and its signs.
   [[nodiscard]] const Simplices& sigma() const { return sigma_; }
   [[nodiscard]] const std::vector<std::int8_t>& sigma_sign() const { return sigma_sign_; }
+  /// Euler characteristics of Sigma's components.
+  void euler_characteristics(std::vector<int>& result);
   /// Writes to `map` the face's numbers of the vertices of one of its faces.
   void number(std::uint32_t face, std::vector<VertexId>& map) const;
 
@@ -109,6 +111,8 @@ class PieceBuilder {
   void fill_around_centre(std::uint32_t part);
   void cut_corner(const Region& region);
   void copy_inwards(const Region& region);
+  Simplex image(const Simplex& simplex, std::vector<VertexId>& images, VertexKind kind);
+  static void add_prism(const Simplex& from, const Simplex& to, Simplices& part);
   void orient(std::uint32_t begin, int boundary_euler, Filling filling, std::span<const Simplex> bounds,
               std::span<const std::int8_t> bounds_sign);
   Simplices& side(bool high) { return high ? piece_->high : piece_->low; }
@@ -133,7 +137,7 @@ class PieceBuilder {
 
   // Scratch.
   VertexSets sets_;
-  std::vector<VertexId> map_, found_, image_;
+  std::vector<VertexId> map_, found_, image_, between_;
   std::vector<std::uint32_t> group_, mark_, start_;
   std::uint32_t epoch_ = 0;
   Simplices unsorted_, around_, original_;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -41,13 +42,29 @@ Value choose(std::string_view option, std::string_view given,
 
 using Apply = void (*)(Options&, std::string_view);
 
-void set_dim(Options& options, std::string_view given) {
+template <typename Number>
+void set_number(std::string_view option, std::string_view given, Number& number, Number least) {
   const char* const end = given.data() + given.size();
-  const auto [stop, error] = std::from_chars(given.data(), end, options.dim);
+  const auto [stop, error] = std::from_chars(given.data(), end, number);
   if (error != std::errc{} || stop != end) {
-    refuse(fmt::format("--dim {}: expected a whole number", given));
+    refuse(fmt::format("{} {}: expected a whole number", option, given));
+  }
+  if (number < least) {
+    refuse(fmt::format("{} {}: expected {} or more", option, given, least));
   }
 }
+
+void set_dim(Options& options, std::string_view given) {
+  set_number("--dim", given, options.dim, std::numeric_limits<int>::min());
+}
+
+void set_sample(Options& options, std::string_view given) {
+  set_number("--sample", given, options.sample, std::uint64_t{1});
+}
+
+void set_seed(Options& options, std::string_view given) { set_number("--seed", given, options.seed, std::uint64_t{0}); }
+
+void set_threads(Options& options, std::string_view given) { set_number("--threads", given, options.threads, 1U); }
 
 void set_group(Options& options, std::string_view given) {
   using Pair = std::pair<std::string_view, GroupKind>;
@@ -140,6 +157,10 @@ constexpr std::array kOptions{
                [](Options& o, std::string_view) { o.inversion = true; }},
     OptionSpec{"--table-by-class", false, std::nullopt, kCertify,
                [](Options& o, std::string_view) { o.table_by_class = true; }},
+    OptionSpec{"--all", false, std::nullopt, kCertify, [](Options& o, std::string_view) { o.all_resolutions = true; }},
+    OptionSpec{"--sample", true, std::nullopt, kCertify, set_sample},
+    OptionSpec{"--seed", true, std::nullopt, kCertify, set_seed},
+    OptionSpec{"--threads", true, std::nullopt, kCertify, set_threads},
     OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
     OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kClasses | kCertify,
                [](Options& o, std::string_view) { o.json = true; }},
@@ -213,6 +234,9 @@ const OptionSpec& command_of(const std::vector<Given>& given) {
   return *command;
 }
 
+/// Highest dimension in which single tiles are built.
+constexpr int kMaxSampledDim = 6;
+
 /// The dimensions that a command works in.
 void check_dim(const Options& options, std::string_view command) {
   if (options.command == Command::Version) {
@@ -220,7 +244,11 @@ void check_dim(const Options& options, std::string_view command) {
   }
   const bool count = options.command == Command::Count;
   const int lowest = count ? 1 : 2;
-  const int highest = count ? kMaxDim : options.command == Command::Transversal ? kMaxSignatureDim : kMaxEnumeratedDim;
+  const bool sample = options.sample > 0 && options.tile == TileKind::cube;
+  const int highest = count                                           ? kMaxDim
+                      : options.command == Command::Transversal       ? kMaxSignatureDim
+                      : options.command == Command::Certify && sample ? kMaxSampledDim
+                                                                      : kMaxEnumeratedDim;
   if (options.dim < lowest || options.dim > highest) {
     refuse(fmt::format("--dim {}: {} expects {} to {}", options.dim, command, lowest, highest));
   }
@@ -248,15 +276,29 @@ void check_tile(const Options& options) {
   }
 }
 
-/// `--certify` knows groups for the table by class alone, and that table in the dimensions that have one.
-void check_table_by_class(const Options& options, const std::vector<const OptionSpec*>& seen) {
+/// What goes with what in `--certify`: groups with the table by class alone, and that table in the dimensions that have
+/// one; a seed with a sample; threads with what takes time.
+void check_certify(const Options& options, const std::vector<const OptionSpec*>& seen) {
   if (options.command != Command::Certify) {
     return;
   }
   if (options.table_by_class && options.dim > 3) {
     refuse(fmt::format("--dim {}: --table-by-class expects 2 or 3", options.dim));
   }
+  const bool resolutions = options.all_resolutions || options.sample > 0;
+  if (options.all_resolutions && options.sample > 0) {
+    refuse("--all and --sample were both given: expected one of them");
+  }
+  if (options.table_by_class && resolutions) {
+    refuse(fmt::format("{} does not go with --table-by-class", options.sample > 0 ? "--sample" : "--all"));
+  }
   for (const OptionSpec* const spec : seen) {
+    if (spec->name == "--seed" && options.sample == 0) {
+      refuse("--seed does not go with --certify without --sample");
+    }
+    if (spec->name == "--threads" && !resolutions) {
+      refuse("--threads does not go with --certify without --all or --sample");
+    }
     if (!options.table_by_class && (spec->name == "--group" || spec->name == "--inversion")) {
       refuse(fmt::format("{} does not go with --certify without --table-by-class", spec->name));
     }
@@ -297,7 +339,7 @@ Options parse(std::span<const std::string_view> arguments) {
   }
   check_dim(options, command.name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
-  check_table_by_class(options, seen);
+  check_certify(options, seen);
   check_tile(options);
   return options;
 }
@@ -349,6 +391,12 @@ options of --certify
   --table-by-class                  builds the table that a group of symmetries suggests (N = 2, 3): every signature
                                     takes its class's contour. --group and --inversion choose the group; with inversion
                                     it is the table of the original marching cubes, and has holes (exit status 4)
+  --all                             every resolution of the ambiguous squares of every class (N = 2 ... 4): in 4D
+                                    17 395 393 tiles and more, a quarter of an hour on two processors; prints the
+                                    histogram of Euler characteristics
+  --sample COUNT                    so many tiles, N = 2 ... 6, signatures and choices in all faces at random
+  --seed S                          which sample (default 1)
+  --threads T                       with --all and --sample (default: one per processor)
   --json                            for machines
 
 options of --out
@@ -370,6 +418,8 @@ examples
   gen --dim 3 --classes
   gen --dim 3 --tile octahedron --classes
   gen --dim 4 --certify
+  gen --dim 4 --certify --all
+  gen --dim 5 --certify --sample 10000 --seed 7
   gen --dim 4 --out tables
   gen --dim 3 --certify --group rotations --inversion --table-by-class
 

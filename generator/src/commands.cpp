@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `gen --classes`, `--certify` and `--out`.
+// `gen --classes`, `--out` and `--cases`.
 #include "tegl/gen/commands.hpp"
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "print_figures.hpp"
 #include "tegl/gen/cases.hpp"
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/table_set.hpp"
@@ -64,34 +65,6 @@ std::string text_of(const Tile& tile, const ClassReport& c) {
   return fmt::format("{:>9} {:>6} {:>10} {:>10}  {:<10} {:<10} {}", c.signature, c.orbit, c.stabiliser,
                      c.contour.facets.size(), euler.empty() ? "-" : fmt::format("{}", fmt::join(euler, " ")),
                      fmt::format("{}", fmt::join(ambiguous, " ")), fmt::join(facets, " "));
-}
-
-std::string figures_json(const CertifiedFigures& f) {
-  return fmt::format(
-      "{{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"passed\": {}, \"facets\": {}, "
-      "\"max_facets\": {}, \"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, "
-      "\"classes_with_non_spherical\": [{}], \"highest_genus\": {}, \"simplices\": {}, \"max_simplices\": {}, "
-      "\"mean_simplices\": {:.4f}, \"pairs\": {}, \"unmatched_pairs\": {}}}",
-      alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.signatures, f.facets,
-      f.max_facets, f.spheres, f.others, f.signatures_with_others, fmt::join(f.classes_with_others, ", "),
-      f.highest_genus, f.simplices, f.max_simplices,
-      static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
-}
-
-void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
-  fmt::print("{}-{}, {} alternative, {} triangulation\n", dim, tile == TileKind::cube ? "tile" : tile_kind_name(tile),
-             alternative_name(f.alternative), triangulation_name(f.triangulation));
-  fmt::print("  certified    {} of {} signatures\n", f.signatures, f.signatures);
-  fmt::print("  facets       {} (at most {} in a tile): {} around spheres, {} around others", f.facets, f.max_facets,
-             f.spheres, f.others);
-  if (f.others != 0)
-    fmt::print(" (genus up to {}) in {} signatures, {} classes: {}", f.highest_genus, f.signatures_with_others,
-               f.classes_with_others.size(), fmt::join(f.classes_with_others, " "));
-  fmt::print("\n  filled by    simplex {}, cone {}, own vertices {}, side {}\n", f.by_filling[1], f.by_filling[2],
-             f.by_filling[3], f.by_filling[4]);
-  fmt::print("  simplices    {}: {:.2f} per signature, at most {}\n", f.simplices,
-             static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.max_simplices);
-  if (f.pairs.pairs != 0) fmt::print("  neighbours   {} pairs, all match\n", f.pairs.pairs);
 }
 
 /// Seconds since the last call.
@@ -190,45 +163,6 @@ int run_classes(const Options& options) {
       fmt::print("{}\n", text_of(builder.tile(), report));
   }
   if (options.json) fmt::print("\n]}}\n");
-  return 0;
-}
-
-/// `--certify --table-by-class`: prints the figures of its pairs, then throws if there are holes.
-static int certify_by_class(const Options& options) {
-  const CubeLattice lattice(options.dim);
-  const ContourBuilder builder(lattice, options.dim, Alternative::low, Triangulation::compact);
-  const auto contours = contours_by_class(builder, options.group, options.inversion);
-  const auto classes =
-      transversal(options.dim, group(options.dim, options.group, options.inversion)).representatives.size();
-  const PairFigures pairs = certify_pairs(builder, contours);
-  const char* const group_name = options.group == GroupKind::Full ? "full" : "rotations";
-  if (options.json)
-    fmt::print(
-        "{{\"dim\": {}, \"table\": \"by class\", \"group\": \"{}\", \"inversion\": {}, \"classes\": {}, \"pairs\": {}, "
-        "\"unmatched_pairs\": {}}}\n",
-        options.dim, group_name, options.inversion, classes, pairs.pairs, pairs.unmatched);
-  else
-    fmt::print("{}-tile, table by class: group {}{}, {} classes\n  neighbours   {} pairs, {} do not match\n",
-               options.dim, group_name, options.inversion ? " with inversion" : "", classes, pairs.pairs,
-               pairs.unmatched);
-  if (pairs.unmatched != 0) {
-    std::fflush(stdout);
-    throw Error(ErrorCode::CertificateFailed, unmatched_text(options.dim, pairs));
-  }
-  return 0;
-}
-
-int run_certify(const Options& options) {
-  if (options.table_by_class) return certify_by_class(options);
-  const auto figures = certify_all(options.dim, options.tile);
-  if (!options.json) {
-    for (const CertifiedFigures& f : figures) print_figures(options.tile, options.dim, f);
-    return 0;
-  }
-  std::vector<std::string> parts;
-  for (const CertifiedFigures& f : figures) parts.push_back(figures_json(f));
-  fmt::print("{{\"tile\": \"{}\", \"dim\": {}, \"certified\": [\n  {}\n]}}\n", tile_kind_name(options.tile),
-             options.dim, fmt::join(parts, ",\n  "));
   return 0;
 }
 

@@ -73,7 +73,9 @@ enum class VertexKind : std::uint8_t {
   edge,        ///< where the contour meets a critical edge
   barycentre,  ///< of a component of Sigma: the mean of its simplices, weighted by their measure
   side,        ///< a copy of another vertex, moved from there into the face, towards its middle
-  centre,      ///< of a part of a face: the mean of the vertices of its boundary; in no contour
+  /// Of a part of a face: the mean of the vertices of its boundary. If it copies a vertex: half-way between that one
+  /// and the copy of it that the contour has. In no contour.
+  centre,
 };
 
 /// A vertex. `face` and `number` depend on the face alone (its signature and choices), so that tiles share them.
@@ -99,6 +101,7 @@ struct TileFacets {
   std::vector<Facet> facets;  ///< simplices of n vertices
   Simplices sigma;            ///< simplices of n - 1 vertices
   std::vector<int> sigma_sign;
+  std::vector<int> sigma_euler;  ///< Euler characteristics of Sigma's components
   /// The contour in each face of codimension one, in the order of the tile's `faces`; not oriented.
   std::vector<Simplices> in_face;
 };

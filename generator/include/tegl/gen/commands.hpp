@@ -22,8 +22,8 @@ int run_transversal(const Options& options);
 /// characteristics and ambiguous faces. Honours `alternative` and `json`.
 int run_classes(const Options& options);
 
-/// `--certify`: the certificate of every signature and of all neighbours, and its figures. Honours `json` and
-/// `table_by_class` with `group` and `inversion`.
+/// `--certify`: the certificate of every signature and of all neighbours, and its figures. Honours `json`, and either
+/// `table_by_class` with `group` and `inversion`, or `all_resolutions` or `sample` with `seed`, and `threads`.
 /// Errors: CertificateFailed.
 int run_certify(const Options& options);
 

@@ -5,6 +5,7 @@
 // another one: the parser refuses it, so a command may rely on every option it gets being meant.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ enum class Command {
   Count,        ///< --count, dim 1 ... 8
   Transversal,  ///< --transversal, dim 2 ... 5
   Classes,      ///< --classes, dim 2 ... 4
-  Certify,      ///< --certify, dim 2 ... 4
+  Certify,      ///< --certify, dim 2 ... 4, with --sample 2 ... 6
   Out,          ///< --out DIR, dim 2 ... 4
   Cases,        ///< --cases DIR, dim 2 ... 4
 };
@@ -43,6 +44,10 @@ struct Options {
   GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class
   bool inversion = false;                                        ///< --inversion; --count, table_by_class
   bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3
+  bool all_resolutions = false;                                  ///< --all; --certify only
+  std::uint64_t sample = 0;                                      ///< --sample; --certify only, not with --all; 0: none
+  std::uint64_t seed = 1;                                        ///< --seed; with --sample
+  unsigned threads = 0;                                          ///< --threads; with --all or --sample; 0: all
   bool list = false;                                             ///< --list; --transversal only
   bool json = false;                                             ///< --json; all but --out, and not with --list
   Alternative alternative = Alternative::low;                    ///< --alternative; --classes only

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Builds tiles and certifies them together with what they have in their faces, from the squares up.
+#pragma once
+
+#include <memory>
+
+#include "tegl/facets/certificate.hpp"
+#include "tegl/facets/facets.hpp"
+
+namespace tegl::facets {
+
+/// The certificate of a tile says that its boundary is Sigma. This class shows as well that Sigma is right, whatever
+/// the builder did: in each face it is the contour of that face built alone, hence the same for a neighbour that shares
+/// the face; that one passes the certificate too, and so on down to the squares, whose edges have a point if and only
+/// if their ends differ. Faces of dimension up to 3 are certified once for each signature and choices. One thread at a
+/// time.
+class TileCertifier {
+ public:
+  /// Throws std::invalid_argument for a lattice of dimension less than 2.
+  explicit TileCertifier(FaceLattice lattice);
+  ~TileCertifier();
+  TileCertifier(TileCertifier&&) noexcept;
+  TileCertifier& operator=(TileCertifier&&) noexcept;
+
+  [[nodiscard]] const FaceLattice& lattice() const;
+
+  /// Builds and certifies a tile. Errors: as FacetBuilder::build.
+  Fault certify(Signature signature, const Resolution& resolution);
+
+  /// The tile built last, without geometry.
+  [[nodiscard]] const TileFacets& tile() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tegl::facets
