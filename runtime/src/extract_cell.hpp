@@ -40,6 +40,13 @@ struct CellFrame {
   static constexpr unsigned row_corner(unsigned r) noexcept { return kAlongRow ? 2 * r : r; }
 };
 
+/// The number of bits of a word that mostly has none or one: counting is slow where it is no instruction.
+[[gnu::always_inline]] inline Index few_bits(Word word) noexcept {
+  Index count = 0;
+  for (; word != 0; word &= word - 1) ++count;
+  return count;
+}
+
 /// The corners' bits of 64 cells of a row at a time.
 template <int N, unsigned Axes>
 class CellBits {
@@ -114,8 +121,9 @@ class CellEdges {
   }
 
   void load(std::size_t w) noexcept {
+    passed_ = 0;
     for (unsigned s = 0; s < kStreamCount; ++s) {
-      first_[s] = base_[s] + prefix_[s][w];
+      rank_[s] = base_[s] + prefix_[s][w];
       word_[s] = bits_[s][w];
     }
   }
@@ -124,16 +132,15 @@ class CellEdges {
     constexpr auto kPlaces = places();
     for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = base_[kPlaces[e].stream];
   }
-  /// Numbers of all edges of cell `bit`; those of edges that are not critical mean nothing.
-  void ids(unsigned bit, Index* out) const noexcept {
+  /// Numbers of all edges of cell `bit`, of ascending ones; those of edges that are not critical mean nothing.
+  void ids(unsigned bit, Index* out) noexcept {
     constexpr auto kPlaces = places();
     const Word below = (Word{1} << bit) - 1;
-    std::array<Index, kStreamCount> rank;
-    for (unsigned s = 0; s < kStreamCount; ++s)
-      rank[s] = first_[s] + static_cast<Index>(std::popcount(word_[s] & below));
+    for (unsigned s = 0; s < kStreamCount; ++s) rank_[s] += few_bits(word_[s] & below & ~passed_);
+    passed_ = below;
     for (unsigned e = 0; e < Frame::kEdges; ++e) {
       const unsigned s = kPlaces[e].stream;
-      out[e] = rank[s] + (kPlaces[e].next ? static_cast<Index>(word_[s] >> bit & 1u) : 0);
+      out[e] = rank_[s] + (kPlaces[e].next ? static_cast<Index>(word_[s] >> bit & 1u) : 0);
     }
   }
 
@@ -179,8 +186,58 @@ class CellEdges {
   std::array<Index, kStreamCount> base_;
   std::array<const std::uint32_t*, kStreamCount> prefix_;
   std::array<const Word*, kStreamCount> bits_;
-  std::array<Index, kStreamCount> first_;
+  std::array<Index, kStreamCount> rank_;  ///< the vertices of the row before those not passed
   std::array<Word, kStreamCount> word_;
+  Word passed_ = 0;
+};
+
+/// The first vertex of each of the cubes around 64 tiles (N = 4) of a row at a time.
+class TileCubes {
+ public:
+  static constexpr unsigned kCubes = 8;
+
+  TileCubes(const SlabView<4>& view, std::size_t row) noexcept {
+    for (unsigned s = 0; s < kStreamCount; ++s) {
+      const CubePlane& plane = view.cubes(omitted(s), omitted(s) == 3 ? side(s) : 0);
+      const std::size_t at = view.shape->shifted(row, side(s) << omitted(s));
+      base_[s] = plane.base[at];
+      prefix_[s] = plane.prefix.data() + at * view.shape->pitch();
+      for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
+        bits_[s][slot] = plane.bits[slot].data() + at * view.shape->pitch();
+    }
+  }
+
+  void load(std::size_t w) noexcept {
+    passed_ = 0;
+    for (unsigned s = 0; s < kStreamCount; ++s) {
+      rank_[s] = base_[s] + prefix_[s][w];
+      for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) word_[s][slot] = bits_[s][slot][w];
+    }
+  }
+  /// The first vertex of each cube of tile `bit`, of ascending ones; of cubes that have none, any number.
+  void ids(unsigned bit, std::array<Index, kCubes>& out) noexcept {
+    const Word below = (Word{1} << bit) - 1;
+    for (unsigned s = 0; s < kStreamCount; ++s)
+      for (const Word word : word_[s]) rank_[s] += few_bits(word & below & ~passed_);
+    passed_ = below;
+    out[0] = rank_[0];
+    out[1] = rank_[0];
+    for (const Word word : word_[0]) out[1] += static_cast<Index>(word >> bit & 1u);
+    for (unsigned s = 1; s < kStreamCount; ++s) out[s + 1] = rank_[s];
+  }
+
+ private:
+  // Those across the row are one stream; of the others, each side is.
+  static constexpr unsigned kStreamCount = kCubes - 1;
+  static constexpr int omitted(unsigned stream) noexcept { return static_cast<int>((stream + 1) / 2); }
+  static constexpr unsigned side(unsigned stream) noexcept { return stream == 0 ? 0 : (stream + 1) % 2; }
+
+  std::array<Index, kStreamCount> base_;
+  std::array<const std::uint32_t*, kStreamCount> prefix_;
+  std::array<std::array<const Word*, tables::kFaceSlots>, kStreamCount> bits_;
+  std::array<Index, kStreamCount> rank_;
+  std::array<std::array<Word, tables::kFaceSlots>, kStreamCount> word_;
+  Word passed_ = 0;
 };
 
 }  // namespace tegl::detail

@@ -22,33 +22,64 @@ Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const R
 template <int N>
 void Counter<N>::allocate(Layer<N>& layer) const {
   layer.high.assign(shape_.rows() * shape_.pitch(), 0);
-  layer.missing.assign(shape_.rows() * shape_.pitch(), 0);
   layer.row_missing.assign(shape_.rows(), 0);
   layer.state.assign(shape_.rows(), RowState::mixed);
-  for (EdgePlane& plane : layer.edges) plane.allocate(shape_.rows(), shape_.pitch());
-  if (has_cubes_) layer.cubes.allocate(shape_.rows(), shape_.pitch());
 }
 
 template <int N>
-void Counter<N>::allocate(Slab<N>& slab) const {
-  slab.valid.assign(shape_.rows() * shape_.pitch(), 0);
-  slab.active.assign(shape_.rows() * shape_.pitch(), 0);
-  slab.active_count.assign(shape_.rows(), 0);
-  if (rows_ != nullptr) slab.signatures.resize(shape_.rows() * shape_.size(0));
-  slab.edges.allocate(shape_.rows(), shape_.pitch());
+void Counter<N>::allocate(LayerPlanes<N>& planes) const {
+  for (EdgePlane& plane : planes.edges) plane.allocate(shape_.rows(), shape_.pitch());
+  if (has_cubes_) planes.cubes.allocate(shape_.rows(), shape_.pitch());
+}
+
+template <int N>
+void Counter<N>::allocate(SlabPlanes<N>& planes) const {
+  planes.active.assign(shape_.rows() * shape_.pitch(), 0);
+  planes.active_count.assign(shape_.rows(), 0);
+  if (rows_ != nullptr) planes.signatures.resize(shape_.rows() * shape_.size(0));
+  planes.edges.allocate(shape_.rows(), shape_.pitch());
   if (has_cubes_)
-    for (CubePlane& plane : slab.cubes) plane.allocate(shape_.rows(), shape_.pitch());
-  slab.tile_base.assign(shape_.rows(), 0);
-  slab.simplex_base.assign(shape_.rows(), 0);
+    for (CubePlane& plane : planes.cubes) plane.allocate(shape_.rows(), shape_.pitch());
+  planes.tile_base.assign(shape_.rows(), 0);
+  planes.simplex_base.assign(shape_.rows(), 0);
 }
 
 template <int N>
-void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row,
-                          Layer<N>& layer) const {
+void Counter<N>::allocate_missing(Layer<N>& layer) const {
+  layer.missing.assign(shape_.rows() * shape_.pitch(), 0);
+}
+
+template <int N>
+void Counter<N>::allocate_valid(Slab<N>& slab) const {
+  slab.valid.assign(shape_.rows() * shape_.pitch(), 0);
+}
+
+template <int N>
+std::size_t Counter<N>::layer_bytes() const noexcept {
+  return shape_.rows() * (shape_.pitch() * sizeof(Word) + sizeof(RowState) + 1);
+}
+
+template <int N>
+std::size_t Counter<N>::layer_planes_bytes() const noexcept {
+  return shape_.rows() *
+         ((N - 1) * EdgePlane::row_bytes(shape_.pitch()) + (has_cubes_ ? CubePlane::row_bytes(shape_.pitch()) : 0));
+}
+
+template <int N>
+std::size_t Counter<N>::slab_planes_bytes() const noexcept {
+  constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
+  return shape_.rows() *
+         (shape_.pitch() * sizeof(Word) + kCounts + (rows_ != nullptr ? shape_.size(0) * sizeof(std::uint16_t) : 0) +
+          EdgePlane::row_bytes(shape_.pitch()) + (has_cubes_ ? (N - 1) * CubePlane::row_bytes(shape_.pitch()) : 0));
+}
+
+template <int N>
+void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer,
+                          Word* buffer) const {
   auto start = shape_.index_of(row);
   start[N - 1] = k;
   Word* const high = layer.high.data() + row * shape_.pitch();
-  Word* const missing = layer.missing.data() + row * shape_.pitch();
+  Word* const missing = layer.missing.empty() ? buffer : layer.missing.data() + row * shape_.pitch();
   const bool any = source.classify(start, high, missing);
   if (!any && layer.row_missing[row] != 0) std::fill(missing, missing + shape_.words(), Word{0});
   layer.row_missing[row] = any ? 1 : 0;

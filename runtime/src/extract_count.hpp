@@ -19,6 +19,7 @@ namespace tegl::detail {
 template <int N>
 struct TableSet {
   const tables::TileTable* tile = nullptr;      ///< of N
+  const RowTable* rows = nullptr;               ///< `tile` for the quick way, if it is at hand
   bool compact = false;                         ///< the compact triangulation
   const tables::TileTable* cube = nullptr;      ///< of 3; N = 4 only
   const tables::RegionTable* face = nullptr;    ///< of N - 1; for closed borders
@@ -31,16 +32,25 @@ class Counter {
   /// `rows`: the table for the quick way, or null.
   Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows);
 
-  /// Storage for a layer or a slab; once.
+  /// Storage for a layer's bits; for what is counted of a layer or a slab; and for missing values, where they turn up.
   void allocate(Layer<N>& layer) const;
-  void allocate(Slab<N>& slab) const;
+  void allocate(LayerPlanes<N>& planes) const;
+  void allocate(SlabPlanes<N>& planes) const;
+  void allocate_missing(Layer<N>& layer) const;
+  void allocate_valid(Slab<N>& slab) const;
+  /// Bytes of each of the first three.
+  [[nodiscard]] std::size_t layer_bytes() const noexcept;
+  [[nodiscard]] std::size_t layer_planes_bytes() const noexcept;
+  [[nodiscard]] std::size_t slab_planes_bytes() const noexcept;
 
   // By row; rows may be done in any order and side by side. A pass needs the passes before it on all rows of what it
   // looks at.
 
-  /// 1. Classifies a row of layer `k`; `invert` for the high-connected alternative.
-  void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer) const;
-  /// After all rows of a layer are classified.
+  /// 1. Classifies a row of layer `k`; `invert` for the high-connected alternative. `buffer`: pitch words.
+  void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer,
+                Word* buffer) const;
+  /// After all rows of a layer are classified. If samples are missing, and there is no storage for them so far, then
+  /// rows with missing samples are to be classified once more when there is.
   static void find_missing(Layer<N>& layer);
   /// 2. Tiles without a missing corner, between two layers; slab.all_valid is known.
   void find_valid(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "extract_cell.hpp"
 #include "extract_count.hpp"
@@ -30,6 +31,10 @@ struct EdgeScratch {
   explicit EdgeScratch(std::size_t samples) : at(samples + 3), alphas(samples) {}
   std::vector<std::uint32_t> at;
   std::vector<double> alphas;
+
+  static constexpr std::size_t bytes(std::size_t samples) noexcept {
+    return samples * (sizeof(std::uint32_t) + sizeof(double));
+  }
 };
 
 /// Writes the points on a row's edges of one axis.
@@ -171,6 +176,9 @@ class TileWriter {
     const Word* const active = view.slab->active.data() + row * shape.pitch();
     CellBits<N, kAll> cells(view, row);
     CellEdges<N, kAll> edges(view, row);
+    [[maybe_unused]] std::optional<TileCubes> cubes;
+    if constexpr (N == 4)
+      if (has_cubes_) cubes.emplace(view, row);
     Ids ids;
     Index own = view.slab->tile_base[row];
     for (std::size_t w = 0; w < shape.words(); ++w) {
@@ -178,14 +186,15 @@ class TileWriter {
       if (rest == 0) continue;
       cells.load(w);
       edges.load(w);
+      if (cubes) cubes->load(w);
       for (; rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(rest));
         const unsigned signature = cells.signature(bit);
         const SimplexList<N> list(table_, signature);
         edges.ids(bit, ids.data());
-        index[0] = w * kWordBits + bit;
         if constexpr (N == 4)
-          if (has_cubes_) cube_ids(view, row, index[0], ids);
+          if (cubes) cube_ids(*cubes, bit, ids);
+        index[0] = w * kWordBits + bit;
         if (list.own_vertices() != 0) write_own(list, signature, index, own, vertices);
         out = write_simplices(list, ids, own, out);
         own += list.own_vertices();
@@ -212,16 +221,12 @@ class TileWriter {
   }
 
   /// Numbers of the vertices that the tile's cubes own.
-  static void cube_ids(const SlabView<N>& view, std::size_t row, std::size_t i, Ids& ids) noexcept {
-    const RowShape<N>& shape = *view.shape;
-    for (unsigned cube = 0; cube < 2 * N; ++cube) {
-      const unsigned side = cube % 2;
-      const unsigned omitted = cube / 2;
-      const CubePlane& plane = view.cubes(static_cast<int>(omitted), omitted == N - 1 ? side : 0);
-      const Index first = plane.id(shape.shifted(row, side << omitted), shape.pitch(), i + (omitted == 0 ? side : 0));
+  static void cube_ids(TileCubes& cubes, unsigned bit, Ids& ids) noexcept {
+    std::array<Index, TileCubes::kCubes> first;
+    cubes.ids(bit, first);
+    for (unsigned cube = 0; cube < TileCubes::kCubes; ++cube)
       for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
-        ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first + slot;
-    }
+        ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first[cube] + slot;
   }
 
   void write_own(const SimplexList<N>& list, unsigned signature, const typename RowShape<N>::Index& index, Index own,

@@ -66,16 +66,21 @@ bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
 /// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
 /// the next, and needs little memory beside the image.
 template <int N>
-std::size_t batch_size(const RowShape<N>& shape, std::size_t sample_bytes, std::size_t threads) {
+std::size_t batch_size(const RowShape<N>& shape, const Counter<N>& counter, std::size_t sample_bytes,
+                       std::size_t threads) {
   // Several threads meet after every pass, which takes longer than the way from one cache to the next.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
-  constexpr double kShare = 0.04;  // of the image
+  constexpr double kShare = 0.05;       // of the image
+  constexpr double kLittle = 1u << 17;  // bytes, however small the image
   const std::size_t layer = shape.rows() * shape.size(0);
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
-  const std::size_t row_bytes = 2 * shape.size(0) + 4 * (8 + 3 * N) * shape.pitch() + 64;  // signatures, bits, ranks
-  // Two layers more than slabs are in memory. Where little is gained from it, a small image may take more.
-  const double most = std::max(kShare * image / static_cast<double>(shape.rows() * row_bytes) - 2.0,
-                               static_cast<double>(samples_per_thread / 16 / layer));
+  // Of layers, one more than slabs is counted, and another one is classified.
+  constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
+  const auto fixed = static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() +
+                                         threads * RowScratch::bytes(shape.size(0), shape.pitch()));
+  const auto each = static_cast<double>(counter.layer_bytes() + counter.layer_planes_bytes() +
+                                        counter.slab_planes_bytes() + kBookkeeping);
+  const double most = (std::max(kLittle, kShare * image) - fixed) / each;
   const std::size_t slabs =
       std::min(threads * samples_per_thread / layer, static_cast<std::size_t>(std::max(1.0, most)));
   return std::clamp<std::size_t>(slabs, 1, shape.layers() - 1);
@@ -93,15 +98,16 @@ class Extraction {
         max_vertices_(plan.max_vertices),
         shape_(grid.sizes()),
         tables_(tables),
-        rows_(RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile) : std::nullopt),
-        row_table_(rows_ ? &*rows_ : nullptr),
+        rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
+                                                                        : std::nullopt),
+        row_table_(rows_ ? &*rows_ : tables.rows),
         placement_(grid),
         counter_(shape_, tables, row_table_),
         tiles_(source, tables, row_table_, placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes()),
         pinches_(shape_, counter_),
         workers_(options.threads, shape_.size(0), shape_.pitch()),
-        batch_(plan.batch == 0 ? batch_size(shape_, source.sample_bytes(), workers_.count())
+        batch_(plan.batch == 0 ? batch_size(shape_, counter_, source.sample_bytes(), workers_.count())
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
@@ -110,7 +116,9 @@ class Extraction {
       caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
                     plan.closed_axes);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
-    for (Slab<N>& slab : slabs_) counter_.allocate(slab);
+    const std::size_t more = kPassesPlanesOn ? 0 : 1;
+    for (std::size_t k = 0; k <= batch_ + more; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
+    for (std::size_t k = 0; k < batch_ + more; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
     source.keep(layers_.size());
   }
 
@@ -182,11 +190,13 @@ class Extraction {
   void classify(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
     classified_ = prepared_;
-    for_rows(from, classified_, [&](std::size_t k, Rows rows, RowScratch&) {
+    for_rows(from, classified_, [&](std::size_t k, Rows rows, RowScratch& scratch) {
       Layer<N>& here = layer(k);
-      for (std::size_t row = rows.first; row < rows.end; ++row) counter_.classify(source_, k, inverted_, row, here);
+      for (std::size_t row = rows.first; row < rows.end; ++row)
+        counter_.classify(source_, k, inverted_, row, here, scratch.words.data());
     });
     for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
+    write_missing(from, classified_);
     const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
     const std::size_t valid_from = first == 0 ? 0 : first + 1;
     bool all = true;
@@ -194,17 +204,41 @@ class Extraction {
       slab(k).all_valid = !layer(k).any_missing && !layer(k + 1).any_missing;
       all = all && slab(k).all_valid;
     }
-    if (!all)
-      for_rows(valid_from, valid_end, [&](std::size_t k, Rows rows, RowScratch&) {
-        if (slab(k).all_valid) return;
+    if (all) return;
+    for (std::size_t k = valid_from; k < valid_end; ++k)
+      if (!slab(k).all_valid && slab(k).valid.empty()) counter_.allocate_valid(slab(k));
+    for_rows(valid_from, valid_end, [&](std::size_t k, Rows rows, RowScratch&) {
+      if (slab(k).all_valid) return;
+      for (std::size_t row = rows.first; row < rows.end; ++row)
+        counter_.find_valid(layer(k), layer(k + 1), row, slab(k));
+    });
+  }
+
+  /// Missing samples of layers that had no storage for any so far.
+  void write_missing(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      Layer<N>& here = layer(k);
+      if (!here.any_missing || !here.missing.empty()) continue;
+      counter_.allocate_missing(here);
+      for_rows(k, k + 1, [&](std::size_t, Rows rows, RowScratch& scratch) {
         for (std::size_t row = rows.first; row < rows.end; ++row)
-          counter_.find_valid(layer(k), layer(k + 1), row, slab(k));
+          if (here.row_missing[row] != 0) counter_.classify(source_, k, inverted_, row, here, scratch.words.data());
       });
+    }
+  }
+
+  /// Gives the layers first_layer ... end, and the slabs first ... end - 1, the planes of those that are done with.
+  void take_planes(std::size_t first, std::size_t end) {
+    if (!kPassesPlanesOn) return;
+    for (std::size_t k = std::max(first + 1, batch_ + 1); k <= end; ++k)
+      std::swap<LayerPlanes<N>>(layer(k), layer(k - batch_ - 1));
+    for (std::size_t k = std::max(first, batch_); k < end; ++k) std::swap<SlabPlanes<N>>(slab(k), slab(k - batch_));
   }
 
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     const std::size_t first_layer = first == 0 ? 0 : first + 1;
+    take_planes(first, end);
     for_rows(first, end + 1, [&](std::size_t k, Rows rows, RowScratch& scratch) {
       Layer<N>& here = layer(k);
       const Slab<N>* const below = slab_below(k);
@@ -301,6 +335,9 @@ class Extraction {
   }
 
   static constexpr std::size_t kLeastWork = 4096;  ///< samples in a task
+  /// The last layer is only classified, and the last slab only looked at for missing values: neither needs planes. (In
+  /// 2D a layer is a row, and to pass its planes on takes longer than it saves.)
+  static constexpr bool kPassesPlanesOn = N > 2;
 
   SampleSource<N>& source_;
   ContourOutput<N, Real>& output_;

@@ -93,6 +93,10 @@ struct RankPlane {
     base.assign(rows, 0);
     count.assign(rows, 0);
   }
+  /// Bytes for each row.
+  static constexpr std::size_t row_bytes(std::size_t pitch) noexcept {
+    return pitch * (Slots * sizeof(Word) + sizeof(std::uint32_t)) + sizeof(Index) + sizeof(std::uint32_t);
+  }
   /// The first vertex of cell i of a row (of the next cell that has one, if it has none).
   [[nodiscard]] Index id(std::size_t row, std::size_t pitch, std::size_t i) const noexcept {
     const std::size_t w = row * pitch + i / kWordBits;
@@ -108,21 +112,25 @@ using CubePlane = RankPlane<tables::kFaceSlots>;
 /// What all samples of a row have in common.
 enum class RowState : std::uint8_t { low, high, mixed };
 
+/// What is counted of a layer.
 template <int N>
-struct Layer {
-  std::vector<RowState> state;            ///< by row, of `high`; with missing samples: mixed
-  std::vector<Word> high;                 ///< rows x pitch; inverted for the high-connected alternative
-  std::vector<Word> missing;              ///< rows x pitch
-  std::vector<std::uint8_t> row_missing;  ///< by row: whether any sample is missing
-  bool any_missing = false;
+struct LayerPlanes {
   std::array<EdgePlane, N - 1> edges;  ///< by axis
   CubePlane cubes;                     ///< N = 4: the cubes in the layer
 };
 
 template <int N>
-struct Slab {
-  std::vector<Word> valid;  ///< rows x pitch: tiles without a missing corner; meaningful unless all_valid
-  bool all_valid = true;
+struct Layer : LayerPlanes<N> {
+  std::vector<RowState> state;            ///< by row, of `high`; with missing samples: mixed
+  std::vector<Word> high;                 ///< rows x pitch; inverted for the high-connected alternative
+  std::vector<Word> missing;              ///< rows x pitch, or none as long as no sample is missing
+  std::vector<std::uint8_t> row_missing;  ///< by row: whether any sample is missing
+  bool any_missing = false;
+};
+
+/// What is counted of a slab.
+template <int N>
+struct SlabPlanes {
   std::vector<Word> active;                 ///< rows x pitch: valid tiles with high and low corners
   Buffer<std::uint16_t> signatures;         ///< rows x samples of a row: of each row's active tiles, in order
   std::vector<std::uint32_t> active_count;  ///< by row
@@ -130,6 +138,12 @@ struct Slab {
   std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
   std::vector<Index> tile_base;             ///< first vertex of each row's tiles; while counting: their number
   std::vector<std::uint64_t> simplex_base;  ///< first simplex of each row; while counting: their number
+};
+
+template <int N>
+struct Slab : SlabPlanes<N> {
+  std::vector<Word> valid;  ///< rows x pitch: tiles without a missing corner; meaningful unless all_valid
+  bool all_valid = true;
 };
 
 /// A slab with the two layers around it: where cells find the numbers of what they share.

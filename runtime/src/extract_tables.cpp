@@ -1,10 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Choice of the generated tables.
+#include <optional>
+
 #include "extract_kernel.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::detail {
+
+namespace {
+
+/// Made once, as it takes a quarter of a megabyte in 4D; null where the quick way cannot use the table.
+template <int N, int Triangulation>
+const RowTable* row_table() {
+  static const auto table = [] {
+    const tables::TileTable& tile = tables::tile_table(N, Triangulation);
+    return RowTable::can_use(tile) ? std::make_optional<RowTable>(tile) : std::nullopt;
+  }();
+  return table ? &*table : nullptr;
+}
+
+}  // namespace
 
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options) {
@@ -12,6 +28,7 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   const int alternative = options.ambiguity == Ambiguity::low ? 0 : 1;
   TableSet<N> set;
   set.tile = &tables::tile_table(N, triangulation);
+  set.rows = triangulation == 0 ? row_table<N, 0>() : row_table<N, 1>();
   set.compact = options.triangulation == Triangulation::compact;
   if (N == 4) set.cube = &tables::tile_table(3, triangulation);
   if (options.close) set.face = &tables::region_table(N - 1, triangulation, alternative);

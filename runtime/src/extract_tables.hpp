@@ -97,8 +97,10 @@ inline TilePoint<4> cube_point(unsigned cube, const TilePoint<3>& inside) noexce
   return point;
 }
 
+// Inlined by force, like what calls them: compilers otherwise leave calls in the innermost loops, at half the speed.
+
 template <std::size_t K>
-double distance(const std::array<double, K>& p, const std::array<double, K>& q) noexcept {
+[[gnu::always_inline]] inline double distance(const std::array<double, K>& p, const std::array<double, K>& q) noexcept {
   double sum = 0;
   for (std::size_t a = 0; a < K; ++a) sum += (q[a] - p[a]) * (q[a] - p[a]);
   return std::sqrt(sum);
@@ -110,7 +112,7 @@ struct Weighted {
   TilePoint<K> point{};
   double weight = 0;
 
-  void add(const TilePoint<K>& p, double w) noexcept {
+  [[gnu::always_inline]] void add(const TilePoint<K>& p, double w) noexcept {
     for (int a = 0; a < K; ++a) point[a] += w * p[a];
     weight += w;
   }
@@ -118,8 +120,8 @@ struct Weighted {
 
 /// Area of a triangle by the Gram determinant.
 template <std::size_t K>
-double triangle_area(const std::array<double, K>& p, const std::array<double, K>& q,
-                     const std::array<double, K>& r) noexcept {
+[[gnu::always_inline]] inline double triangle_area(const std::array<double, K>& p, const std::array<double, K>& q,
+                                                   const std::array<double, K>& r) noexcept {
   double uu = 0, uv = 0, vv = 0;
   for (std::size_t a = 0; a < K; ++a) {
     const double u = q[a] - p[a];
@@ -132,7 +134,7 @@ double triangle_area(const std::array<double, K>& p, const std::array<double, K>
 }
 
 template <int K>
-TilePoint<K> midpoint(const TilePoint<K>& p, const TilePoint<K>& q) noexcept {
+[[gnu::always_inline]] inline TilePoint<K> midpoint(const TilePoint<K>& p, const TilePoint<K>& q) noexcept {
   TilePoint<K> point;
   for (int a = 0; a < K; ++a) point[a] = 0.5 * (p[a] + q[a]);
   return point;
@@ -140,8 +142,6 @@ TilePoint<K> midpoint(const TilePoint<K>& p, const TilePoint<K>& q) noexcept {
 
 /// Measure and barycentre of the face of a cone that lies opposite of the apex (table contract:
 /// "Positions"). `barycentred`: its first vertex is a cube's barycentre.
-///
-/// Inlined by force, like edge_point: compilers otherwise leave calls in the innermost loop, at half the speed.
 template <int K>
 [[gnu::always_inline]] inline Weighted<K> opposite_face(const std::array<TilePoint<K>, K - 1>& face,
                                                         bool barycentred) noexcept {
@@ -162,23 +162,28 @@ template <int K>
   }
 }
 
-/// The barycentre of the facet that is the cone from `apex`.
+/// The mean of the faces that lie opposite of `apex` in its cone, each weighted by its measure or (`plain`) all alike.
 template <int K, class Place>
-TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
+[[gnu::always_inline]] inline Weighted<K> cone_sum(const SimplexList<K>& list, unsigned apex, bool plain,
+                                                   const Place& place) noexcept {
   Weighted<K> sum;
-  Weighted<K> plain;  // for a facet that has shrunk to a point: all weights equal
   for (unsigned q = 0; q < list.size(); ++q) {
     if (list.stored(q, 0) != apex) continue;
     std::array<TilePoint<K>, K - 1> face;
     for (unsigned j = 1; j < K; ++j) face[j - 1] = place(list.stored(q, j));
     const Weighted<K> part = opposite_face<K>(face, list.stored(q, 1) >= tables::edge_count(K));
-    sum.add(part.point, part.weight);
-    plain.add(part.point, 1.0);
+    sum.add(part.point, plain ? 1.0 : part.weight);
   }
-  const Weighted<K>& chosen = sum.weight > 0 ? sum : plain;
-  TilePoint<K> point;
-  for (int a = 0; a < K; ++a) point[a] = chosen.point[a] / chosen.weight;
-  return point;
+  return sum;
+}
+
+/// The barycentre of the facet that is the cone from `apex`.
+template <int K, class Place>
+TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
+  Weighted<K> sum = cone_sum(list, apex, false, place);
+  if (!(sum.weight > 0)) sum = cone_sum(list, apex, true, place);  // a facet that has shrunk to a point
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
 }
 
 /// The mean of the points that the cone from `apex` is over: what the compact triangulation puts there.

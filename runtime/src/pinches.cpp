@@ -21,10 +21,7 @@ namespace tegl::detail {
 template <int N>
 PinchCandidates<N>::PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter)
     : shape_(shape), counter_(counter), buffer_(shape.pitch()) {
-  for (Slab<N>& slab : invalid_) {
-    slab.valid.assign(shape.rows() * shape.pitch(), 0);
-    slab.all_valid = false;  // of the tiles that are not valid, none may be left out
-  }
+  for (Slab<N>& slab : invalid_) slab.all_valid = false;  // of the tiles that are not valid, none may be left out
 }
 
 template <int N>
@@ -33,6 +30,8 @@ void PinchCandidates<N>::open_slab(std::size_t k, const Slab<N>& slab) {
   std::fill(invalid.begin(), invalid.end(), Word{0});
   slabs_ = k + 1;
   if (slab.all_valid) return;
+  if (!any_missing_)
+    for (Slab<N>& each : invalid_) counter_.allocate_valid(each);
   any_missing_ = true;
   constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
   for (std::size_t row = 0; row < shape_.rows(); ++row) {

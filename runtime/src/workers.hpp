@@ -35,6 +35,10 @@ namespace tegl::detail {
 struct RowScratch {
   std::vector<Word> words;
   EdgeScratch edges;
+
+  static constexpr std::size_t bytes(std::size_t samples, std::size_t words) noexcept {
+    return words * sizeof(Word) + EdgeScratch::bytes(samples);
+  }
 };
 
 class Workers {
