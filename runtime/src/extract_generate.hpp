@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "extract_cell.hpp"
@@ -28,9 +29,11 @@ struct VertexRun {
 
 /// What a thread keeps between rows: the critical edges of one, by sample and by place.
 struct EdgeScratch {
-  explicit EdgeScratch(std::size_t samples) : at(samples + 3), alphas(samples) {}
+  EdgeScratch(std::size_t samples, bool with_normals)
+      : at(samples + 3), alphas(samples), normals(with_normals ? std::make_unique<NormalScratch>() : nullptr) {}
   std::vector<std::uint32_t> at;
   std::vector<double> alphas;
+  std::unique_ptr<NormalScratch> normals;  ///< null: none are wanted
 
   static constexpr std::size_t bytes(std::size_t samples) noexcept {
     return samples * (sizeof(std::uint32_t) + sizeof(double));
@@ -50,7 +53,8 @@ void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& pla
   source.edge_alphas(start, axis, scratch.at.data(), count, alphas);
   placement.edges(start, axis, scratch.at.data(), count, alphas, &vertices[plane.base[row]]);
   if (placement.normals() != nullptr)
-    placement.normals()->edges(start, axis, scratch.at.data(), count, alphas, &vertices.normal(plane.base[row]));
+    placement.normals()->edges(start, axis, scratch.at.data(), count, alphas, *scratch.normals,
+                               &vertices.normal(plane.base[row]));
 }
 
 /// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers around them.

@@ -24,6 +24,11 @@ class NoSink final : public ContourSink<N, Real> {
   void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
 };
 
+/// What is missing in too little room.
+constexpr const char* kVertices = "vertices";
+constexpr const char* kNormals = "normals";
+constexpr const char* kSimplices = "simplices";
+
 /// Throws unless `needed` items fit.
 void check_room(std::uint64_t room, std::uint64_t needed, const char* items) {
   if (needed > room)
@@ -52,17 +57,17 @@ class MemoryOutput final : public ContourOutput<N, Real> {
  public:
   using typename ContourOutput<N, Real>::Simplex;
   using typename ContourOutput<N, Real>::Room;
-  explicit MemoryOutput(const ContourRoom<N, Real, I>& room) : room_(room) {}
+  MemoryOutput(const ContourRoom<N, Real, I>& room, bool with_normals) : room_(room), with_normals_(with_normals) {}
 
   Room open(const ContourPart& part) override {
-    check_room(room_.vertices.size(), part.end_vertex, "vertices");
-    check_room(room_.simplices.size(), part.end_simplex, "simplices");
+    check(part.end_vertex, part.end_simplex);
     auto* const vertices = room_.vertices.data() + part.first_vertex;
+    auto* const normals = with_normals_ ? room_.normals.data() + part.first_vertex : nullptr;
     if constexpr (sizeof(I) == sizeof(Index)) {
-      return {vertices, room_.simplices.data() + part.first_simplex};
+      return {vertices, room_.simplices.data() + part.first_simplex, normals};
     } else {
       narrow_.resize(part.end_simplex - part.first_simplex);
-      return {vertices, narrow_.data()};
+      return {vertices, narrow_.data(), normals};
     }
   }
 
@@ -81,9 +86,9 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     size = {all.end_vertex, all.end_simplex};
     any_missing = pinches.any_missing();
     if (caps == nullptr || any_missing) return;
-    check_room(room_.vertices.size(), size.vertices + caps->vertices().size(), "vertices");
-    check_room(room_.simplices.size(), size.simplices + caps->simplices().size(), "simplices");
+    check(size.vertices + caps->vertices().size(), size.simplices + caps->simplices().size());
     std::copy(caps->vertices().begin(), caps->vertices().end(), room_.vertices.data() + size.vertices);
+    if (with_normals_) std::copy(caps->normals().begin(), caps->normals().end(), room_.normals.data() + size.vertices);
     size.vertices += caps->vertices().size();
     for (const auto& simplex : caps->simplices()) {
       auto& to = room_.simplices[size.simplices++];
@@ -95,7 +100,14 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   bool any_missing = false;
 
  private:
+  void check(std::uint64_t vertices, std::uint64_t simplices) const {
+    check_room(room_.vertices.size(), vertices, kVertices);
+    if (with_normals_) check_room(room_.normals.size(), vertices, kNormals);
+    check_room(room_.simplices.size(), simplices, kSimplices);
+  }
+
   ContourRoom<N, Real, I> room_;
+  bool with_normals_;
   Buffer<Simplex> narrow_;
   std::uint64_t before_ = 0;  ///< first vertex of the part before
 };
@@ -109,13 +121,17 @@ class MemorySink final : public ContourSink<N, Real> {
   explicit MemorySink(const ContourRoom<N, Real, I>& room) : room_(room) {}
 
   void add_vertices(std::span<const Vertex> vertices) override {
-    check_room(room_.vertices.size(), size_.vertices + vertices.size(), "vertices");
+    check_room(room_.vertices.size(), size_.vertices + vertices.size(), kVertices);
     std::copy(vertices.begin(), vertices.end(), room_.vertices.data() + size_.vertices);
     size_.vertices += vertices.size();
     if constexpr (sizeof(I) == sizeof(Index)) check_vertex_count(size_.vertices, kMaxVertices);
   }
+  void add_normals(std::span<const Vertex> normals) override {
+    check_room(room_.normals.size(), size_.vertices, kNormals);
+    std::copy(normals.begin(), normals.end(), room_.normals.data() + (size_.vertices - normals.size()));
+  }
   void add_simplices(std::span<const Simplex> simplices) override {
-    check_room(room_.simplices.size(), size_.simplices + simplices.size(), "simplices");
+    check_room(room_.simplices.size(), size_.simplices + simplices.size(), kSimplices);
     for (const Simplex& simplex : simplices) {
       auto& to = room_.simplices[size_.simplices++];
       for (int j = 0; j < N; ++j) to[j] = static_cast<I>(simplex[j]);
@@ -150,7 +166,7 @@ ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOption
   }
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   detail::NoSink<N, float> sink;
-  detail::StreamOutput<N, float> output(sink);
+  detail::StreamOutput<N, float> output(sink, options.normals);
   done = detail::extract_to<N, float>(source, image.grid(), tables, options, plan, output);
   if (stats != nullptr) *stats = done;
   return output.size();
@@ -160,18 +176,17 @@ template <Value T, int N, class Real, VertexNumber I>
 ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
                          const ExtractOptions& options, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
-  detail::check_no_normals(options, "extract_into");
   const auto tables = detail::generated_tables<N>(options);
   detail::ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  detail::MemoryOutput<N, Real, I> output(room);
+  detail::MemoryOutput<N, Real, I> output(room, options.normals);
   ExtractStats done = detail::extract_to<N, Real>(source, image.grid(), tables, options, plan, output);
   ContourSize size = output.size;
   if (output.any_missing) {
     detail::ImageSource<T, N> again(image, isovalue, options.epsilon);
     detail::MemorySink<N, Real, I> sink(room);
-    detail::StreamOutput<N, Real> parts(sink);
+    detail::StreamOutput<N, Real> parts(sink, options.normals);
     done = detail::extract_to<N, Real>(again, image.grid(), tables, options, plan, parts);
     size = parts.size();
   } else if constexpr (sizeof(I) == sizeof(Index)) {

@@ -32,12 +32,6 @@ void check_arguments(double isovalue, const ExtractOptions& options) {
                 fmt::format("epsilon {}; expected at least 0 and below 0.5", options.epsilon));
 }
 
-void check_no_normals(const ExtractOptions& options, const char* function) {
-  if (options.normals)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} with normals; expected none: only extract makes them", function));
-}
-
 namespace {
 
 /// Adds the time since the last call to one of several counters.
@@ -106,12 +100,12 @@ class Extraction {
         tiles_(source, tables, row_table_, placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes()),
         pinches_(shape_, counter_),
-        workers_(options.threads, shape_.size(0), shape_.pitch()),
+        workers_(options.threads, shape_.size(0), shape_.pitch(), options.normals),
         batch_(plan.batch == 0 ? batch_size(shape_, counter_, source.sample_bytes(), workers_.count())
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
-    if (options.normals) placement_.want_normals(source.gradients(grid), grid, options.direction);
+    if (options.normals) placement_.want_normals(source, grid, options.direction);
     if (options.close)
       caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
                     plan.closed_axes);
@@ -119,7 +113,7 @@ class Extraction {
     const std::size_t more = kPassesPlanesOn ? 0 : 1;
     for (std::size_t k = 0; k <= batch_ + more; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
     for (std::size_t k = 0; k < batch_ + more; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
-    source.keep(layers_.size());
+    source.keep(layers_.size() + (options.normals ? 1 : 0));  // gradients look back to the layer before
   }
 
   void run(ExtractStats& stats) {

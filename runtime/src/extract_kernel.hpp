@@ -23,9 +23,6 @@ void check_vertex_count(std::uint64_t count, std::uint64_t limit);
 /// Throws InvalidIsovalue or InvalidArgument.
 void check_arguments(double isovalue, const ExtractOptions& options);
 
-/// Throws InvalidArgument if `options` ask for normals, which `function` does not make.
-void check_no_normals(const ExtractOptions& options, const char* function);
-
 /// The generated tables of one triangulation.
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options);

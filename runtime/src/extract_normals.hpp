@@ -7,15 +7,30 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <memory>
+#include <utility>
 
 #include <Eigen/LU>
 
-#include "gradient.hpp"
+#include "edge_normals.hpp"
+#include "extract_source.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
+
+/// Room for the values around edges. They are read by whole registers: what is behind the last is zero, or from before.
+template <class Calc>
+struct EdgeValues {
+  std::array<Calc, (kEdgeValues<4> + 1) * kEdgesAtOnce> values{};
+  std::array<Calc, 4 * kEdgesAtOnce> row_weights{};
+};
+
+/// What a thread keeps between rows.
+struct NormalScratch {
+  EdgeValues<float> floats;
+  EdgeValues<double> doubles;
+};
 
 template <int N, class Real>
 class NormalWriter {
@@ -23,24 +38,25 @@ class NormalWriter {
   using Index = std::array<std::size_t, N>;
   using Vertex = std::array<Real, N>;
 
-  NormalWriter(std::unique_ptr<const GradientField<N>> field, const Grid<N>& grid, GradientDirection direction)
-      : field_(std::move(field)), to_world_(Eigen::Matrix<double, N, N>::Identity()), mapped_(grid.has_world_map()) {
+  /// The source must outlive it.
+  NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction)
+      : source_(source),
+        steps_(steps_of(source, grid)),
+        row_size_(grid.axes[0].size()),
+        mapped_(grid.has_world_map()),
+        sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
+        // A map may make much of small differences, for which float has too few digits.
+        in_float_(std::is_same_v<Real, float> && source.fits_float() && !mapped_) {
     // Gradients are covectors: the inverse transpose carries them along.
-    if (mapped_) to_world_ = grid.linear.inverse().transpose();
-    if (direction == GradientDirection::descent) to_world_ = -to_world_;
-    sign_ = direction == GradientDirection::descent ? -1.0 : 1.0;
+    if (mapped_) to_world_ = sign_ * grid.linear.inverse().transpose();
   }
 
   /// As Placement::edges.
   void edges(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
-             Vertex* out) const noexcept {
-    constexpr std::size_t kAtOnce = 64;
-    std::array<std::array<double, N>, kAtOnce> gradients;
-    for (std::size_t i = 0; i < count; i += kAtOnce) {
-      const std::size_t some = std::min(kAtOnce, count - i);
-      field_->on_edges(start, axis, at + i, some, alphas + i, gradients.data());
-      for (std::size_t j = 0; j < some; ++j) out[i + j] = normal(gradients[j]);
-    }
+             NormalScratch& scratch, Vertex* out) const noexcept {
+    if constexpr (std::is_same_v<Real, float>)
+      if (in_float_) return edges_by(start, axis, at, count, alphas, scratch.floats, out);
+    edges_by(start, axis, at, count, alphas, scratch.doubles, out);
   }
 
   /// As Placement::in_cell.
@@ -53,13 +69,90 @@ class NormalWriter {
       if (weight == 0.0) continue;
       Index index = base;
       for (int a = 0; a < N; ++a) index[a] += Frame::spread(corner) >> a & 1u;
-      const auto gradient = field_->at(index);
+      const auto gradient = source_.gradient(index, steps_);
       for (int a = 0; a < N; ++a) sum[a] += weight * gradient[a];
     }
     return normal(sum);
   }
 
  private:
+  static std::array<AxisSteps, N> steps_of(const SampleSource<N>& source, const Grid<N>& grid) {
+    return [&]<std::size_t... A>(std::index_sequence<A...>) {
+      return std::array<AxisSteps, N>{(A + 1 < N ? AxisSteps(grid.axes[A]) : source.last_steps(grid))...};
+    }
+    (std::make_index_sequence<N>());
+  }
+
+  template <class Calc>
+  void edges_by(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
+                EdgeValues<Calc>& scratch, Vertex* out) const noexcept {
+    EdgeSurroundings<N> edges{start, axis, {}};
+    NormalRow<N, Real, Calc> row{scratch.values.data(), 0, axis, {}, nullptr, nullptr, static_cast<Calc>(sign_), out};
+    describe(edges, row);
+    if constexpr (std::is_same_v<Calc, double>)
+      if (mapped_) row.to_world = to_world_.data();
+    if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
+    for (std::size_t i = 0; i < count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
+      row.count = std::min(kEdgesAtOnce, count - i);
+      source_.around_edges(edges, at + i, row.count, scratch.values.data());
+      Calc* const places = scratch.values.data() + kEdgeValues<N> * kEdgesAtOnce;
+      for (std::size_t j = 0; j < row.count; ++j) places[j] = static_cast<Calc>(alphas[i + j]);
+      if (row.row_weights != nullptr) fill_row_weights(axis, at + i, row.count, scratch.row_weights.data());
+      Word left = write_normals(row);
+      if (row.row_weights == nullptr) left |= at_ends(axis, at + i, row.count);
+      for (; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        row.out[j] = on_edge(start, axis, at[i + j], alphas[i + j]);
+      }
+    }
+  }
+
+  /// What the edges of a row have in common.
+  template <class Calc>
+  void describe(EdgeSurroundings<N>& edges, NormalRow<N, Real, Calc>& row) const noexcept {
+    const auto set = [&](int a, const StepWeights& first, const StepWeights& second) {
+      row.weights[a] = {static_cast<Calc>(first.backward), static_cast<Calc>(first.forward),
+                        static_cast<Calc>(second.backward), static_cast<Calc>(second.forward)};
+    };
+    set(0, steps_[0].inside(), steps_[0].inside());
+    for (int a = 1; a < N; ++a) {
+      const std::size_t first = edges.start[a];
+      const std::size_t second = first + (a == edges.axis ? 1 : 0);
+      edges.exists[a] = {steps_[a].has_backward(first), steps_[a].has_forward(first), steps_[a].has_backward(second),
+                         steps_[a].has_forward(second)};
+      set(a, steps_[a].at(first), steps_[a].at(second));
+    }
+  }
+
+  template <class Calc>
+  void fill_row_weights(int axis, const std::uint32_t* at, std::size_t count, Calc* out) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const StepWeights first = steps_[0].at(at[i]);
+      const StepWeights second = axis == 0 ? steps_[0].at(at[i] + std::size_t{1}) : first;
+      out[i] = static_cast<Calc>(first.backward);
+      out[kEdgesAtOnce + i] = static_cast<Calc>(first.forward);
+      out[2 * kEdgesAtOnce + i] = static_cast<Calc>(second.backward);
+      out[3 * kEdgesAtOnce + i] = static_cast<Calc>(second.forward);
+    }
+  }
+
+  /// The edges with an end at an end of the row, as bits: there the weights are not those inside. `at` ascends.
+  [[nodiscard]] Word at_ends(int axis, const std::uint32_t* at, std::size_t count) const noexcept {
+    Word bits = at[0] == 0 ? 1 : 0;
+    if (at[count - 1] + (axis == 0 ? 1u : 0u) + 1 >= row_size_) bits |= Word{1} << (count - 1);
+    return bits;
+  }
+
+  /// One normal, whatever the values.
+  [[nodiscard]] Vertex on_edge(Index index, int axis, std::size_t from, double alpha) const noexcept {
+    index[0] = from;
+    std::array<double, N> gradient = source_.gradient(index, steps_);
+    ++index[axis];
+    const std::array<double, N> there = source_.gradient(index, steps_);
+    for (int a = 0; a < N; ++a) gradient[a] += alpha * (there[a] - gradient[a]);
+    return normal(gradient);
+  }
+
   /// 0 where the gradient vanishes.
   [[nodiscard]] Vertex normal(const std::array<double, N>& gradient) const noexcept {
     std::array<double, N> v;
@@ -92,10 +185,13 @@ class NormalWriter {
     return square;
   }
 
-  std::unique_ptr<const GradientField<N>> field_;
-  Eigen::Matrix<double, N, N> to_world_;
+  const SampleSource<N>& source_;
+  std::array<AxisSteps, N> steps_;
+  std::size_t row_size_;
   bool mapped_;
   double sign_;
+  bool in_float_;
+  Eigen::Matrix<double, N, N, Eigen::RowMajor> to_world_ = Eigen::Matrix<double, N, N>::Identity();
 };
 
 }  // namespace tegl::detail

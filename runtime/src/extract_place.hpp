@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -43,8 +42,8 @@ class Placement {
 
   /// Null: none are wanted.
   [[nodiscard]] const NormalWriter<N, Real>* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
-  void want_normals(std::unique_ptr<const GradientField<N>> field, const Grid<N>& grid, GradientDirection direction) {
-    normals_.emplace(std::move(field), grid, direction);
+  void want_normals(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction) {
+    normals_.emplace(source, grid, direction);
   }
 
   [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }

@@ -6,13 +6,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <limits>
 
 #include "bitplanes.hpp"
-#include "corners.hpp"
 #include "gradient.hpp"
 
 namespace tegl::detail {
@@ -24,44 +22,6 @@ namespace tegl::detail {
 template <Value T>
 void edge_alphas(const T* a, const T* b, std::ptrdiff_t stride, const std::uint32_t* at, std::size_t count,
                  double isovalue, double epsilon, double* out) noexcept;
-
-/// The places on the critical edges of a cell, to out[e] for local edge e of the bit mask `edges`; the cell is along
-/// the axes of the bit mask `axes`, its lowest sample at base[0], and what is further along the last axis at base[1].
-template <Value T, int N>
-void cell_alphas(const std::array<const T*, 2>& base, const std::array<std::ptrdiff_t, N>& strides, unsigned axes,
-                 std::uint32_t edges, double isovalue, double epsilon, double* out) noexcept {
-  static constexpr auto kInOrder = [] {
-    std::array<std::uint32_t, N << (N - 1)> result{};
-    for (std::uint32_t i = 0; i < result.size(); ++i) result[i] = i;
-    return result;
-  }();
-  std::array<T, std::size_t{1} << N> corners;
-  std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
-  corners[0] = *base[0];
-  unsigned dim = 0;
-  for (unsigned a = 0; a < N; ++a) {
-    if ((axes >> a & 1u) == 0) continue;
-    const T* const from = a == N - 1 ? base[1] : base[0];
-    for (std::size_t c = 0, up = std::size_t{1} << dim; c < std::size_t{1} << dim; ++c, ++up) {
-      offsets[up] = offsets[c] + (a == N - 1 ? 0 : strides[a]);
-      corners[up] = from[offsets[up]];
-    }
-    ++dim;
-  }
-  std::array<T, kInOrder.size()> first{};
-  std::array<T, kInOrder.size()> second{};
-  std::array<double, kInOrder.size()> alphas;
-  std::size_t count = 0;
-  for (std::uint32_t rest = edges; rest != 0; rest &= rest - 1, ++count) {
-    const auto e = static_cast<unsigned>(std::countr_zero(rest));
-    const unsigned at = edge_base(dim, e);
-    first[count] = corners[at];
-    second[count] = corners[at | 1u << (e >> (dim - 1))];
-  }
-  edge_alphas(first.data(), second.data(), 1, kInOrder.data(), count, isovalue, epsilon, alphas.data());
-  const double* next = alphas.data();
-  for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
-}
 
 /// An image with an isovalue; rows run along axis 0.
 template <int N>
@@ -81,11 +41,6 @@ class SampleSource {
 
   [[nodiscard]] virtual std::size_t sample_bytes() const noexcept = 0;
 
-  /// The samples' gradients over `grid`; null where samples come and go.
-  [[nodiscard]] virtual std::unique_ptr<const GradientField<N>> gradients(const Grid<N>& /*grid*/) const {
-    return nullptr;
-  }
-
   /// The row through `start` (start[0] = 0), as classify_row.
   virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;
 
@@ -97,57 +52,100 @@ class SampleSource {
   /// The same for single edges of the cell along `axes` based at `base`: local edge e of the bit mask `edges`, to
   /// out[e].
   virtual void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept = 0;
+
+  /// Whether float holds all values.
+  [[nodiscard]] virtual bool fits_float() const noexcept = 0;
+  /// Steps along the last axis, for gradients: they may reach beyond layers that are a part of an image.
+  [[nodiscard]] virtual AxisSteps last_steps(const Grid<N>& grid) const { return AxisSteps(grid.axes[N - 1]); }
+  /// Values around the edges from the samples `at` of a row, at most kEdgesAtOnce: kEdgeValues x kEdgesAtOnce. Values
+  /// that float does not hold are asked for as double alone.
+  virtual void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
+                            float* out) const noexcept = 0;
+  virtual void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
+                            double* out) const noexcept = 0;
+  /// The gradient at a sample.
+  [[nodiscard]] virtual std::array<double, N> gradient(const Index& index,
+                                                       const std::array<AxisSteps, N>& steps) const noexcept = 0;
 };
 
-/// The samples must outlive it; the view need not.
+/// Samples in rows, wherever the layers are.
 template <Value T, int N>
-class ImageSource final : public SampleSource<N> {
+class RowSource : public SampleSource<N> {
  public:
   using typename SampleSource<N>::Index;
+  using Strides = std::array<std::ptrdiff_t, N>;
 
-  ImageSource(const Image<T, N>& image, double isovalue, double epsilon)
-      : data_(image.data()),
-        strides_(image.strides()),
-        row_size_(image.size(0)),
+  [[nodiscard]] std::size_t sample_bytes() const noexcept final { return sizeof(T); }
+  bool classify(const Index& start, Word* high, Word* missing) const noexcept final;
+  void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
+                   double* out) const noexcept final;
+  void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;
+  [[nodiscard]] bool fits_float() const noexcept final {
+    return std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits;
+  }
+  void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
+                    float* out) const noexcept final;
+  void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
+                    double* out) const noexcept final;
+  [[nodiscard]] std::array<double, N> gradient(const Index& index,
+                                               const std::array<AxisSteps, N>& steps) const noexcept final;
+
+ protected:
+  /// `strides`: of the axes but the last; rows have `row_size` samples.
+  RowSource(const Strides& strides, std::size_t row_size, double isovalue, double epsilon)
+      : strides_(strides),
+        row_size_(row_size),
         isovalue_(isovalue),
         epsilon_(epsilon),
         threshold_(make_threshold<T>(isovalue)) {}
 
-  [[nodiscard]] std::size_t sample_bytes() const noexcept override { return sizeof(T); }
-  [[nodiscard]] std::unique_ptr<const GradientField<N>> gradients(const Grid<N>& grid) const override {
-    return std::make_unique<Gradient<T, N>>(data_, strides_, grid);
-  }
-
-  bool classify(const Index& start, Word* high, Word* missing) const noexcept override {
-    return classify_row(row(start), strides_[0], row_size_, threshold_, high, missing);
-  }
-
-  void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
-                   double* out) const noexcept override {
-    const T* const samples = row(start);
-    detail::edge_alphas(samples, samples + strides_[axis], strides_[0], at, count, isovalue_, epsilon_, out);
-  }
-
-  void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept override {
-    const T* const first = row(base) + static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
-    // A cell within the last layer has nothing above.
-    const T* const above = (axes >> (N - 1) & 1u) != 0 ? first + strides_[N - 1] : nullptr;
-    detail::cell_alphas<T, N>({first, above}, strides_, axes, edges, isovalue_, epsilon_, out);
-  }
+  /// The first sample of layer k, a number modulo 2^64: layers before the first may be asked for by gradients.
+  [[nodiscard]] virtual const T* layer(std::size_t k) const noexcept = 0;
 
  private:
-  const T* row(const Index& start) const noexcept {
-    std::ptrdiff_t at = 0;
-    for (int a = 1; a < N; ++a) at += static_cast<std::ptrdiff_t>(start[a]) * strides_[a];
-    return data_ + at;
+  [[nodiscard]] const T* row(const Index& start) const noexcept {
+    const T* at = layer(start[N - 1]);
+    for (int a = 1; a < N - 1; ++a) at += static_cast<std::ptrdiff_t>(start[a]) * strides_[a];
+    return at;
   }
+  /// The row, one step along `axis` > 0 from that through `start`.
+  [[nodiscard]] const T* next_row(Index start, int axis, std::size_t step) const noexcept {
+    start[axis] += step;
+    return row(start);
+  }
+  template <class Calc>
+  void gather(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count, Calc* out) const noexcept;
 
-  const T* data_;
-  typename Image<T, N>::Strides strides_;
+  Strides strides_;
   std::size_t row_size_;
   double isovalue_;
   double epsilon_;
   Threshold<T> threshold_;
+};
+
+/// The samples must outlive it; the view need not.
+template <Value T, int N>
+class ImageSource final : public RowSource<T, N> {
+ public:
+  /// `first`: the layers from there on are what is worked on; gradients know of those before, and of those after.
+  ImageSource(const Image<T, N>& image, double isovalue, double epsilon, std::size_t first = 0)
+      : RowSource<T, N>(image.strides(), image.size(0), isovalue, epsilon),
+        data_(image.data() + static_cast<std::ptrdiff_t>(first) * image.strides()[N - 1]),
+        stride_(image.strides()[N - 1]),
+        last_axis_(image.grid().axes[N - 1]),
+        first_(first) {}
+
+  [[nodiscard]] AxisSteps last_steps(const Grid<N>& /*grid*/) const override { return AxisSteps(last_axis_, first_); }
+
+ private:
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept override {
+    return data_ + static_cast<std::ptrdiff_t>(k) * stride_;
+  }
+
+  const T* data_;
+  std::ptrdiff_t stride_;
+  Axis last_axis_;
+  std::size_t first_;
 };
 
 }  // namespace tegl::detail

@@ -110,6 +110,10 @@ class Cutter {
     result.direction = contour_.direction;
     result.vertices.resize(keys_.size());
     for (std::size_t i = 0; i < keys_.size(); ++i) result.vertices[i] = position(keys_[i]);
+    if (!contour_.normals.empty()) {
+      result.normals.resize(keys_.size());
+      for (std::size_t i = 0; i < keys_.size(); ++i) result.normals[i] = normal(keys_[i]);
+    }
     emit(result);
     return result;
   }
@@ -309,12 +313,37 @@ class Cutter {
     }
     const auto& low = contour_.vertices[lower_end(key)];
     const auto& high = contour_.vertices[upper_end(key)];
-    const auto t = static_cast<double>(low[N - 1]);
-    const double beta = (static_cast<double>(at_) - t) / (static_cast<double>(high[N - 1]) - t);
+    const double beta = share(key);
+    for (int a = 0; a < N - 1; ++a) result[a] = static_cast<Real>(between(low[a], high[a], beta));
+    return result;
+  }
+
+  /// How far a point lies up its edge.
+  [[nodiscard]] double share(PointKey key) const {
+    const auto t = static_cast<double>(contour_.vertices[lower_end(key)][N - 1]);
+    return (static_cast<double>(at_) - t) / (static_cast<double>(contour_.vertices[upper_end(key)][N - 1]) - t);
+  }
+
+  static double between(Real low, Real high, double beta) {
+    const auto x = static_cast<double>(low);
+    return x + beta * (static_cast<double>(high) - x);
+  }
+
+  /// The contour's normal there, within the hyperplane: a gradient without its last component is that of the field in
+  /// the hyperplane.
+  [[nodiscard]] std::array<Real, N - 1> normal(PointKey key) const {
+    const std::optional<Index> on = on_end(key);
+    const auto& low = contour_.normals[on ? *on : lower_end(key)];
+    const auto& high = contour_.normals[on ? *on : upper_end(key)];
+    const double beta = on ? 0.0 : share(key);
+    std::array<double, N - 1> v;
+    double square = 0.0;
     for (int a = 0; a < N - 1; ++a) {
-      const auto x = static_cast<double>(low[a]);
-      result[a] = static_cast<Real>(x + beta * (static_cast<double>(high[a]) - x));
+      v[a] = between(low[a], high[a], beta);
+      square += v[a] * v[a];
     }
+    std::array<Real, N - 1> result;
+    for (int a = 0; a < N - 1; ++a) result[a] = square > 0.0 ? static_cast<Real>(v[a] / std::sqrt(square)) : Real{0};
     return result;
   }
 

@@ -74,10 +74,9 @@ template <class Real, Value T, int N>
 Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, double at, const ExtractOptions& options,
                                  ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
-  detail::check_no_normals(options, "slice_image");
   const auto [first, count] = detail::layers_around<N, Real>(image.grid(), at);
   const Image<T, N> slab = image.part(N - 1, first, count);
-  detail::ImageSource<T, N> source(slab, isovalue, options.epsilon);
+  detail::ImageSource<T, N> source(image, isovalue, options.epsilon, first);
   constexpr unsigned kAcrossOthers = (1u << (N - 1)) - 1;
   const Contour<N, Real> contour = detail::extract_source<N, Real>(
       source, slab.grid(), detail::generated_tables<N>(options), options, stats, {.closed_axes = kAcrossOthers});

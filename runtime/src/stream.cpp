@@ -20,8 +20,10 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
   };
   Contour<N, Real> around;
   for (const std::uint64_t v : numbers) {
-    const auto place = places_.find(v);
-    around.vertices.push_back(place == places_.end() ? Vertex{} : place->second);
+    const auto found = places_.find(v);
+    const Place place = found == places_.end() ? Place{} : found->second;
+    around.vertices.push_back(place.vertex);
+    if (with_normals_) around.normals.push_back(place.normal);
   }
   for (const WideSimplex& simplex : kept_) {
     Simplex& narrow = around.simplices.emplace_back();
@@ -42,7 +44,8 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
     WideSimplex& simplex = wide_.emplace_back();
     for (int j = 0; j < N; ++j) simplex[j] = number(around.simplices[s][j]);
   }
-  sink_.add_vertices(std::span(around.vertices).subspan(numbers.size()));
+  add_vertices(std::span(around.vertices).subspan(numbers.size()),
+               std::span(around.normals).subspan(with_normals_ ? numbers.size() : 0));
   sink_.add_simplices(wide_);
   size_.vertices += around.vertices.size() - numbers.size();
   size_.simplices += wide_.size();
@@ -54,9 +57,8 @@ template <class Real, Value T, int N>
 StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
                               ContourSink<N, Real>& sink, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
-  detail::check_no_normals(options, "extract_streamed");
   detail::LayerSource<T, N> source(layers, isovalue, options.epsilon);
-  detail::StreamOutput<N, Real> output(sink);
+  detail::StreamOutput<N, Real> output(sink, options.normals);
   const ExtractStats done = detail::extract_to<N, Real>(source, layers.grid(), detail::generated_tables<N>(options),
                                                         options, detail::streaming_plan(layers.grid()), output);
   if (stats != nullptr) *stats = done;

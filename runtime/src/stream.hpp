@@ -27,18 +27,11 @@ ExtractPlan streaming_plan(const Grid<N>& grid) {
 
 /// The layers of a reader that the extraction works on, in a ring.
 template <Value T, int N>
-class LayerSource final : public SampleSource<N> {
+class LayerSource final : public RowSource<T, N> {
  public:
-  using typename SampleSource<N>::Index;
-
   LayerSource(LayerReader<T, N>& reader, double isovalue, double epsilon)
-      : reader_(reader), isovalue_(isovalue), epsilon_(epsilon), threshold_(make_threshold<T>(isovalue)) {
-    const auto sizes = reader.grid().sizes();
-    for (int a = 0; a < N - 1; ++a) {
-      strides_[a] = layer_size_;
-      layer_size_ *= sizes[a];
-    }
-    row_size_ = sizes[0];
+      : RowSource<T, N>(strides_of(reader.grid()), reader.grid().axes[0].size(), isovalue, epsilon), reader_(reader) {
+    for (int a = 0; a < N - 1; ++a) layer_size_ *= reader.grid().axes[a].size();
   }
 
   void keep(std::size_t layers) override { ring_.resize(layers); }
@@ -49,43 +42,20 @@ class LayerSource final : public SampleSource<N> {
     reader_.read(k, layer.data());
   }
 
-  [[nodiscard]] std::size_t sample_bytes() const noexcept override { return sizeof(T); }
-
-  bool classify(const Index& start, Word* high, Word* missing) const noexcept override {
-    return classify_row(row(start), 1, row_size_, threshold_, high, missing);
-  }
-
-  void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
-                   double* out) const noexcept override {
-    auto next = start;
-    if (axis > 0) ++next[axis];
-    detail::edge_alphas(row(start), row(next) + (axis == 0 ? 1 : 0), 1, at, count, isovalue_, epsilon_, out);
-  }
-
-  void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept override {
-    auto above = base;
-    ++above[N - 1];
-    // A cell within the last layer has nothing above.
-    const T* const next = (axes >> (N - 1) & 1u) != 0 ? row(above) + base[0] : nullptr;
-    std::array<std::ptrdiff_t, N> strides;
-    for (int a = 0; a < N; ++a) strides[a] = static_cast<std::ptrdiff_t>(strides_[a]);
-    detail::cell_alphas<T, N>({row(base) + base[0], next}, strides, axes, edges, isovalue_, epsilon_, out);
-  }
-
  private:
-  const T* row(const Index& start) const noexcept {
-    const T* at = ring_[start[N - 1] % ring_.size()].data();
-    for (int a = 1; a < N - 1; ++a) at += start[a] * strides_[a];
-    return at;
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept override { return ring_[k % ring_.size()].data(); }
+  static typename RowSource<T, N>::Strides strides_of(const Grid<N>& grid) {
+    typename RowSource<T, N>::Strides strides{};
+    std::ptrdiff_t stride = 1;
+    for (int a = 0; a < N - 1; ++a) {
+      strides[a] = stride;
+      stride *= static_cast<std::ptrdiff_t>(grid.axes[a].size());
+    }
+    return strides;
   }
 
   LayerReader<T, N>& reader_;
-  double isovalue_;
-  double epsilon_;
-  Threshold<T> threshold_;
-  std::size_t row_size_ = 0;
   std::size_t layer_size_ = 1;
-  std::array<std::size_t, N> strides_{};
   std::vector<Buffer<T>> ring_;
 };
 
@@ -97,15 +67,17 @@ class StreamOutput final : public ContourOutput<N, Real> {
   using typename ContourOutput<N, Real>::Simplex;
   using typename ContourOutput<N, Real>::Room;
 
-  explicit StreamOutput(ContourSink<N, Real>& sink) : sink_(sink) {}
+  StreamOutput(ContourSink<N, Real>& sink, bool with_normals) : sink_(sink), with_normals_(with_normals) {}
 
   Room open(const ContourPart& part) override {
     before_.swap(vertices_);
+    before_normals_.swap(normals_);
     before_first_ = first_;
     first_ = part.first_vertex;
     vertices_.resize(part.end_vertex - part.first_vertex);
+    if (with_normals_) normals_.resize(vertices_.size());
     simplices_.resize(part.end_simplex - part.first_simplex);
-    return {vertices_.data(), simplices_.data()};
+    return {vertices_.data(), simplices_.data(), with_normals_ ? normals_.data() : nullptr};
   }
 
   void close(const ContourPart& part, const PinchCandidates<N>& pinches) override {
@@ -113,7 +85,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
     for (std::size_t s = 0; s < simplices_.size(); ++s)
       for (int j = 0; j < N; ++j)
         wide_[s][j] = before_first_ + static_cast<Index>(simplices_[s][j] - static_cast<Index>(before_first_));
-    sink_.add_vertices(vertices_);
+    add_vertices(vertices_, normals_);
     sink_.add_simplices(wide_);
     if (pinches.any_missing()) remember(part, pinches.vertices());
     size_ = {part.end_vertex, part.end_simplex};
@@ -130,8 +102,22 @@ class StreamOutput final : public ContourOutput<N, Real> {
  private:
   using WideSimplex = typename ContourSink<N, Real>::Simplex;
 
-  [[nodiscard]] const Vertex& vertex(std::uint64_t v) const {
-    return v >= first_ ? vertices_[v - first_] : before_[v - before_first_];
+  /// A vertex and its normal, if there are any.
+  struct Place {
+    Vertex vertex{};
+    Vertex normal{};
+  };
+  [[nodiscard]] Place place(std::uint64_t v) const {
+    const bool last = v >= first_;
+    const std::uint64_t i = v - (last ? first_ : before_first_);
+    Place result{last ? vertices_[i] : before_[i], {}};
+    if (with_normals_) result.normal = last ? normals_[i] : before_normals_[i];
+    return result;
+  }
+
+  void add_vertices(std::span<const Vertex> vertices, std::span<const Vertex> normals) {
+    sink_.add_vertices(vertices);
+    if (with_normals_) sink_.add_normals(normals);
   }
 
   void remember(std::uint64_t number, const WideSimplex& simplex) {
@@ -146,7 +132,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
     for (std::size_t s = 0; s < wide_.size(); ++s) {
       if (std::none_of(wide_[s].begin(), wide_[s].end(), is_candidate)) continue;
       remember(part.first_simplex + s, wide_[s]);
-      for (const std::uint64_t v : wide_[s]) places_.try_emplace(v, vertex(v));
+      for (const std::uint64_t v : wide_[s]) places_.try_emplace(v, place(v));
     }
   }
 
@@ -155,14 +141,14 @@ class StreamOutput final : public ContourOutput<N, Real> {
     wide_.assign(caps.simplices().begin(), caps.simplices().end());
     for (WideSimplex& simplex : wide_)
       for (std::uint64_t& v : simplex) v = caps.number(v, all.end_vertex);
-    sink_.add_vertices(caps.vertices());
+    add_vertices(caps.vertices(), caps.normals());
     sink_.add_simplices(wide_);
     size_.vertices += caps.vertices().size();
     size_.simplices += wide_.size();
     if (!any_missing) return;
     for (std::size_t i = 0; i < caps.vertices().size(); ++i) {
       candidates.push_back(all.end_vertex + i);
-      places_.emplace(all.end_vertex + i, caps.vertices()[i]);
+      places_.emplace(all.end_vertex + i, Place{caps.vertices()[i], with_normals_ ? caps.normals()[i] : Vertex{}});
     }
     for (std::size_t s = 0; s < wide_.size(); ++s) remember(all.end_simplex + s, wide_[s]);
   }
@@ -171,14 +157,16 @@ class StreamOutput final : public ContourOutput<N, Real> {
   void separate(const std::vector<std::uint64_t>& candidates);
 
   ContourSink<N, Real>& sink_;
+  bool with_normals_;
   StreamedSize size_;
   std::uint64_t first_ = 0, before_first_ = 0;
   Buffer<Vertex> vertices_, before_;  ///< of the last part, and of the one before
+  Buffer<Vertex> normals_, before_normals_;
   Buffer<Simplex> simplices_;
   std::vector<WideSimplex> wide_;
   std::vector<WideSimplex> kept_;
   std::vector<std::uint64_t> kept_numbers_;
-  std::unordered_map<std::uint64_t, Vertex> places_;
+  std::unordered_map<std::uint64_t, Place> places_;
 };
 
 }  // namespace tegl::detail

@@ -44,11 +44,11 @@ struct RowScratch {
 class Workers {
  public:
   /// `threads`: 0 for all that the machine has. Rows have `samples` samples in `words` words.
-  Workers(unsigned threads, std::size_t samples, std::size_t words)
+  Workers(unsigned threads, std::size_t samples, std::size_t words, bool with_normals)
       : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
         alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)),
-        own_([samples, words] {
-          return RowScratch{std::vector<Word>(words), EdgeScratch(samples)};
+        own_([samples, words, with_normals] {
+          return RowScratch{std::vector<Word>(words), EdgeScratch(samples, with_normals)};
         }) {}
 
   [[nodiscard]] std::size_t count() const noexcept { return static_cast<std::size_t>(arena_.max_concurrency()); }

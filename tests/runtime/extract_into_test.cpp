@@ -35,11 +35,16 @@ void expect_same(const Image<T, N>& image, double isovalue, const ExtractOptions
   simplex.fill(I{77});
   std::vector<std::array<Real, N>> vertices(size.vertices + 1, vertex);
   std::vector<std::array<I, N>> simplices(size.simplices + 1, simplex);
+  auto normals = vertices;
   ExtractStats stats;
-  EXPECT_EQ((extract_into(image, isovalue, ContourRoom<N, Real, I>{vertices, simplices}, options, &stats)), size);
+  EXPECT_EQ((extract_into(image, isovalue, ContourRoom<N, Real, I>{vertices, simplices, normals}, options, &stats)),
+            size);
   EXPECT_GT(stats.active_tiles, 0u);
   EXPECT_EQ(vertices.back(), vertex);
   EXPECT_EQ(simplices.back(), simplex);
+  EXPECT_EQ(normals.back(), vertex);
+  for (std::size_t v = 0; v < size.vertices; ++v)
+    ASSERT_EQ(std::memcmp(&normals[v], options.normals ? &contour.normals[v] : &vertex, sizeof vertex), 0) << v;
   for (std::size_t v = 0; v < size.vertices; ++v)
     ASSERT_EQ(std::memcmp(&vertices[v], &contour.vertices[v], sizeof vertex), 0) << "vertex " << v;
   for (std::size_t s = 0; s < size.simplices; ++s)
@@ -51,6 +56,7 @@ void expect_same_in_all_variants(const std::array<std::size_t, N>& sizes, std::u
   for (ExtractOptions options : variants())
     for (const bool close : {false, true}) {
       options.close = close;
+      options.normals = seed % 8 < 4;
       SCOPED_TRACE(describe(options));
       const auto image = noise<float, N>(sizes, seed++);
       expect_same<std::uint32_t, float>(image.view(), 0.5, options);
@@ -84,6 +90,27 @@ TEST(ExtractInto, SaysHowMuchRoomIsMissing) {
         const std::string expected = "room for " + std::to_string(room) + (few_vertices ? " vertices" : " simplices");
         EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
       }
+    }
+  }
+}
+
+TEST(ExtractInto, SaysHowMuchRoomForNormalsIsMissing) {
+  ExtractOptions options;
+  options.normals = true;
+  for (const double missing : {0.0, 0.05}) {
+    const auto image = noise_with_missing<float, 3>(Grid<3>::unit({12, 12, 12}), 5, missing);
+    const ContourSize size = count(image.view(), 0.5, options);
+    std::vector<std::array<float, 3>> vertices(size.vertices);
+    std::vector<std::array<std::uint32_t, 3>> simplices(size.simplices);
+    std::vector<std::array<float, 3>> normals(size.vertices - 1);
+    try {
+      extract_into(image.view(), 0.5, ContourRoom<3, float>{vertices, simplices, normals}, options);
+      FAIL() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+      EXPECT_NE(std::string(error.what()).find("room for " + std::to_string(normals.size()) + " normals"),
+                std::string::npos)
+          << error.what();
     }
   }
 }

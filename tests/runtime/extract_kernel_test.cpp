@@ -56,7 +56,8 @@ TEST(Limits, MoreVerticesThanNumbersAreAnError) {
     options.close = close;
     ImageSource<std::uint8_t, 3> source(image.view(), 100.0, 0.0);
     const auto run = [&](std::uint64_t limit) {
-      return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options, nullptr, {.max_vertices = limit});
+      return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options, nullptr,
+                                      {.max_vertices = limit});
     };
     const std::uint64_t count = run(kMaxVertices).vertices.size();
     EXPECT_EQ(run(count).vertices.size(), count);

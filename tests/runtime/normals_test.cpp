@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -172,22 +173,157 @@ TEST(Normals, AreZeroWhereTheGradientVanishes) {
   EXPECT_EQ(zeros, 2u);
 }
 
-TEST(Normals, AreRefusedWhereNoneAreMade) {
-  const auto image = noise<float, 3>(4, 1);
-  std::vector<std::array<float, 3>> vertices(1000);
-  std::vector<std::array<Index, 3>> simplices(1000);
-  const auto code_of = [](const auto& make) {
-    try {
-      make();
-    } catch (const Error& error) {
-      return error.code();
+/// The same gradient by the plainest code: differences of double, in the world.
+template <Value T, int N>
+std::array<double, N> plain_gradient(const Image<T, N>& image, const std::array<std::size_t, N>& index) {
+  std::array<double, N> gradient{};
+  for (int a = 0; a < N; ++a) {
+    const Axis& axis = image.grid().axes[a];
+    double sum = 0;
+    int sides = 0;
+    for (const int side : {-1, 1}) {
+      if (side < 0 ? index[a] == 0 : index[a] + 1 == axis.size()) continue;
+      auto next = index;
+      next[a] += static_cast<std::size_t>(side);
+      const double quotient =
+          (static_cast<double>(image(next)) - static_cast<double>(image(index))) / (axis[next[a]] - axis[index[a]]);
+      if (!std::isfinite(quotient)) continue;
+      sum += quotient;
+      ++sides;
     }
-    return ErrorCode::Cancelled;
-  };
-  const ContourRoom<3, float> room{vertices, simplices};
-  EXPECT_EQ(code_of([&] { extract_into(image.view(), 0.5, room, with_normals()); }), ErrorCode::InvalidArgument);
-  EXPECT_EQ(code_of([&] { slice_image(image.view(), 0.5, 1.5, with_normals()); }), ErrorCode::InvalidArgument);
+    gradient[a] = sides == 0 ? 0.0 : sum / sides;
+  }
+  return gradient;
+}
+
+/// Finds each vertex's edge by its place on a grid of step 1 (axis 0 may be uneven, with whole coordinates).
+template <class Real, Value T, int N>
+void expect_plain_normals(const OwnedImage<T, N>& image, double isovalue, double tolerance) {
+  ExtractOptions options;
+  options.epsilon = 0.01;  // vertices are inside of their edges
+  const auto contour = extract<Real>(image.view(), isovalue, with_normals(options));
+  const Axis& first = image.grid.axes[0];
+  std::size_t compared = 0;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    std::array<std::size_t, N> low{}, high{};
+    double alpha = 0;
+    int between = 0;
+    for (int a = 0; a < N; ++a) {
+      const double x = contour.vertices[v][a];
+      std::size_t i = 0;
+      if (a == 0)
+        while (i + 1 < first.size() && first[i + 1] <= x) ++i;
+      else
+        i = static_cast<std::size_t>(x);
+      low[a] = high[a] = i;
+      const Axis& axis = image.grid.axes[a];
+      if (axis[i] == x) continue;
+      ++high[a];
+      ++between;
+      alpha = (x - axis[i]) / (axis[i + 1] - axis[i]);
+    }
+    if (N == 4 && between > 1) continue;  // a vertex that a tile has inside
+    ++compared;
+    const auto here = plain_gradient<T, N>(image.view(), low);
+    const auto there = plain_gradient<T, N>(image.view(), high);
+    std::array<double, N> expected;
+    for (int a = 0; a < N; ++a) expected[a] = -(here[a] + alpha * (there[a] - here[a]));
+    const double size = length<N, double>(expected);
+    for (int a = 0; a < N; ++a)
+      ASSERT_NEAR(contour.normals[v][a], size > 0 ? expected[a] / size : 0.0, tolerance) << "vertex " << v;
+  }
+  EXPECT_GE(compared, contour.vertices.size() / 2);
+}
+
+template <Value T, int N>
+void expect_plain_normals_of(const std::array<std::size_t, N>& sizes) {
+  std::uint64_t seed = 3;
+  for (const double missing : {0.0, 0.05}) {
+    Grid<N> even = Grid<N>::unit(sizes);
+    Grid<N> uneven = even;
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < sizes[0]; ++i) coordinates.push_back(static_cast<double>(i * i + i));
+    uneven.axes[0] = Axis::rectilinear(coordinates);
+    for (const Grid<N>& grid : {even, uneven}) {
+      SCOPED_TRACE(testing::Message() << N << "D, missing " << missing << ", even " << grid.axes[0].is_uniform());
+      auto image = OwnedImage<T, N>{grid, noise<T, N>(sizes, seed++).values};
+      if constexpr (std::is_floating_point_v<T>)
+        for (std::size_t i = 5; i < image.values.size() && missing > 0; i += 23)
+          image.values[i] = std::numeric_limits<T>::quiet_NaN();
+      expect_plain_normals<float>(image, noise_isovalue<T>(), 1e-3);  // a vertex's place as float is not its alpha
+      expect_plain_normals<double>(image, noise_isovalue<T>(), 1e-8);
+    }
+  }
+}
+
+TEST(Normals, AreThoseOfPlainCode) {
+  expect_plain_normals_of<float, 2>({150, 9});
+  expect_plain_normals_of<double, 2>({2, 2});
+  expect_plain_normals_of<float, 3>({67, 5, 4});
+  expect_plain_normals_of<double, 3>({3, 4, 5});
+  expect_plain_normals_of<std::uint8_t, 3>({20, 4, 4});
+  expect_plain_normals_of<std::int8_t, 3>({20, 4, 4});
+  expect_plain_normals_of<std::uint16_t, 3>({20, 4, 4});
+  expect_plain_normals_of<std::int16_t, 3>({20, 4, 4});
+  expect_plain_normals_of<std::int32_t, 3>({20, 4, 4});
+  expect_plain_normals_of<float, 4>({9, 4, 3, 4});
+}
+
+TEST(Normals, OfSteepAndFlatFieldsHaveLengthOne) {
+  for (const float scale : {1e-38F, 1e-25F, 1e25F, 3e37F}) {
+    auto image = noise<float, 3>({40, 6, 6}, 9);
+    for (float& value : image.values) value *= scale;
+    const auto contour = extract<float>(image.view(), 0.5 * static_cast<double>(scale), with_normals());
+    ASSERT_GT(contour.normals.size(), 100u);
+    for (const auto& normal : contour.normals) ASSERT_NEAR((length<3, float>(normal)), 1.0, 1e-5) << scale;
+  }
+}
+
+TEST(Normals, DoNotChangeHowMuchIsCounted) {
+  const auto image = noise<float, 3>(4, 1);
   EXPECT_EQ(count(image.view(), 0.5, with_normals()), count(image.view(), 0.5));
+}
+
+/// The cut's normals by place: at most one vertex each, where nothing is pinched.
+template <int N, class Real>
+std::map<std::array<Real, N>, std::array<Real, N>> by_place(const Contour<N, Real>& contour) {
+  std::map<std::array<Real, N>, std::array<Real, N>> result;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) result[contour.vertices[v]] = contour.normals[v];
+  return result;
+}
+
+template <int N>
+void expect_normals_of_cuts(const std::array<std::size_t, N>& sizes) {
+  const auto image = noise<float, N>(sizes, 17);
+  ExtractOptions options = with_normals();
+  options.close = true;
+  const auto contour = extract<float>(image.view(), 0.5, options);
+  for (const double at : {0.0, 1.3, 2.0, static_cast<double>(sizes[N - 1] - 1) - 0.25}) {
+    const auto cut = slice(contour, at);
+    ASSERT_EQ(cut.normals.size(), cut.vertices.size());
+    ASSERT_GT(cut.vertices.size(), 10u);
+    const auto direct = slice_image(image.view(), 0.5, at, options);
+    ASSERT_EQ(direct.normals.size(), direct.vertices.size());
+    EXPECT_EQ(by_place(direct), by_place(cut)) << "at " << at;
+    for (const auto& normal : cut.normals) ASSERT_NEAR((length<N - 1, float>(normal)), 1.0, 1e-5);
+  }
+}
+
+TEST(Normals, OfCutsAreTheSameFromTheContourAndFromTheImage) {
+  expect_normals_of_cuts<3>({30, 9, 7});
+  expect_normals_of_cuts<4>({9, 8, 7, 6});
+}
+
+TEST(Normals, OfACutOfASphereAreRadial) {
+  const auto image = sample_field<float, 4>(centred_grid<4>(24, 1.0), Ball<4>{{}, 0.7});
+  const auto cut = slice(extract<float>(image.view(), 0.0, with_normals()), 0.21);
+  ASSERT_GT(cut.vertices.size(), 100u);
+  for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+    double along = 0;
+    for (int a = 0; a < 3; ++a)
+      along += static_cast<double>(cut.normals[v][a]) * static_cast<double>(cut.vertices[v][a]);
+    ASSERT_GT((along / length<3, float>(cut.vertices[v])), 0.99);
+  }
 }
 
 }  // namespace

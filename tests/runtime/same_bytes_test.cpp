@@ -53,11 +53,13 @@ void expect_same_bytes(const Image<T, N>& image, double isovalue, ExtractOptions
     const auto contour = extract<Real>(image, isovalue, options);
     EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << options.threads << " threads";
     EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << options.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.normals, expected.normals)) << options.threads << " threads";
   }
   for (options.threads = 0; options.threads <= 4; ++options.threads) {
     const auto contour = extract<Real>(image, isovalue, options);
     EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << options.threads << " threads";
     EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << options.threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.normals, expected.normals)) << options.threads << " threads";
   }
 }
 
@@ -78,6 +80,7 @@ template <class Real, Value T, int N>
 void expect_same_bytes_of_noise(const std::array<std::size_t, N>& sizes, std::uint64_t seed) {
   for (ExtractOptions options : variants()) {
     options.close = seed % 3 == 0;
+    options.normals = seed % 2 == 0;
     SCOPED_TRACE(describe(options) + ", seed " + std::to_string(seed));
     expect_same_bytes<Real>(noise<T, N>(slanted<N>(sizes, seed % 2 == 0), seed).view(), noise_isovalue<T>(), options);
     options.epsilon = seed % 5 == 0 ? 0.01 : 0.0;

@@ -44,6 +44,10 @@ class Collector final : public ContourSink<N, Real> {
   void add_vertices(std::span<const Vertex> part) override {
     vertices.insert(vertices.end(), part.begin(), part.end());
   }
+  void add_normals(std::span<const Vertex> part) override {
+    normals.insert(normals.end(), part.begin(), part.end());
+    EXPECT_EQ(normals.size(), vertices.size()) << "normals come with their vertices";
+  }
   void add_simplices(std::span<const Simplex> part) override {
     simplices.insert(simplices.end(), part.begin(), part.end());
     largest_part = std::max(largest_part, part.size());
@@ -53,6 +57,7 @@ class Collector final : public ContourSink<N, Real> {
     ++replaced;
   }
   std::vector<Vertex> vertices;
+  std::vector<Vertex> normals;
   std::vector<Simplex> simplices;
   std::size_t largest_part = 0;
   std::size_t replaced = 0;
@@ -62,6 +67,9 @@ template <int N, class Real>
 void expect_equal(const Collector<N, Real>& streamed, const Contour<N, Real>& contour) {
   ASSERT_EQ(streamed.vertices.size(), contour.vertices.size());
   ASSERT_EQ(streamed.simplices.size(), contour.simplices.size());
+  ASSERT_EQ(streamed.normals.size(), contour.normals.size());
+  for (std::size_t v = 0; v < contour.normals.size(); ++v)
+    ASSERT_EQ(std::memcmp(&streamed.normals[v], &contour.normals[v], sizeof(Real) * N), 0) << "normal " << v;
   if (!contour.vertices.empty()) {
     EXPECT_EQ(
         std::memcmp(streamed.vertices.data(), contour.vertices.data(), contour.vertices.size() * sizeof(Real) * N), 0);
@@ -88,7 +96,7 @@ std::size_t expect_streamed(const OwnedImage<T, N>& image, const ExtractOptions&
     ImageLayers<T, N> layers(image);
     detail::LayerSource<T, N> source(layers, noise_isovalue<T>(), options.epsilon);
     Collector<N, Real> collector;
-    detail::StreamOutput<N, Real> output(collector);
+    detail::StreamOutput<N, Real> output(collector, options.normals);
     detail::extract_to<N, Real>(source, image.grid, detail::generated_tables<N>(options), options,
                                 {.max_vertices = ~std::uint64_t{0}, .batch = batch}, output);
     expect_equal(collector, contour);
@@ -113,6 +121,7 @@ void expect_streamed_in_all_ways(const std::array<std::size_t, N>& sizes) {
         options.triangulation = triangulation;
         options.ambiguity = seed % 2 == 0 ? Ambiguity::low : Ambiguity::high;
         options.threads = 1 + static_cast<unsigned>(seed % 3);
+        options.normals = seed % 4 < 2;
         replaced += expect_streamed<Real>(holey_noise<T, N>(sizes, seed++, missing), options);
       }
   if (std::is_floating_point_v<T> && N > 2) {
@@ -145,6 +154,41 @@ TEST(Streamed, ThroughThePublicFunction) {
   EXPECT_EQ(stats.tiles, 8u * 7 * 6 * 5);
 }
 
+/// Layers that are in no one else's memory: nothing beyond those at hand may be looked at.
+TEST(Streamed, HasTheNormalsOfTheWholeImage) {
+  for (const bool close : {false, true}) {
+    ExtractOptions options;
+    options.normals = true;
+    options.close = close;
+    const auto image = holey_noise<float, 3>({90, 70, 40}, 11, close ? 0 : 1);
+    const auto contour = extract<float>(image.view(), noise_isovalue<float>(), options);
+    ASSERT_EQ(contour.normals.size(), contour.vertices.size());
+    ImageLayers<float, 3> layers(image);
+    Collector<3, float> collector;
+    extract_streamed<float>(layers, noise_isovalue<float>(), options, collector);
+    expect_equal(collector, contour);
+  }
+}
+
+TEST(Streamed, NormalsForASinkThatTakesNoneAreAnError) {
+  struct Plain final : ContourSink<3, float> {
+    void add_vertices(std::span<const Vertex> /*vertices*/) override {}
+    void add_simplices(std::span<const Simplex> /*simplices*/) override {}
+    void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
+  };
+  const auto image = noise<float, 3>(9, 3);
+  ImageLayers<float, 3> layers(image);
+  Plain sink;
+  ExtractOptions options;
+  options.normals = true;
+  try {
+    extract_streamed<float>(layers, noise_isovalue<float>(), options, sink);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+  }
+}
+
 TEST(Streamed, WithoutTilesIsEmpty) {
   const auto image = noise<float, 3>({9, 1, 7}, 3);
   ImageLayers<float, 3> layers(image);
@@ -156,7 +200,7 @@ TEST(Streamed, WithoutTilesIsEmpty) {
 TEST(Streamed, NumbersPassTwoToTheThirtyTwo) {
   constexpr std::uint64_t kBefore = (std::uint64_t{1} << 32) - 5;
   Collector<3, float> collector;
-  detail::StreamOutput<3, float> output(collector);
+  detail::StreamOutput<3, float> output(collector, false);
   const detail::RowShape<3> shape({4, 4, 4});
   const detail::Counter<3> counter(shape, detail::generated_tables<3>({}), nullptr);
   const detail::PinchCandidates<3> none(shape, counter);

@@ -32,7 +32,7 @@ struct ExtractOptions {
   /// Whether vertices get normals: in the contour's `direction`, along the image's gradient there; of length 1, or 0
   /// where it vanishes. At samples it is the mean of the difference quotients forward and backward, at
   /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
-  /// along edges). For `extract` alone: what makes contours by parts or in memory of the caller's refuses it.
+  /// along edges). Normals of a vertex are as exact as its type allows.
   bool normals = false;
   /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
@@ -79,13 +79,14 @@ template <int N, class Real, VertexNumber I = Index>
 struct ContourRoom {
   std::span<std::array<Real, N>> vertices;
   std::span<std::array<I, N>> simplices;
+  std::span<std::array<Real, N>> normals = {};  ///< used with ExtractOptions::normals alone: as many as vertices
 };
 
 /// As `extract`, into memory of the caller's, which has to have room for the contour's size (`count` tells it) or more;
-/// returns that size. With numbers of 64 bits a contour may have any number of vertices. Vertices and simplices are the
-/// same, byte by byte but for the width of the numbers. Images with missing values are gone through twice. Errors:
-/// those of `extract`; InvalidArgument if there is no room; what the memory holds then, or after any error, is not
-/// defined.
+/// returns that size. With numbers of 64 bits a contour may have any number of vertices. Vertices, normals and
+/// simplices are the same, byte by byte but for the width of the numbers. Images with missing values are gone through
+/// twice. Errors: those of `extract`; InvalidArgument if there is no room; what the memory holds then, or after any
+/// error, is not defined.
 template <Value T, int N, class Real, VertexNumber I>
 ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
                          const ExtractOptions& options = {}, ExtractStats* stats = nullptr);

@@ -9,7 +9,9 @@ namespace tegl {
 
 /// The cut of an N-dimensional contour (N = 3, 4) by x_{N-1} = at: a contour in one dimension less, with the last
 /// coordinate left out. N = 4: triangles at time `at`; N = 3: segments. Names, units and direction are taken over; the
-/// cut's normals point to the same side, low or high, as the contour's.
+/// cut's orientation points to the same side, low or high, as the contour's. Normals of the contour's vertices, if it
+/// has any, become those of the cut's: interpolated like the points, without their last component, of length 1, or 0
+/// where nothing is left.
 ///
 /// Points. The cut's vertices lie on the edges between a vertex below and one above the hyperplane, interpolated in
 /// double from the one below. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above, or as

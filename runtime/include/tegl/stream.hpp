@@ -26,6 +26,11 @@ class ContourSink {
 
   /// The next vertices. The first one of all has the number 0.
   virtual void add_vertices(std::span<const Vertex> vertices) = 0;
+  /// With ExtractOptions::normals: the normals of the vertices that were just added. A sink that does not expect any
+  /// throws InvalidArgument.
+  virtual void add_normals(std::span<const Vertex> /*normals*/) {
+    throw Error(ErrorCode::InvalidArgument, "normals for a sink that takes none; expected one with add_normals");
+  }
   /// The next simplices, of vertices that were added before or will be.
   virtual void add_simplices(std::span<const Simplex> simplices) = 0;
   /// Another vertex for a corner of a simplex that was added before (next to missing values, where sheets that touch
@@ -36,10 +41,11 @@ class ContourSink {
 /// How large a streamed contour became.
 using StreamedSize = ContourSize;
 
-/// As `extract`, for an image that comes in by layers and a contour that goes out in parts: the same vertices and
-/// simplices with the same numbers, but with 64 bits to number them. Memory: three layers of samples, the contour
-/// between two layers, and what takes part in missing values' borders or the closing of the image's border. Errors:
-/// those of `extract`, but TooLarge, and what the reader and the sink throw.
+/// As `extract`, for an image that comes in by layers and a contour that goes out in parts: the same vertices, normals
+/// and simplices with the same numbers, but with 64 bits to number them. Memory: three layers of samples (four with
+/// normals; more where they are small), the contour between two of them, and what takes part in missing values' borders
+/// or the closing of the image's border. Errors: those of `extract`, but TooLarge, and what the reader and the sink
+/// throw.
 template <class Real = float, Value T, int N>
 StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
                               ContourSink<N, Real>& sink, ExtractStats* stats = nullptr);
