@@ -22,7 +22,8 @@ void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
           ->check(CLI::IsMember({"low", "high"}))
           ->capture_default_str(),
       app.add_flag("--close", close_, "close the contour at the image's border"),
-      app.add_option("--gradient-direction", direction_, "normals point to lower (descent) or higher values (ascent)")
+      app.add_flag("--normals", normals_, "normals at the vertices, along the image's gradient"),
+      app.add_option("--gradient-direction", direction_, "the contour faces lower (descent) or higher values (ascent)")
           ->check(CLI::IsMember({"descent", "ascent"}))
           ->capture_default_str(),
       app.add_option("--epsilon", epsilon_, "keep vertices this share of an edge away from the samples, in [0, 0.5)")
@@ -59,6 +60,7 @@ ExtractOptions ExtractionOptions::library_options() const {
   options.ambiguity = ambiguity_ == "low" ? Ambiguity::low : Ambiguity::high;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
+  options.normals = normals_;
   options.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {

@@ -14,7 +14,7 @@
 
 namespace tegl::cli {
 
-/// --iso, --triangulation, --ambiguity, --close, --gradient-direction, --epsilon, --threads, --precision.
+/// --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads, --precision.
 class ExtractionOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
@@ -39,6 +39,7 @@ class ExtractionOptions {
   std::string epsilon_ = "0";
   std::string precision_ = "double";
   bool close_ = false;
+  bool normals_ = false;
   unsigned threads_ = 0;
 };
 

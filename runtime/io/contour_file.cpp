@@ -34,8 +34,21 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid) {
 template <int N, class Real>
 struct ContourFile<N, Real>::Parts {
   Parts(const fs::path& path, const Grid<N>& grid) : writer(path, layout_of(path, grid)) {}
+
+  using Vertex = typename ContourSink<N, Real>::Vertex;
+  /// Hands rows on as double, a block at a time.
+  void append(std::span<const Vertex> rows, void (VtkhdfWriter::*append_block)(std::span<const double>)) {
+    while (!rows.empty()) {
+      const auto block = rows.first(std::min(kMostRows, rows.size()));
+      numbers.clear();
+      for (const Vertex& row : block) numbers.insert(numbers.end(), row.begin(), row.end());
+      (writer.*append_block)(numbers);
+      rows = rows.subspan(block.size());
+    }
+  }
+
   VtkhdfWriter writer;
-  std::vector<double> coordinates;  ///< of a block
+  std::vector<double> numbers;  ///< of a block
 };
 
 template <int N, class Real>
@@ -47,14 +60,12 @@ ContourFile<N, Real>::~ContourFile() = default;
 
 template <int N, class Real>
 void ContourFile<N, Real>::add_vertices(std::span<const Vertex> vertices) {
-  while (!vertices.empty()) {
-    const auto block = vertices.first(std::min(kMostRows, vertices.size()));
-    parts_->coordinates.clear();
-    for (const Vertex& vertex : block)
-      parts_->coordinates.insert(parts_->coordinates.end(), vertex.begin(), vertex.end());
-    parts_->writer.append_vertices(parts_->coordinates);
-    vertices = vertices.subspan(block.size());
-  }
+  parts_->append(vertices, &VtkhdfWriter::append_vertices);
+}
+
+template <int N, class Real>
+void ContourFile<N, Real>::add_normals(std::span<const Vertex> normals) {
+  parts_->append(normals, &VtkhdfWriter::append_normals);
 }
 
 template <int N, class Real>

@@ -73,6 +73,8 @@ class GltfReader {
     mesh_.space_dim = 3;
     mesh_.dim = 0;
     read_scene();
+    // Parts without normals leave those of the others without a use.
+    if (mesh_.normals.size() != mesh_.coordinates.size()) mesh_.normals.clear();
     read_extras();
     if (mesh_.dim == 0) mesh_.dim = 2;
     return std::move(mesh_);
@@ -255,15 +257,10 @@ class GltfReader {
 
   void read_primitive(const Json& primitive, const Eigen::Affine3d& place) {
     const auto first = static_cast<std::size_t>(mesh_.coordinates.size() / 3);
-    const View points = view_of(number_at(member(primitive, "attributes"), "POSITION", std::nullopt), 3);
-    constexpr int kFloat = 5126;
-    if (points.component != kFloat) malformed("positions of component type {}; expected {}", points.component, kFloat);
-    for (std::size_t v = 0; v < points.count; ++v) {
-      std::array<float, 3> raw;
-      std::memcpy(raw.data(), points.bytes.data() + v * points.stride, sizeof(raw));
-      const Eigen::Vector3d point = place * Eigen::Vector3d(raw[0], raw[1], raw[2]);
-      mesh_.coordinates.insert(mesh_.coordinates.end(), point.begin(), point.end());
-    }
+    const Json& attributes = member(primitive, "attributes");
+    const View points = vectors(attributes, "POSITION", mesh_.coordinates,
+                                [&](const Eigen::Vector3d& point) -> Eigen::Vector3d { return place * point; });
+    if (attributes.contains("NORMAL")) read_normals(attributes, place, points.count);
     const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
     const bool indexed = primitive.contains("indices");
     View indices;
@@ -277,6 +274,34 @@ class GltfReader {
       if (vertex >= points.count) malformed("vertex number {}; expected less than {}", vertex, points.count);
       mesh_.simplices.push_back(static_cast<Index>(first + vertex));
     }
+  }
+
+  /// Appends an attribute's vectors, each mapped by `map`.
+  template <class Map>
+  View vectors(const Json& attributes, const char* name, Buffer<double>& to, const Map& map) const {
+    const View view = view_of(number_at(attributes, name, std::nullopt), 3);
+    constexpr int kFloat = 5126;
+    if (view.component != kFloat) malformed("{} of component type {}; expected {}", name, view.component, kFloat);
+    for (std::size_t v = 0; v < view.count; ++v) {
+      std::array<float, 3> raw;
+      std::memcpy(raw.data(), view.bytes.data() + v * view.stride, sizeof(raw));
+      const Eigen::Vector3d mapped = map(Eigen::Vector3d(raw[0], raw[1], raw[2]));
+      to.insert(to.end(), mapped.begin(), mapped.end());
+    }
+    return view;
+  }
+
+  void read_normals(const Json& attributes, const Eigen::Affine3d& place, std::size_t points) {
+    const Eigen::Matrix3d linear = place.linear();
+    // The inverse transpose, but for a factor: this exists always.
+    Eigen::Matrix3d cofactors;
+    for (int a = 0; a < 3; ++a) cofactors.col(a) = linear.col((a + 1) % 3).cross(linear.col((a + 2) % 3));
+    if (linear.determinant() < 0) cofactors = -cofactors;
+    const View view =
+        vectors(attributes, "NORMAL", mesh_.normals, [&](const Eigen::Vector3d& normal) -> Eigen::Vector3d {
+          return linear.isIdentity(0.0) ? normal : (cofactors * normal).stableNormalized();
+        });
+    if (view.count != points) malformed("{} normals of {} positions", view.count, points);
   }
 
   [[nodiscard]] std::size_t index_value(const View& view, std::size_t i) const {

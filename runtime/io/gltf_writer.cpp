@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // glTF 2.0: .glb, and .gltf with the buffer inside as base64, so that it is one file. Coordinates are float, as the
-// format has no other; axis names and what is needed to read a mesh back are in asset.extras. No normals: viewers then
+// format has no other; axis names and what is needed to read a mesh back are in asset.extras. Without normals viewers
 // shade faces flat, as the specification asks.
 //
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
@@ -24,6 +24,7 @@ using Json = nlohmann::ordered_json;
 
 struct Positions {
   std::vector<std::array<float, 3>> values;
+  std::vector<std::array<float, 3>> normals;  ///< as many, or none
   std::array<float, 3> low{};
   std::array<float, 3> high{};
 };
@@ -44,6 +45,17 @@ Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
       result.low[a] = std::min(result.low[a], value);
       result.high[a] = std::max(result.high[a], value);
     }
+  }
+  return result;
+}
+
+/// Normals have to be of length 1 in glTF: those of length 0 become (0, 0, 1).
+std::vector<std::array<float, 3>> normals(const Mesh& mesh) {
+  std::vector<std::array<float, 3>> result(mesh.normals.size() / static_cast<std::size_t>(mesh.space_dim));
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    const auto row = normal(mesh, v);
+    for (std::size_t a = 0; a < 3; ++a) result[v][a] = static_cast<float>(row[a]);
+    if (row == std::array<double, 3>{}) result[v][2] = 1.0F;
   }
   return result;
 }
@@ -69,10 +81,12 @@ Json document(const Mesh& mesh, const Positions& points, std::size_t buffer_byte
   constexpr int kVertexBuffer = 34962;
   constexpr int kIndexBuffer = 34963;
   const std::size_t position_bytes = points.values.size() * sizeof(points.values[0]);
-  const Json primitive = {{"attributes", {{"POSITION", 0}}},
-                          {"indices", 1},
-                          {"material", 0},
-                          {"mode", mesh.dim == 1 ? kLines : kTriangles}};
+  const std::size_t index_bytes = mesh.simplices.size() * sizeof(Index);
+  Json primitive = {{"attributes", {{"POSITION", 0}}},
+                    {"indices", 1},
+                    {"material", 0},
+                    {"mode", mesh.dim == 1 ? kLines : kTriangles}};
+  if (!points.normals.empty()) primitive["attributes"]["NORMAL"] = 2;
   json["scenes"] = Json::array({Json{{"nodes", {0}}}});
   json["nodes"] = Json::array({Json{{"mesh", 0}, {"name", "contour"}}});
   json["meshes"] = Json::array({Json{{"name", "contour"}, {"primitives", Json::array({primitive})}}});
@@ -85,12 +99,17 @@ Json document(const Mesh& mesh, const Positions& points, std::size_t buffer_byte
             {"min", points.low},
             {"max", points.high}},
        Json{{"bufferView", 1}, {"componentType", kUint32}, {"count", mesh.simplices.size()}, {"type", "SCALAR"}}});
-  json["bufferViews"] =
-      Json::array({Json{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", kVertexBuffer}},
-                   Json{{"buffer", 0},
-                        {"byteOffset", position_bytes},
-                        {"byteLength", buffer_bytes - position_bytes},
-                        {"target", kIndexBuffer}}});
+  json["bufferViews"] = Json::array(
+      {Json{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", kVertexBuffer}},
+       Json{{"buffer", 0}, {"byteOffset", position_bytes}, {"byteLength", index_bytes}, {"target", kIndexBuffer}}});
+  if (!points.normals.empty()) {
+    json["accessors"].push_back(
+        {{"bufferView", 2}, {"componentType", kFloat}, {"count", points.normals.size()}, {"type", "VEC3"}});
+    json["bufferViews"].push_back({{"buffer", 0},
+                                   {"byteOffset", position_bytes + index_bytes},
+                                   {"byteLength", position_bytes},
+                                   {"target", kVertexBuffer}});
+  }
   json["buffers"] = Json::array({Json{{"byteLength", buffer_bytes}}});
   return json;
 }
@@ -114,13 +133,23 @@ std::span<const unsigned char> as_raw(const Range& range) {
   return {reinterpret_cast<const unsigned char*>(range.data()), range.size() * sizeof(range[0])};
 }
 
+/// What the buffer holds, part after part.
+std::array<std::span<const unsigned char>, 3> buffer_parts(const Mesh& mesh, const Positions& points) {
+  return {as_raw(points.values), as_raw(mesh.simplices), as_raw(points.normals)};
+}
+
+std::size_t buffer_size(const Mesh& mesh, const Positions& points) {
+  std::size_t bytes = 0;
+  for (const auto part : buffer_parts(mesh, points)) bytes += part.size();
+  return bytes;
+}
+
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 void write_text(const Mesh& mesh, const Positions& points, Json json, OutputFile& file) {
   if (json.contains("buffers")) {
     std::vector<unsigned char> buffer;
-    for (const auto part : {as_raw(points.values), as_raw(mesh.simplices)})
-      buffer.insert(buffer.end(), part.begin(), part.end());
+    for (const auto part : buffer_parts(mesh, points)) buffer.insert(buffer.end(), part.begin(), part.end());
     json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(buffer);
   }
   file.write(dumped(json));
@@ -133,7 +162,7 @@ void write_binary(const Mesh& mesh, const Positions& points, const Json& json, O
   std::string text = dumped(json);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const bool has_buffer = json.contains("buffers");
-  const std::uint64_t buffer_bytes = has_buffer ? as_raw(points.values).size() + as_raw(mesh.simplices).size() : 0;
+  const std::uint64_t buffer_bytes = has_buffer ? buffer_size(mesh, points) : 0;
   const std::uint64_t total = 12 + 8 + text.size() + (has_buffer ? 8 + buffer_bytes : 0);
   if (total > std::numeric_limits<std::uint32_t>::max())
     fail(ErrorCode::TooLarge, file.target(), "{} bytes as .glb; expected at most 2^32 - 1 (write .ply or .vtkhdf)",
@@ -150,17 +179,17 @@ void write_binary(const Mesh& mesh, const Positions& points, const Json& json, O
   if (!has_buffer) return;
   word(buffer_bytes);
   word(kBinChunk);
-  file.write_range(as_raw(points.values));
-  file.write_range(as_raw(mesh.simplices));
+  for (const auto part : buffer_parts(mesh, points)) file.write_range(part);
 }
 
 }  // namespace
 
 void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   OutputFile file(path);
-  const Positions points = positions(mesh, path);
+  Positions points = positions(mesh, path);
+  points.normals = normals(mesh);
   tick(progress, 0.5, path);
-  const Json json = document(mesh, points, as_raw(points.values).size() + as_raw(mesh.simplices).size());
+  const Json json = document(mesh, points, buffer_size(mesh, points));
   if (lower_name(path).ends_with(".glb"))
     write_binary(mesh, points, json, file);
   else

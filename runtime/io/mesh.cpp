@@ -41,6 +41,9 @@ void check_mesh(const Mesh& mesh, const fs::path& path) {
     fail(ErrorCode::InvalidArgument, path,
          "mesh of {} vertex numbers and {} coordinates; expected multiples of {} and {}", mesh.simplices.size(),
          mesh.coordinates.size(), corners, n);
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.coordinates.size())
+    fail(ErrorCode::InvalidArgument, path, "mesh of {} numbers in normals; expected {}, as in coordinates, or none",
+         mesh.normals.size(), mesh.coordinates.size());
   const std::size_t vertices = vertex_count(mesh);
   const auto bad = std::find_if(mesh.simplices.begin(), mesh.simplices.end(), [&](Index i) { return i >= vertices; });
   if (bad != mesh.simplices.end())
@@ -69,15 +72,15 @@ std::vector<std::string> as_vector(const Names& names) {
 namespace io_detail {
 
 void flatten(Mesh& mesh, const fs::path& path) {
-  const std::size_t vertices = mesh.coordinates.size() / 3;
-  for (std::size_t v = 0; v < vertices; ++v) {
+  for (std::size_t v = 0; v < mesh.coordinates.size() / 3; ++v)
     if (mesh.coordinates[3 * v + 2] != 0.0)
       fail(ErrorCode::MalformedFile, path, "vertex {} has z = {}; expected 0, as the file says that it is planar", v,
            mesh.coordinates[3 * v + 2]);
-    mesh.coordinates[2 * v] = mesh.coordinates[3 * v];
-    mesh.coordinates[2 * v + 1] = mesh.coordinates[3 * v + 1];
+  for (Buffer<double>* const rows : {&mesh.coordinates, &mesh.normals}) {
+    const std::size_t count = rows->size() / 3;
+    for (std::size_t v = 0; v < count; ++v) std::copy_n(rows->data() + 3 * v, 2, rows->data() + 2 * v);
+    rows->resize(2 * count);
   }
-  mesh.coordinates.resize(2 * vertices);
   mesh.space_dim = 2;
 }
 
@@ -96,9 +99,13 @@ Mesh to_mesh(const Contour<N, Real>& contour) {
   Mesh mesh;
   mesh.dim = N - 1;
   mesh.space_dim = N;
-  mesh.coordinates.resize(contour.vertices.size() * N);
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v)
-    for (std::size_t a = 0; a < N; ++a) mesh.coordinates[v * N + a] = static_cast<double>(contour.vertices[v][a]);
+  const auto copy = [](const auto& rows, Buffer<double>& to) {
+    to.resize(rows.size() * N);
+    for (std::size_t v = 0; v < rows.size(); ++v)
+      for (std::size_t a = 0; a < N; ++a) to[v * N + a] = static_cast<double>(rows[v][a]);
+  };
+  copy(contour.vertices, mesh.coordinates);
+  copy(contour.normals, mesh.normals);
   mesh.simplices.resize(contour.simplices.size() * N);
   for (std::size_t s = 0; s < contour.simplices.size(); ++s)
     for (std::size_t c = 0; c < N; ++c) mesh.simplices[s * N + c] = contour.simplices[s][c];
@@ -116,13 +123,17 @@ Contour<N, double> to_contour(const Mesh& mesh) {
                             mesh.space_dim, N - 1, N));
   const auto n = static_cast<std::size_t>(mesh.space_dim);
   Contour<N, double> contour;
-  contour.vertices.resize(vertex_count(mesh));
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
-    for (std::size_t a = 0; a < N; ++a) contour.vertices[v][a] = mesh.coordinates[v * n + a];
-    if (planar && mesh.coordinates[v * n + 2] != 0.0)
+  const auto copy = [n](const Buffer<double>& from, auto& rows) {
+    rows.resize(from.size() / n);
+    for (std::size_t v = 0; v < rows.size(); ++v)
+      for (std::size_t a = 0; a < N; ++a) rows[v][a] = from[v * n + a];
+  };
+  copy(mesh.coordinates, contour.vertices);
+  copy(mesh.normals, contour.normals);
+  for (std::size_t v = 0; v < contour.vertices.size() && planar; ++v)
+    if (mesh.coordinates[v * n + 2] != 0.0)
       throw Error(ErrorCode::UnsupportedData, fmt::format("segments in space, vertex {} with z = {}; expected z = 0", v,
                                                           mesh.coordinates[v * n + 2]));
-  }
   contour.simplices.resize(simplex_count(mesh));
   for (std::size_t s = 0; s < contour.simplices.size(); ++s)
     for (std::size_t c = 0; c < N; ++c) contour.simplices[s][c] = mesh.simplices[s * N + c];

@@ -37,16 +37,20 @@ inline std::size_t simplex_count(const Mesh& mesh) {
   return mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1);
 }
 
-/// x, y, z of a vertex; z = 0 in the plane.
-inline std::array<double, 3> position(const Mesh& mesh, std::size_t vertex) {
+/// x, y, z of a vertex, or of its normal; z = 0 in the plane.
+inline std::array<double, 3> row_of(const Buffer<double>& rows, const Mesh& mesh, std::size_t vertex) {
   std::array<double, 3> result{};
   const auto n = static_cast<std::size_t>(mesh.space_dim);
-  for (std::size_t a = 0; a < std::min<std::size_t>(n, 3); ++a) result[a] = mesh.coordinates[vertex * n + a];
+  for (std::size_t a = 0; a < std::min<std::size_t>(n, 3); ++a) result[a] = rows[vertex * n + a];
   return result;
 }
+inline std::array<double, 3> position(const Mesh& mesh, std::size_t vertex) {
+  return row_of(mesh.coordinates, mesh, vertex);
+}
+inline std::array<double, 3> normal(const Mesh& mesh, std::size_t vertex) { return row_of(mesh.normals, mesh, vertex); }
 
-/// Makes a mesh that was read with space_dim 3 planar, if the file says it was written from the plane (`space_dim` 2);
-/// MalformedFile if it is not in the plane z = 0.
+/// Makes a mesh that was read with space_dim 3 planar, as the file says that it was written from the plane (`space_dim`
+/// 2); MalformedFile if it is not in the plane z = 0.
 void flatten(Mesh& mesh, const std::filesystem::path& path);
 
 /// Throws MalformedFile if a simplex names a vertex that does not exist.

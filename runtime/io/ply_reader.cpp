@@ -261,16 +261,29 @@ class PlyReader {
   }
 
   void read_vertices(const Element& element) {
-    std::array<std::size_t, 3> columns = {element.index_of("x"), element.index_of("y"), element.index_of("z")};
-    for (const std::size_t column : columns)
-      if (column >= element.properties.size() || element.properties[column].count_type)
-        fail(ErrorCode::MalformedFile, path_, "PLY vertices without x, y and z");
+    const auto columns = columns_of(element, {"x", "y", "z"});
+    if (!columns) fail(ErrorCode::MalformedFile, path_, "PLY vertices without x, y and z");
+    const auto normal_columns = columns_of(element, {"nx", "ny", "nz"});
     mesh_.coordinates.resize(3 * static_cast<std::size_t>(element.count));
+    if (normal_columns) mesh_.normals.resize(mesh_.coordinates.size());
     Item item;
     for (std::size_t v = 0; v < element.count; ++v) {
       read_item(element, element.properties.size(), item);
-      for (std::size_t a = 0; a < 3; ++a) mesh_.coordinates[3 * v + a] = item.scalars[columns[a]];
+      for (std::size_t a = 0; a < 3; ++a) mesh_.coordinates[3 * v + a] = item.scalars[(*columns)[a]];
+      for (std::size_t a = 0; a < 3 && normal_columns; ++a)
+        mesh_.normals[3 * v + a] = item.scalars[(*normal_columns)[a]];
     }
+  }
+
+  /// Where three numbers are among the properties, if they are.
+  using Columns = std::array<std::size_t, 3>;
+  static std::optional<Columns> columns_of(const Element& element, const std::array<const char*, 3>& names) {
+    Columns columns;
+    for (std::size_t a = 0; a < 3; ++a) {
+      columns[a] = element.index_of(names[a]);
+      if (columns[a] >= element.properties.size() || element.properties[columns[a]].count_type) return std::nullopt;
+    }
+    return columns;
   }
 
   Index vertex_number(double value) const {

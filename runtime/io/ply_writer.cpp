@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// PLY, binary little-endian, with coordinates as double: lossless. Segments become an `edge` element.
+// PLY, binary little-endian, with coordinates and normals as double: lossless. Segments become an `edge` element.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
@@ -35,8 +35,10 @@ std::string header(const Mesh& mesh) {
     if (!name.empty()) text += fmt::format("comment tegl axis {} name {}\n", a, name);
     if (!unit.empty()) text += fmt::format("comment tegl axis {} unit {}\n", a, unit);
   }
-  text +=
-      fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n", vertex_count(mesh));
+  text += fmt::format("element vertex {}\n", vertex_count(mesh));
+  for (const char* const name : {"x", "y", "z"}) text += fmt::format("property double {}\n", name);
+  if (!mesh.normals.empty())
+    for (const char* const name : {"nx", "ny", "nz"}) text += fmt::format("property double {}\n", name);
   text += mesh.dim == 1
               ? fmt::format("element edge {}\nproperty uint vertex1\nproperty uint vertex2\n", simplex_count(mesh))
               : fmt::format("element face {}\nproperty list uchar uint vertex_indices\n", simplex_count(mesh));
@@ -47,8 +49,11 @@ void write_vertices(const Mesh& mesh, OutputFile& file, const Progress& progress
   const std::size_t count = vertex_count(mesh);
   std::vector<std::array<double, 3>> block;
   for (std::size_t first = 0; first < count; first += kBlock) {
-    block.resize(std::min(kBlock, count - first));
-    for (std::size_t i = 0; i < block.size(); ++i) block[i] = position(mesh, first + i);
+    block.clear();
+    for (std::size_t v = first; v < std::min(first + kBlock, count); ++v) {
+      block.push_back(position(mesh, v));
+      if (!mesh.normals.empty()) block.push_back(normal(mesh, v));
+    }
     file.write(block.data(), block.size() * sizeof(block[0]));
     tick(progress, 0.5 * static_cast<double>(first) / static_cast<double>(count), file.target());
   }

@@ -44,6 +44,7 @@ class Reader {
     const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
     if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 3 ? static_cast<int>(dims[0]) : 2;
     if (file_.has(group_.id(), "PointData") && (mesh_.dim == 3 || (dims.size() == 2 && dims[1] == 4))) add_times();
+    read_normals();
     if (dims.size() == 2 && dims[1] == 2) flatten(mesh_, path_);
     const auto n = static_cast<std::size_t>(mesh_.space_dim);
     mesh_.axis_names = split(file_.get_text(group_.id(), "tegl_axis_names"), n);
@@ -118,16 +119,36 @@ class Reader {
     if (length(point_data.id(), "t") != vertices)
       fail(ErrorCode::MalformedFile, path_, "point array 't' of {} values; expected {}", length(point_data.id(), "t"),
            vertices);
-    std::vector<double> times(vertices);
-    if (vertices > 0) file_.read(point_data.id(), "t", H5T_NATIVE_DOUBLE, times.data());
-    Buffer<double> all(4 * vertices);
-    for (std::size_t v = 0; v < vertices; ++v) {
-      std::copy_n(mesh_.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * v), 3,
-                  all.begin() + static_cast<std::ptrdiff_t>(4 * v));
-      all[4 * v + 3] = times[v];
-    }
-    mesh_.coordinates = std::move(all);
+    add_fourth(point_data, "t", mesh_.coordinates);
     mesh_.space_dim = 4;
+  }
+
+  /// Rows of three get a fourth column.
+  void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) const {
+    const std::size_t count = rows.size() / 3;
+    std::vector<double> fourth(count);
+    if (count > 0) file_.read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
+    Buffer<double> all(4 * count);
+    for (std::size_t v = 0; v < count; ++v) {
+      std::copy_n(rows.data() + 3 * v, 3, all.data() + 4 * v);
+      all[4 * v + 3] = fourth[v];
+    }
+    rows = std::move(all);
+  }
+
+  /// Arrays of these names and other shapes are other programs' and left alone.
+  void read_normals() {
+    if (!file_.has(group_.id(), "PointData")) return;
+    const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+    const auto vertices = static_cast<std::uint64_t>(vertex_count(mesh_));
+    const auto has = [&](const char* name, const std::vector<std::uint64_t>& shape) {
+      return file_.has(point_data.id(), name) && file_.sizes(point_data.id(), name) == shape;
+    };
+    if (vertices == 0 || !has(kNormals, {vertices, 3})) return;
+    if (mesh_.space_dim == 4 && !has(kNormalTimes, {vertices})) return;
+    mesh_.normals.resize(static_cast<std::size_t>(3 * vertices));
+    file_.read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
+    if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
   }
 
   const fs::path& path_;
@@ -141,7 +162,7 @@ class Reader {
 void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress) {
   VtkhdfWriter writer(
       path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh)});
-  const std::size_t all = mesh.coordinates.size() + mesh.simplices.size();
+  const std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   const auto in_blocks = [&](auto values, std::size_t before, std::size_t columns, auto&& append) {
     const std::size_t most = kMostRows * columns;
     for (std::size_t at = 0; at < values.size(); at += most) {
@@ -151,7 +172,10 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   };
   in_blocks(std::span<const double>(mesh.coordinates), 0, static_cast<std::size_t>(mesh.space_dim),
             [&](std::span<const double> part) { writer.append_vertices(part); });
-  in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size(), static_cast<std::size_t>(mesh.dim) + 1,
+  in_blocks(std::span<const double>(mesh.normals), mesh.coordinates.size(), static_cast<std::size_t>(mesh.space_dim),
+            [&](std::span<const double> part) { writer.append_normals(part); });
+  in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size() + mesh.normals.size(),
+            static_cast<std::size_t>(mesh.dim) + 1,
             [&](std::span<const Index> part) { writer.append_simplices(part); });
   tick(progress, 1.0, path);
   writer.commit();

@@ -11,6 +11,10 @@ namespace tegl::io_detail {
 /// VTK's numbers of the simplices by dimension: vertex, line, triangle, tetrahedron.
 inline constexpr std::array<unsigned char, 4> kCellTypes = {1, 3, 5, 10};
 
+/// Point arrays.
+inline constexpr const char* kNormals = "Normals";
+inline constexpr const char* kNormalTimes = "normal_t";  ///< in 4-space
+
 /// Rows that are converted and handed to HDF5 at a time.
 inline constexpr std::size_t kMostRows = std::size_t{1} << 16;
 

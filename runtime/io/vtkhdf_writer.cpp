@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // VTKHDF, unstructured grids, written: triangles, segments, or tetrahedra whose vertices carry the time as the point
-// array "t". All coordinates are double: lossless. Axis names and units are attributes of the group, which VTK does not
+// array "t". Normals are the point array "Normals", with the fourth component in "normal_t". All of these are double:
+// lossless. Axis names and units are attributes of the group, which VTK does not
 // look at.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
@@ -54,6 +55,7 @@ VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
     : pending_(target),
       corners_(static_cast<std::uint64_t>(layout.dim) + 1),
       space_dim_(static_cast<std::size_t>(layout.space_dim)),
+      expected_vertices_(layout.expected_vertices),
       file_(H5File::create(pending_.path(), target)),
       group_(create_root(file_, layout)) {
   tables_.emplace(file_, group_->id(), layout);
@@ -63,16 +65,31 @@ VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
 }
 
 void VtkhdfWriter::append_vertices(std::span<const double> coordinates) {
-  for (std::size_t at = 0; at < coordinates.size();) {
-    const std::size_t rows = std::min(kMostRows, (coordinates.size() - at) / space_dim_);
-    positions_.assign(3 * rows, 0.0);
-    times_.resize(tables_->times ? rows : 0);
-    for (std::size_t r = 0; r < rows; ++r, at += space_dim_) {
-      std::copy_n(coordinates.data() + at, std::min<std::size_t>(3, space_dim_), positions_.data() + 3 * r);
-      if (tables_->times) times_[r] = coordinates[at + 3];
+  append_rows(coordinates, tables_->points, tables_->times ? &*tables_->times : nullptr);
+}
+
+void VtkhdfWriter::append_normals(std::span<const double> normals) {
+  if (!tables_->normals) {
+    const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+    tables_->normals.emplace(file_.create_table(point_data.id(), kNormals, H5T_IEEE_F64LE, 3, expected_vertices_));
+    if (space_dim_ == 4)
+      tables_->normal_times.emplace(
+          file_.create_table(point_data.id(), kNormalTimes, H5T_IEEE_F64LE, 0, expected_vertices_));
+  }
+  append_rows(normals, *tables_->normals, tables_->normal_times ? &*tables_->normal_times : nullptr);
+}
+
+void VtkhdfWriter::append_rows(std::span<const double> rows, H5Table& table, H5Table* fourth) {
+  for (std::size_t at = 0; at < rows.size();) {
+    const std::size_t count = std::min(kMostRows, (rows.size() - at) / space_dim_);
+    positions_.assign(3 * count, 0.0);
+    times_.resize(fourth != nullptr ? count : 0);
+    for (std::size_t r = 0; r < count; ++r, at += space_dim_) {
+      std::copy_n(rows.data() + at, std::min<std::size_t>(3, space_dim_), positions_.data() + 3 * r);
+      if (fourth != nullptr) times_[r] = rows[at + 3];
     }
-    tables_->points.append(H5T_NATIVE_DOUBLE, positions_.data(), rows);
-    if (tables_->times) tables_->times->append(H5T_NATIVE_DOUBLE, times_.data(), rows);
+    table.append(H5T_NATIVE_DOUBLE, positions_.data(), count);
+    if (fourth != nullptr) fourth->append(H5T_NATIVE_DOUBLE, times_.data(), count);
   }
 }
 

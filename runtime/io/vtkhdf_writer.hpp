@@ -33,6 +33,8 @@ class VtkhdfWriter {
 
   /// `coordinates`: rows of space_dim.
   void append_vertices(std::span<const double> coordinates);
+  /// Of all vertices or of none, in their order.
+  void append_normals(std::span<const double> normals);
   /// `ids`: rows of dim + 1 vertex numbers; the vertices may come later.
   void append_simplices(std::span<const std::uint32_t> ids) { append_ids(H5T_NATIVE_UINT32, ids.data(), ids.size()); }
   void append_simplices(std::span<const std::uint64_t> ids) { append_ids(H5T_NATIVE_UINT64, ids.data(), ids.size()); }
@@ -47,14 +49,17 @@ class VtkhdfWriter {
     Tables(const H5File& file, hid_t group, const VtkhdfLayout& layout);
     H5Table points, connectivity, offsets, types;
     std::optional<H5Table> times;
+    std::optional<H5Table> normals, normal_times;
   };
+  /// Rows of space_dim: three columns go to one table, the fourth to another. `fourth` may be null for fewer.
+  void append_rows(std::span<const double> rows, H5Table& table, H5Table* fourth);
   void append_ids(hid_t type, const void* ids, std::size_t count);
-  void append_counts();
 
   H5Quiet quiet_;
   PendingPath pending_;
   std::uint64_t corners_;
   std::size_t space_dim_;
+  std::uint64_t expected_vertices_;
   H5File file_;
   std::optional<H5Handle> group_;
   std::optional<Tables> tables_;

@@ -153,6 +153,12 @@ TEST_F(Contour, GradientDirectionReversesTheOrientation) {
   EXPECT_GT(outward, 60) << "normals to low values point out of the ball";
   EXPECT_LT(outward, 83);
   EXPECT_NEAR(volume({"--gradient-direction", "ascent"}), -outward, 1e-9);
+  EXPECT_TRUE(read_mesh(path("out.ply")).normals.empty());
+  EXPECT_EQ(volume({"--normals"}), outward);
+  const Mesh mesh = read_mesh(path("out.ply"));
+  ASSERT_EQ(mesh.normals.size(), mesh.coordinates.size());
+  for (std::size_t v = 0; v < mesh.normals.size(); v += 3)
+    EXPECT_NEAR(Eigen::Map<const Eigen::Vector3d>(&mesh.normals[v]).norm(), 1.0, 1e-12);
   EXPECT_NEAR(volume({"--precision", "float"}), outward, 1e-4);
 }
 

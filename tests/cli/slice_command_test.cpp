@@ -56,6 +56,28 @@ TEST_F(Slice, OfASavedContourEqualsThatOfItsImage) {
   }
 }
 
+TEST_F(Slice, HasTheNormalsOfTheSavedContourOrOfTheImage) {
+  const auto sorted = [&](const std::string& name) {
+    const Mesh mesh = read_mesh(path(name));
+    EXPECT_EQ(mesh.normals.size(), mesh.coordinates.size());
+    std::vector<std::array<double, 6>> list(mesh.normals.size() / 3);
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+      list[i / 3][i % 3] = mesh.coordinates[i];
+      list[i / 3][3 + i % 3] = mesh.normals[i];
+    }
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "--normals", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  for (const char* at : {"t=4", "t=7.3"}) {
+    ASSERT_EQ(run_tegl({"slice", path("all.vtkhdf"), "--at", at, "-o", path("saved.ply"), "-q"}).exit, 0);
+    ASSERT_EQ(run_tegl({"slice", file(), "--iso", "0", "--normals", "--at", at, "-o", path("direct.ply"), "-q"}).exit,
+              0);
+    EXPECT_FALSE(sorted("saved.ply").empty());
+    EXPECT_EQ(sorted("saved.ply"), sorted("direct.ply"));
+  }
+}
+
 TEST_F(Slice, OfAWholeTimeIsTheContourOfThatStep) {
   const Samples balls = merging_balls(18, 5);
   const std::size_t step = 18 * 18 * 18;

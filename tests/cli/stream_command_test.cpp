@@ -30,6 +30,9 @@ class Stream : public ProgramTest {
     const Mesh y = read_mesh(b);
     ASSERT_EQ(x.coordinates.size(), y.coordinates.size());
     EXPECT_EQ(std::memcmp(x.coordinates.data(), y.coordinates.data(), x.coordinates.size() * sizeof(double)), 0);
+    ASSERT_EQ(x.normals.size(), y.normals.size());
+    EXPECT_TRUE(x.normals.empty() ||
+                std::memcmp(x.normals.data(), y.normals.data(), x.normals.size() * sizeof(double)) == 0);
     EXPECT_EQ(x.simplices, y.simplices);
     EXPECT_EQ(x.axis_names, y.axis_names);
     EXPECT_EQ(x.axis_units, y.axis_units);
@@ -39,8 +42,13 @@ class Stream : public ProgramTest {
 };
 
 TEST_F(Stream, GivesTheFileThatTheWholeImageGives) {
-  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
-           {}, {"--close"}, {"--triangulation", "barycentric", "--precision", "float"}, {"--threads", "3"}}) {
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{},
+                                             {"--close"},
+                                             {"--triangulation", "barycentric", "--precision", "float"},
+                                             {"--threads", "3"},
+                                             {"--normals"},
+                                             {"--normals", "--close", "--precision", "float"}}) {
     std::vector<std::string> whole = {"contour", kOcean, "--iso", "20", "--no-check", "-o", path("whole.vtkhdf")};
     whole.insert(whole.end(), more.begin(), more.end());
     std::vector<std::string> streamed = {"contour", kOcean, "--iso", "20", "--stream", "-o", path("streamed.vtkhdf"),
@@ -52,7 +60,25 @@ TEST_F(Stream, GivesTheFileThatTheWholeImageGives) {
     expect_same(path("whole.vtkhdf"), path("streamed.vtkhdf"));
     EXPECT_EQ(run.json()["simplices"], read_mesh(path("whole.vtkhdf")).simplices.size() / 4);
     EXPECT_TRUE(run.json()["euler"].is_null());
+    const bool normals = !more.empty() && more[0] == "--normals";
+    EXPECT_EQ(read_mesh(path("streamed.vtkhdf")).normals.empty(), !normals);
   }
+}
+
+TEST_F(Stream, HasNormalsOfRawValues) {
+  const Samples balls = merging_balls(12, 7);
+  const std::string nrrd = write("balls.nrrd", nrrd_bytes(balls));
+  const std::vector<float> values(balls.values.begin(), balls.values.end());
+  const std::string raw =
+      write("balls.raw", {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+  ASSERT_EQ(run_tegl({"contour", nrrd, "--iso", "0.25", "--normals", "-o", path("whole.vtkhdf")}).exit, 0);
+  const RunResult run = run_tegl({"contour", raw, "--raw", "12x12x12x7", "--raw-type", "float", "--iso", "0.25",
+                                  "--normals", "-o", path("raw.vtkhdf")});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  const Mesh whole = read_mesh(path("whole.vtkhdf"));
+  const Mesh streamed = read_mesh(path("raw.vtkhdf"));
+  ASSERT_FALSE(whole.normals.empty());
+  EXPECT_EQ(whole.simplices, streamed.simplices);
 }
 
 TEST_F(Stream, ReadsRawValues) {

@@ -137,7 +137,8 @@ std::vector<T> counting(std::size_t count, double start = 0) {
 }
 
 /// A mesh of random coordinates and vertex numbers.
-inline Mesh random_mesh(int dim, int space_dim, std::size_t vertices, std::size_t simplices, std::uint64_t seed) {
+inline Mesh random_mesh(int dim, int space_dim, std::size_t vertices, std::size_t simplices, std::uint64_t seed,
+                        bool with_normals = false) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> coordinate(-1000, 1000);
   Mesh mesh;
@@ -145,6 +146,8 @@ inline Mesh random_mesh(int dim, int space_dim, std::size_t vertices, std::size_
   mesh.space_dim = space_dim;
   for (std::size_t i = 0; i < vertices * static_cast<std::size_t>(space_dim); ++i)
     mesh.coordinates.push_back(coordinate(random));
+  for (std::size_t i = 0; with_normals && i < mesh.coordinates.size(); ++i)
+    mesh.normals.push_back(i % 7 == 0 ? 0.0 : coordinate(random) / 1000);
   for (std::size_t i = 0; i < simplices * static_cast<std::size_t>(dim + 1); ++i)
     mesh.simplices.push_back(static_cast<Index>(random() % std::max<std::size_t>(1, vertices)));
   const std::array<const char*, 4> names = {"lon", "lat", "depth below", "time"};
@@ -160,6 +163,9 @@ inline void expect_same(const Mesh& a, const Mesh& b) {
   ASSERT_EQ(a.coordinates.size(), b.coordinates.size());
   EXPECT_TRUE(a.coordinates.empty() ||
               std::memcmp(a.coordinates.data(), b.coordinates.data(), a.coordinates.size() * sizeof(double)) == 0);
+  ASSERT_EQ(a.normals.size(), b.normals.size());
+  EXPECT_TRUE(a.normals.empty() ||
+              std::memcmp(a.normals.data(), b.normals.data(), a.normals.size() * sizeof(double)) == 0);
   EXPECT_TRUE(a.simplices == b.simplices);
   EXPECT_EQ(a.axis_names, b.axis_names);
   EXPECT_EQ(a.axis_units, b.axis_units);

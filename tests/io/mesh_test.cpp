@@ -26,6 +26,7 @@ Mesh written_and_read(const Mesh& mesh, const std::string& name) {
 
 Mesh as_floats(Mesh mesh) {
   for (double& value : mesh.coordinates) value = static_cast<float>(value);
+  for (double& value : mesh.normals) value = static_cast<float>(value);
   return mesh;
 }
 
@@ -56,6 +57,48 @@ TEST(Mesh, GltfKeepsFloatsAndOrder) {
       }
 }
 
+TEST(Mesh, NormalsGoIntoEveryFormat) {
+  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.vtkhdf"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3), std::pair(3, 4)}) {
+      SCOPED_TRACE(testing::Message() << name << " dim " << dim);
+      const bool lossless = find_mesh_file_format(name)->extension[1] != 'g';
+      if (find_mesh_file_format(name)->most_dim < dim) continue;
+      const Mesh mesh = random_mesh(dim, space_dim, 70000, 1000, 5, true);
+      expect_same(written_and_read(mesh, name), lossless ? mesh : as_floats(mesh));
+    }
+}
+
+TEST(Mesh, NormalsOfLengthZeroPointUpInGltf) {
+  Mesh mesh = random_mesh(2, 3, 3, 1, 7, true);
+  std::fill_n(mesh.normals.begin() + 3, 3, 0.0);
+  const Mesh read = written_and_read(mesh, "a.glb");
+  EXPECT_EQ(std::vector<double>(read.normals.begin() + 3, read.normals.begin() + 6), (std::vector<double>{0, 0, 1}));
+}
+
+TEST(Mesh, GltfNormalsTurnWithTheirNodes) {
+  TempDir dir;
+  Mesh mesh = random_mesh(2, 3, 3, 1, 7);
+  mesh.normals.assign(9, 0.0);
+  for (std::size_t v = 0; v < 3; ++v) mesh.normals[3 * v] = mesh.normals[3 * v + 1] = std::sqrt(0.5);
+  write_mesh(mesh, dir / "a.gltf");
+  auto json = nlohmann::json::parse(read_file(dir / "a.gltf"));
+  json["nodes"][0]["scale"] = {2.0, -1.0, 1.0};  // a plane x + y = c becomes x / 2 - y = c
+  write_file(dir / "b.gltf", json.dump());
+  const Mesh read = read_mesh(dir / "b.gltf");
+  ASSERT_EQ(read.normals.size(), 9U);
+  EXPECT_NEAR(read.normals[3], 0.5 / std::sqrt(1.25), 1e-7);
+  EXPECT_NEAR(read.normals[4], -1.0 / std::sqrt(1.25), 1e-7);
+}
+
+TEST(Mesh, NormalsOfAnotherNumberAreRefused) {
+  TempDir dir;
+  Mesh mesh = random_mesh(2, 3, 3, 1, 7, true);
+  mesh.normals.pop_back();
+  expect_error(ErrorCode::InvalidArgument, {"8 numbers in normals; expected 9"},
+               [&] { write_mesh(mesh, dir / "a.ply"); });
+  EXPECT_EQ(dir.files(), 0U);
+}
+
 TEST(Mesh, EmptyMeshesAreValidFilesThatKeepTheirKind) {
   for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.vtkhdf"})
     for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3)}) {
@@ -81,11 +124,14 @@ TEST(Mesh, ContoursBecomeMeshesAndBack) {
   Contour<3, float> contour;
   contour.vertices = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8.5F}};
   contour.simplices = {{0, 1, 2}, {2, 1, 0}};
+  contour.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
   contour.axis_names = {"x", "y", "z"};
   contour.axis_units = {"mm", "mm", "mm"};
   const auto back = to_contour<3>(to_mesh(contour));
   EXPECT_EQ(back.vertices[2], (std::array<double, 3>{6, 7, 8.5}));
   EXPECT_TRUE(back.simplices == contour.simplices);
+  ASSERT_EQ(back.normals.size(), 3U);
+  EXPECT_EQ(back.normals[2], (std::array<double, 3>{0, 0, -1}));
   EXPECT_EQ(back.axis_names, contour.axis_names);
   EXPECT_EQ(back.axis_units, contour.axis_units);
   expect_error(ErrorCode::UnsupportedData, {"2-simplices in 3-space; expected 3-simplices in 4-space"},

@@ -26,8 +26,10 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(folder);
   try {
     const auto lines = mesh_of(1, 2, {0, 0, 1, 0.1, 2, 3}, {0, 1, 1, 2});
-    const auto surface = mesh_of(2, 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.1}, {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
-    const auto contour4 = mesh_of(3, 4, {0, 0, 0, 7, 1, 0, 0, 7.5, 0, 1, 0, 8, 0, 0, 0.1, 9}, {0, 1, 2, 3});
+    auto surface = mesh_of(2, 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.1}, {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
+    auto contour4 = mesh_of(3, 4, {0, 0, 0, 7, 1, 0, 0, 7.5, 0, 1, 0, 8, 0, 0, 0.1, 9}, {0, 1, 2, 3});
+    surface.normals = {0, 0, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    contour4.normals = {0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0.6, 0, 0, -0.8};
     tegl::write_mesh(lines, folder / "lines.vtkhdf");
     tegl::write_mesh(surface, folder / "surface.vtkhdf");
     tegl::write_mesh(surface, folder / "surface.ply");

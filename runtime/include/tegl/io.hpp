@@ -119,6 +119,7 @@ struct Mesh {
   int dim = 2;
   int space_dim = 3;
   Buffer<double> coordinates;           ///< #V x space_dim, row = vertex
+  Buffer<double> normals;               ///< as many, of length 1 or 0; or none
   Buffer<Index> simplices;              ///< #S x (dim + 1), row = simplex
   std::vector<std::string> axis_names;  ///< space_dim names, may be empty
   std::vector<std::string> axis_units;
@@ -140,13 +141,15 @@ const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 template <int N, class Real>
 Mesh to_mesh(const Contour<N, Real>& contour);
 /// The contour of a mesh with dim = N - 1 and space_dim = N (planar meshes read back from 3D files:
-/// dim 1 with all z = 0 become N = 2). Throws UnsupportedData otherwise.
+/// dim 1 with all z = 0 become N = 2; normals lose their z). Throws UnsupportedData otherwise.
 template <int N>
 Contour<N, double> to_contour(const Mesh& mesh);
 
 /// Writes by extension: .ply (lossless) and .gltf/.glb (coordinates as float) hold segments and triangles in the plane
-/// or in space; .vtkhdf (lossless) these and 4D contours, as tetrahedra with t as a point array. Written under another
-/// name beside the target and renamed at the end: never half a file. An empty mesh gives a valid file.
+/// or in space; .vtkhdf (lossless) these and 4D contours, as tetrahedra with t as a point array. Normals go
+/// into all of them: as nx, ny, nz (.ply), NORMAL (.gltf/.glb; 0 as (0, 0, 1), as the format has none of length 0), and
+/// the point arrays Normals and, in 4-space, normal_t (.vtkhdf). Written under another name beside the target and
+/// renamed at the end: never half a file. An empty mesh gives a valid file.
 /// Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh), InvalidArgument (a mesh that
 /// contradicts itself), UnsupportedData (.gltf: coordinates beyond float), TooLarge (.glb beyond 4 GiB), WriteFailed,
 /// Cancelled.
@@ -165,6 +168,7 @@ class ContourFile final : public ContourSink<N, Real> {
   ContourFile(const std::filesystem::path& path, const Grid<N>& grid);
   ~ContourFile() override;
   void add_vertices(std::span<const Vertex> vertices) override;
+  void add_normals(std::span<const Vertex> normals) override;
   void add_simplices(std::span<const Simplex> simplices) override;
   void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override;
   /// Completes the file and moves it to its target. Call it once, when all has come.
@@ -177,8 +181,9 @@ class ContourFile final : public ContourSink<N, Real> {
 
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
 /// triangles; glTF: nodes applied), and triangles of .stl and .obj, where vertices with equal coordinates become one.
-/// What write_mesh wrote comes back with the same numbering, names and units.
-/// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge.
+/// Normals are read where one of the formats of write_mesh has them for all vertices. What write_mesh wrote comes back
+/// with the same numbering, names and units. Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData,
+/// TooLarge.
 Mesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace tegl
