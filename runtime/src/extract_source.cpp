@@ -34,13 +34,16 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
   const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
   const T* const samples = row(base) + along;
+  // A cell within the last layer has nothing above.
+  const T* const above = (axes >> (N - 1) & 1u) != 0 ? next_row(base, N - 1, 1) + along : nullptr;
+  const Strides strides = strides_;
   corners[0] = *samples;
   unsigned dim = 0;
   for (unsigned a = 0; a < N; ++a) {
     if ((axes >> a & 1u) == 0) continue;
-    const T* const from = a == N - 1 ? next_row(base, N - 1, 1) + along : samples;
+    const T* const from = a == N - 1 ? above : samples;
     for (std::size_t c = 0, up = std::size_t{1} << dim; c < std::size_t{1} << dim; ++c, ++up) {
-      offsets[up] = offsets[c] + (a == N - 1 ? 0 : strides_[a]);
+      offsets[up] = offsets[c] + (a == N - 1 ? 0 : strides[a]);
       corners[up] = from[offsets[up]];
     }
     ++dim;
