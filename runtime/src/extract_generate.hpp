@@ -7,6 +7,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "extract_cell.hpp"
 #include "extract_count.hpp"
@@ -57,7 +58,8 @@ void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& pla
                                &vertices.normal(plane.base[row]));
 }
 
-/// Writes the barycentres of a row's cubes along `Axes` (N = 4). `view`: the layers around them.
+/// Writes the barycentres of a row's cubes along `Axes` (N = 4), where tiles do not (TileWriter::writes_cubes). `view`:
+/// the layers around them.
 template <unsigned Axes, class Real>
 void generate_cubes(const SampleSource<4>& source, const tables::TileTable& table, const Placement<4, Real>& placement,
                     const SlabView<4>& view, const CubePlane& plane, std::size_t row, std::size_t layer,
@@ -125,6 +127,10 @@ class TileWriter {
       write_one_by_one(view, row, index, vertices, out);
   }
 
+  /// Whether the barycentres of cubes in a slab, and in the layer above it (and layer 0), are written along with its
+  /// tiles, which have their places: of each cube by the tile below it, as all of them are there.
+  [[nodiscard]] bool writes_cubes(const Slab<N>& slab) const noexcept { return has_cubes_ && slab.all_valid; }
+
  private:
   using Ids = std::array<Index, 256>;  // by local vertex
 
@@ -164,7 +170,8 @@ class TileWriter {
         Ids ids;
         std::copy_n(edge_ids, tables::edge_count(N), ids.data());
         const SimplexList<N> list(own.writer.table_, signature);
-        own.writer.write_own(list, signature, own.index, own.next, own.vertices);
+        SharedPlaces<N> places(own.writer.source_, own.index, signature, own.writer.cube_);
+        own.writer.write_own(list, places, own.index, own.next, own.vertices);
         out = own.writer.write_simplices(list, ids, own.next, out);
         own.next += list.own_vertices();
         return out;
@@ -199,7 +206,12 @@ class TileWriter {
         if constexpr (N == 4)
           if (cubes) cube_ids(*cubes, bit, ids);
         index[0] = w * kWordBits + bit;
-        if (list.own_vertices() != 0) write_own(list, signature, index, own, vertices);
+        if (has_cubes_ || list.own_vertices() != 0) {
+          SharedPlaces<N> places(source_, index, signature, cube_);
+          write_own(list, places, index, own, vertices);
+          if constexpr (N == 4)
+            if (writes_cubes(*view.slab)) write_cubes(places, ids, index, vertices);
+        }
         out = write_simplices(list, ids, own, out);
         own += list.own_vertices();
       }
@@ -233,10 +245,34 @@ class TileWriter {
         ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first[cube] + slot;
   }
 
-  void write_own(const SimplexList<N>& list, unsigned signature, const typename RowShape<N>::Index& index, Index own,
-                 VertexRun<Vertex> vertices) const noexcept {
+  /// The barycentres of the tile's cubes, as writes_cubes says.
+  void write_cubes(SharedPlaces<N>& places, const Ids& ids, const typename RowShape<N>::Index& index,
+                   VertexRun<Vertex> vertices) const noexcept {
+    const auto write = [&]<unsigned Omitted>(std::integral_constant<unsigned, Omitted>) {
+      for (unsigned side = index[Omitted] == 0 ? 0 : 1; side < 2; ++side) {
+        using Frame = CellFrame<N, kAll ^ 1u << Omitted>;
+        constexpr unsigned kFirst = tables::edge_count(N);
+        const unsigned cube = 2 * Omitted + side;
+        auto base = index;
+        base[Omitted] += side;
+        for (unsigned slot = 0, count = places.cube_vertices(cube); slot < count; ++slot) {
+          const Index id = ids[kFirst + tables::kFaceSlots * cube + slot];
+          const auto point = places.in_cube(cube, slot);
+          vertices[id] = placement_.template in_cell<Frame>(base, point);
+          if (placement_.normals() != nullptr)
+            vertices.normal(id) = placement_.normals()->template in_cell<Frame>(base, point);
+        }
+      }
+    };
+    write(std::integral_constant<unsigned, 0>{});
+    write(std::integral_constant<unsigned, 1>{});
+    write(std::integral_constant<unsigned, 2>{});
+    write(std::integral_constant<unsigned, 3>{});
+  }
+
+  void write_own(const SimplexList<N>& list, SharedPlaces<N>& places, const typename RowShape<N>::Index& index,
+                 Index own, VertexRun<Vertex> vertices) const noexcept {
     std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
-    SharedPlaces<N> places(source_, index, signature, cube_);
     own_places<N>(
         list, compact_, [&](unsigned v) -> decltype(auto) { return places(list.mapped(v)); }, points.data());
     for (unsigned j = 0; j < list.own_vertices(); ++j) {

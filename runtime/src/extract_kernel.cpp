@@ -289,7 +289,7 @@ class Extraction {
     for (int axis = 0; axis < N - 1; ++axis)
       generate_edges(source_, placement_, shape_, here.edges[axis], row, k, axis, scratch, vertices);
     if constexpr (N == 4)
-      if (counter_.has_cubes())
+      if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1)))
         generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
                            vertices);
   }
@@ -299,7 +299,7 @@ class Extraction {
                      VertexRun<Vertex> vertices) const noexcept {
     generate_edges(source_, placement_, shape_, around.slab->edges, row, k, N - 1, scratch, vertices);
     if constexpr (N == 4)
-      if (counter_.has_cubes()) {
+      if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
         const auto& cubes = around.slab->cubes;
         generate_cubes<14u>(source_, *tables_.cube, placement_, around, cubes[0], row, k, vertices);
         generate_cubes<13u>(source_, *tables_.cube, placement_, around, cubes[1], row, k, vertices);

@@ -53,16 +53,22 @@ class SharedPlaces<4> {
                const tables::TileTable* cube) noexcept
       : edges_(source, base, signature), signature_(signature), cube_(cube) {}
 
-  [[nodiscard]] const TilePoint<4>& operator()(unsigned v) noexcept {
-    if ((known_ >> v & 1u) == 0) {
-      if (v < kEdges) {
-        places_[v] = edges_(v);
-        known_ |= std::uint64_t{1} << v;
-      } else {
-        find_cube((v - kEdges) / tables::kFaceSlots);
-      }
-    }
+  [[gnu::always_inline]] const TilePoint<4>& operator()(unsigned v) noexcept {
+    if ((known_ >> v & 1u) == 0) find(v);
     return places_[v];
+  }
+
+  /// How many barycentres a cube of the tile has.
+  [[nodiscard]] unsigned cube_vertices(unsigned cube) const noexcept {
+    return SimplexList<3>(*cube_, cube_signature(cube)).own_vertices();
+  }
+  /// Barycentre `slot` of a cube, in the frame of the cube.
+  [[nodiscard]] TilePoint<3> in_cube(unsigned cube, unsigned slot) noexcept {
+    const TilePoint<4>& point = (*this)(kEdges + tables::kFaceSlots * cube + slot);
+    TilePoint<3> inside;
+    for (unsigned a = 0, j = 0; a < 4; ++a)
+      if (a != cube / 2) inside[j++] = point[a];
+    return inside;
   }
 
  private:
@@ -83,8 +89,18 @@ class SharedPlaces<4> {
     return result;
   }();
 
+  [[nodiscard]] unsigned cube_signature(unsigned cube) const noexcept {
+    return squeezed_corners<4>(signature_ >> (cube % 2 << cube / 2), cube / 2);
+  }
+
+  [[gnu::noinline]] void find(unsigned v) noexcept {
+    if (v >= kEdges) return find_cube((v - kEdges) / tables::kFaceSlots);
+    places_[v] = edges_(v);
+    known_ |= std::uint64_t{1} << v;
+  }
+
   void find_cube(unsigned cube) noexcept {
-    const SimplexList<3> list(*cube_, squeezed_corners<4>(signature_ >> (cube % 2 << cube / 2), cube / 2));
+    const SimplexList<3> list(*cube_, cube_signature(cube));
     std::array<TilePoint<3>, tables::kFaceSlots> points{};
     own_places<3>(
         list, false,
