@@ -57,7 +57,7 @@ function(tegl_install_component component)
   install(EXPORT tegl-${component} NAMESPACE tegl:: DESTINATION ${tegl_cmake_dir} FILE tegl-${component}.cmake)
 endfunction()
 
-set(tegl_core_targets tegl)
+set(tegl_core_targets tegl tegl_facets)
 if(TARGET tegl_tables)
   list(APPEND tegl_core_targets tegl_tables)
 endif()
@@ -65,6 +65,7 @@ tegl_needed_packages(tegl_core_dependencies ${tegl_core_targets})
 tegl_install_component(core ${tegl_core_targets})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/tegl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING PATTERN "*.hpp" PATTERN "io.hpp" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/generator/include/tegl/facets DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl)
 
 set(tegl_io_dependencies "")
 if(TEGL_BUILD_IO)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "extract_kernel.hpp"
+#include "extract_tiles.hpp"
 
 namespace tegl {
 
@@ -13,7 +14,13 @@ Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const Extrac
                          ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  return detail::extract_source<N, Real>(source, image.grid(), detail::generated_tables<N>(options), options, stats);
+  if constexpr (N <= 4) {
+    return detail::extract_source<N, Real>(source, image.grid(), detail::generated_tables<N>(options), options, stats);
+  } else {
+    Contour<N, Real> contour;
+    detail::extract_tiles<N, Real>(source, image.grid(), options, &contour, stats);
+    return contour;
+  }
 }
 
 }  // namespace tegl
@@ -27,4 +34,6 @@ Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const Extrac
   TEGL_INSTANTIATE_ONE(T, 3, float)  \
   TEGL_INSTANTIATE_ONE(T, 3, double) \
   TEGL_INSTANTIATE_ONE(T, 4, float)  \
-  TEGL_INSTANTIATE_ONE(T, 4, double)
+  TEGL_INSTANTIATE_ONE(T, 4, double) \
+  TEGL_INSTANTIATE_ONE(T, 5, float)  \
+  TEGL_INSTANTIATE_ONE(T, 5, double)

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "extract_tiles.hpp"
 #include "stream.hpp"
 
 namespace tegl {
@@ -146,6 +147,27 @@ class MemorySink final : public ContourSink<N, Real> {
   ContourSize size_;
 };
 
+template <Value T, int N>
+ContourSize count_by_tables(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                            ExtractStats* stats) {
+  const auto tables = generated_tables<N>(options);
+  const ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
+  ExtractStats done;
+  if (!options.close) {
+    ImageSource<T, N> source(image, isovalue, options.epsilon);
+    CountOutput<N, float> output;
+    done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+    if (stats != nullptr) *stats = done;
+    if (!output.any_missing) return output.size;
+  }
+  ImageSource<T, N> source(image, isovalue, options.epsilon);
+  NoSink<N, float> sink;
+  StreamOutput<N, float> output(sink, options.normals);
+  done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+  if (stats != nullptr) *stats = done;
+  return output.size();
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -154,22 +176,12 @@ ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOption
   detail::check_arguments(isovalue, asked);
   ExtractOptions options = asked;
   options.normals = false;  // as many as vertices
-  const auto tables = detail::generated_tables<N>(options);
-  const detail::ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
-  ExtractStats done;
-  if (!options.close) {
+  if constexpr (N > 4) {
     detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-    detail::CountOutput<N, float> output;
-    done = detail::extract_to<N, float>(source, image.grid(), tables, options, plan, output);
-    if (stats != nullptr) *stats = done;
-    if (!output.any_missing) return output.size;
+    return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
+  } else {
+    return detail::count_by_tables(image, isovalue, options, stats);
   }
-  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  detail::NoSink<N, float> sink;
-  detail::StreamOutput<N, float> output(sink, options.normals);
-  done = detail::extract_to<N, float>(source, image.grid(), tables, options, plan, output);
-  if (stats != nullptr) *stats = done;
-  return output.size();
 }
 
 template <Value T, int N, class Real, VertexNumber I>
@@ -205,9 +217,10 @@ ContourSize extract_into(const Image<T, N>& image, double isovalue, const Contou
   TEGL_INSTANTIATE_ONE(T, N, float, std::uint64_t)                                                    \
   TEGL_INSTANTIATE_ONE(T, N, double, std::uint32_t)                                                   \
   TEGL_INSTANTIATE_ONE(T, N, double, std::uint64_t)
-#define TEGL_INSTANTIATE(T)  \
-  TEGL_INSTANTIATE_DIM(T, 2) \
-  TEGL_INSTANTIATE_DIM(T, 3) \
+#define TEGL_INSTANTIATE(T)                                                                           \
+  template ContourSize count<T, 5>(const Image<T, 5>&, double, const ExtractOptions&, ExtractStats*); \
+  TEGL_INSTANTIATE_DIM(T, 2)                                                                          \
+  TEGL_INSTANTIATE_DIM(T, 3)                                                                          \
   TEGL_INSTANTIATE_DIM(T, 4)
 TEGL_INSTANTIATE(std::uint8_t)
 TEGL_INSTANTIATE(std::int8_t)

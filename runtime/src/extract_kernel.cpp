@@ -4,16 +4,15 @@
 #include "extract_kernel.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
-#include <Eigen/LU>
 
 #include "close.hpp"
 #include "extract_generate.hpp"
 #include "pinches.hpp"
+#include "stopwatch.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
@@ -33,29 +32,6 @@ void check_arguments(double isovalue, const ExtractOptions& options) {
 }
 
 namespace {
-
-/// Adds the time since the last call to one of several counters.
-class Stopwatch {
- public:
-  void add_to(double& seconds) noexcept {
-    const auto now = Clock::now();
-    seconds += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
-
-/// Whether the tables' orientation "positive side faces the table's high corners" is to be reversed, so
-/// that normals point as asked for in the world.
-template <int N>
-bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
-  bool flip = options.direction == GradientDirection::descent;
-  for (const Axis& axis : grid.axes) flip = flip != axis.is_descending();
-  return flip != (grid.linear.determinant() < 0);
-}
 
 /// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
 /// the next, and needs little memory beside the image.

@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include <Eigen/LU>
+
 #include "extract_count.hpp"
 #include "extract_source.hpp"
 #include "tegl/extract.hpp"
@@ -22,6 +24,15 @@ void check_vertex_count(std::uint64_t count, std::uint64_t limit);
 
 /// Throws InvalidIsovalue or InvalidArgument.
 void check_arguments(double isovalue, const ExtractOptions& options);
+
+/// Whether the orientation of tiles, "positive side faces the high corners", is to be reversed, so that normals point
+/// as asked for in the world.
+template <int N>
+bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
+  bool flip = options.direction == GradientDirection::descent;
+  for (const Axis& axis : grid.axes) flip = flip != axis.is_descending();
+  return flip != (grid.linear.determinant() < 0);
+}
 
 /// The generated tables of one triangulation.
 template <int N>

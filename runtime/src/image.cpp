@@ -58,7 +58,8 @@ Image<T, N> Image<T, N>::part(int axis, std::size_t first, std::size_t count) co
 #define TEGL_INSTANTIATE(T)   \
   template class Image<T, 2>; \
   template class Image<T, 3>; \
-  template class Image<T, 4>;
+  template class Image<T, 4>; \
+  template class Image<T, 5>;
 TEGL_INSTANTIATE(std::uint8_t)
 TEGL_INSTANTIATE(std::int8_t)
 TEGL_INSTANTIATE(std::uint16_t)

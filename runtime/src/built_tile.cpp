@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From the contour of a tile as it is built to the form that extractions go through; see built_tile.hpp.
+#include "built_tile.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "tegl/error.hpp"
+
+namespace tegl::detail {
+
+using facets::VertexId;
+using facets::VertexKind;
+
+CubeFaces::CubeFaces(int n) : lattice_(facets::FaceLattice::cube(n)) {
+  for (const facets::Face& face : lattice_.faces()) {
+    const auto least = static_cast<unsigned>(std::countr_zero(face.corners));
+    const unsigned most = 63u - static_cast<unsigned>(std::countl_zero(face.corners));
+    cells_.push_back({static_cast<std::uint8_t>(least), static_cast<std::uint8_t>(least ^ most),
+                      static_cast<std::uint8_t>(face.dim)});
+  }
+}
+
+namespace {
+
+constexpr std::uint16_t kUnused = std::numeric_limits<std::uint16_t>::max();
+
+bool is_of_contour(VertexKind kind) {
+  return kind == VertexKind::edge || kind == VertexKind::barycentre || kind == VertexKind::side;
+}
+
+/// Numbers the vertices that are needed: the contour's own first, in the builder's order, then what they depend on.
+class Numbering {
+ public:
+  explicit Numbering(const facets::TileFacets& tile) : tile_(tile), number_(tile.vertices.size(), kUnused) {
+    for (std::size_t v = 0; v < tile.vertices.size(); ++v)
+      if (is_of_contour(tile.vertices[v].kind)) add(static_cast<VertexId>(v));
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const facets::Vertex& vertex = tile.vertices[order_[i]];
+      if (vertex.copied != facets::kNoVertex) add(vertex.copied);
+      for (const facets::Simplex& s : vertex.of)
+        for (int j = 0; j < facets::size(s); ++j) add(s[j]);
+    }
+  }
+  [[nodiscard]] const std::vector<VertexId>& order() const { return order_; }
+  [[nodiscard]] std::uint16_t operator[](VertexId v) const { return number_[v]; }
+
+ private:
+  void add(VertexId v) {
+    if (number_[v] != kUnused) return;
+    if (order_.size() >= BuiltTile::kIsMiddle)
+      throw Error(ErrorCode::TooLarge, fmt::format("a tile with more than {} vertices", BuiltTile::kIsMiddle));
+    number_[v] = static_cast<std::uint16_t>(order_.size());
+    order_.push_back(v);
+  }
+
+  const facets::TileFacets& tile_;
+  std::vector<std::uint16_t> number_;
+  std::vector<VertexId> order_;
+};
+
+/// The part of `of` that belongs to one vertex.
+void append_of(const CubeFaces& cube, const facets::TileFacets& tile, const facets::Vertex& vertex,
+               const Numbering& number, std::vector<std::uint16_t>& of) {
+  const std::size_t first = of.size();
+  for (const facets::Simplex& simplex : vertex.of) {
+    const std::size_t start = of.size();
+    for (int j = 0; j < facets::size(simplex); ++j) {
+      of.push_back(number[simplex[j]]);
+      const facets::Vertex& corner = tile.vertices[simplex[j]];
+      const bool is_middle = vertex.kind == VertexKind::barycentre && corner.kind == VertexKind::barycentre &&
+                             cube.cells()[corner.face].dim + 1 == cube.cells()[vertex.face].dim;
+      if (!is_middle) continue;
+      std::swap(of[start], of.back());
+      of[start] |= BuiltTile::kIsMiddle;
+    }
+  }
+  if (vertex.kind != VertexKind::centre) return;
+  const auto begin = of.begin() + static_cast<std::ptrdiff_t>(first);
+  std::sort(begin, of.end());
+  of.erase(std::unique(begin, of.end()), of.end());
+}
+
+}  // namespace
+
+BuiltTile::BuiltTile(const CubeFaces& cube, std::uint64_t signature, facets::Alternative alternative) {
+  const facets::TileFacets tile =
+      facets::build_facets(cube.lattice(), signature, {.choices = {}, .alternative = alternative});
+  const Numbering number(tile);
+  for (const VertexId v : number.order()) {
+    const facets::Vertex& vertex = tile.vertices[v];
+    const auto n = static_cast<std::uint16_t>(vertices.size());
+    const auto face = static_cast<std::uint16_t>(vertex.face);
+    if (is_of_contour(vertex.kind)) {
+      if (faces.empty() || faces.back().face != face) faces.push_back({face, n, 0});
+      ++faces.back().count;
+    }
+    const auto first = static_cast<std::uint32_t>(of.size());
+    append_of(cube, tile, vertex, number, of);
+    const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
+    vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size())});
+  }
+  for (const facets::Facet& facet : tile.facets)
+    for (const facets::Simplex& s : facet.simplices)
+      for (int j = 0; j < facets::size(s); ++j) simplices.push_back(number[s[j]]);
+  for (auto* list : {&of, &simplices}) list->shrink_to_fit();
+}
+
+std::size_t BuiltTile::bytes() const noexcept {
+  return sizeof *this + faces.capacity() * sizeof(FaceVertices) + vertices.capacity() * sizeof(Vertex) +
+         (of.capacity() + simplices.capacity()) * sizeof(std::uint16_t);
+}
+
+void BuiltTiles::keep(std::uint64_t signature, const Pointer& tile) {
+  if (bytes_ + tile->bytes() > max_bytes_) {
+    known_.clear();  // the most frequent ones are soon back
+    bytes_ = 0;
+  }
+  bytes_ += tile->bytes();
+  known_.emplace(signature, tile);
+}
+
+}  // namespace tegl::detail

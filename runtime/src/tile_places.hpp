@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The places of the vertices of a built tile, in the unit tile: so they don't depend on the units of the axes.
+//
+// Based on: M. Liversage, thesis, 1994, definition 10.1.4: the barycentre of a facet is the mean of those of the facets
+// around it, weighted by their measure. A place depends on the face that the vertex lies in alone: what the frame of a
+// tile adds to it are exact zeros.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "built_tile.hpp"
+#include "extract_tables.hpp"
+
+namespace tegl::detail {
+
+/// The measure of a simplex, up to a factor that depends on its dimension alone.
+template <std::size_t N>
+double simplex_measure(std::span<const std::array<double, N>> points) noexcept {
+  if (points.size() == 1) return 1.0;
+  if (points.size() == 2) return distance(points[0], points[1]);
+  if (points.size() == 3) return triangle_area(points[0], points[1], points[2]);
+  // The product of the heights, by orthogonalisation.
+  std::array<std::array<double, N>, N> edges;
+  const std::size_t count = points.size() - 1;
+  double square = 1.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t a = 0; a < N; ++a) edges[i][a] = points[i + 1][a] - points[0][a];
+    for (std::size_t j = 0; j < i; ++j) {
+      double along = 0, length = 0;
+      for (std::size_t a = 0; a < N; ++a) along += edges[i][a] * edges[j][a];
+      for (std::size_t a = 0; a < N; ++a) length += edges[j][a] * edges[j][a];
+      for (std::size_t a = 0; a < N; ++a) edges[i][a] -= along / length * edges[j][a];
+    }
+    double height = 0;
+    for (std::size_t a = 0; a < N; ++a) height += edges[i][a] * edges[i][a];
+    if (!(height > 0)) return 0.0;
+    square *= height;
+  }
+  return std::sqrt(square);
+}
+
+/// The barycentre of a simplex that is a facet by itself.
+template <std::size_t N>
+std::array<double, N> simplex_barycentre(std::span<const std::array<double, N>> points) noexcept {
+  if (points.size() == 1) return points[0];
+  if (points.size() == 2) return midpoint<static_cast<int>(N)>(points[0], points[1]);
+  Weighted<static_cast<int>(N)> sum;
+  for (std::size_t omitted = 0; omitted < points.size(); ++omitted) {
+    std::array<std::array<double, N>, N> rest;
+    for (std::size_t i = 0, j = 0; i < points.size(); ++i)
+      if (i != omitted) rest[j++] = points[i];
+    const std::span<const std::array<double, N>> face(rest.data(), points.size() - 1);
+    sum.add(simplex_barycentre<N>(face), simplex_measure<N>(face));
+  }
+  if (!(sum.weight > 0)) return points[0];
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
+/// Places on demand, for one tile at a time.
+template <int N>
+class TilePlaces {
+ public:
+  using Point = TilePoint<N>;
+
+  /// `flat_axis`: an axis along which all places are 0; -1: none. Of edges, `set_edge` has to tell.
+  TilePlaces(const CubeFaces& cube) : cube_(cube) {}
+  void begin(const BuiltTile& tile, int flat_axis) {
+    tile_ = &tile;
+    flat_axis_ = flat_axis;
+    points_.resize(tile.vertices.size());
+    known_.assign(tile.vertices.size(), false);
+  }
+  void set_edge(std::size_t v, double alpha) noexcept {
+    const CubeFaces::Cell& edge = cube_.cells()[tile_->vertices[v].face];
+    points_[v] = corner_point<N>(edge.base);
+    points_[v][std::countr_zero(edge.axes)] = alpha;
+    known_[v] = true;
+  }
+
+  const Point& operator()(std::size_t v) noexcept {
+    if (!known_[v]) {
+      points_[v] = find(tile_->vertices[v]);
+      known_[v] = true;
+    }
+    return points_[v];
+  }
+
+ private:
+  Point find(const BuiltTile::Vertex& vertex) noexcept {
+    switch (vertex.kind) {
+      case facets::VertexKind::barycentre:
+        return barycentre(vertex);
+      case facets::VertexKind::centre:
+        return mean(vertex);
+      case facets::VertexKind::side:
+        return pushed_inwards(vertex);
+      default:
+        return corner_point<N>(cube_.cells()[vertex.face].base);
+    }
+  }
+
+  Point barycentre(const BuiltTile::Vertex& vertex) noexcept {
+    const std::size_t width = cube_.cells()[vertex.face].dim - 1u;
+    Weighted<N> sum;
+    Weighted<N> plain;  // for a facet that has shrunk to a point: all weights equal
+    std::array<Point, N> corners;
+    const std::span<const Point> simplex(corners.data(), width);
+    for (std::size_t at = vertex.first; at < vertex.end; at += width) {
+      const bool has_middle = (tile_->of[at] & BuiltTile::kIsMiddle) != 0;
+      for (std::size_t j = 0; j < width; ++j)
+        corners[j] = (*this)(tile_->of[at + j] & static_cast<std::uint16_t>(~BuiltTile::kIsMiddle));
+      const Point middle = has_middle ? corners[0] : simplex_barycentre<N>(simplex);
+      sum.add(middle, simplex_measure<N>(simplex));
+      plain.add(middle, 1.0);
+    }
+    return divided(sum.weight > 0 ? sum : plain);
+  }
+
+  Point mean(const BuiltTile::Vertex& vertex) noexcept {
+    Weighted<N> sum;
+    for (std::size_t at = vertex.first; at < vertex.end; ++at) sum.add((*this)(tile_->of[at]), 1.0);
+    return divided(sum);
+  }
+
+  /// Half of the way to the middle of the face.
+  Point pushed_inwards(const BuiltTile::Vertex& vertex) noexcept {
+    Point point = (*this)(vertex.copied);
+    for (int a = 0; a < N; ++a)
+      if (a != flat_axis_ && (cube_.cells()[vertex.face].axes >> a & 1u) != 0) point[a] = 0.5 * (0.5 + point[a]);
+    return point;
+  }
+
+  static Point divided(const Weighted<N>& sum) noexcept {
+    Point point;
+    for (int a = 0; a < N; ++a) point[a] = sum.point[a] / sum.weight;
+    return point;
+  }
+
+  const CubeFaces& cube_;
+  const BuiltTile* tile_ = nullptr;
+  int flat_axis_ = -1;
+  std::vector<Point> points_;
+  std::vector<bool> known_;
+};
+
+}  // namespace tegl::detail
