@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include "link_of_tetrahedra.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {
@@ -101,21 +102,27 @@ class LinkChecker {
   void visit(Index v, std::span<const Index> star, MeshReport& report) {
     load(v, star);
     const std::uint64_t link_vertices = count_link_vertices(v);
+    if constexpr (D == 4) {
+      whole_link_.load(pieces_);
+      triangles_ += whole_link_.edges_above(v);
+    }
     sets_.reset(pieces_.size() * D);  // a set per corner of a piece; joined round the vertex of the link
     scan_ridges(v, report);
     if (!is_sphere_or_ball(link_vertices)) ++report.bad_links;
     if constexpr (D >= 2) edges_ += edges_above_;
   }
-  [[nodiscard]] std::uint64_t edges() const { return edges_; }          ///< 1-faces met so far, D >= 2
-  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }  ///< 2-faces met so far, D = 3
+  [[nodiscard]] std::uint64_t edges() const { return edges_; }            ///< 1-faces met so far, D >= 2
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }    ///< 2-faces met so far, D >= 3
+  [[nodiscard]] std::uint64_t tetrahedra() const { return tetrahedra_; }  ///< 3-faces met so far, D = 4
 
  private:
   static constexpr Index kNever = std::numeric_limits<Index>::max();
   using Piece = std::array<Index, D>;
+  using Key = std::conditional_t<(D < 4), std::uint64_t, std::array<Index, 3>>;
 
   /// A (D-2)-face of the link in one of its pieces. Ridges with equal keys are the same face.
   struct Ridge {
-    std::uint64_t key;
+    Key key;
     Index piece;
     std::uint8_t omitted;  // the piece's corner that is not in the ridge
     bool reversed;         // the orientation that the piece induces
@@ -142,10 +149,10 @@ class LinkChecker {
     std::sort(ridges_.begin(), ridges_.end());
   }
 
-  /// D = 3: the key is the two vertices; D = 2: the one vertex; D = 1: the empty face.
+  /// D = 4: the key is the three vertices, ascending; D = 3: the two; D = 2: the one vertex; D = 1: the empty face.
   static Ridge make_ridge(const Piece& piece, Index number, int omitted, bool odd) {
     bool reversed = odd != ((omitted & 1) != 0);
-    std::uint64_t key = 0;
+    Key key{};
     if constexpr (D == 2) key = piece[1 - omitted];
     if constexpr (D == 3) {
       Index a = piece[omitted == 0 ? 1 : 0];
@@ -155,6 +162,15 @@ class LinkChecker {
         reversed = !reversed;
       }
       key = (std::uint64_t{a} << 32) | b;
+    }
+    if constexpr (D == 4) {
+      std::copy_n(piece.begin(), omitted, key.begin());
+      std::copy(piece.begin() + omitted + 1, piece.end(), key.begin() + omitted);
+      for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
+        if (key[i] > key[j]) {
+          std::swap(key[i], key[j]);
+          reversed = !reversed;
+        }
     }
     return {key, number, static_cast<std::uint8_t>(omitted), reversed};
   }
@@ -173,10 +189,11 @@ class LinkChecker {
   }
 
   /// Whether v is the smallest vertex of the face "v and this ridge", which is then counted here.
-  static bool is_counted_at(Index v, std::uint64_t key) {
+  static bool is_counted_at(Index v, const Key& key) {
     if constexpr (D == 1) return true;
     if constexpr (D == 2) return key > v;
     if constexpr (D == 3) return (key >> 32) > v;
+    if constexpr (D == 4) return key[0] > v;
   }
 
   void scan_ridges(Index v, MeshReport& report) {
@@ -199,6 +216,7 @@ class LinkChecker {
 
   void count_face(std::span<const Ridge> cofaces, MeshReport& report) {
     if constexpr (D == 3) ++triangles_;
+    if constexpr (D == 4) ++tetrahedra_;
     if (cofaces.size() == 1) ++report.boundary_simplices;
     if (cofaces.size() > 2) ++report.nonmanifold_simplices;
     if (cofaces.size() == 2 && cofaces[0].reversed == cofaces[1].reversed) ++report.orientation_conflicts;
@@ -216,7 +234,8 @@ class LinkChecker {
     }
   }
 
-  [[nodiscard]] bool is_sphere_or_ball(std::uint64_t link_vertices) const {
+  [[nodiscard]] bool is_sphere_or_ball(std::uint64_t link_vertices) {
+    if constexpr (D == 4) return whole_link_.is_sphere_or_ball();
     if (branching_) return false;                            // a ridge in three pieces
     if (connections_ + 1 != pieces_.size()) return false;    // several parts
     if (D >= 2 && fans_ != link_vertices) return false;      // a vertex of the link with several fans: pinched
@@ -239,6 +258,8 @@ class LinkChecker {
   std::uint64_t edges_above_ = 0;
   std::uint64_t edges_ = 0;
   std::uint64_t triangles_ = 0;
+  std::uint64_t tetrahedra_ = 0;
+  detail::LinkOfTetrahedra whole_link_;  // D = 4
   bool closed_ = true;
   bool branching_ = false;
 };
@@ -314,17 +335,18 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
   }
   report.unused_vertices = complex.vertex_count - report.vertices;
   report.components = report.vertices - joins;
-  // V - E + F - …, the simplices themselves last; below D = 2 and 3 the counts of edges and triangles are zero.
+  // V - E + F - …, the simplices themselves last; below D = 2, 3, 4 the counts of edges, triangles and tetrahedra are
+  // zero.
   report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges()) +
-                 static_cast<std::int64_t>(links.triangles()) +
+                 static_cast<std::int64_t>(links.triangles()) - static_cast<std::int64_t>(links.tetrahedra()) +
                  (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(sound);
   return report;
 }
 
 template <class Real>
 MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std::span<const Real> coordinates) {
-  if (d < 1 || d > 3)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2 or 3", d));
+  if (d < 1 || d > 4)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2, 3 or 4", d));
   if (space_dim < d || space_dim > 8)
     throw Error(
         ErrorCode::InvalidArgument,
@@ -344,7 +366,8 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
                                                  simplices.size() / width, coordinates.size() / space_dim, kLimit));
   if (d == 1) return check_complex<1>(simplices, space_dim, coordinates);
   if (d == 2) return check_complex<2>(simplices, space_dim, coordinates);
-  return check_complex<3>(simplices, space_dim, coordinates);
+  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates);
+  return check_complex<4>(simplices, space_dim, coordinates);
 }
 
 }  // namespace
@@ -368,5 +391,7 @@ template MeshReport check(const Contour<3, float>&);
 template MeshReport check(const Contour<3, double>&);
 template MeshReport check(const Contour<4, float>&);
 template MeshReport check(const Contour<4, double>&);
+template MeshReport check(const Contour<5, float>&);
+template MeshReport check(const Contour<5, double>&);
 
 }  // namespace tegl
