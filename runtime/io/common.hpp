@@ -18,6 +18,9 @@
 
 namespace tegl::io_detail {
 
+/// What to say of files with more axes than an image read from a file may have.
+inline constexpr const char* kMoreAxes = "5 only in memory, by tegl::extract";
+
 /// Throws Error{code, "path: message"}.
 template <class... Args>
 [[noreturn]] void fail(ErrorCode code, const std::filesystem::path& path, fmt::format_string<Args...> format,

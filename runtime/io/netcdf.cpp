@@ -233,8 +233,8 @@ Found find_variable(const NcFile& file, const std::string& wanted) {
   const auto candidates = image_variables(file, all);
   const NcVariable variable = choose(file, all, candidates, wanted);
   if (rank(variable) < 2 || rank(variable) > 4)
-    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected 2 to 4 axes longer than 1",
-         variable.name, variable.sizes.empty() ? "a single value" : shape_text(variable.sizes));
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected 2 to 4 axes longer than 1 ({})",
+         variable.name, variable.sizes.empty() ? "a single value" : shape_text(variable.sizes), kMoreAxes);
   if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
     fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected at least one sample", variable.name,
          shape_text(variable.sizes));

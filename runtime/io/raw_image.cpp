@@ -122,8 +122,8 @@ AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
   }
   std::vector<std::size_t> sizes;
   for (const Axis& axis : image.grid.axes) sizes.push_back(axis.size());
-  fail(ErrorCode::UnsupportedData, path, "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample",
-       sizes.size(), shape_text(sizes));
+  fail(ErrorCode::UnsupportedData, path, "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample ({})",
+       sizes.size(), shape_text(sizes), kMoreAxes);
 }
 
 const char* type_name(const ValueArray& values) noexcept {

@@ -63,33 +63,37 @@ class Numbering {
   std::vector<VertexId> order_;
 };
 
-/// The part of `of` that belongs to one vertex.
-void append_of(const CubeFaces& cube, const facets::TileFacets& tile, const facets::Vertex& vertex,
-               const Numbering& number, std::vector<std::uint16_t>& of) {
-  const std::size_t first = of.size();
+/// Simplices below a barycentre. Their order, here and in `append_mean`, depends on the face alone: so do sums over
+/// them.
+void append_simplices(const CubeFaces& cube, const facets::TileFacets& tile, const facets::Vertex& vertex,
+                      const Numbering& number, std::vector<std::uint16_t>& of) {
   for (const facets::Simplex& simplex : vertex.of) {
     const std::size_t start = of.size();
     for (int j = 0; j < facets::size(simplex); ++j) {
       of.push_back(number[simplex[j]]);
       const facets::Vertex& corner = tile.vertices[simplex[j]];
-      const bool is_middle = vertex.kind == VertexKind::barycentre && corner.kind == VertexKind::barycentre &&
-                             cube.cells()[corner.face].dim + 1 == cube.cells()[vertex.face].dim;
+      const bool is_middle =
+          corner.kind == VertexKind::barycentre && cube.cells()[corner.face].dim + 1 == cube.cells()[vertex.face].dim;
       if (!is_middle) continue;
       std::swap(of[start], of.back());
       of[start] |= BuiltTile::kIsMiddle;
     }
   }
-  if (vertex.kind != VertexKind::centre) return;
-  const auto begin = of.begin() + static_cast<std::ptrdiff_t>(first);
-  std::sort(begin, of.end());
-  of.erase(std::unique(begin, of.end()), of.end());
+}
+
+/// The vertices around a centre.
+void append_mean(const facets::Vertex& vertex, const Numbering& number, std::vector<std::uint16_t>& of) {
+  std::vector<VertexId> around;
+  for (const facets::Simplex& simplex : vertex.of)
+    around.insert(around.end(), simplex.begin(), simplex.begin() + facets::size(simplex));
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const VertexId v : around) of.push_back(number[v]);
 }
 
 }  // namespace
 
-BuiltTile::BuiltTile(const CubeFaces& cube, std::uint64_t signature, facets::Alternative alternative) {
-  const facets::TileFacets tile =
-      facets::build_facets(cube.lattice(), signature, {.choices = {}, .alternative = alternative});
+BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
   const Numbering number(tile);
   for (const VertexId v : number.order()) {
     const facets::Vertex& vertex = tile.vertices[v];
@@ -100,7 +104,8 @@ BuiltTile::BuiltTile(const CubeFaces& cube, std::uint64_t signature, facets::Alt
       ++faces.back().count;
     }
     const auto first = static_cast<std::uint32_t>(of.size());
-    append_of(cube, tile, vertex, number, of);
+    if (vertex.kind == VertexKind::barycentre) append_simplices(cube, tile, vertex, number, of);
+    if (vertex.kind == VertexKind::centre) append_mean(vertex, number, of);
     const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
     vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size())});
   }
@@ -113,6 +118,26 @@ BuiltTile::BuiltTile(const CubeFaces& cube, std::uint64_t signature, facets::Alt
 std::size_t BuiltTile::bytes() const noexcept {
   return sizeof *this + faces.capacity() * sizeof(FaceVertices) + vertices.capacity() * sizeof(Vertex) +
          (of.capacity() + simplices.capacity()) * sizeof(std::uint16_t);
+}
+
+BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
+  const std::lock_guard lock(from_.mutex_);
+  if (from_.builders_.empty()) {
+    builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice());
+  } else {
+    builder_ = std::move(from_.builders_.back());
+    from_.builders_.pop_back();
+  }
+}
+
+BuiltTiles::BuilderLoan::~BuilderLoan() {
+  const std::lock_guard lock(from_.mutex_);
+  from_.builders_.push_back(std::move(builder_));
+}
+
+BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(std::uint64_t signature) const {
+  return std::make_shared<const BuiltTile>(
+      from_.cube_, builder_->build(signature, {.choices = {}, .alternative = from_.alternative_}));
 }
 
 void BuiltTiles::keep(std::uint64_t signature, const Pointer& tile) {

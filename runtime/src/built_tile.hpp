@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -59,7 +60,7 @@ struct BuiltTile {
   std::vector<std::uint16_t> simplices;  ///< of n vertices each; positive side towards high
 
   /// Throws Error{TooLarge} for a tile of 32768 vertices or more.
-  BuiltTile(const CubeFaces& cube, std::uint64_t signature, facets::Alternative alternative);
+  BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile);
   [[nodiscard]] std::size_t bytes() const noexcept;
 };
 
@@ -71,7 +72,7 @@ class BuiltTiles {
   BuiltTiles(const CubeFaces& cube, facets::Alternative alternative, std::size_t max_bytes)
       : cube_(cube), alternative_(alternative), max_bytes_(max_bytes) {}
 
-  /// The tiles of these signatures, ascending, each once. `for_range(count, work)` calls work(from, to) for parts of
+  /// The tiles of these signatures, each once. `for_range(count, work)` calls work(from, to) for parts of
   /// 0 ... count - 1, maybe side by side.
   template <class ForRange>
   std::vector<Pointer> get(std::span<const std::uint64_t> signatures, const ForRange& for_range) {
@@ -84,14 +85,28 @@ class BuiltTiles {
         missing.push_back(i);
     }
     for_range(missing.size(), [&](std::size_t from, std::size_t to) {
-      for (std::size_t j = from; j < to; ++j)
-        result[missing[j]] = std::make_shared<const BuiltTile>(cube_, signatures[missing[j]], alternative_);
+      const BuilderLoan builder(*this);
+      for (std::size_t j = from; j < to; ++j) result[missing[j]] = builder.build(signatures[missing[j]]);
     });
     for (const std::size_t i : missing) keep(signatures[i], result[i]);
     return result;
   }
 
  private:
+  /// A builder that no one else has meanwhile. What builders keep makes them fast, so there are no more of them than
+  /// threads.
+  class BuilderLoan {
+   public:
+    explicit BuilderLoan(BuiltTiles& from);
+    ~BuilderLoan();
+    BuilderLoan(const BuilderLoan&) = delete;
+    BuilderLoan& operator=(const BuilderLoan&) = delete;
+    [[nodiscard]] Pointer build(std::uint64_t signature) const;
+
+   private:
+    BuiltTiles& from_;
+    std::unique_ptr<facets::FacetBuilder> builder_;
+  };
   void keep(std::uint64_t signature, const Pointer& tile);
 
   const CubeFaces& cube_;
@@ -99,6 +114,8 @@ class BuiltTiles {
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::unordered_map<std::uint64_t, Pointer> known_;
+  std::mutex mutex_;  ///< of builders_
+  std::vector<std::unique_ptr<facets::FacetBuilder>> builders_;
 };
 
 }  // namespace tegl::detail

@@ -215,7 +215,7 @@ class TileExtraction {
     std::transform(here.cells.begin(), here.cells.end(), signatures.begin(), [](const Cell& c) { return c.signature; });
     std::sort(signatures.begin(), signatures.end());
     signatures.erase(std::unique(signatures.begin(), signatures.end()), signatures.end());
-    here.tiles = built_.get(signatures, [this](std::size_t count, const auto& work) { for_range(count, 1, work); });
+    here.tiles = built_.get(signatures, [this](std::size_t count, const auto& work) { for_range(count, 16, work); });
     here.simplices.resize(here.cells.size() + 1);
     for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
       for (std::size_t c = from; c < to; ++c) {

@@ -96,7 +96,7 @@ class TilePlaces {
       case facets::VertexKind::barycentre:
         return barycentre(vertex);
       case facets::VertexKind::centre:
-        return mean(vertex);
+        return vertex.first == vertex.end ? beside(vertex) : mean(vertex);
       case facets::VertexKind::side:
         return pushed_inwards(vertex);
       default:
@@ -125,6 +125,11 @@ class TilePlaces {
     Weighted<N> sum;
     for (std::size_t at = vertex.first; at < vertex.end; ++at) sum.add((*this)(tile_->of[at]), 1.0);
     return divided(sum);
+  }
+
+  /// Between a vertex and the contour's copy of it.
+  Point beside(const BuiltTile::Vertex& vertex) noexcept {
+    return midpoint<N>((*this)(vertex.copied), pushed_inwards(vertex));
   }
 
   /// Half of the way to the middle of the face.

@@ -3,7 +3,10 @@
 // The extraction without tables: in 2D to 4D against the one by tables, in 5D by what a contour has to be.
 #include "extract_tiles.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -11,16 +14,19 @@
 #include "compare.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
+#include "measure.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/tile_facets.hpp"
 
 namespace tegl::test {
 namespace {
 
 template <class Real = double, Value T, int N>
-Contour<N, Real> extract_tile_by_tile(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {}) {
+Contour<N, Real> extract_tile_by_tile(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
+                                      std::size_t tile_bytes = detail::kBuiltTileBytes) {
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   Contour<N, Real> contour;
-  detail::extract_tiles<N, Real>(source, image.grid(), options, &contour, nullptr);
+  detail::extract_tiles<N, Real>(source, image.grid(), options, &contour, nullptr, tile_bytes);
   return contour;
 }
 
@@ -42,6 +48,22 @@ void expect_as_by_tables(const Image<T, N>& image, double isovalue, ExtractOptio
   }
 }
 
+/// Axes that are not regular, one of them descending, and a map to the world that mirrors.
+template <int N>
+Grid<N> bent_grid(std::size_t samples) {
+  Grid<N> grid;
+  for (int a = 0; a < N; ++a) {
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < samples; ++i)
+      coordinates.push_back((a == 1 ? -1.0 : 1.0) * (static_cast<double>(i) + 0.01 * static_cast<double>(i * i)));
+    grid.axes[a] = Axis::rectilinear(coordinates);
+    grid.linear(a, (a + 1) % N) = 0.3;
+    grid.offset(a) = a;
+  }
+  grid.linear(0, 0) = -1.0;
+  return grid;
+}
+
 TEST(ExtractTiles, PlaneImagesHaveTheContoursOfTheTables) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(noise<float, 2>(70, seed).view(), 0.5);
 }
@@ -50,8 +72,251 @@ TEST(ExtractTiles, VolumesHaveTheContoursOfTheTables) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(noise<float, 3>(12, seed).view(), 0.5);
 }
 
-TEST(ExtractTiles, TesseractsHaveTheContoursOfTheTables) {
+TEST(ExtractTiles, AnyGridDirectionAndEpsilonHaveTheContoursOfTheTables) {
+  ExtractOptions options;
+  options.direction = GradientDirection::ascent;
+  options.epsilon = 0.05;
+  expect_as_by_tables(noise<float, 2>(bent_grid<2>(20), 1).view(), 0.5, options);
+  expect_as_by_tables(noise<std::uint8_t, 3>(bent_grid<3>(8), 2).view(), 127.5, options);
+}
+
+TEST(ExtractTiles, SmoothFieldsIn4dHaveTheContoursOfTheTables) {
   expect_as_by_tables(sample_field<float, 4>(centred_grid<4>(9, 1.5), Ball<4>{}).view(), 0.0);
+  expect_as_by_tables(sample_field<float, 4>(centred_grid<4>(8, 1.6), RingTube<4>{}).view(), 0.0);
+}
+
+TEST(ExtractTiles, TilesIn4dHaveTheContoursOfTheTablesWhereAllIsConed) {
+  int coned = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const auto image = noise<float, 4>(2, seed);
+    std::uint64_t signature = 0;
+    for (unsigned v = 0; v < 16; ++v) signature |= std::uint64_t{image.values[v] >= 0.5F} << v;
+    const auto sides = [&](facets::Alternative otherwise) {
+      const auto tile = tile_facets<4>(signature, {}, otherwise);
+      return std::any_of(tile.facets.begin(), tile.facets.end(),
+                         [](const auto& facet) { return facet.filling == facets::Filling::side; });
+    };
+    if (sides(facets::Alternative::low) || sides(facets::Alternative::high)) continue;
+    ++coned;
+    expect_as_by_tables(image.view(), 0.5);
+  }
+  EXPECT_GT(coned, 150);
+}
+
+TEST(ExtractTiles, ClosedBordersEncloseWhatTheCapsOfTheTablesDo) {
+  ExtractOptions options;
+  options.close = true;
+  options.triangulation = Triangulation::barycentric;
+  const auto expect_equal = [&](const auto& image, double isovalue) {
+    const auto ours = extract_tile_by_tile(image, isovalue, options);
+    const auto theirs = extract<double>(image, isovalue, options);
+    expect_closed_manifold(ours);
+    EXPECT_NEAR(enclosed_content(ours), enclosed_content(theirs), 1e-9);
+    EXPECT_EQ(check(ours).euler, check(theirs).euler);
+    EXPECT_EQ(check(ours).components, check(theirs).components);
+  };
+  expect_equal(noise<float, 2>(30, 1).view(), 0.5);
+  expect_equal(noise<float, 3>(8, 1).view(), 0.5);
+  expect_equal(sample_field<float, 4>(centred_grid<4>(6, 0.9), Ball<4>{}).view(), 0.0);
+}
+
+TEST(ExtractTiles, NoiseIn4dIsAClosedManifold) {
+  ExtractOptions options;
+  options.close = true;
+  expect_closed_manifold(extract_tile_by_tile(noise<float, 4>(5, 3).view(), 0.5, options));
+}
+
+// ---- 5D, by the public functions ----
+
+TEST(Extract5d, ABallHasA4SphereAroundIt) {
+  const auto contour = extract(sample_field<float, 5>(centred_grid<5>(7, 1.4), Ball<5>{}).view(), 0.0);
+  const MeshReport report = expect_closed_manifold(contour);
+  EXPECT_EQ(report.euler, 2);
+  EXPECT_EQ(report.components, 1u);
+  EXPECT_EQ(report.degenerate_simplices, 0u);
+}
+
+TEST(Extract5d, MeasureAndContentOfABallConvergeWithTheSquareOfTheStep) {
+  const Ball<5> ball;
+  const auto errors = [&](std::size_t samples) {
+    const auto contour = extract<double>(sample_field<float, 5>(centred_grid<5>(samples, 1.2), ball).view(), 0.0);
+    return std::array{1.0 - enclosed_content(contour) / ball.content(), 1.0 - measure(contour) / ball.surface()};
+  };
+  const auto coarse = errors(6), fine = errors(11);  // steps of 0.48 and 0.24
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(fine[i], 0.0);
+    EXPECT_NEAR(std::log2(coarse[i] / fine[i]), 2.0, 0.4);
+  }
+}
+
+TEST(Extract5d, TubesAroundACircleAndASphereHaveTheirEulerCharacteristics) {
+  const auto around_circle = [](const Point<5>& x) {  // S^1 x S^3
+    return 0.5 - std::hypot(std::hypot(x[0], x[1]) - 1.0, std::hypot(x[2], x[3], x[4]));
+  };
+  const auto around_sphere = [](const Point<5>& x) {  // S^2 x S^2
+    return 0.5 - std::hypot(std::hypot(x[0], x[1], x[2]) - 1.0, x[3], x[4]);
+  };
+  const auto grid = centred_grid<5>(8, 1.75);
+  const MeshReport circle = expect_closed_manifold(extract(sample_field<float, 5>(grid, around_circle).view(), 0.0));
+  EXPECT_EQ(circle.euler, 0);
+  EXPECT_EQ(circle.components, 1u);
+  const MeshReport sphere = expect_closed_manifold(extract(sample_field<float, 5>(grid, around_sphere).view(), 0.0));
+  EXPECT_EQ(sphere.euler, 4);
+  EXPECT_EQ(sphere.components, 1u);
+}
+
+TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
+  const auto image = noise<float, 5>(3, 5);
+  ExtractOptions options;
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high}) {
+    options.ambiguity = ambiguity;
+    const auto contour = extract<double>(image.view(), 0.5, options);
+    EXPECT_EQ(expect_oriented_manifold(contour).degenerate_simplices, 0u);
+    EXPECT_TRUE(is_open_only_where_data_end(contour, image.view()));
+  }
+}
+
+TEST(Extract5d, ClosedNoiseIsAClosedManifoldAndEnclosesTheHighSide) {
+  ExtractOptions options;
+  options.close = true;
+  const auto image = noise<std::uint8_t, 5>({4, 3, 4, 3, 3}, 6);
+  const auto high = extract<double>(image.view(), 127.5, options);
+  expect_closed_manifold(high);
+  const double content = enclosed_content(high);
+  EXPECT_GT(content, 0.0);
+  // The low side is that of the negative, contoured with the other alternative.
+  auto negative = image;
+  for (std::uint8_t& value : negative.values) value = static_cast<std::uint8_t>(255 - value);
+  options.ambiguity = Ambiguity::high;
+  const auto low = extract<double>(negative.view(), 127.5, options);
+  EXPECT_NEAR(content + enclosed_content(low), 3.0 * 2 * 3 * 2 * 2, 1e-9);
+}
+
+TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
+  const auto image = noise<float, 5>({3, 4, 3, 3, 3}, 7);
+  const auto contour = extract<double>(image.view(), 0.5);
+  // In layer 1, which is inside: faces with all vertices in it. Each is in two simplices, below and above.
+  std::vector<std::array<std::array<double, 4>, 4>> found;
+  for (const auto& simplex : contour.simplices) {
+    std::array<std::array<double, 4>, 4> face;
+    std::size_t inside = 0;
+    for (const Index v : simplex)
+      if (const auto& x = contour.vertices[v]; x[4] == 1.0 && inside++ < 4)
+        std::copy_n(x.begin(), 4, face[inside - 1].begin());
+    ASSERT_LT(inside, 5u);
+    if (inside != 4) continue;
+    std::sort(face.begin(), face.end());
+    found.push_back(face);
+  }
+  std::vector<std::array<std::array<double, 4>, 4>> expected;
+  const std::size_t layer = 3 * 4 * 3 * 3;
+  const Image<float, 4> of_layer(image.values.data() + layer, Grid<4>::unit({3, 4, 3, 3}));
+  const auto in_layer = extract_tile_by_tile(of_layer, 0.5);
+  for (const auto& simplex : in_layer.simplices) {
+    std::array<std::array<double, 4>, 4> face;
+    for (std::size_t j = 0; j < 4; ++j) face[j] = in_layer.vertices[simplex[j]];
+    std::sort(face.begin(), face.end());
+    expected.insert(expected.end(), 2, face);
+  }
+  std::sort(found.begin(), found.end());
+  std::sort(expected.begin(), expected.end());
+  ASSERT_FALSE(expected.empty());
+  ASSERT_EQ(found.size(), expected.size());
+  EXPECT_TRUE(found == expected);  // bit by bit
+}
+
+template <class Real>
+bool same_bytes(const Contour<5, Real>& a, const Contour<5, Real>& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+  };
+  return same(a.vertices, b.vertices) && same(a.simplices, b.simplices) && same(a.normals, b.normals);
+}
+
+TEST(Extract5d, IsTheSameForAnyNumberOfThreadsAndAnyMemoryForTiles) {
+  const auto image = noise<float, 5>({4, 3, 3, 3, 4}, 8);
+  ExtractOptions options;
+  options.close = true;
+  options.normals = true;
+  options.threads = 1;
+  const auto one = extract<float>(image.view(), 0.5, options);
+  EXPECT_FALSE(one.simplices.empty());
+  for (const unsigned threads : {2u, 3u, 4u}) {
+    options.threads = threads;
+    EXPECT_TRUE(same_bytes(one, extract<float>(image.view(), 0.5, options))) << threads << " threads";
+  }
+  EXPECT_TRUE(same_bytes(one, extract_tile_by_tile<float>(image.view(), 0.5, options, 0)));
+  EXPECT_TRUE(same_bytes(one, extract_tile_by_tile<float>(image.view(), 0.5, options, 20'000)));
+}
+
+TEST(Extract5d, SizesAreCounted) {
+  const auto image = noise<float, 5>(3, 9);
+  ExtractOptions options;
+  for (const bool close : {false, true}) {
+    options.close = close;
+    const auto contour = extract(image.view(), 0.5, options);
+    ExtractStats stats;
+    EXPECT_EQ(count(image.view(), 0.5, options, &stats),
+              (ContourSize{contour.vertices.size(), contour.simplices.size()}));
+    EXPECT_EQ(stats.tiles, 32u);
+    EXPECT_EQ(stats.active_tiles, 32u);
+  }
+}
+
+TEST(Extract5d, ViewsByAnyStridesHaveTheContourOfTheirValues) {
+  const auto image = noise<float, 5>({3, 2, 3, 2, 3}, 10);
+  std::vector<float> spread(2 * image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) spread[2 * (image.values.size() - 1 - i)] = image.values[i];
+  Image<float, 5>::Strides strides = image.view().strides();
+  for (auto& stride : strides) stride *= -2;
+  const Image<float, 5> view(spread.data() + 2 * (image.values.size() - 1), image.grid, strides);
+  EXPECT_TRUE(same_bytes(extract(image.view(), 0.5), extract(view, 0.5)));
+}
+
+TEST(Extract5d, NormalsPointAwayFromABall) {
+  const auto image = sample_field<double, 5>(centred_grid<5>(6, 1.5), [](const Point<5>& x) {
+    double square = 0;
+    for (const double c : x) square += c * c;
+    return 1.0 - square;
+  });
+  ExtractOptions options;
+  options.normals = true;
+  const auto contour = extract<double>(image.view(), 0.0, options);
+  ASSERT_EQ(contour.normals.size(), contour.vertices.size());
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    double along = 0, length = 0;
+    for (int a = 0; a < 5; ++a) along += contour.normals[v][a] * contour.vertices[v][a];
+    for (const double x : contour.vertices[v]) length += x * x;
+    EXPECT_GT(along, 0.99 * std::sqrt(length));
+  }
+}
+
+TEST(Extract5d, MissingValuesAreAnErrorThatSaysWhere) {
+  auto image = noise<float, 5>(3, 11);
+  image.values[100] = std::numeric_limits<float>::quiet_NaN();
+  try {
+    extract(image.view(), 0.5);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::UnsupportedData);
+    EXPECT_NE(std::string(error.what()).find("layer 1 "), std::string::npos) << error.what();
+  }
+}
+
+TEST(Extract5d, StopsWhenToldTo) {
+  const auto image = noise<float, 5>(3, 12);
+  ExtractOptions options;
+  options.progress = [](double) { return false; };
+  try {
+    extract(image.view(), 0.5, options);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+  }
+}
+
+TEST(Extract5d, ImagesWithoutTilesHaveNoContour) {
+  EXPECT_TRUE(extract(noise<float, 5>({3, 3, 1, 3, 3}, 13).view(), 0.5).vertices.empty());
 }
 
 }  // namespace

@@ -89,12 +89,13 @@ struct Ball {
     for (int a = 0; a < N; ++a) square += (x[a] - centre[a]) * (x[a] - centre[a]);
     return radius - std::sqrt(square);
   }
-  /// Length, area or 3-volume of the sphere.
+  /// Length, area or volume of the sphere.
   [[nodiscard]] double surface() const {
     constexpr double kPi = std::numbers::pi;
     if constexpr (N == 2) return 2.0 * kPi * radius;
     if constexpr (N == 3) return 4.0 * kPi * radius * radius;
     if constexpr (N == 4) return 2.0 * kPi * kPi * radius * radius * radius;
+    if constexpr (N == 5) return 8.0 / 3.0 * kPi * kPi * radius * radius * radius * radius;
   }
   /// Area or volume enclosed.
   [[nodiscard]] double content() const { return surface() * radius / N; }

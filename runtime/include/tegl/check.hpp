@@ -42,7 +42,7 @@ struct MeshReport {
 /// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input; no state, so thread-safe.
 MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates);
 
-/// The same for a contour: d = N - 1, space_dim = N. Real: float or double.
+/// The same for a contour: d = N - 1, space_dim = N; N = 2 to 5. Real: float or double.
 template <int N, class Real>
 MeshReport check(const Contour<N, Real>& contour);
 

@@ -71,7 +71,7 @@ struct ContourSize {
 enum class GradientDirection { descent, ascent };
 
 /// The contour of an N-dimensional image: an (N-1)-dimensional simplicial complex in N-space.
-/// N = 2: segments, 3: triangles, 4: tetrahedra.
+/// N = 2: segments, 3: triangles, 4: tetrahedra, 5: 4-simplices.
 template <int N, class Real = float>
 struct Contour {
   using Vertex = std::array<Real, N>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of 2D, 3D and 4D images.
+// Contours of 2D, 3D, 4D and 5D images.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 namespace tegl {
 
+/// In 5D there is one triangulation, the barycentric one, and both names mean it.
 enum class Triangulation { compact, barycentric };
 /// How ambiguous faces are resolved (theory: the consistent method). low: high corners that meet only
 /// across a diagonal are kept apart; high: they are joined.
@@ -57,8 +58,12 @@ struct ExtractStats {
 /// doubled, in the same place, so that the contour is a manifold there too. Points of a 4D contour between two layers
 /// of the last axis are kept off the layers by the least that Real can show, so that `slice` finds the contour of a
 /// layer in it even where samples equal the isovalue. An image with an axis of one sample has no tiles, hence an empty
-/// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled. Cost: one pass over
-/// the samples plus the output. Real: float or double.
+/// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for 5D
+/// images with missing values. Cost: one pass over the samples plus the output. Real: float or double.
+///
+/// 5D: no tables; a tile is built when its signature is first met, which takes most of the time (0.2 to 5 ms for each).
+/// Up to 256 MiB of built tiles are kept for the next ones. Closed at the border, a 5D contour may have simplices of zero
+/// size there.
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
