@@ -55,7 +55,7 @@ Simplices cones(const Contour<4>& base, int count) {
 
 template <class Field>
 Contour<4> contour_of(const Field& field) {
-  return extract(sample_field<float, 4>(centred_grid<4>(6, 1.6), field).view(), 0.0);
+  return extract(sample_field<float, 4>(centred_grid<4>(9, 1.6), field).view(), 0.0);
 }
 
 TEST(Check4d, TheSmallest4SphereIsOne) {
@@ -86,7 +86,8 @@ TEST(Check4d, ConesOver3SpheresAreBallsAndTwoMakeA4Sphere) {
 
 TEST(Check4d, AnApexOverACircleTimesASphereIsFoundThoughAllNumbersAreThoseOfA4Sphere) {
   const Contour<4> tube = contour_of(RingTube<4>{});
-  ASSERT_EQ(check(tube).euler, 0);
+  ASSERT_TRUE(is_closed_oriented_manifold(check(tube)));
+  ASSERT_EQ(check(tube).components, 1u);
   EXPECT_EQ(report_of(cones(tube, 1)).bad_links, 1u);
   const MeshReport suspension = report_of(cones(tube, 2));
   EXPECT_EQ(suspension.bad_links, 2u);
