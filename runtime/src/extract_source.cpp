@@ -143,7 +143,8 @@ std::array<double, N> RowSource<T, N>::gradient(const Index& index,
 #define TEGL_INSTANTIATE(T)       \
   template class RowSource<T, 2>; \
   template class RowSource<T, 3>; \
-  template class RowSource<T, 4>;
+  template class RowSource<T, 4>; \
+  template class RowSource<T, 5>;
 TEGL_INSTANTIATE(std::uint8_t)
 TEGL_INSTANTIATE(std::int8_t)
 TEGL_INSTANTIATE(std::uint16_t)

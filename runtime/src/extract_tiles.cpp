@@ -131,8 +131,8 @@ class TileExtraction {
         finder_(shape_, options.close),
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
                tile_bytes),
-        workers_(options.threads, shape_.size(0), shape_.pitch()) {
-    if (options.normals) placement_.want_normals(source.gradients(grid), grid, options.direction);
+        workers_(options.threads, shape_.size(0), shape_.pitch(), false) {
+    if (options.normals) placement_.want_normals(source, grid, options.direction);
   }
 
   ContourSize run(ExtractStats& stats) {
