@@ -131,12 +131,40 @@ EmittedFile region_file(const TableSet& set) {
   return {fmt::format("region{}.cpp", set.dim - 1), std::move(text)};
 }
 
+EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
+  std::string text = opening(set, "The cube with every ambiguity resolved freely.");
+  array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
+  array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
+  fmt::format_to(Out(text),
+                 "\n// separate, low, high: first triangle, triangles, own vertices, first mask; polygons\n"
+                 "const ResolvedEntry kEntries[{}] = {{",
+                 table.entries.size());
+  const auto list = [](const tables::ResolvedList& l) {
+    return fmt::format("{{{},{},{},{}}}", l.first_triangle, l.triangle_count, l.own_vertices, l.first_mask);
+  };
+  for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    const tables::ResolvedEntry& e = table.entries[i];
+    fmt::format_to(Out(text), "{}{{{},{},{},{}}},", i % 4 == 0 ? "\n    " : "", list(e.separate), list(e.low),
+                   list(e.high), e.components);
+  }
+  text += "};\n";
+  bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
+  array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
+  fmt::format_to(Out(text),
+                 "\n}}  // namespace\n\nconst ResolvedTable kTile3Resolved = {{\n    {}u, {}u, kFirstEntry, "
+                 "kAmbiguousSquares, kEntries,\n    reinterpret_cast<const std::uint8_t*>(kTriangles), kMasks}};\n\n"
+                 "}}  // namespace tegl::tables\n",
+                 tables::kContractVersion, table.entries.size());
+  return {"tile3_resolved.cpp", std::move(text)};
+}
+
 }  // namespace
 
 std::vector<EmittedFile> emit_cpp(const TableSet& set) {
   std::vector<EmittedFile> files;
   for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
   if (!set.regions.empty()) files.push_back(region_file(set));
+  if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
   return files;
 }
 
@@ -173,6 +201,11 @@ EmittedFile emit_manifest(const TableSet& set) {
                    separator, t.dim, upper_camel(triangulation_name(t.triangulation)),
                    upper_camel(alternative_name(t.alternative)),
                    t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1), digest(t));
+  if (set.resolved)
+    fmt::format_to(Out(text),
+                   "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
+                   "\"{:016x}\"}}",
+                   separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));
   text += "\n  ]\n}\n";
   return {set.tile == TileKind::cube ? fmt::format("manifest{}.json", set.dim)
                                      : fmt::format("manifest_{}.json", tile_name(set.tile, set.dim)),

@@ -112,12 +112,37 @@ EmittedFile region_file(const TableSet& set, const RegionTables& table) {
           std::move(text)};
 }
 
+EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
+  std::string text = opening(set, "resolved", 3);
+  std::vector<std::string> squares;
+  for (const auto& square : table.squares) squares.push_back(fmt::format("[{}]", fmt::join(square, ",")));
+  fmt::format_to(Out(text), ",\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"", fmt::join(squares, ", "),
+                 digest(table));
+  array(text, "first_entry", table.first_entry);
+  array(text, "ambiguous_squares", table.ambiguous);
+  std::string columns = "\"components\"";
+  for (const char* const centre : {"separate", "low", "high"})
+    for (const char* const column : {"first_triangle", "triangle_count", "own_vertices", "first_mask"})
+      columns += fmt::format(", \"{}_{}\"", centre, column);
+  rows(text, "entries", columns.c_str(), table.entries, [](const tables::ResolvedEntry& e) {
+    std::vector<std::uint32_t> row = {e.components};
+    for (const tables::ResolvedList& l : {e.separate, e.low, e.high})
+      row.insert(row.end(), {l.first_triangle, l.triangle_count, l.own_vertices, l.first_mask});
+    return row;
+  });
+  array(text, "triangles", table.triangles);
+  array(text, "masks", table.masks);
+  text += "\n}\n";
+  return {"tile3_resolved.json", std::move(text)};
+}
+
 }  // namespace
 
 std::vector<EmittedFile> emit_json(const TableSet& set) {
   std::vector<EmittedFile> files;
   for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
   for (const RegionTables& table : set.regions) files.push_back(region_file(set, table));
+  if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
   return files;
 }
 

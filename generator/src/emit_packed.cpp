@@ -206,16 +206,24 @@ void side_function(Writer& out, const TileTables& table, const PackedTable& pack
                                 packed.signatures));
 }
 
-/// The array of words, or how to get at it.
-void data(Writer& out, const Dialect& dialect, const TileTables& table, const PackedTable& packed,
-          const std::string& name) {
-  if (dialect.language == Language::cuda) {
+/// What constant arrays need before them.
+void array_macros(Writer& out, const Dialect& dialect) {
+  if (dialect.language == Language::glsl)
+    out.raw("#ifndef TEGL_ARRAY_BEGIN\n#define TEGL_ARRAY_BEGIN uint[](\n#define TEGL_ARRAY_END )\n#endif\n\n");
+  if (dialect.language == Language::cuda)
     out.raw(
         "#pragma once\n\n#include <stdint.h>\n\n"
         "// Device data and functions for nvcc; for a host compiler, host ones.\n"
         "#if !defined(TEGL_TABLE_DATA)\n#if defined(__CUDACC__)\n"
         "#define TEGL_TABLE_DATA static __device__ const\n#define TEGL_TABLE_FUNCTION static __device__ inline\n"
         "#else\n#define TEGL_TABLE_DATA static const\n#define TEGL_TABLE_FUNCTION static inline\n#endif\n#endif\n\n");
+}
+
+/// The array of words, or how to get at it.
+void data(Writer& out, const Dialect& dialect, const TileTables& table, const PackedTable& packed,
+          const std::string& name) {
+  if (dialect.language == Language::cuda || table.dim < 4) array_macros(out, dialect);
+  if (dialect.language == Language::cuda) {
     constants(out, table, packed);
     out.words(packed.words);
     return;
@@ -232,10 +240,69 @@ void data(Writer& out, const Dialect& dialect, const TileTables& table, const Pa
     constants(out, table, packed);
     return;
   }
-  if (dialect.language == Language::glsl)
-    out.raw("#ifndef TEGL_ARRAY_BEGIN\n#define TEGL_ARRAY_BEGIN uint[](\n#define TEGL_ARRAY_END )\n#endif\n\n");
   constants(out, table, packed);
   out.words(packed.words);
+}
+
+/// The complete table of the cube: 256 words by signature (first entry | ambiguous squares << 16), six words per entry
+/// (for separate, low and high: first triangle | triangles << 16 | own vertices << 24, then the first mask), a word per
+/// triangle (a byte per vertex), a word per mask.
+EmittedFile resolved_file(const TableSet& set, const Dialect& dialect, const ResolvedCube& table) {
+  std::vector<std::uint32_t> words;
+  for (std::size_t s = 0; s < table.first_entry.size(); ++s)
+    words.push_back(table.first_entry[s] | std::uint32_t{table.ambiguous[s]} << 16);
+  const std::size_t entries = words.size();
+  for (const tables::ResolvedEntry& e : table.entries)
+    for (const tables::ResolvedList& l : {e.separate, e.low, e.high}) {
+      words.push_back(l.first_triangle | std::uint32_t{l.triangle_count} << 16 | std::uint32_t{l.own_vertices} << 24);
+      words.push_back(l.first_mask);
+    }
+  const std::size_t triangles = words.size();
+  for (std::size_t t = 0; t < table.triangles.size(); t += 3)
+    words.push_back(table.triangles[t] | std::uint32_t{table.triangles[t + 1]} << 8 |
+                    std::uint32_t{table.triangles[t + 2]} << 16);
+  const std::size_t masks = words.size();
+  words.insert(words.end(), table.masks.begin(), table.masks.end());
+
+  Writer out(dialect, "tegl_tile3_resolved");
+  out.raw(banner(set, dialect.language, "The cube with every ambiguity resolved freely."));
+  out.comment(fmt::format("Digest (FNV-1a) {:016x}. How to read it: docs/tables.md.", digest(table)));
+  out.raw("\n");
+  array_macros(out, dialect);
+  out.constant("EDGES", 12);
+  out.constant("ENTRIES", static_cast<std::uint32_t>(table.entries.size()));
+  out.constant("WORDS", static_cast<std::uint32_t>(words.size()));
+  out.raw("\n");
+  out.words(words);
+  out.function("The set of a signature's ambiguous squares.", "ambiguous_squares", {"signature"},
+               "  return W[signature] >> 16u;\n");
+  out.function("The entry of a signature with these squares' centres high (a set; of the ambiguous ones).", "entry",
+               {"signature", "high_squares"},
+               "  LET squares = W[signature] >> 16u;\n"
+               "  VAR number = W[signature] & 0xffffu;\n"
+               "  VAR bit = 1u;\n"
+               "  for (VAR q = 0u; q < 6u; q = q + 1u) {\n"
+               "    if (((squares >> q) & 1u) != 0u) {\n"
+               "      if (((high_squares >> q) & 1u) != 0u) { number = number + bit; }\n"
+               "      bit = bit << 1u;\n"
+               "    }\n"
+               "  }\n"
+               "  return number;\n");
+  const std::string at = fmt::format("W[{}u + (6u * entry) + (2u * centre)]", entries);
+  out.function("How many triangles an entry has: its polygons apart (centre 0), the centre low (1) or high (2).",
+               "triangle_count", {"entry", "centre"}, fmt::format("  return ({} >> 16u) & 0xffu;\n", at));
+  out.function("Local vertex `corner` of a triangle.", "vertex", {"entry", "centre", "triangle", "corner"},
+               fmt::format("  LET word = W[{}u + ({} & 0xffffu) + triangle];\n"
+                           "  return (word >> (8u * corner)) & 0xffu;\n",
+                           triangles, at));
+  out.function("How many vertices it has beside edge points.", "own_vertices", {"entry", "centre"},
+               fmt::format("  return {} >> 24u;\n", at));
+  out.function("The corners (bit v) and edges (bit 8 + e) that say where an own vertex lies.", "own_mask",
+               {"entry", "centre", "own"},
+               fmt::format("  LET first = W[{}u + (6u * entry) + (2u * centre) + 1u];\n"
+                           "  return W[{}u + first + own];\n",
+                           entries, masks));
+  return {fmt::format("tile3_resolved.{}", dialect.suffix), out.take()};
 }
 
 }  // namespace
@@ -263,6 +330,7 @@ std::vector<EmittedFile> emit_packed(const TableSet& set, Language language) {
     files.push_back({fmt::format("{}.{}", name, dialect.suffix), out.take()});
     if (table.dim == 4 && language != Language::cuda) files.push_back({name + ".u32", to_bytes(packed.words)});
   }
+  if (set.resolved) files.push_back(resolved_file(set, dialect, *set.resolved));
   return files;
 }
 

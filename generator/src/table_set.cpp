@@ -68,6 +68,7 @@ TableSet make_table_set(const TableRequest& request) {
       set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, style), t, a));
     }
   }
+  if (request.tile == TileKind::cube && request.dim == 3) set.resolved = make_resolved_cube();
   return set;
 }
 

@@ -9,10 +9,17 @@
 namespace tegl::gen {
 namespace {
 
+// Sanitizers make it ten times as slow, and a few tiles show them all there is.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t kTiles = 200;
+#else
+constexpr std::uint64_t kTiles = 10000;
+#endif
+
 TEST(ResolutionsIn5D, TenThousandTilesPass) {
-  const ResolutionFigures figures = certify_sample(TileKind::cube, 5, 10000, 5, 0);
-  EXPECT_EQ(figures.tiles, 10000u);
-  EXPECT_GT(figures.non_spherical, 5000u);
+  const ResolutionFigures figures = certify_sample(TileKind::cube, 5, kTiles, 5, 0);
+  EXPECT_EQ(figures.tiles, kTiles);
+  EXPECT_GT(figures.non_spherical, kTiles / 2);
 }
 
 }  // namespace

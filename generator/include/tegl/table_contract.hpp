@@ -123,4 +123,37 @@ struct RegionTable {
   const std::uint32_t* masks;            ///< bit v: corner v; bit 2^k + e: edge e
 };
 
+/// The cube with every ambiguity resolved freely: an entry for each signature and each resolution of its ambiguous
+/// squares, 656 in all. Square q = 2 a + side has x_a = side. Where bit q is set in ambiguous_squares[s], square q is
+/// ambiguous: its centre may be high or low. With the bits of these squares pushed together (the lowest square first,
+/// set = the centre is high) as the number r, the entry is first_entry[s] + r.
+///
+/// In the cube the polygons stay apart (`separate`), or the cube's centre is `low` and what is high around it is cut off,
+/// region by region, or it is `high` and what is low is. A region between several polygons is a tunnel between them, or a
+/// sphere with three or four holes. Of most entries two of the three lists are the same one. A local vertex below 12 is an
+/// edge's point; 12 + j is own vertex j of the list: with a mask of edges alone (bit 8 + e) the mean of their points, with
+/// a corner in it (bit v) half way from the cube's centre to the mean of its corners and points. In a square, the
+/// segments are the same in all entries that resolve it the same way. Orientation as above.
+struct ResolvedList {
+  std::uint16_t first_triangle;
+  std::uint8_t triangle_count;
+  std::uint8_t own_vertices;
+  std::uint16_t first_mask;
+};
+
+struct ResolvedEntry {
+  ResolvedList separate, low, high;
+  std::uint8_t components;               ///< polygons
+};
+
+struct ResolvedTable {
+  std::uint32_t version;
+  std::uint32_t entry_count;
+  const std::uint16_t* first_entry;      ///< 256
+  const std::uint8_t* ambiguous_squares; ///< 256
+  const ResolvedEntry* entries;          ///< entry_count
+  const std::uint8_t* triangles;         ///< x 3 local vertices
+  const std::uint32_t* masks;            ///< own vertex: bit v: corner v; bit 8 + e: edge e
+};
+
 }  // namespace tegl::tables

@@ -6,6 +6,7 @@
 #include "tile2_compact.cuh"
 #include "tile3_barycentric.cuh"
 #include "tile3_compact.cuh"
+#include "tile3_resolved.cuh"
 #include "tile4_barycentric.cuh"
 #include "tile4_compact.cuh"
 
@@ -23,5 +24,7 @@ Lookups cuda_lookups(int dim, int triangulation) {
   return triangulation == 0 ? TEGL_LOOKUPS_WITH_SIDES(tegl_tile4_barycentric)
                             : TEGL_LOOKUPS_WITH_SIDES(tegl_tile4_compact);
 }
+
+ResolvedLookups cuda_resolved_lookups() { return TEGL_RESOLVED_LOOKUPS; }
 
 }  // namespace tegl::test

@@ -255,5 +255,66 @@ TEST(Emission, IsTheSameTextEveryTimeInEveryLanguage) {
   }
 }
 
+/// An entry with one of its lists, as numbers: triangles' vertices, then masks of own vertices.
+std::vector<std::uint32_t> resolved_list(const tables::ResolvedList& list) {
+  const tables::ResolvedTable& table = tables::kTile3Resolved;
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < list.triangle_count * 3u; ++i)
+    numbers.push_back(table.triangles[3u * list.first_triangle + i]);
+  for (std::uint32_t i = 0; i < list.own_vertices; ++i) numbers.push_back(table.masks[list.first_mask + i]);
+  return numbers;
+}
+
+const tables::ResolvedList& list_of(const tables::ResolvedEntry& entry, std::uint32_t centre) {
+  return centre == 0 ? entry.separate : centre == 1 ? entry.low : entry.high;
+}
+
+TEST(ResolvedTable, EveryLanguageSaysWhatTheCompiledTableSays) {
+  const tables::ResolvedTable& table = tables::kTile3Resolved;
+  for (const test::ResolvedLookups& emitted :
+       {test::glsl_resolved_lookups(), test::wgsl_resolved_lookups(), test::cuda_resolved_lookups()})
+    for (std::uint32_t s = 0; s < 256; ++s) {
+      const std::uint32_t ambiguous = table.ambiguous_squares[s];
+      ASSERT_EQ(emitted.ambiguous_squares(s), ambiguous);
+      std::uint32_t high = 0, number = table.first_entry[s];
+      do {
+        const std::uint32_t entry = emitted.entry(s, high);
+        ASSERT_EQ(entry, number++);
+        for (std::uint32_t centre = 0; centre < 3; ++centre) {
+          std::vector<std::uint32_t> numbers;
+          for (std::uint32_t t = 0; t < emitted.triangle_count(entry, centre); ++t)
+            for (std::uint32_t c = 0; c < 3; ++c) numbers.push_back(emitted.vertex(entry, centre, t, c));
+          for (std::uint32_t k = 0; k < emitted.own_vertices(entry, centre); ++k)
+            numbers.push_back(emitted.own_mask(entry, centre, k));
+          ASSERT_EQ(numbers, resolved_list(list_of(table.entries[entry], centre))) << s << " " << high;
+        }
+        high = (high - ambiguous) & ambiguous;
+      } while (high != 0);
+    }
+}
+
+TEST(ResolvedTable, JsonHoldsTheCompiledTable) {
+  const tables::ResolvedTable& table = tables::kTile3Resolved;
+  const auto json = nlohmann::json::parse(table_text("tile3_resolved.json"));
+  const auto& rows = json.at("entries").at("rows");
+  ASSERT_EQ(rows.size(), table.entry_count);
+  ASSERT_EQ(json.at("squares").size(), 6u);
+  for (std::uint32_t s = 0; s < 256; ++s) {
+    ASSERT_EQ(json.at("first_entry").at(s), table.first_entry[s]);
+    ASSERT_EQ(json.at("ambiguous_squares").at(s), table.ambiguous_squares[s]);
+  }
+  for (std::uint32_t e = 0; e < table.entry_count; ++e) {
+    ASSERT_EQ(rows.at(e).at(0), table.entries[e].components);
+    for (std::uint32_t centre = 0; centre < 3; ++centre) {
+      std::vector<std::uint32_t> row;
+      for (std::size_t i = 0; i < 4; ++i) row.push_back(rows.at(e).at(1 + 4 * centre + i));
+      std::vector<std::uint32_t> numbers;
+      for (std::uint32_t i = 0; i < 3 * row[1]; ++i) numbers.push_back(json.at("triangles").at(3 * row[0] + i));
+      for (std::uint32_t i = 0; i < row[2]; ++i) numbers.push_back(json.at("masks").at(row[3] + i));
+      ASSERT_EQ(numbers, resolved_list(list_of(table.entries[e], centre))) << "entry " << e;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tegl

@@ -24,7 +24,27 @@ Lookups glsl_lookups(int dim, int triangulation, const std::uint32_t* words);
 Lookups wgsl_lookups(int dim, int triangulation, const std::uint32_t* words);
 Lookups cuda_lookups(int dim, int triangulation);
 
+/// Those of the complete table of the cube.
+struct ResolvedLookups {
+  std::uint32_t (*ambiguous_squares)(std::uint32_t signature);
+  std::uint32_t (*entry)(std::uint32_t signature, std::uint32_t high_squares);
+  std::uint32_t (*triangle_count)(std::uint32_t entry, std::uint32_t centre);
+  std::uint32_t (*vertex)(std::uint32_t entry, std::uint32_t centre, std::uint32_t triangle, std::uint32_t corner);
+  std::uint32_t (*own_vertices)(std::uint32_t entry, std::uint32_t centre);
+  std::uint32_t (*own_mask)(std::uint32_t entry, std::uint32_t centre, std::uint32_t own);
+};
+
+ResolvedLookups glsl_resolved_lookups();
+ResolvedLookups wgsl_resolved_lookups();
+ResolvedLookups cuda_resolved_lookups();
+
 }  // namespace tegl::test
+
+#define TEGL_RESOLVED_LOOKUPS                                                                             \
+  ResolvedLookups {                                                                                       \
+    tegl_tile3_resolved_ambiguous_squares, tegl_tile3_resolved_entry, tegl_tile3_resolved_triangle_count, \
+        tegl_tile3_resolved_vertex, tegl_tile3_resolved_own_vertices, tegl_tile3_resolved_own_mask        \
+  }
 
 // A table's Lookups from its prefix; `sides` are its two functions of side vertices or nullptr, nullptr.
 #define TEGL_LOOKUPS(prefix, ...)                                                                       \

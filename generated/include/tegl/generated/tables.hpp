@@ -11,6 +11,9 @@ extern const TileTable kTile2Barycentric, kTile2Compact;
 extern const TileTable kTile3Barycentric, kTile3Compact;
 extern const TileTable kTile4Barycentric, kTile4Compact;
 
+/// The cube with every ambiguity resolved freely.
+extern const ResolvedTable kTile3Resolved;
+
 extern const RegionTable kRegion1BarycentricLow, kRegion1BarycentricHigh, kRegion1CompactLow, kRegion1CompactHigh;
 extern const RegionTable kRegion2BarycentricLow, kRegion2BarycentricHigh, kRegion2CompactLow, kRegion2CompactHigh;
 extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegion3CompactLow, kRegion3CompactHigh;

@@ -3,9 +3,11 @@
 // Emitters: plain data in, text out. The text depends on the arguments alone.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tegl/gen/resolved_cube.hpp"
 #include "tegl/gen/tile_tables.hpp"
 
 namespace tegl::gen {
@@ -19,7 +21,8 @@ struct TableSet {
   std::uint64_t orbits = 0;
   std::vector<CertifiedFigures> figures;  ///< one per certified alternative and triangulation
   std::vector<TileTables> tiles;
-  std::vector<RegionTables> regions;  ///< of the (dim - 1)-tile
+  std::vector<RegionTables> regions;       ///< of the (dim - 1)-tile
+  std::optional<ResolvedCube> resolved{};  ///< 3D cubes
 };
 
 struct EmittedFile {
