@@ -16,10 +16,11 @@ namespace tegl::detail {
 using facets::VertexId;
 using facets::VertexKind;
 
-CubeFaces::CubeFaces(int n) : lattice_(facets::FaceLattice::cube(n)) {
+CubeFaces::CubeFaces(int n) : lattice_(facets::FaceLattice::cube(n)), numbers_(std::size_t{1} << (2 * n)) {
   for (const facets::Face& face : lattice_.faces()) {
     const auto least = static_cast<unsigned>(std::countr_zero(face.corners));
     const unsigned most = 63u - static_cast<unsigned>(std::countl_zero(face.corners));
+    numbers_[least << n | (least ^ most)] = static_cast<std::uint16_t>(cells_.size());
     cells_.push_back({static_cast<std::uint8_t>(least), static_cast<std::uint8_t>(least ^ most),
                       static_cast<std::uint8_t>(face.dim)});
   }
@@ -100,24 +101,41 @@ BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
     const auto n = static_cast<std::uint16_t>(vertices.size());
     const auto face = static_cast<std::uint16_t>(vertex.face);
     if (is_of_contour(vertex.kind)) {
-      if (faces.empty() || faces.back().face != face) faces.push_back({face, n, 0});
+      if (faces.empty() || faces.back().face != face) faces.push_back({face, n, 0, true});
       ++faces.back().count;
+      if (vertex.kind == VertexKind::side) faces.back().by_edges = false;
+      has_sides = has_sides || vertex.kind == VertexKind::side;
     }
     const auto first = static_cast<std::uint32_t>(of.size());
     if (vertex.kind == VertexKind::barycentre) append_simplices(cube, tile, vertex, number, of);
     if (vertex.kind == VertexKind::centre) append_mean(vertex, number, of);
     const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
-    vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size())});
+    vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size()), 0, 0});
   }
   for (const facets::Facet& facet : tile.facets)
     for (const facets::Simplex& s : facet.simplices)
       for (int j = 0; j < facets::size(s); ++j) simplices.push_back(number[s[j]]);
-  for (auto* list : {&of, &simplices}) list->shrink_to_fit();
+  for (FaceVertices& face : faces) {
+    if (face.count == 1 || face.face == cube.tile()) face.by_edges = false;
+    for (std::size_t v = face.first; face.by_edges && v < std::size_t{face.first} + face.count; ++v) list_edges(v);
+  }
+  for (auto* list : {&of, &edges, &simplices}) list->shrink_to_fit();
+}
+
+void BuiltTile::list_edges(std::size_t v) {
+  std::vector<std::uint16_t> below(of.begin() + vertices[v].first, of.begin() + vertices[v].end);
+  for (std::uint16_t& w : below) w &= static_cast<std::uint16_t>(~kIsMiddle);
+  std::sort(below.begin(), below.end());
+  below.erase(std::unique(below.begin(), below.end()), below.end());
+  vertices[v].first_edge = static_cast<std::uint32_t>(edges.size());
+  for (const std::uint16_t w : below)
+    if (vertices[w].kind == VertexKind::edge) edges.push_back(w);
+  vertices[v].end_edge = static_cast<std::uint32_t>(edges.size());
 }
 
 std::size_t BuiltTile::bytes() const noexcept {
   return sizeof *this + faces.capacity() * sizeof(FaceVertices) + vertices.capacity() * sizeof(Vertex) +
-         (of.capacity() + simplices.capacity()) * sizeof(std::uint16_t);
+         (of.capacity() + edges.capacity() + simplices.capacity()) * sizeof(std::uint16_t);
 }
 
 BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {

@@ -4,6 +4,7 @@
 // in each face, how their places follow from each other, and its simplices.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "cube_symmetries.hpp"
 #include "tegl/facets/facets.hpp"
 
 namespace tegl::detail {
@@ -30,11 +32,16 @@ class CubeFaces {
   [[nodiscard]] int dim() const noexcept { return lattice_.dim(); }
   /// By number in the lattice.
   [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
+  /// The number of the face with this base and axes.
+  [[nodiscard]] std::uint16_t number(unsigned base, unsigned axes) const noexcept {
+    return numbers_[base << lattice_.dim() | axes];
+  }
   [[nodiscard]] std::size_t tile() const noexcept { return cells_.size() - 1; }
 
  private:
   facets::FaceLattice lattice_;
   std::vector<Cell> cells_;
+  std::vector<std::uint16_t> numbers_;
 };
 
 /// The contour of a tile, every vertex by its number in here. The contour's own vertices come first, face by face and
@@ -42,13 +49,15 @@ class CubeFaces {
 struct BuiltTile {
   struct Vertex {
     facets::VertexKind kind;
-    std::uint16_t face;        ///< number in the lattice
-    std::uint16_t copied;      ///< side: the vertex that it is a copy of
-    std::uint32_t first, end;  ///< barycentre, centre: its part of `of`
+    std::uint16_t face;                          ///< number in the lattice
+    std::uint16_t copied;                        ///< side: the vertex that it is a copy of
+    std::uint32_t first, end;                    ///< barycentre, centre: its part of `of`
+    std::uint32_t first_edge = 0, end_edge = 0;  ///< barycentre beside others in its face: its part of `edges`
   };
   /// A face with vertices [first, first + count) of the contour.
   struct FaceVertices {
     std::uint16_t face, first, count;
+    bool by_edges;  ///< several barycentres and nothing else: numbered by the least edge that each is connected with
   };
   /// Set in the first vertex of a simplex below a barycentre: that vertex is the middle of the facet that the simplex
   /// belongs to.
@@ -57,25 +66,73 @@ struct BuiltTile {
   std::vector<FaceVertices> faces;  ///< in the lattice's order
   std::vector<Vertex> vertices;
   std::vector<std::uint16_t> of;         ///< barycentre: simplices of dim - 1 vertices; centre: vertices
+  std::vector<std::uint16_t> edges;      ///< points on edges below a barycentre
   std::vector<std::uint16_t> simplices;  ///< of n vertices each; positive side towards high
+  bool has_sides = false;                ///< whether it depends on the order of the axes
 
   /// Throws Error{TooLarge} for a tile of 32768 vertices or more.
   BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile);
   [[nodiscard]] std::size_t bytes() const noexcept;
+
+ private:
+  void list_edges(std::size_t barycentre);
 };
 
-/// Built tiles by signature. What is asked for stays alive as long as someone holds it; beside that, at most
-/// `max_bytes` are kept.
+/// A tile as it is found: a built one, seen from another side.
+struct SeenTile {
+  std::shared_ptr<const BuiltTile> tile;
+  CubeSymmetry symmetry;  ///< from the built tile's frame
+};
+
+/// Built tiles by signature, up to symmetry where symmetries leave a tile's contour as it is: where all of it is coned
+/// (side fillings depend on the order of the axes). What is asked for stays alive as long as someone holds it; beside
+/// that, at most `max_bytes` are kept.
 class BuiltTiles {
  public:
   using Pointer = std::shared_ptr<const BuiltTile>;
   BuiltTiles(const CubeFaces& cube, facets::Alternative alternative, std::size_t max_bytes)
-      : cube_(cube), alternative_(alternative), max_bytes_(max_bytes) {}
+      : cube_(cube), symmetries_(cube.dim()), alternative_(alternative), max_bytes_(max_bytes) {}
 
-  /// The tiles of these signatures, each once. `for_range(count, work)` calls work(from, to) for parts of
-  /// 0 ... count - 1, maybe side by side.
+  [[nodiscard]] const CubeSymmetries& symmetries() const noexcept { return symmetries_; }
+
+  /// The tiles of these signatures. `for_range(count, work)` calls work(from, to) for parts of 0 ... count - 1, maybe
+  /// side by side.
   template <class ForRange>
-  std::vector<Pointer> get(std::span<const std::uint64_t> signatures, const ForRange& for_range) {
+  std::vector<SeenTile> get(std::span<const std::uint64_t> signatures, const ForRange& for_range) {
+    std::vector<SeenTile> result(signatures.size());
+    std::vector<std::uint64_t> wanted(signatures.size());
+    for (std::size_t i = 0; i < signatures.size(); ++i) {
+      result[i].symmetry = symmetries_.to_frame_of(signatures[i]);
+      wanted[i] = symmetries_.before(result[i].symmetry, signatures[i]);
+    }
+    assign(result, wanted, for_range);
+    std::vector<std::size_t> again;
+    for (std::size_t i = 0; i < signatures.size(); ++i)
+      if (result[i].tile->has_sides) again.push_back(i);
+    if (again.empty()) return result;
+    std::vector<SeenTile> as_they_are(again.size());
+    wanted.clear();
+    for (const std::size_t i : again) wanted.push_back(signatures[i]);
+    assign(as_they_are, wanted, for_range);
+    for (std::size_t j = 0; j < again.size(); ++j) result[again[j]] = as_they_are[j];
+    return result;
+  }
+
+ private:
+  /// Finds the tiles or builds them, each once.
+  template <class ForRange>
+  void assign(std::vector<SeenTile>& seen, const std::vector<std::uint64_t>& signatures, const ForRange& for_range) {
+    std::vector<std::uint64_t> sorted(signatures);
+    std::sort(sorted.begin(), sorted.end());
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    const std::vector<Pointer> tiles = find(sorted, for_range);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      seen[i].tile = tiles[static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), signatures[i]) -
+                                                    sorted.begin())];
+  }
+
+  template <class ForRange>
+  std::vector<Pointer> find(std::span<const std::uint64_t> signatures, const ForRange& for_range) {
     std::vector<Pointer> result(signatures.size());
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < signatures.size(); ++i) {
@@ -92,7 +149,6 @@ class BuiltTiles {
     return result;
   }
 
- private:
   /// A builder that no one else has meanwhile. What builders keep makes them fast, so there are no more of them than
   /// threads.
   class BuilderLoan {
@@ -110,6 +166,7 @@ class BuiltTiles {
   void keep(std::uint64_t signature, const Pointer& tile);
 
   const CubeFaces& cube_;
+  CubeSymmetries symmetries_;
   facets::Alternative alternative_;
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;

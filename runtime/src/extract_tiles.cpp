@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -41,7 +42,7 @@ struct TileLayer {
 /// Between two layers.
 struct TileSlab {
   std::vector<Cell> cells;
-  std::vector<BuiltTiles::Pointer> tiles;
+  std::vector<SeenTile> tiles;
   std::vector<std::uint64_t> simplices;  ///< by cell: the first one's number
   FaceRanks faces;
 };
@@ -207,7 +208,7 @@ class TileExtraction {
     for (const Cell& cell : here.cells)
       if (!CellKind<N>(cell.kind).is_cap()) ++stats.active_tiles;
     for_faces(k, [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices&, std::size_t,
-                     bool) { faces.mark(word, bit); });
+                     std::uint16_t) { faces.mark(word, bit); });
   }
 
   void build_tiles(TileSlab& here) {
@@ -222,7 +223,7 @@ class TileExtraction {
         Cell& cell = here.cells[c];
         cell.tile = static_cast<std::uint32_t>(std::lower_bound(signatures.begin(), signatures.end(), cell.signature) -
                                                signatures.begin());
-        here.simplices[c + 1] = here.tiles[cell.tile]->simplices.size() / N;
+        here.simplices[c + 1] = here.tiles[cell.tile].tile->simplices.size() / N;
       }
     });
     here.simplices[0] = simplices_;
@@ -230,19 +231,27 @@ class TileExtraction {
     simplices_ = here.simplices.back();
   }
 
-  /// Calls visit(faces, word, bit, vertices, cell number, in upper layer?) for the faces of a cell with vertices.
+  /// Calls visit(faces, word, bit, vertices, cell number, face) for the faces of a cell with vertices.
   template <class Visit>
   void for_faces_of(std::size_t k, std::size_t c, const Visit& visit) {
     const Cell& cell = slab(k).cells[c];
     const CellKind<N> kind(cell.kind);
-    for (const BuiltTile::FaceVertices& vertices : slab(k).tiles[cell.tile]->faces) {
-      const FaceWhere& where = grid_cells_.where(kind, vertices.face);
+    const SeenTile& seen = slab(k).tiles[cell.tile];
+    for (const BuiltTile::FaceVertices& vertices : seen.tile->faces) {
+      const std::uint16_t face = seen_face(seen, vertices.face);
+      const FaceWhere& where = grid_cells_.where(kind, face);
       const bool is_upper = (where.shift >> (N - 1) & 1u) != 0;
       FaceRanks& faces = where.in_slab ? slab(k).faces : layer(k + (is_upper ? 1 : 0)).faces;
       const std::size_t row = shape_.shifted(cell.row, where.shift), i = cell.i + (where.shift & 1u);
       const std::size_t word = (row * grid_cells_.slots(where.in_slab) + where.slot) * shape_.words() + i / kWordBits;
-      visit(faces, word, static_cast<unsigned>(i % kWordBits), vertices, c, is_upper);
+      visit(faces, word, static_cast<unsigned>(i % kWordBits), vertices, c, face);
     }
+  }
+  /// The number of a built tile's face in the cell.
+  [[nodiscard]] std::uint16_t seen_face(const SeenTile& seen, std::size_t face) const noexcept {
+    const CubeFaces::Cell& built = cube_.cells()[face];
+    const unsigned axes = built_.symmetries().axes(seen.symmetry, built.axes);
+    return cube_.number(built_.symmetries().base(seen.symmetry, built.base, axes), axes);
   }
   template <class Visit>
   void for_faces(std::size_t k, const Visit& visit) {
@@ -263,7 +272,7 @@ class TileExtraction {
     if (has_slab) slab(k).faces.rank();
     const auto tell = [&](std::size_t of) {
       for_faces(of, [&, of](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
-                            std::size_t c, bool) {
+                            std::size_t c, std::uint16_t) {
         if (&faces == &layer(k).faces || (of == k && &faces == &slab(k).faces))
           faces.tell(word, bit, vertices.count, owner_name(faces, layer(of), c));
       });
@@ -280,7 +289,7 @@ class TileExtraction {
     if (options_.normals) contour_->normals.resize(vertices_);
     contour_->simplices.resize(slab(k).simplices.back());
     for_range(slab(k).cells.size(), 16, [&](std::size_t from, std::size_t to) {
-      TilePlaces<N> places(cube_);
+      TilePlaces<N> places(cube_, built_.symmetries());
       std::vector<Index> ids;
       for (std::size_t c = from; c < to; ++c) {
         write_vertices(k, c, places, ids);
@@ -292,30 +301,48 @@ class TileExtraction {
   /// Numbers all vertices of a cell, and writes those of the faces that it owns.
   void write_vertices(std::size_t k, std::size_t c, TilePlaces<N>& places, std::vector<Index>& ids) {
     const Cell& cell = slab(k).cells[c];
-    const BuiltTile& tile = *slab(k).tiles[cell.tile];
+    const SeenTile& seen = slab(k).tiles[cell.tile];
     const CellKind<N> kind(cell.kind);
     auto base = shape_.index_of(cell.row);
     base[0] = cell.i;
     base[N - 1] = k + (kind.across() == N - 1 ? kind.side() : 0);
-    places.begin(tile, kind.is_cap() ? N - 1 : -1);
-    ids.resize(tile.vertices.size());
+    places.begin(seen, kind.is_cap() ? N - 1 : -1);
+    ids.resize(seen.tile->vertices.size());
     for_faces_of(k, c,
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
-                     std::size_t, bool) {
-                   const Index first = faces.first(word, bit);
-                   for (std::size_t j = 0; j < vertices.count; ++j)
-                     ids[vertices.first + j] = first + static_cast<Index>(j);
-                   if (cube_.cells()[vertices.face].dim == 1)
-                     places.set_edge(vertices.first, alpha(kind, base, vertices.face));
+                     std::size_t, std::uint16_t face) {
+                   number_face(seen, vertices, faces.first(word, bit), ids);
+                   if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
                    if (faces.owner(word, bit) != owner_name(faces, layer(k), c)) return;
-                   for (std::size_t j = 0; j < vertices.count; ++j) {
-                     const auto place = in_grid(kind, places(vertices.first + j));
-                     contour_->vertices[first + j] = point(kind, base, place);
+                   for (std::size_t v = vertices.first; v < std::size_t{vertices.first} + vertices.count; ++v) {
+                     const auto place = in_grid(kind, places(v));
+                     contour_->vertices[ids[v]] = point(kind, base, place);
                      if (options_.normals)
-                       contour_->normals[first + j] =
+                       contour_->normals[ids[v]] =
                            placement_.normals()->template in_cell<CellFrame<N, (1u << N) - 1>>(base, place);
                    }
                  });
+  }
+
+  /// The numbers of a face's vertices, the same for all cells around it.
+  void number_face(const SeenTile& seen, const BuiltTile::FaceVertices& vertices, Index first,
+                   std::vector<Index>& ids) const {
+    const std::size_t end = std::size_t{vertices.first} + vertices.count;
+    for (std::size_t v = vertices.first; v < end; ++v) ids[v] = first++;
+    if (!vertices.by_edges) return;
+    const auto least_edge = [&](std::size_t v) {
+      std::uint16_t least = std::numeric_limits<std::uint16_t>::max();
+      for (std::size_t e = seen.tile->vertices[v].first_edge; e < seen.tile->vertices[v].end_edge; ++e)
+        least = std::min(least, seen_face(seen, seen.tile->vertices[seen.tile->edges[e]].face));
+      return least;
+    };
+    first -= static_cast<Index>(vertices.count);
+    for (std::size_t v = vertices.first; v < end; ++v) {
+      const std::uint16_t own = least_edge(v);
+      ids[v] = first;
+      for (std::size_t w = vertices.first; w < end; ++w)
+        if (w != v && least_edge(w) < own) ++ids[v];
+    }
   }
 
   /// The place of the point on an edge of a cell. That of a cap is at the sample that the edge starts from.
@@ -350,8 +377,10 @@ class TileExtraction {
 
   void write_simplices(const TileSlab& from, std::size_t c, const std::vector<Index>& ids) noexcept {
     const Cell& cell = from.cells[c];
-    const bool flip = flip_ != CellKind<N>(cell.kind).is_mirrored();
-    const std::vector<std::uint16_t>& stored = from.tiles[cell.tile]->simplices;
+    const SeenTile& seen = from.tiles[cell.tile];
+    const bool is_mirrored = CellKind<N>(cell.kind).is_mirrored() != built_.symmetries().is_mirror(seen.symmetry);
+    const bool flip = flip_ != is_mirrored;
+    const std::vector<std::uint16_t>& stored = seen.tile->simplices;
     auto* out = contour_->simplices.data() + from.simplices[c];
     for (std::size_t s = 0; s < stored.size(); s += N, ++out) {
       for (std::size_t j = 0; j < N; ++j) (*out)[j] = ids[stored[s + j]];

@@ -7,7 +7,9 @@
 // tile adds to it are exact zeros.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -67,18 +69,21 @@ class TilePlaces {
  public:
   using Point = TilePoint<N>;
 
+  TilePlaces(const CubeFaces& cube, const CubeSymmetries& symmetries) : cube_(cube), symmetries_(symmetries) {}
   /// `flat_axis`: an axis along which all places are 0; -1: none. Of edges, `set_edge` has to tell.
-  TilePlaces(const CubeFaces& cube) : cube_(cube) {}
-  void begin(const BuiltTile& tile, int flat_axis) {
-    tile_ = &tile;
+  void begin(const SeenTile& seen, int flat_axis) {
+    tile_ = seen.tile.get();
+    symmetry_ = seen.symmetry;
     flat_axis_ = flat_axis;
+    const BuiltTile& tile = *tile_;
     points_.resize(tile.vertices.size());
     known_.assign(tile.vertices.size(), false);
   }
   void set_edge(std::size_t v, double alpha) noexcept {
     const CubeFaces::Cell& edge = cube_.cells()[tile_->vertices[v].face];
-    points_[v] = corner_point<N>(edge.base);
-    points_[v][std::countr_zero(edge.axes)] = alpha;
+    const unsigned axes = symmetries_.axes(symmetry_, edge.axes);
+    points_[v] = corner_point<N>(symmetries_.base(symmetry_, edge.base, axes));
+    points_[v][std::countr_zero(axes)] = alpha;
     known_[v] = true;
   }
 
@@ -106,18 +111,31 @@ class TilePlaces {
 
   Point barycentre(const BuiltTile::Vertex& vertex) noexcept {
     const std::size_t width = cube_.cells()[vertex.face].dim - 1u;
-    Weighted<N> sum;
-    Weighted<N> plain;  // for a facet that has shrunk to a point: all weights equal
+    // Tiles around a face come upon its simplices in different orders; and a 4D tile is to agree with 5D ones that have
+    // it as a face.
+    const bool is_shared = N <= 4 || vertex.face != cube_.tile();
+    const auto first_term = static_cast<std::ptrdiff_t>(terms_.size());  // after those of barycentres that wait
     std::array<Point, N> corners;
     const std::span<const Point> simplex(corners.data(), width);
     for (std::size_t at = vertex.first; at < vertex.end; at += width) {
       const bool has_middle = (tile_->of[at] & BuiltTile::kIsMiddle) != 0;
       for (std::size_t j = 0; j < width; ++j)
         corners[j] = (*this)(tile_->of[at + j] & static_cast<std::uint16_t>(~BuiltTile::kIsMiddle));
-      const Point middle = has_middle ? corners[0] : simplex_barycentre<N>(simplex);
-      sum.add(middle, simplex_measure<N>(simplex));
-      plain.add(middle, 1.0);
+      const Point middle = corners[0];
+      if (is_shared || !has_middle) std::sort(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(width));
+      terms_.push_back({has_middle ? middle : simplex_barycentre<N>(simplex), simplex_measure<N>(simplex)});
     }
+    if (is_shared)
+      std::sort(terms_.begin() + first_term, terms_.end(), [](const Weighted<N>& a, const Weighted<N>& b) {
+        return a.point != b.point ? a.point < b.point : a.weight < b.weight;
+      });
+    Weighted<N> sum;
+    Weighted<N> plain;  // for a facet that has shrunk to a point: all weights equal
+    for (auto term = terms_.begin() + first_term; term != terms_.end(); ++term) {
+      sum.add(term->point, term->weight);
+      plain.add(term->point, 1.0);
+    }
+    terms_.erase(terms_.begin() + first_term, terms_.end());
     return divided(sum.weight > 0 ? sum : plain);
   }
 
@@ -147,10 +165,13 @@ class TilePlaces {
   }
 
   const CubeFaces& cube_;
+  const CubeSymmetries& symmetries_;
   const BuiltTile* tile_ = nullptr;
+  CubeSymmetry symmetry_;
   int flat_axis_ = -1;
   std::vector<Point> points_;
   std::vector<bool> known_;
+  std::vector<Weighted<N>> terms_;
 };
 
 }  // namespace tegl::detail

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tiles that are the same up to the order and the direction of their axes.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tegl::detail {
+
+/// From the frame of one tile to that of another: axis i goes to the i-th entry of a permutation, and then the axes in
+/// `flip` are reversed. All 0: the identity.
+struct CubeSymmetry {
+  std::uint16_t permutation = 0;
+  std::uint8_t flip = 0;
+};
+
+/// The symmetries of the n-cube, n = 2 ... 6.
+class CubeSymmetries {
+ public:
+  explicit CubeSymmetries(int n) : n_(static_cast<unsigned>(n)) {
+    std::array<std::uint8_t, 6> axes = {0, 1, 2, 3, 4, 5};
+    do {
+      Permutation& p = permutations_.emplace_back();
+      p.axes = axes;
+      for (unsigned mask = 0; mask < 1u << n_; ++mask)
+        for (unsigned i = 0; i < n_; ++i)
+          p.spread[mask] = static_cast<std::uint8_t>(p.spread[mask] | (mask >> i & 1u) << axes[i]);
+      for (unsigned i = 0; i < n_; ++i)
+        for (unsigned j = i + 1; j < n_; ++j) p.odd = p.odd != (axes[i] > axes[j]);
+    } while (std::next_permutation(axes.begin(), axes.begin() + n));
+  }
+
+  /// A set of axes of the first frame, in the second.
+  [[nodiscard]] unsigned axes(CubeSymmetry symmetry, unsigned axes) const noexcept {
+    return permutations_[symmetry.permutation].spread[axes];
+  }
+  /// The least corner of the face along `axes` (of the second frame) whose least corner in the first is `base`.
+  [[nodiscard]] unsigned base(CubeSymmetry symmetry, unsigned base, unsigned axes) const noexcept {
+    return permutations_[symmetry.permutation].spread[base] ^ (symmetry.flip & ~axes);
+  }
+  [[nodiscard]] bool is_mirror(CubeSymmetry symmetry) const noexcept {
+    return permutations_[symmetry.permutation].odd != (std::popcount(symmetry.flip) % 2 != 0);
+  }
+
+  /// A symmetry to the frame of `signature` from one in which upper halves have at least as many high corners as lower
+  /// ones, and more so by earlier axes than by later ones. Signatures of half-spaces that are the same up to symmetry
+  /// are equal there (R. O. Winder, Chow parameters in threshold logic, 1971); others mostly.
+  [[nodiscard]] CubeSymmetry to_frame_of(std::uint64_t signature) const noexcept {
+    struct Weight {
+      int more;
+      std::uint8_t axis;
+    };
+    std::array<Weight, 6> weights;
+    CubeSymmetry result;
+    for (unsigned a = 0; a < n_; ++a) {
+      const int more = 2 * std::popcount(signature & upper_half(a)) - std::popcount(signature);
+      if (more < 0) result.flip = static_cast<std::uint8_t>(result.flip | 1u << a);
+      weights[a] = {more < 0 ? -more : more, static_cast<std::uint8_t>(a)};
+    }
+    std::stable_sort(weights.begin(), weights.begin() + n_,
+                     [](const Weight& x, const Weight& y) { return x.more > y.more; });
+    // The permutation's number in lexicographic order.
+    unsigned number = 0;
+    for (unsigned i = 0; i < n_; ++i) {
+      unsigned smaller_later = 0;
+      for (unsigned j = i + 1; j < n_; ++j) smaller_later += weights[j].axis < weights[i].axis ? 1 : 0;
+      number = number * (n_ - i) + smaller_later;
+    }
+    result.permutation = static_cast<std::uint16_t>(number);
+    return result;
+  }
+
+  /// The signature of the first frame that is `signature` in the second.
+  [[nodiscard]] std::uint64_t before(CubeSymmetry symmetry, std::uint64_t signature) const noexcept {
+    std::uint64_t result = 0;
+    for (unsigned v = 0; v < 1u << n_; ++v) result |= (signature >> base(symmetry, v, 0) & 1u) << v;
+    return result;
+  }
+
+ private:
+  struct Permutation {
+    std::array<std::uint8_t, 6> axes;
+    std::array<std::uint8_t, 64> spread{};
+    bool odd = false;
+  };
+  /// The corners v with v >> axis & 1.
+  static std::uint64_t upper_half(unsigned axis) noexcept {
+    constexpr std::array<std::uint64_t, 6> kHalves = {0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
+                                                      0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
+    return kHalves[axis];
+  }
+
+  unsigned n_;
+  std::vector<Permutation> permutations_;  ///< in lexicographic order
+};
+
+}  // namespace tegl::detail
