@@ -19,30 +19,36 @@
 
 namespace tegl::detail {
 
-/// The measure of a simplex, up to a factor that depends on its dimension alone.
+/// Six times the volume of a tetrahedron, by the Gram determinant.
+template <std::size_t N>
+double tetrahedron_volume(std::span<const std::array<double, N>> points) noexcept {
+  std::array<std::array<double, N>, 3> edges;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t a = 0; a < N; ++a) edges[i][a] = points[i + 1][a] - points[0][a];
+  const auto dot = [&](std::size_t i, std::size_t j) {
+    double sum = 0;
+    for (std::size_t a = 0; a < N; ++a) sum += edges[i][a] * edges[j][a];
+    return sum;
+  };
+  const double uu = dot(0, 0), uv = dot(0, 1), uw = dot(0, 2), vv = dot(1, 1), vw = dot(1, 2), ww = dot(2, 2);
+  const double gram = uu * (vv * ww - vw * vw) - uv * (uv * ww - vw * uw) + uw * (uv * vw - vv * uw);
+  return std::sqrt(std::max(0.0, gram));
+}
+
+/// The measure of a simplex of 1 to 4 points, up to a factor that depends on its dimension alone.
 template <std::size_t N>
 double simplex_measure(std::span<const std::array<double, N>> points) noexcept {
-  if (points.size() == 1) return 1.0;
-  if (points.size() == 2) return distance(points[0], points[1]);
-  if (points.size() == 3) return triangle_area(points[0], points[1], points[2]);
-  // The product of the heights, by orthogonalisation.
-  std::array<std::array<double, N>, N> edges;
-  const std::size_t count = points.size() - 1;
-  double square = 1.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t a = 0; a < N; ++a) edges[i][a] = points[i + 1][a] - points[0][a];
-    for (std::size_t j = 0; j < i; ++j) {
-      double along = 0, length = 0;
-      for (std::size_t a = 0; a < N; ++a) along += edges[i][a] * edges[j][a];
-      for (std::size_t a = 0; a < N; ++a) length += edges[j][a] * edges[j][a];
-      for (std::size_t a = 0; a < N; ++a) edges[i][a] -= along / length * edges[j][a];
-    }
-    double height = 0;
-    for (std::size_t a = 0; a < N; ++a) height += edges[i][a] * edges[i][a];
-    if (!(height > 0)) return 0.0;
-    square *= height;
+  static_assert(N <= 5, "larger simplices in more dimensions");
+  switch (points.size()) {
+    case 1:
+      return 1.0;
+    case 2:
+      return distance(points[0], points[1]);
+    case 3:
+      return triangle_area(points[0], points[1], points[2]);
+    default:
+      return tetrahedron_volume(points);
   }
-  return std::sqrt(square);
 }
 
 /// The barycentre of a simplex that is a facet by itself.
