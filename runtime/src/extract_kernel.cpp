@@ -358,18 +358,10 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     if (normals_) reserve(contour_.normals, vertices, sizeof(Vertex));
   }
 
-  /// Where an output has to move, it gets room for what the slabs so far let expect, within bounds.
   Room open(const ContourPart& part) override {
-    const auto resize = [&](auto& output, std::uint64_t size) {
-      if (size > output.capacity()) {
-        const double expected = 1.05 * static_cast<double>(size) / part.done;
-        output.reserve(std::max(size + size / 2, std::min(4 * size, static_cast<std::size_t>(expected))));
-      }
-      output.resize(size);
-    };
-    resize(contour_.vertices, part.end_vertex);
-    resize(contour_.simplices, part.end_simplex);
-    if (normals_) resize(contour_.normals, part.end_vertex);
+    resize_output(contour_.vertices, part.end_vertex, part.done);
+    resize_output(contour_.simplices, part.end_simplex, part.done);
+    if (normals_) resize_output(contour_.normals, part.end_vertex, part.done);
     return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex,
             normals_ ? contour_.normals.data() + part.first_vertex : nullptr};
   }

@@ -4,6 +4,7 @@
 // their own tables or limits.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -24,6 +25,16 @@ void check_vertex_count(std::uint64_t count, std::uint64_t limit);
 
 /// Throws InvalidIsovalue or InvalidArgument.
 void check_arguments(double isovalue, const ExtractOptions& options);
+
+/// Where an output has to move, it gets room for what the share of the image that is `done` lets expect, within bounds.
+template <class T>
+void resize_output(Buffer<T>& output, std::uint64_t size, double done) {
+  if (size > output.capacity()) {
+    const double expected = 1.05 * static_cast<double>(size) / done;
+    output.reserve(std::max(size + size / 2, std::min(4 * size, static_cast<std::size_t>(expected))));
+  }
+  output.resize(size);
+}
 
 /// Whether the orientation of tiles, "positive side faces the high corners", is to be reversed, so that normals point
 /// as asked for in the world.

@@ -285,9 +285,10 @@ class TileExtraction {
   }
 
   void write(std::size_t k) {
-    contour_->vertices.resize(vertices_);
-    if (options_.normals) contour_->normals.resize(vertices_);
-    contour_->simplices.resize(slab(k).simplices.back());
+    const double done = static_cast<double>(k + 1) / static_cast<double>(shape_.layers() - 1);
+    resize_output(contour_->vertices, vertices_, done);
+    if (options_.normals) resize_output(contour_->normals, vertices_, done);
+    resize_output(contour_->simplices, slab(k).simplices.back(), done);
     for_range(slab(k).cells.size(), 16, [&](std::size_t from, std::size_t to) {
       TilePlaces<N> places(cube_, built_.symmetries());
       std::vector<Index> ids;
