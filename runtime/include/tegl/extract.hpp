@@ -61,9 +61,9 @@ struct ExtractStats {
 /// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for 5D
 /// images with missing values. Cost: one pass over the samples plus the output. Real: float or double.
 ///
-/// 5D: no tables; a tile is built when its signature is first met, which takes most of the time (0.2 to 5 ms for each).
-/// Up to 256 MiB of built tiles are kept for the next ones. Closed at the border, a 5D contour may have simplices of zero
-/// size there.
+/// 5D: no tables; a tile is built when its signature is first met, up to symmetry (0.2 to 5 ms for each). That is little
+/// for smooth images and nearly all for noise. Up to 256 MiB of built tiles are kept for the next ones. Closed at the
+/// border, a 5D contour may have simplices of zero size there.
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
