@@ -96,9 +96,9 @@ void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const R
   const std::size_t first = at.row * shape_.pitch();
   auto index = shape_.index_of(at.row);
   index[N - 1] = at.layer;
-  plane.base[at.row] = static_cast<Index>(vertices_.size());
+  plane.offset[at.row] = static_cast<Index>(vertices_.size());
   for (std::size_t w = 0; w < shape_.words(); ++w) {
-    plane.prefix[first + w] = static_cast<std::uint32_t>(vertices_.size()) - plane.base[at.row];
+    plane.prefix[first + w] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
     plane.bits[0][first + w] = (inverted_ ? ~layer.high[first + w] : layer.high[first + w]) & border[w];
     for (Word rest = plane.bits[0][first + w]; rest != 0; rest &= rest - 1) {
       index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
@@ -110,7 +110,7 @@ void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const R
 template <int N, class Real>
 template <unsigned Axes>
 void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at) {
-  plane.base[at.row] = static_cast<Index>(vertices_.size());
+  plane.offset[at.row] = static_cast<Index>(vertices_.size());
   auto index = shape_.index_of(at.row);
   index[N - 1] = at.layer;
   if (!shape_.has_cells(index, Axes)) return;
@@ -118,7 +118,7 @@ void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const
   CellBits<N, Axes> cells(view, at.row);
   for (std::size_t w = 0; w < shape_.words(); ++w) {
     const std::size_t word = at.row * shape_.pitch() + w;
-    plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.base[at.row];
+    plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
     plane.bits[0][word] = 0;
     if (border[w] == 0) continue;
     cells.load(w);

@@ -32,43 +32,49 @@ HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) 
   return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, of which instruction sets make this or that
 }
 
-template <class T>
-HWY_INLINE void alphas(const T* a, const T* b, std::ptrdiff_t stride, const std::uint32_t* at, std::size_t count,
-                       double isovalue, double epsilon, double* out) {
+/// Some edges, from their samples.
+HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
+                          double* out) {
   const hn::ScalableTag<double> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  alignas(64) double from[kLanes];
-  alignas(64) double to[kLanes];
   const auto threshold = hn::Set(d, isovalue);
   const auto least = hn::Set(d, epsilon);
   const auto most = hn::Set(d, 1.0 - epsilon);
   const auto finite = hn::Set(d, std::numeric_limits<double>::max());
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) {
-    for (std::size_t j = 0; j < kLanes; ++j) {
-      const std::ptrdiff_t place = stride * static_cast<std::ptrdiff_t>(at[i + j]);
-      from[j] = static_cast<double>(a[place]);
-      to[j] = static_cast<double>(b[place]);
-    }
-    const auto start = hn::Load(d, from);
-    const auto difference = hn::Sub(hn::Load(d, to), start);
+    const auto start = hn::LoadU(d, from + i);
+    const auto difference = hn::Sub(hn::LoadU(d, to + i), start);
     if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite))) {
-      for (std::size_t j = 0; j < kLanes; ++j) out[i + j] = alpha_of(from[j], to[j], isovalue, epsilon);
+      for (std::size_t j = i; j < i + kLanes; ++j) out[j] = alpha_of(from[j], to[j], isovalue, epsilon);
       continue;
     }
     const auto alpha = hn::Div(hn::Sub(threshold, start), difference);
     hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least), most), hn::Zero(d)), d, out + i);
   }
-  for (; i < count; ++i) {
-    const std::ptrdiff_t place = stride * static_cast<std::ptrdiff_t>(at[i]);
-    out[i] = alpha_of(static_cast<double>(a[place]), static_cast<double>(b[place]), isovalue, epsilon);
+  for (; i < count; ++i) out[i] = alpha_of(from[i], to[i], isovalue, epsilon);
+}
+
+template <class T>
+HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) {
+  // Gathered by blocks: what was stored by numbers is not to be loaded by registers at once.
+  constexpr std::size_t kBlock = 128;
+  double from[kBlock];
+  double to[kBlock];
+  for (std::size_t first = 0; first < edges.count; first += kBlock) {
+    const std::size_t count = std::min(kBlock, edges.count - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::ptrdiff_t at = edges.rows[first + i] + static_cast<std::ptrdiff_t>(edges.at[first + i]) * edges.stride;
+      from[i] = static_cast<double>(edges.starts[at]);
+      to[i] = static_cast<double>(edges.ends[at]);
+    }
+    alphas_of(from, to, count, isovalue, epsilon, out + first);
   }
 }
 
-#define TEGL_EDGES(T, name)                                                                            \
-  void name(const T* a, const T* b, std::ptrdiff_t stride, const std::uint32_t* at, std::size_t count, \
-            double isovalue, double epsilon, double* out) {                                            \
-    alphas(a, b, stride, at, count, isovalue, epsilon, out);                                           \
+#define TEGL_EDGES(T, name)                                                              \
+  void name(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) { \
+    alphas(edges, isovalue, epsilon, out);                                               \
   }
 TEGL_EDGES(std::uint8_t, alphas_u8)
 TEGL_EDGES(std::int8_t, alphas_i8)
@@ -87,12 +93,11 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-#define TEGL_DISPATCH(T, name)                                                                                   \
-  HWY_EXPORT(name);                                                                                              \
-  template <>                                                                                                    \
-  void edge_alphas<T>(const T* a, const T* b, std::ptrdiff_t stride, const std::uint32_t* at, std::size_t count, \
-                      double isovalue, double epsilon, double* out) noexcept {                                   \
-    HWY_DYNAMIC_DISPATCH(name)(a, b, stride, at, count, isovalue, epsilon, out);                                 \
+#define TEGL_DISPATCH(T, name)                                                                              \
+  HWY_EXPORT(name);                                                                                         \
+  template <>                                                                                               \
+  void edge_alphas<T>(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept { \
+    HWY_DYNAMIC_DISPATCH(name)(edges, isovalue, epsilon, out);                                              \
   }
 TEGL_DISPATCH(std::uint8_t, alphas_u8)
 TEGL_DISPATCH(std::int8_t, alphas_i8)

@@ -114,7 +114,7 @@ class CellEdges {
       const unsigned mask = kStreams[s].mask;
       const EdgePlane& plane = view.edges(kStreams[s].axis, mask >> (N - 1) & 1u);
       const std::size_t at = view.shape->shifted(row, mask);
-      base_[s] = plane.base[at];
+      base_[s] = plane.first(at);
       prefix_[s] = plane.prefix.data() + at * view.shape->pitch();
       bits_[s] = plane.bits[0].data() + at * view.shape->pitch();
     }
@@ -128,9 +128,14 @@ class CellEdges {
     }
   }
   /// By local edge: the first vertex of its stream.
-  void firsts(Index* out) const noexcept {
+  static void firsts(const SlabView<N>& view, std::size_t row, Index* out) noexcept {
+    constexpr auto kStreams = streams();
     constexpr auto kPlaces = places();
-    for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = base_[kPlaces[e].stream];
+    std::array<Index, kStreamCount> first;
+    for (unsigned s = 0; s < kStreamCount; ++s)
+      first[s] = view.edges(kStreams[s].axis, kStreams[s].mask >> (N - 1) & 1u)
+                     .first(view.shape->shifted(row, kStreams[s].mask));
+    for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = first[kPlaces[e].stream];
   }
   /// Numbers of all edges of cell `bit`, of ascending ones; those of edges that are not critical mean nothing.
   void ids(unsigned bit, Index* out) noexcept {
@@ -200,7 +205,7 @@ class TileCubes {
     for (unsigned s = 0; s < kStreamCount; ++s) {
       const CubePlane& plane = view.cubes(omitted(s), omitted(s) == 3 ? side(s) : 0);
       const std::size_t at = view.shape->shifted(row, side(s) << omitted(s));
-      base_[s] = plane.base[at];
+      base_[s] = plane.first(at);
       prefix_[s] = plane.prefix.data() + at * view.shape->pitch();
       for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
         bits_[s][slot] = plane.bits[slot].data() + at * view.shape->pitch();

@@ -29,8 +29,8 @@ struct TableSet {
 template <int N>
 class Counter {
  public:
-  /// `rows`: the table for the quick way, or null.
-  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows);
+  /// `rows`: the table for the quick way, or null. `ranks`: whether others ask for the ranks of vertices on edges.
+  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks);
 
   /// Storage for a layer's bits; for what is counted of a layer or a slab; and for missing values, where they turn up.
   void allocate(Layer<N>& layer) const;
@@ -43,26 +43,33 @@ class Counter {
   [[nodiscard]] std::size_t layer_planes_bytes() const noexcept;
   [[nodiscard]] std::size_t slab_planes_bytes() const noexcept;
 
-  // By row; rows may be done in any order and side by side. A pass needs the passes before it on all rows of what it
-  // looks at.
+  // By chunks of rows, which may be done in any order and side by side. A pass needs the passes before it on all rows
+  // of what it looks at.
 
-  /// 1. Classifies a row of layer `k`; `invert` for the high-connected alternative. `buffer`: pitch words.
-  void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer,
+  /// 1. Classifies layer `k`; `invert` for the high-connected alternative. `buffer`: pitch words.
+  void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
                 Word* buffer) const;
-  /// After all rows of a layer are classified. If samples are missing, and there is no storage for them so far, then
-  /// rows with missing samples are to be classified once more when there is.
+  /// After all chunks of a layer are classified. If samples are missing, and there is no storage for them so far, then
+  /// the layer is to be classified once more when there is.
   static void find_missing(Layer<N>& layer);
   /// 2. Tiles without a missing corner, between two layers; slab.all_valid is known.
-  void find_valid(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;
-  /// 3. Critical edges (and cubes) in a layer; `below` and `above` are its slabs, or null at the border. `buffer`:
-  /// pitch words.
-  void count_layer(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row, Word* buffer) const;
-  /// 3. Critical edges (and cubes) along the last axis, active tiles and what they own.
-  void count_slab(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const;
+  void find_valid(const Layer<N>& lower, const Layer<N>& upper, std::size_t chunk, Slab<N>& slab) const;
+  /// 3. Critical edges (and cubes) in layer 0, below `above`. `buffer`: pitch words.
+  void count_first_layer(Layer<N>& layer, const Slab<N>& above, std::size_t chunk, Word* buffer) const;
+  /// 3. Critical edges (and cubes) along the last axis, active tiles and what they own; and what is critical in the
+  /// upper layer, above which there is `above` (or null). `upper` and `slab` are those of `view`.
+  void count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above, std::size_t chunk,
+                  Word* buffer) const;
 
   /// Turn counts into places, starting with vertex `first` (and simplex `first_simplex`); return the end.
   std::uint64_t place_layer(Layer<N>& layer, std::uint64_t first) const;
   std::uint64_t place_slab(Slab<N>& slab, std::uint64_t first, std::uint64_t& first_simplex) const;
+
+  /// Whether the edges of a row of the slab, and those of the layer above it there, are to be known from the row's
+  /// active tiles: else from bits.
+  [[nodiscard]] bool goes_by_tiles(const Slab<N>& slab, std::size_t row) const noexcept {
+    return quick_ && slab.all_valid && shape_.has_cells(shape_.index_of(row), (1u << N) - 1);
+  }
 
   /// Whether any cube has vertices of its own.
   [[nodiscard]] bool has_cubes() const noexcept { return has_cubes_; }
@@ -73,6 +80,20 @@ class Counter {
                             Word* out) const;
 
  private:
+  void classify_row(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer,
+                    Word* buffer) const;
+  void find_valid_row(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;
+  void count_layer_row(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row,
+                       Word* buffer) const;
+  void count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const;
+  /// All of the slab's row and of the upper layer's at once, if the row goes by tiles.
+  void count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row) const;
+  /// Whether all samples that a chunk's tiles and edges touch are alike.
+  [[nodiscard]] bool is_uniform_chunk(const SlabView<N>& view, std::size_t chunk) const;
+  void clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) const;
+  /// Offsets of a row's vertices in its chunk, from `first` (or the sums so far) on; returns how many there are.
+  std::uint64_t offset_layer_row(Layer<N>& layer, std::size_t row, std::uint64_t first) const;
+  std::uint64_t offset_slab_row(Slab<N>& slab, std::size_t row, SlabChunk& sums) const;
   void count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
                    const Word* valid) const;
   template <unsigned Axes>
@@ -82,6 +103,8 @@ class Counter {
   const RowShape<N>& shape_;
   const tables::TileTable& tile_;
   const RowTable* rows_;
+  bool ranks_;
+  bool quick_ = false;
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
 };

@@ -5,58 +5,18 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <type_traits>
 
 #include "extract_cell.hpp"
 #include "extract_count.hpp"
+#include "extract_edges.hpp"
 #include "extract_own.hpp"
 #include "extract_place.hpp"
 #include "extract_rows.hpp"
 #include "extract_tables.hpp"
 
 namespace tegl::detail {
-
-/// Room for vertices by number. Numbers count modulo 2^32, so that a contour may have more, if no part of it has.
-template <class Vertex>
-struct VertexRun {
-  Vertex* data;
-  Index first;
-  Vertex* normals = nullptr;  ///< null: none are wanted
-  Vertex& operator[](Index id) const noexcept { return data[static_cast<Index>(id - first)]; }
-  Vertex& normal(Index id) const noexcept { return normals[static_cast<Index>(id - first)]; }
-};
-
-/// What a thread keeps between rows: the critical edges of one, by sample and by place.
-struct EdgeScratch {
-  EdgeScratch(std::size_t samples, bool with_normals)
-      : at(samples + 3), alphas(samples), normals(with_normals ? std::make_unique<NormalScratch>() : nullptr) {}
-  std::vector<std::uint32_t> at;
-  std::vector<double> alphas;
-  std::unique_ptr<NormalScratch> normals;  ///< null: none are wanted
-
-  static constexpr std::size_t bytes(std::size_t samples) noexcept {
-    return samples * (sizeof(std::uint32_t) + sizeof(double));
-  }
-};
-
-/// Writes the points on a row's edges of one axis.
-template <int N, class Real>
-void generate_edges(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape,
-                    const EdgePlane& plane, std::size_t row, std::size_t layer, int axis, EdgeScratch& scratch,
-                    VertexRun<typename Placement<N, Real>::Vertex> vertices) noexcept {
-  if (plane.count[row] == 0) return;
-  const std::size_t count = list_bits(plane.bits[0].data() + row * shape.pitch(), shape.words(), scratch.at.data());
-  auto start = shape.index_of(row);
-  start[N - 1] = layer;
-  double* const alphas = scratch.alphas.data();
-  source.edge_alphas(start, axis, scratch.at.data(), count, alphas);
-  placement.edges(start, axis, scratch.at.data(), count, alphas, &vertices[plane.base[row]]);
-  if (placement.normals() != nullptr)
-    placement.normals()->edges(start, axis, scratch.at.data(), count, alphas, *scratch.normals,
-                               &vertices.normal(plane.base[row]));
-}
 
 /// Writes the barycentres of a row's cubes along `Axes` (N = 4), where tiles do not (TileWriter::writes_cubes). `view`:
 /// the layers around them.
@@ -71,7 +31,7 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
   index[3] = layer;
   CellBits<4, Axes> cells(view, row);
   std::array<TilePoint<3>, tables::kFaceSlots> points;
-  Index next = plane.base[row];
+  Index next = plane.first(row);
   for (std::size_t w = 0; w < shape.words(); ++w) {
     Word rest = first[w];
     if (rest == 0) continue;
@@ -120,7 +80,7 @@ class TileWriter {
     auto index = shape.index_of(row);
     if (view.slab->active_count[row] == 0) return;
     index[N - 1] = layer;
-    Simplex* const out = simplices + (view.slab->simplex_base[row] - first_simplex);
+    Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
     if (rows_ != nullptr && view.slab->all_valid)
       write_quickly(view, row, index, vertices, out);
     else
@@ -139,8 +99,8 @@ class TileWriter {
                      VertexRun<Vertex> vertices, Simplex* out) const noexcept {
     const RowShape<N>& shape = *view.shape;
     TileOutput<N> output{
-        view.slab->signatures.data() + row * shape.size(0), view.slab->active_count[row], {}, flip_, out};
-    CellEdges<N, kAll>(view, row).firsts(output.first.data());
+        view.slab->signatures.data() + view.slab->first_tile[row], view.slab->active_count[row], {}, flip_, out};
+    CellEdges<N, kAll>::firsts(view, row, output.first.data());
     // The tiles with vertices of their own come in order: their places are found by walking along.
     struct Own {
       const TileWriter& writer;
@@ -177,7 +137,7 @@ class TileWriter {
         return out;
       }
     };
-    Own own{*this, start, vertices, view.slab->active.data() + row * shape.pitch(), view.slab->tile_base[row]};
+    Own own{*this, start, vertices, view.slab->active.data() + row * shape.pitch(), view.slab->first_own(row)};
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
@@ -191,7 +151,7 @@ class TileWriter {
     if constexpr (N == 4)
       if (has_cubes_) cubes.emplace(view, row);
     Ids ids;
-    Index own = view.slab->tile_base[row];
+    Index own = view.slab->first_own(row);
     for (std::size_t w = 0; w < shape.words(); ++w) {
       Word rest = active[w];
       if (rest == 0) continue;

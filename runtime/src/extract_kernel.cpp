@@ -37,7 +37,7 @@ namespace {
 /// the next, and needs little memory beside the image.
 template <int N>
 std::size_t batch_size(const RowShape<N>& shape, const Counter<N>& counter, std::size_t sample_bytes,
-                       std::size_t threads) {
+                       std::size_t threads, std::size_t thread_bytes) {
   // Several threads meet after every pass, which takes longer than the way from one cache to the next.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
   constexpr double kShare = 0.05;       // of the image
@@ -46,8 +46,8 @@ std::size_t batch_size(const RowShape<N>& shape, const Counter<N>& counter, std:
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
   // Of layers, one more than slabs is counted, and another one is classified.
   constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
-  const auto fixed = static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() +
-                                         threads * RowScratch::bytes(shape.size(0), shape.pitch()));
+  const auto fixed =
+      static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
   const auto each = static_cast<double>(counter.layer_bytes() + counter.layer_planes_bytes() +
                                         counter.slab_planes_bytes() + kBookkeeping);
   const double most = (std::max(kLittle, kShare * image) - fixed) / each;
@@ -72,12 +72,16 @@ class Extraction {
                                                                         : std::nullopt),
         row_table_(rows_ ? &*rows_ : tables.rows),
         placement_(grid),
-        counter_(shape_, tables, row_table_),
+        counter_(shape_, tables, row_table_, options.close),
         tiles_(source, tables, row_table_, placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes()),
         pinches_(shape_, counter_),
-        workers_(options.threads, shape_.size(0), shape_.pitch(), options.normals),
-        batch_(plan.batch == 0 ? batch_size(shape_, counter_, source.sample_bytes(), workers_.count())
+        workers_(options.threads,
+                 [this] {
+                   return Scratch{std::vector<Word>(shape_.pitch()), {source_, placement_, shape_}};
+                 }),
+        batch_(plan.batch == 0 ? batch_size(shape_, counter_, source.sample_bytes(), workers_.count(),
+                                            EdgeWriter<N, Real>::bytes(shape_.size(0)))
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
@@ -121,14 +125,15 @@ class Extraction {
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
 
-  struct Rows {
-    std::size_t first, end;
+  /// What a thread keeps.
+  struct Scratch {
+    std::vector<Word> words;
+    EdgeWriter<N, Real> edges;
   };
 
   Layer<N>& layer(std::size_t k) noexcept { return layers_[k % layers_.size()]; }
   Slab<N>& slab(std::size_t k) noexcept { return slabs_[k % slabs_.size()]; }
   Slab<N>* slab_above(std::size_t k) noexcept { return k + 1 < shape_.layers() ? &slab(k) : nullptr; }
-  Slab<N>* slab_below(std::size_t k) noexcept { return k > 0 ? &slab(k - 1) : nullptr; }
   SlabView<N> view(std::size_t k) noexcept { return {&shape_, {&layer(k), &layer(k + 1)}, &slab(k)}; }
 
   void report(std::size_t done, std::size_t all) const {
@@ -136,18 +141,13 @@ class Extraction {
       throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {} of {} layers", done, all));
   }
 
-  /// Calls work(k, rows, scratch) for rows of layer (or slab) k, until all rows of the layers first ... end - 1 are
-  /// done, side by side.
+  /// Calls work(k, chunk, scratch) for all chunks of the layers (or slabs) first ... end - 1, side by side.
   template <class Work>
-  void for_rows(std::size_t first, std::size_t end, const Work& work) {
-    const std::size_t rows = shape_.rows();
-    workers_.for_range((end - first) * rows, kLeastWork / shape_.size(0) + 1,
-                       [&](std::size_t from, std::size_t to, RowScratch& scratch) {
-                         for (std::size_t next; from < to; from = next) {
-                           const std::size_t k = from / rows;
-                           next = std::min(to, (k + 1) * rows);
-                           work(first + k, Rows{from - k * rows, next - k * rows}, scratch);
-                         }
+  void for_chunks(std::size_t first, std::size_t end, const Work& work) {
+    const std::size_t chunks = shape_.chunks();
+    workers_.for_range((end - first) * chunks, kLeastWork / (shape_.size(0) * std::min(shape_.rows(), kChunkRows)) + 1,
+                       [&](std::size_t from, std::size_t to, Scratch& scratch) {
+                         for (; from < to; ++from) work(first + from / chunks, from % chunks, scratch);
                        });
   }
 
@@ -160,10 +160,8 @@ class Extraction {
   void classify(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
     classified_ = prepared_;
-    for_rows(from, classified_, [&](std::size_t k, Rows rows, RowScratch& scratch) {
-      Layer<N>& here = layer(k);
-      for (std::size_t row = rows.first; row < rows.end; ++row)
-        counter_.classify(source_, k, inverted_, row, here, scratch.words.data());
+    for_chunks(from, classified_, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.words.data());
     });
     for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
     write_missing(from, classified_);
@@ -177,10 +175,8 @@ class Extraction {
     if (all) return;
     for (std::size_t k = valid_from; k < valid_end; ++k)
       if (!slab(k).all_valid && slab(k).valid.empty()) counter_.allocate_valid(slab(k));
-    for_rows(valid_from, valid_end, [&](std::size_t k, Rows rows, RowScratch&) {
-      if (slab(k).all_valid) return;
-      for (std::size_t row = rows.first; row < rows.end; ++row)
-        counter_.find_valid(layer(k), layer(k + 1), row, slab(k));
+    for_chunks(valid_from, valid_end, [&](std::size_t k, std::size_t chunk, Scratch&) {
+      if (!slab(k).all_valid) counter_.find_valid(layer(k), layer(k + 1), chunk, slab(k));
     });
   }
 
@@ -190,9 +186,8 @@ class Extraction {
       Layer<N>& here = layer(k);
       if (!here.any_missing || !here.missing.empty()) continue;
       counter_.allocate_missing(here);
-      for_rows(k, k + 1, [&](std::size_t, Rows rows, RowScratch& scratch) {
-        for (std::size_t row = rows.first; row < rows.end; ++row)
-          if (here.row_missing[row] != 0) counter_.classify(source_, k, inverted_, row, here, scratch.words.data());
+      for_chunks(k, k + 1, [&](std::size_t, std::size_t chunk, Scratch& scratch) {
+        counter_.classify(source_, k, inverted_, chunk, here, scratch.words.data());
       });
     }
   }
@@ -207,19 +202,10 @@ class Extraction {
 
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
-    const std::size_t first_layer = first == 0 ? 0 : first + 1;
     take_planes(first, end);
-    for_rows(first, end + 1, [&](std::size_t k, Rows rows, RowScratch& scratch) {
-      Layer<N>& here = layer(k);
-      const Slab<N>* const below = slab_below(k);
-      const Slab<N>* const above = slab_above(k);
-      if (k >= first_layer)
-        for (std::size_t row = rows.first; row < rows.end; ++row)
-          counter_.count_layer(here, below, above, row, scratch.words.data());
-      if (k == end) return;
-      const SlabView<N> around = view(k);
-      for (std::size_t row = rows.first; row < rows.end; ++row)
-        counter_.count_slab(around, slab(k), row, scratch.words.data());
+    for_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.words.data());
+      counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.words.data());
     });
     part_.first_vertex = part_.end_vertex;
     part_.first_simplex = part_.end_simplex;
@@ -227,7 +213,7 @@ class Extraction {
     if (first == 0) place_layer(0);
     for (std::size_t k = first; k < end; ++k) {
       part_.end_vertex = counter_.place_slab(slab(k), part_.end_vertex, part_.end_simplex);
-      for (const std::uint32_t tiles : slab(k).active_count) active += tiles;
+      for (const SlabChunk& chunk : slab(k).chunks) active += chunk.active;
       place_layer(k + 1);
     }
     check_vertex_count(part_.end_vertex, max_vertices_);
@@ -245,35 +231,69 @@ class Extraction {
 
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
     if (room.vertices == nullptr && room.simplices == nullptr) return;
-    const std::size_t first_layer = first == 0 ? 0 : first + 1;
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
-    for_rows(first, end + 1, [&](std::size_t k, Rows rows, RowScratch& scratch) {
-      if (k >= first_layer)
-        for (std::size_t row = rows.first; row < rows.end; ++row) generate_layer(k, row, scratch.edges, vertices);
-      if (k == end) return;
-      const SlabView<N> around = view(k);
-      for (std::size_t row = rows.first; row < rows.end; ++row) {
-        generate_slab(around, k, row, scratch.edges, vertices);
-        tiles_.write(around, row, k, vertices, room.simplices, part_.first_simplex);
-      }
+    for_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
+      generate_slab(k, chunk, scratch.edges, vertices, room.simplices);
     });
   }
 
-  /// The vertices in a row of layer k.
-  void generate_layer(std::size_t k, std::size_t row, EdgeScratch& scratch, VertexRun<Vertex> vertices) noexcept {
+  /// Where the points on edges of a chunk go, of a layer or along the last axis. Other vertices may come between them.
+  typename EdgeTarget<Vertex>::Run run_in_layer(std::size_t k, std::size_t chunk, VertexRun<Vertex> vertices) {
     const Layer<N>& here = layer(k);
-    for (int axis = 0; axis < N - 1; ++axis)
-      generate_edges(source_, placement_, shape_, here.edges[axis], row, k, axis, scratch, vertices);
-    if constexpr (N == 4)
-      if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1)))
-        generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
-                           vertices);
+    Vertex* const first = &vertices[here.edges[0].chunk_first[chunk]];
+    return {k, counter_.has_cubes() ? first : first + here.chunk_vertices[chunk]};
+  }
+  typename EdgeTarget<Vertex>::Run run_in_slab(std::size_t k, std::size_t chunk, VertexRun<Vertex> vertices) {
+    const Slab<N>& here = slab(k);
+    Vertex* const first = &vertices[here.edges.chunk_first[chunk]];
+    const bool others = counter_.has_cubes() || tables_.tile->max_tile_vertices != 0;
+    return {k, others ? first : first + here.chunks[chunk].vertices};
   }
 
-  /// The vertices in a row of slab k that its tiles share.
-  void generate_slab(const SlabView<N>& around, std::size_t k, std::size_t row, EdgeScratch& scratch,
-                     VertexRun<Vertex> vertices) const noexcept {
-    generate_edges(source_, placement_, shape_, around.slab->edges, row, k, N - 1, scratch, vertices);
+  /// The vertices of a chunk of layer 0.
+  void generate_first_layer(std::size_t chunk, EdgeWriter<N, Real>& edges, VertexRun<Vertex> vertices) {
+    edges.start({run_in_layer(0, chunk, vertices), {}, vertices});
+    for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
+      edges.add_by_bits(&layer(0), nullptr, row);
+      generate_layer_cubes(0, row, vertices);
+    }
+    edges.finish();
+  }
+
+  /// The vertices and simplices of a chunk of slab k, and the vertices of the layer above it there.
+  void generate_slab(std::size_t k, std::size_t chunk, EdgeWriter<N, Real>& edges, VertexRun<Vertex> vertices,
+                     typename Contour<N, Real>::Simplex* simplices) {
+    const SlabView<N> around = view(k);
+    const Slab<N>& here = slab(k);
+    std::uint32_t busy = here.chunks[chunk].busy;
+    if (busy == 0) return;
+    edges.start({run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
+    for (; busy != 0; busy &= busy - 1) {
+      const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(busy));
+      if (counter_.goes_by_tiles(here, row))
+        edges.add_by_tiles(around, row);
+      else
+        edges.add_by_bits(&layer(k + 1), &here, row);
+      generate_layer_cubes(k + 1, row, vertices);
+      generate_slab_cubes(around, k, row, vertices);
+      tiles_.write(around, row, k, vertices, simplices, part_.first_simplex);
+    }
+    edges.finish();
+  }
+
+  void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
+                            [[maybe_unused]] VertexRun<Vertex> vertices) noexcept {
+    if constexpr (N == 4)
+      if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
+        const Layer<N>& here = layer(k);
+        generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
+                           vertices);
+      }
+  }
+  void generate_slab_cubes([[maybe_unused]] const SlabView<N>& around, [[maybe_unused]] std::size_t k,
+                           [[maybe_unused]] std::size_t row,
+                           [[maybe_unused]] VertexRun<Vertex> vertices) const noexcept {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
         const auto& cubes = around.slab->cubes;
@@ -323,7 +343,7 @@ class Extraction {
   TileWriter<N, Real> tiles_;
   std::optional<Caps<N, Real>> caps_;
   PinchCandidates<N> pinches_;
-  Workers workers_;
+  Workers<Scratch> workers_;
   std::size_t batch_;             ///< slabs at a time
   std::vector<Layer<N>> layers_;  ///< by k modulo their number
   std::vector<Slab<N>> slabs_;

@@ -11,6 +11,7 @@
 // independent of each other, and no two passes can disagree.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -23,6 +24,11 @@
 #include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
+
+/// Rows that are counted, placed and written together: a *chunk* of a layer or slab. Places are sums over chunks, and
+/// sums over rows within each.
+inline constexpr std::size_t kChunkRows = 32;
+constexpr std::size_t chunk_of(std::size_t row) noexcept { return row / kChunkRows; }
 
 /// Sizes of an image in rows and words.
 template <int N>
@@ -42,6 +48,11 @@ class RowShape {
   [[nodiscard]] std::size_t size(int axis) const noexcept { return size_[axis]; }
   [[nodiscard]] std::size_t layers() const noexcept { return size_[N - 1]; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::size_t chunks() const noexcept { return chunk_of(rows_ - 1) + 1; }
+  /// The end of the rows of a chunk.
+  [[nodiscard]] std::size_t chunk_end(std::size_t chunk) const noexcept {
+    return std::min(rows_, (chunk + 1) * kChunkRows);
+  }
   [[nodiscard]] std::size_t words() const noexcept { return words_; }
   /// Words from row to row: one more, always 0, so that a row may be read shifted.
   [[nodiscard]] std::size_t pitch() const noexcept { return words_ + 1; }
@@ -84,24 +95,28 @@ template <unsigned Slots>
 struct RankPlane {
   std::array<std::vector<Word>, Slots> bits;
   std::vector<std::uint32_t> prefix;  ///< vertices of the row before this word
-  std::vector<Index> base;            ///< first vertex of the row
+  std::vector<Index> offset;          ///< first vertex of the row, from the chunk's first on
   std::vector<std::uint32_t> count;   ///< vertices of the row; where there are none, its bits mean nothing
+  std::vector<Index> chunk_first;     ///< first vertex of each chunk
 
   void allocate(std::size_t rows, std::size_t pitch) {
     for (auto& plane : bits) plane.assign(rows * pitch, 0);
     prefix.assign(rows * pitch, 0);
-    base.assign(rows, 0);
+    offset.assign(rows, 0);
     count.assign(rows, 0);
+    chunk_first.assign(chunk_of(rows - 1) + 1, 0);
   }
   /// Bytes for each row.
   static constexpr std::size_t row_bytes(std::size_t pitch) noexcept {
     return pitch * (Slots * sizeof(Word) + sizeof(std::uint32_t)) + sizeof(Index) + sizeof(std::uint32_t);
   }
+  /// The first vertex of a row.
+  [[nodiscard]] Index first(std::size_t row) const noexcept { return chunk_first[chunk_of(row)] + offset[row]; }
   /// The first vertex of cell i of a row (of the next cell that has one, if it has none).
   [[nodiscard]] Index id(std::size_t row, std::size_t pitch, std::size_t i) const noexcept {
     const std::size_t w = row * pitch + i / kWordBits;
     const Word below = (Word{1} << (i % kWordBits)) - 1;
-    Index id = base[row] + prefix[w];
+    Index id = first(row) + prefix[w];
     for (const auto& plane : bits) id += static_cast<Index>(std::popcount(plane[w] & below));
     return id;
   }
@@ -115,13 +130,25 @@ enum class RowState : std::uint8_t { low, high, mixed };
 /// What is counted of a layer.
 template <int N>
 struct LayerPlanes {
-  std::array<EdgePlane, N - 1> edges;  ///< by axis
-  CubePlane cubes;                     ///< N = 4: the cubes in the layer
+  std::array<EdgePlane, N - 1> edges;         ///< by axis
+  CubePlane cubes;                            ///< N = 4: the cubes in the layer
+  std::vector<std::uint64_t> chunk_vertices;  ///< by chunk: how many there are
+};
+
+/// What a chunk of a slab comes to.
+struct SlabChunk {
+  std::uint64_t vertices = 0;
+  std::uint64_t simplices = 0;
+  std::uint64_t active = 0;  ///< tiles
+  std::uint64_t first_simplex = 0;
+  std::uint32_t busy = 0;  ///< bit i: row i of the chunk has tiles or vertices, or the layer above has there
+  static_assert(kChunkRows <= 32);
 };
 
 template <int N>
 struct Layer : LayerPlanes<N> {
   std::vector<RowState> state;            ///< by row, of `high`; with missing samples: mixed
+  std::vector<RowState> chunk_state;      ///< by chunk: that of all its rows, or mixed
   std::vector<Word> high;                 ///< rows x pitch; inverted for the high-connected alternative
   std::vector<Word> missing;              ///< rows x pitch, or none as long as no sample is missing
   std::vector<std::uint8_t> row_missing;  ///< by row: whether any sample is missing
@@ -131,13 +158,23 @@ struct Layer : LayerPlanes<N> {
 /// What is counted of a slab.
 template <int N>
 struct SlabPlanes {
-  std::vector<Word> active;                 ///< rows x pitch: valid tiles with high and low corners
-  Buffer<std::uint16_t> signatures;         ///< rows x samples of a row: of each row's active tiles, in order
-  std::vector<std::uint32_t> active_count;  ///< by row
-  EdgePlane edges;                          ///< along the last axis
-  std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
-  std::vector<Index> tile_base;             ///< first vertex of each row's tiles; while counting: their number
-  std::vector<std::uint64_t> simplex_base;  ///< first simplex of each row; while counting: their number
+  std::vector<Word> active;                   ///< rows x pitch: valid tiles with high and low corners
+  Buffer<std::uint16_t> signatures;           ///< of active tiles, in order: of chunks apart, of their rows in turn
+  Buffer<std::uint16_t> tiles_at;             ///< likewise: where they are along the row (modulo 2^16)
+  std::vector<std::size_t> first_tile;        ///< by row
+  std::vector<std::uint32_t> active_count;    ///< by row
+  EdgePlane edges;                            ///< along the last axis
+  std::array<CubePlane, N - 1> cubes;         ///< N = 4: by the axis that they leave out
+  std::vector<Index> own_offset;              ///< first vertex of each row's tiles, from the chunk's first on
+  std::vector<std::uint64_t> simplex_offset;  ///< first simplex of each row, likewise
+  std::vector<SlabChunk> chunks;
+
+  [[nodiscard]] Index first_own(std::size_t row) const noexcept {
+    return edges.chunk_first[chunk_of(row)] + own_offset[row];
+  }
+  [[nodiscard]] std::uint64_t first_simplex(std::size_t row) const noexcept {
+    return chunks[chunk_of(row)].first_simplex + simplex_offset[row];
+  }
 };
 
 template <int N>

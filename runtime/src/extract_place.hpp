@@ -80,20 +80,18 @@ class Placement {
                                                                   : inside_slab(world(point), base[N - 1]);
   }
 
-  /// The points on the edges along `axis` from the samples `at` of a row, `count` of them.
-  void edges(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
-             Vertex* out) const noexcept {
-    EdgeRow<N, Real> row{at, alphas, count, axis, {}, 0.0, nullptr, origin_, step_, nullptr, nullptr, {}, out};
-    for (int a = 1; a < N; ++a) row.start[a] = sample(a, start[a]);
-    if (axis > 0) row.end = sample(axis, start[axis] + 1);
-    if (!is_uniform_) row.along = coordinates_[0].data();
-    if (mapped_) {
-      row.linear = linear_.data();
-      row.offset = offset_.data();
-    }
-    row.inside.fill(std::numeric_limits<Real>::quiet_NaN());
-    if (N == 4 && axis == N - 1 && !insides_.empty()) row.inside = insides_[start[N - 1]];
-    write_points<N, Real>(row);
+  /// Completes what is known of edges in layer k, and writes their points.
+  void edges(std::size_t k, EdgePoints<N, Real>& edges) const noexcept {
+    edges.layer = sample(N - 1, k);
+    edges.next_layer = edges.axis == N - 1 ? sample(N - 1, k + 1) : 0.0;
+    edges.along = is_uniform_ ? nullptr : coordinates_[0].data();
+    edges.origin = origin_;
+    edges.step = step_;
+    edges.linear = mapped_ ? linear_.data() : nullptr;
+    edges.offset = offset_.data();
+    edges.inside.fill(std::numeric_limits<Real>::quiet_NaN());
+    if (N == 4 && edges.axis == N - 1 && !insides_.empty()) edges.inside = insides_[k];
+    write_points<N, Real>(edges);
   }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points on the critical edges of a row; see extract_points.hpp. This file is compiled once per instruction set
+// Points on critical edges; see extract_points.hpp. This file is compiled once per instruction set
 // (Highway's foreach_target). Additions and multiplications stay apart, and comparisons choose as std::clamp does, so
 // that all sets give the same bytes.
 #include "extract_points.hpp"
@@ -77,59 +77,62 @@ HWY_INLINE void store_vertices(D d, const std::array<V, 4>& x, hn::TFromD<D>* ou
 
 /// Coordinates along the row of the samples `at` + `ahead`.
 template <class D, int N, class Real>
-HWY_INLINE hn::Vec<D> along_row(D d, const EdgeRow<N, Real>& row, const std::uint32_t* at, unsigned ahead) {
-  if (row.along == nullptr) {
+HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std::uint32_t* at, unsigned ahead) {
+  if (edges.along == nullptr) {
     const hn::Rebind<std::int32_t, D> integers;
     const auto index = hn::PromoteTo(d, hn::LoadU(integers, reinterpret_cast<const std::int32_t*>(at)));
     const auto moved = ahead == 0 ? index : hn::Add(index, hn::Set(d, 1.0));
-    return hn::Add(hn::Set(d, row.origin), hn::Mul(moved, hn::Set(d, row.step)));
+    return hn::Add(hn::Set(d, edges.origin), hn::Mul(moved, hn::Set(d, edges.step)));
   }
   constexpr std::size_t kLanes = hn::MaxLanes(D());
   alignas(64) double coordinates[kLanes];
-  for (std::size_t i = 0; i < kLanes; ++i) coordinates[i] = row.along[at[i] + ahead];
+  for (std::size_t i = 0; i < kLanes; ++i) coordinates[i] = edges.along[at[i] + ahead];
   return hn::Load(d, coordinates);
 }
 
 /// As many points as D has lanes, from edge `i` on.
 template <class D, int N, class Real>
-HWY_INLINE void write_some(D d, const EdgeRow<N, Real>& row, std::size_t i) {
+HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i) {
   const hn::Rebind<Real, D> real;
-  const std::uint32_t* const at = row.at + i;
+  const std::uint32_t* const at = edges.at + i;
   std::array<hn::Vec<D>, N> point;
-  point[0] = along_row(d, row, at, 0);
-  for (int a = 1; a < N; ++a) point[a] = hn::Set(d, row.start[a]);
-  const auto end = row.axis == 0 ? along_row(d, row, at, 1) : hn::Set(d, row.end);
-  point[row.axis] = between(d, point[row.axis], end, hn::LoadU(d, row.alphas + i));
+  point[0] = along_row(d, edges, at, 0);
+  for (int a = 1; a + 1 < N; ++a) point[a] = hn::LoadU(d, edges.start[a] + i);
+  point[N - 1] = hn::Set(d, edges.layer);
+  const auto end = edges.axis == 0       ? along_row(d, edges, at, 1)
+                   : edges.axis == N - 1 ? hn::Set(d, edges.next_layer)
+                                         : hn::LoadU(d, edges.end + i);
+  point[edges.axis] = between(d, point[edges.axis], end, hn::LoadU(d, edges.alphas + i));
   std::array<hn::Vec<decltype(real)>, N> vertex;
   for (int a = 0; a < N; ++a) {
-    if (row.linear == nullptr) {
+    if (edges.linear == nullptr) {
       vertex[a] = to_real<Real>(d, point[a]);
       continue;
     }
     auto sum = hn::Zero(d);
-    for (int b = 0; b < N; ++b) sum = hn::Add(sum, hn::Mul(hn::Set(d, row.linear[a * N + b]), point[b]));
-    vertex[a] = to_real<Real>(d, hn::Add(sum, hn::Set(d, row.offset[a])));
+    for (int b = 0; b < N; ++b) sum = hn::Add(sum, hn::Mul(hn::Set(d, edges.linear[a * N + b]), point[b]));
+    vertex[a] = to_real<Real>(d, hn::Add(sum, hn::Set(d, edges.offset[a])));
   }
-  if (!std::isnan(row.inside[0]))
-    vertex[N - 1] = clamped(real, vertex[N - 1], hn::Set(real, row.inside[0]), hn::Set(real, row.inside[1]));
-  store_vertices(real, vertex, row.out[i].data());
+  if (!std::isnan(edges.inside[0]))
+    vertex[N - 1] = clamped(real, vertex[N - 1], hn::Set(real, edges.inside[0]), hn::Set(real, edges.inside[1]));
+  store_vertices(real, vertex, edges.out[i].data());
 }
 
 template <int N, class Real>
-HWY_INLINE void points(const EdgeRow<N, Real>& row) {
+HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
   constexpr std::size_t kLanes = hn::MaxLanes(AllLanes());
   std::size_t i = 0;
-  for (; i + kLanes <= row.count; i += kLanes) write_some(AllLanes(), row, i);
-  for (; i < row.count; ++i) write_some(OneLane(), row, i);
+  for (; i + kLanes <= edges.count; i += kLanes) write_some(AllLanes(), edges, i);
+  for (; i < edges.count; ++i) write_some(OneLane(), edges, i);
 }
 
 // Highway's tables of functions hold no templates.
-void points2f(const EdgeRow<2, float>& row) { points(row); }
-void points3f(const EdgeRow<3, float>& row) { points(row); }
-void points4f(const EdgeRow<4, float>& row) { points(row); }
-void points2d(const EdgeRow<2, double>& row) { points(row); }
-void points3d(const EdgeRow<3, double>& row) { points(row); }
-void points4d(const EdgeRow<4, double>& row) { points(row); }
+void points2f(const EdgePoints<2, float>& edges) { points(edges); }
+void points3f(const EdgePoints<3, float>& edges) { points(edges); }
+void points4f(const EdgePoints<4, float>& edges) { points(edges); }
+void points2d(const EdgePoints<2, double>& edges) { points(edges); }
+void points3d(const EdgePoints<3, double>& edges) { points(edges); }
+void points4d(const EdgePoints<4, double>& edges) { points(edges); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
@@ -144,11 +147,11 @@ std::size_t list_bits(const Word* bits, std::size_t words, std::uint32_t* at) no
   return HWY_DYNAMIC_DISPATCH(bits_to_list)(bits, words, at);
 }
 
-#define TEGL_DISPATCH(N, Real, name)                                 \
-  HWY_EXPORT(name);                                                  \
-  template <>                                                        \
-  void write_points<N, Real>(const EdgeRow<N, Real>& row) noexcept { \
-    HWY_DYNAMIC_DISPATCH(name)(row);                                 \
+#define TEGL_DISPATCH(N, Real, name)                                      \
+  HWY_EXPORT(name);                                                       \
+  template <>                                                             \
+  void write_points<N, Real>(const EdgePoints<N, Real>& edges) noexcept { \
+    HWY_DYNAMIC_DISPATCH(name)(edges);                                    \
   }
 TEGL_DISPATCH(2, float, points2f)
 TEGL_DISPATCH(3, float, points3f)

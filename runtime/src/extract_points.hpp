@@ -15,20 +15,21 @@ namespace tegl::detail {
 /// more.
 std::size_t list_bits(const Word* bits, std::size_t words, std::uint32_t* at) noexcept;
 
-/// Critical edges of a row along one axis, and where their points go.
+/// Critical edges along one axis in rows of one layer, and where their points go.
 template <int N, class Real>
-struct EdgeRow {
+struct EdgePoints {
   using Vertex = std::array<Real, N>;
 
   const std::uint32_t* at;  ///< by edge: its first sample along the row
   const double* alphas;     ///< by edge: the point's place on it
   std::size_t count;
   int axis;
-  std::array<double, N> start;  ///< coordinates of the row; [0] means nothing
-  double end;                   ///< axis > 0: the coordinate at the other end of the edges
-  const double* along;          ///< coordinates along the row; null: uniform
-  double origin, step;          ///< of uniform coordinates along the row
-  const double* linear;         ///< N x N, row by row; null: points stay where they are
+  std::array<const double*, N> start;  ///< for axes 1 ... N - 2, by edge: the coordinate of its row
+  const double* end;                   ///< for those axes, by edge: the coordinate at the other end
+  double layer, next_layer;            ///< coordinates of the layer and of the next
+  const double* along;                 ///< coordinates along the row; null: uniform
+  double origin, step;                 ///< of uniform coordinates along the row
+  const double* linear;                ///< N x N, row by row; null: points stay where they are
   const double* offset;
   /// Where the last coordinate has to stay; not a number: anywhere.
   std::array<Real, 2> inside;
@@ -37,6 +38,6 @@ struct EdgeRow {
 
 /// The points, by the arithmetic of Placement (extract_place.hpp).
 template <int N, class Real>
-void write_points(const EdgeRow<N, Real>& row) noexcept;
+void write_points(const EdgePoints<N, Real>& edges) noexcept;
 
 }  // namespace tegl::detail

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 
+#define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "extract_rows.cpp"
 #include "dispatch.hpp"
@@ -17,6 +18,14 @@ namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+
+/// A mask's lanes as bits, lane 0 lowest.
+template <class D, class M>
+HWY_INLINE Word bits_of(D d, M mask) {
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0];
+}
 
 /// The tiles with high and low corners among the 64 that start at word w of `rows` (no word is looked at beyond w + 1).
 template <std::size_t Rows>
@@ -31,28 +40,64 @@ HWY_INLINE Word mixed_word(const std::array<const Word*, Rows>& rows, std::size_
   return (any | any >> 1 | next_any << (kWordBits - 1)) & ~(all & (all >> 1 | next_all << (kWordBits - 1)));
 }
 
-/// mixed_word for all words of a row.
-template <unsigned Used, std::size_t Rows>
-HWY_INLINE void mixed_row(const std::array<const Word*, Rows>& rows, std::size_t words, Word* mixed) {
-  std::size_t w = 0;
+/// The critical edges that a row of tiles counts (TileCount::edges) among the 64 at word w, by axis.
+template <int N, std::size_t Rows>
+HWY_INLINE std::array<Word, N> edge_words(const std::array<const Word*, Rows>& rows, std::size_t w) {
+  constexpr unsigned kUpper = 1u << (N - 2);
+  const Word here = rows[kUpper][w];
+  std::array<Word, N> edges;
+  edges[0] = here ^ (here >> 1 | rows[kUpper][w + 1] << (kWordBits - 1));
+  for (unsigned a = 1; a + 1 < N; ++a) edges[a] = here ^ rows[kUpper | 1u << (a - 1)][w];
+  edges[N - 1] = here ^ rows[0][w];
+  return edges;
+}
+
+/// mixed_word for `words` words of a row (at most 64) from word `first` on; returns which of them are not 0. Adds up
+/// critical edges: behind the last sample there is one along the row if it is high.
+template <int N, std::size_t Rows>
+HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size_t first, std::size_t words,
+                            Word* mixed, std::array<std::uint32_t, 4>& edges) {
+  constexpr unsigned kRows = 1u << (N - 1);
+  constexpr unsigned kUpper = kRows / 2;
   const hn::ScalableTag<Word> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  for (; w + kLanes <= words; w += kLanes) {
-    auto any = hn::LoadU(d, rows[0] + w), all = any;
-    auto next_any = hn::LoadU(d, rows[0] + w + 1), next_all = next_any;
-    for (unsigned r = 1; r < Used; ++r) {
-      const auto here = hn::LoadU(d, rows[r] + w);
+  Word present = 0;
+  std::array<hn::Vec<decltype(d)>, N> sums;
+  for (auto& sum : sums) sum = hn::Zero(d);
+  std::size_t i = 0;
+  for (; i + kLanes <= words; i += kLanes) {
+    const std::size_t w = first + i;
+    std::array<hn::Vec<decltype(d)>, kRows> here;
+    auto any = hn::Zero(d), next_any = any;
+    auto all = hn::Not(any), next_all = all;
+    for (unsigned r = 0; r < kRows; ++r) {
+      here[r] = hn::LoadU(d, rows[r] + w);
       const auto next = hn::LoadU(d, rows[r] + w + 1);
-      any = hn::Or(any, here);
-      all = hn::And(all, here);
+      any = hn::Or(any, here[r]);
+      all = hn::And(all, here[r]);
       next_any = hn::Or(next_any, next);
       next_all = hn::And(next_all, next);
     }
+    const auto next = hn::LoadU(d, rows[kUpper] + w + 1);
+    const auto shifted = hn::Or(hn::ShiftRight<1>(here[kUpper]), hn::ShiftLeft<kWordBits - 1>(next));
+    sums[0] = hn::Add(sums[0], hn::PopulationCount(hn::Xor(here[kUpper], shifted)));
+    for (unsigned a = 1; a + 1 < N; ++a)
+      sums[a] = hn::Add(sums[a], hn::PopulationCount(hn::Xor(here[kUpper], here[kUpper | 1u << (a - 1)])));
+    sums[N - 1] = hn::Add(sums[N - 1], hn::PopulationCount(hn::Xor(here[kUpper], here[0])));
     any = hn::Or(hn::Or(any, hn::ShiftRight<1>(any)), hn::ShiftLeft<kWordBits - 1>(next_any));
     all = hn::And(all, hn::Or(hn::ShiftRight<1>(all), hn::ShiftLeft<kWordBits - 1>(next_all)));
-    hn::StoreU(hn::AndNot(all, any), d, mixed + w);
+    const auto found = hn::AndNot(all, any);
+    hn::StoreU(found, d, mixed + w);
+    present |= bits_of(d, hn::Ne(found, hn::Zero(d))) << i;
   }
-  for (; w < words; ++w) mixed[w] = mixed_word(rows, Used, w);
+  for (unsigned a = 0; a < N; ++a) edges[a] += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(d, sums[a])));
+  for (; i < words; ++i) {
+    mixed[first + i] = mixed_word(rows, kRows, first + i);
+    present |= Word{mixed[first + i] != 0} << i;
+    const auto here = edge_words<N>(rows, first + i);
+    for (unsigned a = 0; a < N; ++a) edges[a] += static_cast<std::uint32_t>(std::popcount(here[a]));
+  }
+  return present;
 }
 
 /// Eight corners of 64 tiles, a word each, to a byte for each tile.
@@ -78,9 +123,93 @@ HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8
 #endif
 }
 
-/// The signatures of the tiles `mixed` of word w, to `signatures`; returns their end.
+#if HWY_TARGET <= HWY_AVX3_DL
+
+/// Eight words, each a corner of 64 tiles, to a byte for each tile.
+HWY_INLINE __m512i corner_bytes(__m512i words) {
+  alignas(64) static constexpr auto kByWord = [] {
+    std::array<std::uint8_t, 64> order{};
+    for (unsigned i = 0; i < 64; ++i) order[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
+    return order;
+  }();
+  __m512i x = _mm512_permutexvar_epi8(_mm512_load_si512(kByWord.data()), words);
+  // Squares of 8 x 8 bits are mirrored: their quarters, the quarters of these, and those of these.
+  const auto swap = [&x](int distance, long long chosen) HWY_ATTR {
+    const __m512i mask = _mm512_set1_epi64(chosen);
+    const __m128i by = _mm_cvtsi32_si128(distance);
+    const __m512i t = _mm512_ternarylogic_epi64(x, _mm512_srl_epi64(x, by), mask, 0x28);
+    x = _mm512_ternarylogic_epi64(x, t, _mm512_sll_epi64(t, by), 0x96);
+  };
+  swap(7, 0x00AA00AA00AA00AA);
+  swap(14, 0x0000CCCC0000CCCC);
+  swap(28, 0x00000000F0F0F0F0);
+  return x;
+}
+
+/// The signatures of the 64 tiles from word w on, by byte; `half` of their corners.
 template <int N>
-HWY_INLINE std::uint16_t* signatures_of(const TileRow& row, std::size_t w, Word mixed, std::uint16_t* signatures) {
+HWY_INLINE __m512i signature_bytes(const TileRow& row, std::size_t w, unsigned half) {
+  const auto two = [&](unsigned r) HWY_ATTR {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row.corners[4 * half + r] + w));
+  };
+  __m512i words = _mm512_inserti64x2(_mm512_zextsi128_si512(two(0)), two(1), 1);
+  if constexpr (N > 2) words = _mm512_inserti64x2(_mm512_inserti64x2(words, two(2), 2), two(3), 3);
+  const __m512i here = _mm512_unpacklo_epi64(words, words);
+  return corner_bytes(_mm512_mask_shrdi_epi64(here, 0xAA, here, _mm512_unpackhi_epi64(words, words), 1));
+}
+
+/// The sum of the entries of `signatures` in a table of 256.
+HWY_INLINE std::uint32_t sum_of_entries(__m512i signatures, const std::uint8_t* table) {
+  const __m512i low = _mm512_permutex2var_epi8(_mm512_loadu_si512(table), signatures, _mm512_loadu_si512(table + 64));
+  const __m512i high =
+      _mm512_permutex2var_epi8(_mm512_loadu_si512(table + 128), signatures, _mm512_loadu_si512(table + 192));
+  const __m512i entries = _mm512_mask_blend_epi8(_mm512_movepi8_mask(signatures), low, high);
+  return static_cast<std::uint32_t>(_mm512_reduce_add_epi64(_mm512_sad_epu8(entries, _mm512_setzero_si512())));
+}
+
+/// Writes the signatures and places of the tiles `mixed` of word w, from entry `at` on. Returns how many simplices they
+/// have. No branch depends on how many tiles there are, but beyond 32.
+template <int N>
+HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
+                                    const TileRoom& room, std::size_t at) {
+  alignas(64) static constexpr auto kCountUp = [] {
+    std::array<std::uint8_t, 64> numbers{};
+    for (unsigned i = 0; i < 64; ++i) numbers[i] = static_cast<std::uint8_t>(i);
+    return numbers;
+  }();
+  const auto count = static_cast<unsigned>(std::popcount(mixed));
+  const __m512i first = _mm512_set1_epi16(static_cast<short>(w * kWordBits));
+  const auto half_of = [](__m512i bytes, int half) HWY_ATTR {
+    return _mm512_cvtepu8_epi16(half == 0 ? _mm512_castsi512_si256(bytes) : _mm512_extracti64x4_epi64(bytes, 1));
+  };
+  const auto store = [&](std::uint16_t* to, auto words_of) HWY_ATTR {
+    _mm512_storeu_si512(to, words_of(0));
+    if (count > 32) _mm512_storeu_si512(to + 32, words_of(1));
+  };
+  const __m512i along = _mm512_maskz_compress_epi8(mixed, _mm512_load_si512(kCountUp.data()));
+  store(room.at + at, [&](int half) HWY_ATTR { return _mm512_add_epi16(first, half_of(along, half)); });
+  const __m512i low = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 0));
+  std::uint16_t* const out = room.signatures + at;
+  if constexpr (N == 4) {
+    const __m512i high = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 1));
+    store(out, [&](int half)
+                   HWY_ATTR { return _mm512_or_si512(half_of(low, half), _mm512_slli_epi16(half_of(high, half), 8)); });
+    std::uint32_t simplices = 0;
+    for (unsigned i = 0; i < count; ++i) simplices += table.entries()[out[i]] & RowTable::kCountMask;
+    return simplices;
+  } else {
+    store(out, [&](int half) HWY_ATTR { return half_of(low, half); });
+    return sum_of_entries(low, table.counts());  // tiles without corners of both kinds have no simplices
+  }
+}
+
+#else
+
+/// Writes the signatures and places of the tiles `mixed` of word w, from entry `at` on. Returns how many simplices they
+/// have.
+template <int N>
+HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
+                                    const TileRoom& room, std::size_t at) {
   constexpr unsigned kRows = 1u << (N - 1);
   constexpr unsigned kCorners = 2 * kRows;
   constexpr unsigned kFew = HWY_TARGET <= HWY_AVX3 ? 2 : HWY_TARGET <= HWY_AVX2 ? 4 : HWY_TARGET == HWY_SCALAR ? 64 : 8;
@@ -89,53 +218,107 @@ HWY_INLINE std::uint16_t* signatures_of(const TileRow& row, std::size_t w, Word 
     corners[2 * r] = row.corners[r][w];
     corners[2 * r + 1] = row.corners[r][w] >> 1 | row.corners[r][w + 1] << (kWordBits - 1);
   }
+  const auto first = static_cast<unsigned>(w * kWordBits);
+  std::uint32_t simplices = 0;
+  const auto take = [&](unsigned bit, unsigned signature) HWY_ATTR {
+    room.signatures[at] = static_cast<std::uint16_t>(signature);
+    room.at[at++] = static_cast<std::uint16_t>(first + bit);
+    simplices += table.entries()[signature] & RowTable::kCountMask;
+  };
   if (static_cast<unsigned>(std::popcount(mixed)) <= kFew) {
     for (; mixed != 0; mixed &= mixed - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
       unsigned signature = 0;
       for (unsigned c = 0; c < kCorners; ++c) signature |= static_cast<unsigned>(corners[c] >> bit & 1u) << c;
-      *signatures++ = static_cast<std::uint16_t>(signature);
+      take(bit, signature);
     }
-    return signatures;
+    return simplices;
   }
   alignas(64) std::uint8_t bytes[kCorners > 8 ? 2 : 1][kWordBits];
   corners_to_bytes(corners, std::min(kCorners, 8u), bytes[0]);
   if constexpr (kCorners > 8) corners_to_bytes(corners + 8, 8, bytes[1]);
   for (; mixed != 0; mixed &= mixed - 1) {
-    const int bit = std::countr_zero(mixed);
+    const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
     unsigned signature = bytes[0][bit];
     if constexpr (kCorners > 8) signature |= static_cast<unsigned>(bytes[1][bit]) << 8;
-    *signatures++ = static_cast<std::uint16_t>(signature);
+    take(bit, signature);
   }
-  return signatures;
+  return simplices;
+}
+
+#endif
+
+template <int N>
+HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, const TileRoom& room) {
+  const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // of the samples
+  TileCount count;
+  for (std::size_t block = 0; block < words; block += kWordBits) {
+    Word present = mixed_words<N>(row.corners, block, std::min(kWordBits, words - block), room.active, count.edges);
+    if (block + kWordBits >= words) room.active[words - 1] &= (Word{1} << (row.tiles % kWordBits)) - 1;
+    for (; present != 0; present &= present - 1) {
+      const std::size_t w = block + static_cast<std::size_t>(std::countr_zero(present));
+      if (row.valid != nullptr) room.active[w] &= row.valid[w];
+      const Word mixed = room.active[w];
+      count.simplices += take_tiles<N>(row, table, w, mixed, room, count.active);
+      count.active += static_cast<std::uint32_t>(std::popcount(mixed));
+    }
+  }
+  if (table.has_own_vertices())
+    for (std::uint32_t i = 0; i < count.active; ++i) count.own_vertices += table.own_vertices(room.signatures[i]);
+  const Word* const upper = row.corners[1u << (N - 2)];
+  count.edges[0] -= static_cast<std::uint32_t>(upper[row.tiles / kWordBits] >> (row.tiles % kWordBits) & 1u);
+  return count;
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// Lists the edges between the corners Base and Base + Step that are critical, of some tiles; returns how many.
+template <unsigned Base, unsigned Step, class D>
+HWY_INLINE std::size_t list_edges(D d, hn::Vec<D> signatures, hn::Vec<D> at, hn::Mask<D> used, std::uint32_t* out) {
+  const auto differ = hn::Xor(signatures, hn::ShiftRight<Step>(signatures));
+  const auto critical = hn::And(hn::TestBit(differ, hn::Set(d, 1u << Base)), used);
+  // In registers: to store chosen lanes alone is slow on some processors.
+  hn::StoreU(hn::Compress(at, critical), d, out);
+  return hn::CountTrue(d, critical);
 }
 
 template <int N>
-HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* signatures) {
-  const std::uint32_t* const entries = table.entries();
-  const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // of the samples
-  mixed_row<1u << (N - 1)>(row.corners, words, active);
-  TileCount count;
-  for (std::size_t w = 0; w < words; ++w) {
-    Word mixed = active[w];
-    if (mixed == 0) continue;
-    const std::size_t left = row.tiles - std::min(row.tiles, w * kWordBits);
-    if (left < kWordBits) mixed &= (Word{1} << left) - 1;
-    if (row.valid != nullptr) mixed &= row.valid[w];
-    active[w] = mixed;
-    const std::uint16_t* const first = signatures;
-    signatures = signatures_of<N>(row, w, mixed, signatures);
-    count.active += static_cast<std::uint32_t>(signatures - first);
-    std::uint32_t simplices = 0;
-    for (const std::uint16_t* s = first; s != signatures; ++s) {
-      const std::uint32_t entry = entries[*s];
-      simplices += entry & RowTable::kCountMask;
-      if ((entry & RowTable::kOwnFlag) != 0) count.own_vertices += table.own_vertices(*s);
-    }
-    count.simplices += simplices;
+HWY_INLINE void tile_edges(const TileEdges& row) {
+  constexpr unsigned kUpper = 1u << (N - 1);
+  const hn::ScalableTag<std::uint32_t> d;
+  const hn::Rebind<std::uint16_t, decltype(d)> narrow;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  std::array<std::uint32_t*, 4> out = row.out;
+  for (std::size_t i = 0; i < row.active; i += kLanes) {
+    const auto signatures = hn::PromoteTo(d, hn::LoadU(narrow, row.signatures + i));
+    const auto at = hn::PromoteTo(d, hn::LoadU(narrow, row.at + i));
+    const auto used = hn::FirstN(d, row.active - i);
+    out[0] += list_edges<kUpper, 1>(d, signatures, at, used, out[0]);
+    if constexpr (N > 2) out[1] += list_edges<kUpper, 2>(d, signatures, at, used, out[1]);
+    if constexpr (N > 3) out[2] += list_edges<kUpper, 4>(d, signatures, at, used, out[2]);
+    out[N - 1] += list_edges<0, kUpper>(d, signatures, at, used, out[N - 1]);
   }
-  return count;
 }
+
+#else
+
+template <int N>
+HWY_INLINE void tile_edges(const TileEdges& row) {
+  constexpr unsigned kUpper = 1u << (N - 1);
+  std::array<std::uint32_t*, 4> out = row.out;
+  for (std::size_t i = 0; i < row.active; ++i) {
+    const unsigned signature = row.signatures[i];
+    // Where an edge is not critical, the next one takes its place.
+    for (unsigned a = 0; a + 1 < N; ++a) {
+      *out[a] = row.at[i];
+      out[a] += (signature >> kUpper ^ signature >> (kUpper + (1u << a))) & 1u;
+    }
+    *out[N - 1] = row.at[i];
+    out[N - 1] += (signature ^ signature >> kUpper) & 1u;
+  }
+}
+
+#endif
 
 /// As critical_edges, by table for 3D, and from two cubes in 4D.
 template <int N>
@@ -346,11 +529,14 @@ HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, con
 }
 
 // Highway's tables of functions hold no templates.
-TileCount count2(const TileRow& r, const RowTable& t, Word* a, std::uint16_t* s) { return count_tiles<2>(r, t, a, s); }
-TileCount count3(const TileRow& r, const RowTable& t, Word* a, std::uint16_t* s) { return count_tiles<3>(r, t, a, s); }
-TileCount count4(const TileRow& r, const RowTable& t, Word* a, std::uint16_t* s) { return count_tiles<4>(r, t, a, s); }
+TileCount count2(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<2>(r, t, m); }
+TileCount count3(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<3>(r, t, m); }
+TileCount count4(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<4>(r, t, m); }
+void edges2(const TileEdges& r) { tile_edges<2>(r); }
 void write2(const TileOutput<2>& r, const RowTable& t, const OwnTiles<2>& o) { write_tiles<2>(r, t, o); }
+void edges3(const TileEdges& r) { tile_edges<3>(r); }
 void write3(const TileOutput<3>& r, const RowTable& t, const OwnTiles<3>& o) { write_tiles<3>(r, t, o); }
+void edges4(const TileEdges& r) { tile_edges<4>(r); }
 void write4(const TileOutput<4>& r, const RowTable& t, const OwnTiles<4>& o) { write_tiles<4>(r, t, o); }
 
 std::uint32_t count_edges(const Word* a, const Word* b, std::size_t samples, const Word* valid, Word* critical,
@@ -381,8 +567,11 @@ namespace tegl::detail {
 HWY_EXPORT(count2);
 HWY_EXPORT(count3);
 HWY_EXPORT(count4);
+HWY_EXPORT(edges2);
 HWY_EXPORT(write2);
+HWY_EXPORT(edges3);
 HWY_EXPORT(write3);
+HWY_EXPORT(edges4);
 HWY_EXPORT(write4);
 HWY_EXPORT(count_edges);
 
@@ -398,6 +587,8 @@ RowTable::RowTable(const tables::TileTable& table)
     const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
     entries_[s] = list.first_simplex << kFirstShift | (own ? kOwnFlag : 0) | list.simplex_count;
   }
+  for (std::size_t s = 0; s < counts_.size() && table.dim <= 3 && s < entries_.size(); ++s)
+    counts_[s] = static_cast<std::uint8_t>(entries_[s] & kCountMask);
   if (table.dim == 2) choose_segment_bytes();
 }
 
@@ -413,24 +604,36 @@ void RowTable::choose_segment_bytes() {
 }
 
 template <>
-TileCount count_tile_row<2>(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* out) noexcept {
-  return HWY_DYNAMIC_DISPATCH(count2)(row, table, active, out);
+TileCount count_tile_row<2>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count2)(row, table, room);
 }
 template <>
-TileCount count_tile_row<3>(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* out) noexcept {
-  return HWY_DYNAMIC_DISPATCH(count3)(row, table, active, out);
+TileCount count_tile_row<3>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count3)(row, table, room);
 }
 template <>
-TileCount count_tile_row<4>(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* out) noexcept {
-  return HWY_DYNAMIC_DISPATCH(count4)(row, table, active, out);
+TileCount count_tile_row<4>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count4)(row, table, room);
+}
+template <>
+void list_tile_edges<2>(const TileEdges& row) noexcept {
+  HWY_DYNAMIC_DISPATCH(edges2)(row);
 }
 template <>
 void write_tile_row<2>(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) noexcept {
   HWY_DYNAMIC_DISPATCH(write2)(row, table, own);
 }
 template <>
+void list_tile_edges<3>(const TileEdges& row) noexcept {
+  HWY_DYNAMIC_DISPATCH(edges3)(row);
+}
+template <>
 void write_tile_row<3>(const TileOutput<3>& row, const RowTable& table, const OwnTiles<3>& own) noexcept {
   HWY_DYNAMIC_DISPATCH(write3)(row, table, own);
+}
+template <>
+void list_tile_edges<4>(const TileEdges& row) noexcept {
+  HWY_DYNAMIC_DISPATCH(edges4)(row);
 }
 template <>
 void write_tile_row<4>(const TileOutput<4>& row, const RowTable& table, const OwnTiles<4>& own) noexcept {

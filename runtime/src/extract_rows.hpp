@@ -47,6 +47,10 @@ class RowTable {
   [[nodiscard]] const std::uint8_t* segment_bytes(unsigned signature, bool flip) const noexcept {
     return segment_bytes_[flip ? 1 : 0][signature].data();
   }
+  /// dim <= 3: simplices by signature.
+  [[nodiscard]] const std::uint8_t* counts() const noexcept { return counts_.data(); }
+  /// Whether any tile has vertices of its own.
+  [[nodiscard]] bool has_own_vertices() const noexcept { return table_->max_tile_vertices != 0; }
   /// The tile's own vertices.
   [[nodiscard]] unsigned own_vertices(unsigned signature) const noexcept {
     const tables::List& list = table_->lists[table_->list_of[signature]];
@@ -59,6 +63,7 @@ class RowTable {
   const tables::TileTable* table_;
   std::vector<std::uint32_t> entries_;
   const std::uint8_t* simplices_;
+  std::array<std::uint8_t, 256> counts_{};
   std::array<std::array<std::array<std::uint8_t, 16>, 16>, 2> segment_bytes_{};
 };
 
@@ -69,17 +74,42 @@ struct TileRow {
   const Word* valid;                   ///< null: all are
 };
 
+/// What is written of a row of tiles that is counted.
+struct TileRoom {
+  Word* active;  ///< bits: ceil(samples / 64) words, those past the end 0
+  // Of active tiles, in order; up to 32 more are written behind.
+  std::uint16_t* signatures;
+  std::uint16_t* at;  ///< where they are along the row, modulo 2^16
+};
+
 /// What a row of tiles comes to.
 struct TileCount {
   std::uint32_t active = 0;
   std::uint32_t own_vertices = 0;
   std::uint64_t simplices = 0;
+  /// Critical edges that belong to the row, whatever is valid: by axis, but for the last of the samples of the upper
+  /// layer; then along the last axis.
+  std::array<std::uint32_t, 4> edges{};
 };
 
-/// Writes the active tiles of a row as bits (ceil(tiles / 64) words, bits past the end 0) and, in order, their
-/// signatures.
+/// Finds the active tiles of a row.
 template <int N>
-TileCount count_tile_row(const TileRow& row, const RowTable& table, Word* active, std::uint16_t* signatures) noexcept;
+TileCount count_tile_row(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept;
+
+/// The active tiles of a row of at most kMostListed samples, from which its critical edges are to be listed.
+inline constexpr std::size_t kMostListed = std::size_t{1} << 16;
+struct TileEdges {
+  const std::uint16_t* signatures;
+  const std::uint16_t* at;
+  std::size_t active;
+  /// By axis, in the order of TileCount::edges: where the edges' first samples along the row go, ascending. Up to 16
+  /// more are written behind.
+  std::array<std::uint32_t*, 4> out;
+};
+
+/// Lists a row's critical edges, but for those at its last sample.
+template <int N>
+void list_tile_edges(const TileEdges& row) noexcept;
 
 /// A row of tiles, to be written.
 template <int N>

@@ -16,11 +16,10 @@ bool RowSource<T, N>::classify(const Index& start, Word* high, Word* missing) co
 }
 
 template <Value T, int N>
-void RowSource<T, N>::edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
-                                  double* out) const noexcept {
-  const T* const samples = row(start);
-  const T* const others = axis == 0 ? samples + strides_[0] : next_row(start, axis, 1);
-  detail::edge_alphas(samples, others, strides_[0], at, count, isovalue_, epsilon_, out);
+void RowSource<T, N>::edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept {
+  const T* const samples = layer(k);
+  const T* const others = axis == N - 1 ? layer(k + 1) : samples + strides_[axis];
+  detail::edge_alphas<T>({samples, others, edges.rows, edges.at, edges.count, strides_[0]}, isovalue_, epsilon_, out);
 }
 
 template <Value T, int N>
@@ -30,6 +29,7 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
     for (std::uint32_t i = 0; i < result.size(); ++i) result[i] = i;
     return result;
   }();
+  static constexpr std::array<std::ptrdiff_t, kInOrder.size()> kOneRow{};
   std::array<T, std::size_t{1} << N> corners;
   std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
   const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
@@ -58,7 +58,8 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
     first[count] = corners[at];
     second[count] = corners[at | 1u << (e >> (dim - 1))];
   }
-  detail::edge_alphas(first.data(), second.data(), 1, kInOrder.data(), count, isovalue_, epsilon_, alphas.data());
+  detail::edge_alphas<T>({first.data(), second.data(), kOneRow.data(), kInOrder.data(), count, 1}, isovalue_, epsilon_,
+                         alphas.data());
   const double* next = alphas.data();
   for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
 }

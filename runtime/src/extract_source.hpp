@@ -15,13 +15,30 @@
 
 namespace tegl::detail {
 
-/// The place of the isovalue on edges from values `a` to values `b`, of which one is below the isovalue and the other
-/// is not: 0 at a, 1 at b (theory, section 1), kept `epsilon` away from both. Infinite samples are taken as limits: the
-/// point goes to the finite end, or to the middle between two infinities. Edge i has its values at a[at[i] * stride]
-/// and b[at[i] * stride].
+/// Edges along one axis in rows of one layer. Edge i goes from starts[j] to ends[j], j = rows[i] + at[i] * stride.
 template <Value T>
-void edge_alphas(const T* a, const T* b, std::ptrdiff_t stride, const std::uint32_t* at, std::size_t count,
-                 double isovalue, double epsilon, double* out) noexcept;
+struct EdgeSamples {
+  const T* starts;
+  const T* ends;
+  const std::ptrdiff_t* rows;
+  const std::uint32_t* at;
+  std::size_t count;
+  std::ptrdiff_t stride;
+};
+
+/// The place of the isovalue on edges, of whose ends one is below the isovalue and the other is not: 0 at the first, 1
+/// at the second (theory, section 1), kept `epsilon` away from both. Infinite samples are taken as limits: the point
+/// goes to the finite end, or to the middle between two infinities.
+template <Value T>
+void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
+
+/// Edges in rows of one layer, by how far their rows are from the first (SampleSource::strides), and where they are
+/// along the row.
+struct EdgesInRows {
+  const std::ptrdiff_t* rows;
+  const std::uint32_t* at;
+  std::size_t count;
+};
 
 /// An image with an isovalue; rows run along axis 0.
 template <int N>
@@ -44,10 +61,11 @@ class SampleSource {
   /// The row through `start` (start[0] = 0), as classify_row.
   virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;
 
-  /// For the edges along `axis` from the samples `at` of the row, `count` of them, all critical: the place on the edge,
-  /// 0 at its first end and 1 at its second, kept `epsilon` away from both.
-  virtual void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
-                           double* out) const noexcept = 0;
+  /// From sample to sample within a layer; of the last axis nothing.
+  [[nodiscard]] virtual std::array<std::ptrdiff_t, N> strides() const noexcept = 0;
+  /// For edges along `axis` from samples of layer k on, all critical: the place on the edge, 0 at its first end and 1
+  /// at its second, kept `epsilon` away from both.
+  virtual void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept = 0;
 
   /// The same for single edges of the cell along `axes` based at `base`: local edge e of the bit mask `edges`, to
   /// out[e].
@@ -77,8 +95,8 @@ class RowSource : public SampleSource<N> {
 
   [[nodiscard]] std::size_t sample_bytes() const noexcept final { return sizeof(T); }
   bool classify(const Index& start, Word* high, Word* missing) const noexcept final;
-  void edge_alphas(const Index& start, int axis, const std::uint32_t* at, std::size_t count,
-                   double* out) const noexcept final;
+  [[nodiscard]] Strides strides() const noexcept final { return strides_; }
+  void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;
   [[nodiscard]] bool fits_float() const noexcept final {
     return std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits;

@@ -132,7 +132,7 @@ class TileExtraction {
         finder_(shape_, options.close),
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
                tile_bytes),
-        workers_(options.threads, shape_.size(0), shape_.pitch(), false) {
+        workers_(options.threads, [] { return Nothing{}; }) {
     if (options.normals) placement_.want_normals(source, grid, options.direction);
   }
 
@@ -157,6 +157,7 @@ class TileExtraction {
 
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
+  struct Nothing {};                                                   ///< that threads keep
   static constexpr std::uint32_t kSlabAbove = std::uint32_t{1} << 31;  ///< for cells of the slab above a layer
 
   TileLayer& layer(std::size_t k) { return layers_[k % layers_.size()]; }
@@ -164,7 +165,7 @@ class TileExtraction {
   /// Calls work(from, to) for parts of 0 ... count - 1.
   template <class Work>
   void for_range(std::size_t count, std::size_t grain, const Work& work) {
-    workers_.for_range(count, grain, [&](std::size_t from, std::size_t to, RowScratch&) { work(from, to); });
+    workers_.for_range(count, grain, [&](std::size_t from, std::size_t to, Nothing&) { work(from, to); });
   }
 
   void classify(std::size_t k) {
@@ -354,10 +355,12 @@ class TileExtraction {
     const unsigned shift = kind.spread(face.base);
     auto start = base;
     for (int a = 1; a < N; ++a) start[a] += shift >> a & 1u;
-    start[0] = 0;
+    const auto strides = source_.strides();
+    std::ptrdiff_t row = 0;
+    for (int a = 1; a + 1 < N; ++a) row += static_cast<std::ptrdiff_t>(start[a]) * strides[a];
     const auto at = static_cast<std::uint32_t>(base[0] + (shift & 1u));
     double result = 0;
-    source_.edge_alphas(start, kind.axis(axis), &at, 1, &result);
+    source_.edge_alphas(start[N - 1], kind.axis(axis), {&row, &at, 1}, &result);
     return result;
   }
 
@@ -399,7 +402,7 @@ class TileExtraction {
   GridCells<N> grid_cells_;
   CellFinder<N> finder_;
   BuiltTiles built_;
-  Workers workers_;
+  Workers<Nothing> workers_;
   std::array<TileLayer, 3> layers_;  ///< by k modulo their number
   std::array<TileSlab, 2> slabs_;
   std::vector<std::vector<Cell>> by_row_;

@@ -26,30 +26,18 @@
 #include <thread>
 #endif
 
-#include "bitplanes.hpp"
-#include "extract_generate.hpp"
-
 namespace tegl::detail {
 
-/// What a thread keeps between rows.
-struct RowScratch {
-  std::vector<Word> words;
-  EdgeScratch edges;
-
-  static constexpr std::size_t bytes(std::size_t samples, std::size_t words) noexcept {
-    return words * sizeof(Word) + EdgeScratch::bytes(samples);
-  }
-};
-
+/// `Scratch`: what a thread keeps between parts of the work.
+template <class Scratch>
 class Workers {
  public:
-  /// `threads`: 0 for all that the machine has. Rows have `samples` samples in `words` words.
-  Workers(unsigned threads, std::size_t samples, std::size_t words, bool with_normals)
+  /// `threads`: 0 for all that the machine has. `make_scratch()` is called once for each.
+  template <class MakeScratch>
+  Workers(unsigned threads, const MakeScratch& make_scratch)
       : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
         alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)),
-        own_([samples, words, with_normals] {
-          return RowScratch{std::vector<Word>(words), EdgeScratch(samples, with_normals)};
-        }) {}
+        own_(make_scratch) {}
 
   [[nodiscard]] std::size_t count() const noexcept { return static_cast<std::size_t>(arena_.max_concurrency()); }
 
@@ -81,7 +69,7 @@ class Workers {
  private:
   tbb::task_arena arena_;
   bool alone_;
-  tbb::enumerable_thread_specific<RowScratch> own_;
+  tbb::enumerable_thread_specific<Scratch> own_;
 };
 
 }  // namespace tegl::detail

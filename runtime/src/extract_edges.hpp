@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Points on critical edges. A row has a few edges of each axis, or many; so edges are gathered from row after row, by
+// axis, until there are enough for the loops that work on many at a time, and their points then go where they belong.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "extract_layers.hpp"
+#include "extract_place.hpp"
+#include "extract_rows.hpp"
+
+namespace tegl::detail {
+
+/// Room for vertices by number. Numbers count modulo 2^32, so that a contour may have more, if no part of it has.
+template <class Vertex>
+struct VertexRun {
+  Vertex* data;
+  Index first;
+  Vertex* normals = nullptr;  ///< null: none are wanted
+  Vertex& operator[](Index id) const noexcept { return data[static_cast<Index>(id - first)]; }
+  Vertex& normal(Index id) const noexcept { return normals[static_cast<Index>(id - first)]; }
+};
+
+/// Where the edges come from and their points go, for a chunk of rows: those of a layer, and those along the last axis
+/// of the slab below it.
+template <class Vertex>
+struct EdgeTarget {
+  struct Run {
+    std::size_t layer = 0;  ///< that the edges start in
+    Vertex* end = nullptr;  ///< of what may be written when others have yet to come
+  };
+  Run in_layer, in_slab;
+  VertexRun<Vertex> vertices;
+};
+
+/// One per thread. O(samples of a row) memory.
+template <int N, class Real>
+class EdgeWriter {
+ public:
+  using Vertex = std::array<Real, N>;
+  /// By axis.
+  using Counts = std::array<std::uint32_t, N>;
+  using Firsts = std::array<Index, N>;
+
+  EdgeWriter(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
+      : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
+    for (int a = 0; a < N; ++a) lists_[a].allocate(room(shape.size(0)), a > 0 && a + 1 < N);
+    if (placement.normals() != nullptr) normals_ = std::make_unique<NormalScratch>();
+  }
+
+  /// Of one for rows of so many samples.
+  static constexpr std::size_t bytes(std::size_t samples) noexcept {
+    constexpr std::size_t kEach = sizeof(std::uint32_t) + sizeof(std::ptrdiff_t) + N * sizeof(double) + sizeof(Vertex);
+    return N * kEach * room(samples);
+  }
+
+  /// From here on, until finish(), edges are those of `target`.
+  void start(const EdgeTarget<Vertex>& target) noexcept { target_ = target; }
+  void finish() noexcept { flush(); }
+
+  /// The edges of a row of a slab, and of the layer above: by its active tiles.
+  void add_by_tiles(const SlabView<N>& view, std::size_t row) noexcept {
+    Counts counts;
+    Firsts firsts;
+    for (int a = 0; a < N; ++a) {
+      const EdgePlane& plane = view.edges(a, 1);
+      counts[a] = plane.count[row];
+      firsts[a] = plane.first(row);
+    }
+    add(row, counts, firsts, [&](const std::array<std::uint32_t*, 4>& out) {
+      const Slab<N>& slab = *view.slab;
+      const std::size_t at = slab.first_tile[row];
+      list_tile_edges<N>({slab.signatures.data() + at, slab.tiles_at.data() + at, slab.active_count[row], out});
+      list_last(view, row, counts, out);
+    });
+  }
+
+  /// The edges of a row of `layer` (axes 0 ... N-2) and of `slab` (axis N-1), by their bits; either may be null.
+  void add_by_bits(const Layer<N>* layer, const Slab<N>* slab, std::size_t row) noexcept {
+    std::array<const EdgePlane*, N> planes{};
+    if (layer != nullptr)
+      for (int a = 0; a + 1 < N; ++a) planes[a] = &layer->edges[a];
+    if (slab != nullptr) planes[N - 1] = &slab->edges;
+    Counts counts{};
+    Firsts firsts{};
+    for (int a = 0; a < N; ++a) {
+      if (planes[a] == nullptr) continue;
+      counts[a] = planes[a]->count[row];
+      firsts[a] = planes[a]->first(row);
+    }
+    add(row, counts, firsts, [&](const std::array<std::uint32_t*, 4>& out) {
+      for (int a = 0; a < N; ++a)
+        if (counts[a] != 0) list_bits(planes[a]->bits[0].data() + row * shape_.pitch(), shape_.words(), out[a]);
+    });
+  }
+
+ private:
+  static constexpr std::size_t kMargin = 16;  ///< what is written behind lists
+  static constexpr std::uint32_t kMany = 48;  ///< edges of a row that need no others beside them
+  static constexpr std::size_t kAtOnce = 8;   ///< values
+
+  /// How many edges make a list full, and what it has room for, where rows have so many samples.
+  static constexpr std::size_t full(std::size_t samples) noexcept {
+    return std::clamp<std::size_t>(samples / 2, 32, 512);
+  }
+  static constexpr std::size_t room(std::size_t samples) noexcept { return full(samples) + samples + kMargin; }
+
+  /// Edges along one axis.
+  struct List {
+    std::size_t size = 0;
+    std::vector<std::uint32_t> at;
+    std::vector<std::ptrdiff_t> rows;
+    std::array<std::vector<double>, N> start;  ///< as in EdgePoints
+    std::vector<double> end;
+    std::vector<double> alphas;
+    std::vector<Vertex> points;
+
+    void allocate(std::size_t most, bool has_end) {
+      at.resize(most);
+      rows.resize(most);
+      alphas.resize(most);
+      points.resize(most);
+      for (int a = 1; a + 1 < N; ++a) start[a].resize(most);
+      if (has_end) end.resize(most);
+    }
+  };
+  /// Edges of one row in a list.
+  struct Segment {
+    std::size_t row;
+    int axis;
+    std::uint32_t first, count;
+    Index vertex;
+  };
+
+  template <class Value>
+  static void fill(std::vector<Value>& values, std::size_t first, std::size_t count, Value value) noexcept {
+    Value* const to = values.data() + first;
+    for (std::size_t i = 0; i < count; i += kAtOnce)
+      for (std::size_t j = 0; j < kAtOnce; ++j) to[i + j] = value;
+  }
+
+  /// Lists the edges of a row, axis by axis.
+  template <class ListEdges>
+  void add(std::size_t row, const Counts& counts, const Firsts& firsts, const ListEdges& list_edges) noexcept {
+    const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
+    if (most == 0) return;
+    if (most >= kMany) flush();
+    std::array<std::uint32_t*, 4> out{};
+    for (int a = 0; a < N; ++a) out[a] = lists_[a].at.data() + lists_[a].size;
+    list_edges(out);
+    const auto& index = shape_.index_of(row);
+    std::ptrdiff_t offset = 0;
+    for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
+    std::size_t longest = 0;
+    for (int axis = 0; axis < N; ++axis) {
+      const std::uint32_t count = counts[axis];
+      if (count == 0) continue;
+      List& list = lists_[axis];
+      fill(list.rows, list.size, count, offset);
+      for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, count, placement_.sample(a, index[a]));
+      if (axis > 0 && axis + 1 < N) fill(list.end, list.size, count, placement_.sample(axis, index[axis] + 1));
+      segments_.push_back({row, axis, static_cast<std::uint32_t>(list.size), count, firsts[axis]});
+      list.size += count;
+      longest = std::max(longest, list.size);
+    }
+    if (most >= kMany || longest >= full_) flush();
+  }
+
+  /// The edges at a row's last sample, which no tile starts from: each is the last of its list.
+  void list_last(const SlabView<N>& view, std::size_t row, const Counts& counts,
+                 const std::array<std::uint32_t*, 4>& out) const noexcept {
+    const std::size_t last = shape_.size(0) - 1;
+    const auto high = [&](unsigned up, unsigned mask) {
+      return view.layers[up]->high[shape_.shifted(row, mask) * shape_.pitch() + last / kWordBits] >> (last % kWordBits);
+    };
+    const Word here = high(1, 0);
+    for (int a = 1; a < N; ++a)
+      if (((here ^ (a == N - 1 ? high(0, 0) : high(1, 1u << a))) & 1u) != 0)
+        out[a][counts[a] - 1] = static_cast<std::uint32_t>(last);
+  }
+
+  /// Writes the points of all that is listed.
+  void flush() noexcept {
+    if (segments_.empty()) return;
+    const bool in_place = segments_.back().row == segments_.front().row;  // one row: one segment in a list
+    std::array<Vertex*, N> out;
+    for (int axis = 0; axis < N; ++axis) out[axis] = lists_[axis].points.data();
+    if (in_place)
+      for (const Segment& segment : segments_) out[segment.axis] = &target_.vertices[segment.vertex];
+    for (int axis = 0; axis < N; ++axis)
+      if (lists_[axis].size != 0) make_points(axis, out[axis]);
+    if (!in_place)
+      for (const Segment& segment : segments_) put_points(segment);
+    if (normals_)
+      for (const Segment& segment : segments_) put_normals(segment);
+    segments_.clear();
+    for (List& list : lists_) list.size = 0;
+  }
+
+  [[nodiscard]] const typename EdgeTarget<Vertex>::Run& run(int axis) const noexcept {
+    return axis == N - 1 ? target_.in_slab : target_.in_layer;
+  }
+
+  /// Of one list.
+  void make_points(int axis, Vertex* out) noexcept {
+    List& list = lists_[axis];
+    const std::size_t layer = run(axis).layer;
+    source_.edge_alphas(layer, axis, {list.rows.data(), list.at.data(), list.size}, list.alphas.data());
+    EdgePoints<N, Real> points{};
+    points.at = list.at.data();
+    points.alphas = list.alphas.data();
+    points.count = list.size;
+    points.axis = axis;
+    for (int a = 1; a + 1 < N; ++a) points.start[a] = list.start[a].data();
+    points.end = list.end.data();
+    points.out = out;
+    placement_.edges(layer, points);
+  }
+
+  void put_points(const Segment& segment) const noexcept {
+    Vertex* const to = &target_.vertices[segment.vertex];
+    const Vertex* const from = lists_[segment.axis].points.data() + segment.first;
+    // As many as there may be, for it is slow to find out how few: what is written too much, later ones take the place
+    // of. (Segments of a run come in the order of their vertices.)
+    if (segment.count <= kAtOnce && run(segment.axis).end - to >= static_cast<std::ptrdiff_t>(kAtOnce))
+      std::memcpy(to, from, kAtOnce * sizeof(Vertex));
+    else
+      std::copy_n(from, segment.count, to);
+  }
+
+  void put_normals(const Segment& segment) noexcept {
+    const List& list = lists_[segment.axis];
+    auto start = shape_.index_of(segment.row);
+    start[N - 1] = run(segment.axis).layer;
+    placement_.normals()->edges(start, segment.axis, list.at.data() + segment.first, segment.count,
+                                list.alphas.data() + segment.first, *normals_,
+                                &target_.vertices.normal(segment.vertex));
+  }
+
+  const SampleSource<N>& source_;
+  const Placement<N, Real>& placement_;
+  const RowShape<N>& shape_;
+  std::array<std::ptrdiff_t, N> strides_;
+  std::size_t full_;
+  std::unique_ptr<NormalScratch> normals_;  ///< null: none are wanted
+  EdgeTarget<Vertex> target_{};
+  std::array<List, N> lists_;
+  std::vector<Segment> segments_;
+};
+
+}  // namespace tegl::detail
