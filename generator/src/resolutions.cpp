@@ -9,12 +9,10 @@
 #include <atomic>
 #include <bit>
 #include <mutex>
-#include <optional>
-#include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "parallel.hpp"
 #include "tegl/facets/tile_certifier.hpp"
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/tile_symmetry.hpp"
@@ -29,12 +27,6 @@ using facets::FaceLattice;
 using facets::Fault;
 using facets::TileCertifier;
 using FacetSignature = facets::Signature;
-
-/// A tile, resolved, that did not pass. Of several the first one is told.
-struct Failure {
-  std::uint64_t unit = 0;
-  std::string text{};
-};
 
 std::string text_of(const FaceLattice& lattice, FacetSignature signature, const facets::Resolution& resolution,
                     Fault fault) {
@@ -99,45 +91,18 @@ void add(ResolutionFigures& to, const ResolutionFigures& more) {
 template <class Work>
 ResolutionFigures on_threads(const FaceLattice& lattice, std::uint64_t units, unsigned threads,
                              const Progress& progress, const Work& work) {
-  if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-  threads = static_cast<unsigned>(std::min<std::uint64_t>(threads, units));
-  std::atomic<std::uint64_t> next = 0;
-  std::atomic<bool> stop = false;
-  std::mutex mutex;
-  std::optional<Failure> failure;
-  std::exception_ptr broken;
+  std::mutex guard;
+  std::uint64_t done = 0;
   ResolutionFigures total;
-  const auto run = [&] {
-    try {
-      Worker worker(lattice);
-      for (std::uint64_t unit = next++; unit < units && !stop; unit = next++) {
-        try {
-          work(worker, unit);
-        } catch (const Error& error) {
-          stop = true;
-          const std::scoped_lock lock(mutex);
-          if (!failure || unit < failure->unit) failure = Failure{unit, error.what()};
-          break;
-        }
-        if (progress) {
-          const std::scoped_lock lock(mutex);
-          progress(static_cast<double>(std::min(next.load(), units)) / static_cast<double>(units));
-        }
-      }
-      const std::scoped_lock lock(mutex);
-      add(total, worker.figures());
-    } catch (...) {
-      stop = true;
-      const std::scoped_lock lock(mutex);
-      broken = std::current_exception();
-    }
+  const auto one = [&](Worker& worker, std::uint64_t unit) {
+    work(worker, unit);
+    if (!progress) return;
+    const std::lock_guard lock(guard);
+    progress(static_cast<double>(++done) / static_cast<double>(units));
   };
-  std::vector<std::jthread> others;
-  for (unsigned t = 1; t < threads; ++t) others.emplace_back(run);
-  run();
-  others.clear();  // joins
-  if (broken) std::rethrow_exception(broken);
-  if (failure) throw Error(ErrorCode::CertificateFailed, failure->text);
+  in_parallel(
+      units, 1, threads, [&] { return Worker(lattice); }, one,
+      [&](const Worker& worker) { add(total, worker.figures()); });
   return total;
 }
 

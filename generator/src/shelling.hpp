@@ -21,10 +21,10 @@ struct Shelling {
 /// allowed by `sigma`; empty if nothing is found with at most `limit`. Depends on the set of triangles alone, not on
 /// their order or orientation. Not oriented: vertices ascend.
 ///
-/// Tetrahedra are taken off the ball one by one, so that what is left is a ball at any time: either around a vertex with
-/// three triangles, which then is gone, or over two triangles with a common edge, which then is exchanged for the other
-/// diagonal. With V vertices and x exchanges that makes V - 3 + x tetrahedra, if it comes to an end. The order of the
-/// steps is searched for, by many tries with seeded choices.
+/// Tetrahedra are taken off the ball one by one, so that what is left is a ball at any time: either around a vertex
+/// with three triangles, which then is gone, or over two triangles with a common edge, which then is exchanged for the
+/// other diagonal. With V vertices and x exchanges that makes V - 3 + x tetrahedra, if it comes to an end. The order of
+/// the steps is searched for, by many tries with seeded choices.
 Shelling shell_sphere(const std::vector<Simplex>& sphere, const SigmaComplex& sigma, std::size_t limit);
 
 }  // namespace tegl::gen

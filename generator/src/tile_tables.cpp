@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <map>
-#include <mutex>
-#include <thread>
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "parallel.hpp"
 #include "tegl/gen/certificate.hpp"
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/symmetry.hpp"
@@ -21,29 +19,8 @@ namespace tegl::gen {
 
 namespace {
 
-/// Calls work(s) for every s < count on all processors; the first exception by s is thrown.
-template <class Work>
-void for_each_signature(std::uint32_t count, const Work& work) {
-  const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-  std::atomic<std::uint32_t> next{0};
-  std::mutex guard;
-  std::map<std::uint32_t, std::exception_ptr> failures;
-  const auto run = [&] {
-    constexpr std::uint32_t kChunk = 64;
-    for (std::uint32_t first = next.fetch_add(kChunk); first < count; first = next.fetch_add(kChunk))
-      for (std::uint32_t s = first; s < std::min(count, first + kChunk); ++s) try {
-          work(s);
-        } catch (...) {
-          const std::lock_guard lock(guard);
-          failures.emplace(s, std::current_exception());
-        }
-  };
-  std::vector<std::jthread> pool;
-  for (unsigned t = 1; t < threads; ++t) pool.emplace_back(run);
-  run();
-  pool.clear();  // joins
-  if (!failures.empty()) std::rethrow_exception(failures.begin()->second);
-}
+/// Signatures that a thread takes at a time.
+constexpr std::uint64_t kChunk = 64;
 
 /// A simplex in ascending order with its sign in front: equal for equal oriented simplices.
 using Canonical = std::array<std::uint32_t, 5>;
@@ -216,7 +193,8 @@ void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>
     table.list_of.push_back(static_cast<std::uint16_t>(classes.class_of[s]));
     table.element_of.push_back(static_cast<std::uint16_t>(classes.element_of[s]));
   }
-  for_each_signature(static_cast<std::uint32_t>(contours.size()), [&](std::uint32_t s) {
+  const auto carry = [&](int, std::uint64_t number) {
+    const auto s = static_cast<std::uint32_t>(number);
     const Signature r = classes.representatives[table.list_of[s]];
     const auto& row = rows[table.element_of[s]];
     table.slot_swaps[s] = swaps_of(builder, r, s, row);
@@ -227,7 +205,9 @@ void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>
                   fmt::format("signature {}: the contour carried from its representative {} differs from its own; "
                               "expected an equivariant triangulation",
                               s, r));
-  });
+  };
+  in_parallel(
+      contours.size(), kChunk, 0, [] { return 0; }, carry, [](int) {});
 }
 
 class Fnv {
@@ -275,13 +255,15 @@ tables::TileTable TileTables::view() const {
 std::vector<TileContour> certified_contours(const ContourBuilder& builder, CertifiedFigures& figures) {
   const std::uint32_t count = builder.tile().full() + 1;
   std::vector<TileContour> contours(count);
-  for_each_signature(count, [&](std::uint32_t s) {
+  const auto build = [&](TableCertifier& certifier, std::uint64_t number) {
+    const auto s = static_cast<std::uint32_t>(number);
     contours[s] = builder.build(s);
-    const Certificate certificate = certify(builder, s, contours[s]);
-    if (!certificate.passed())
-      throw Error(ErrorCode::CertificateFailed, fmt::format("signature {} of the {}-tile: {}, {}", s, builder.dim(),
-                                                            fault_name(certificate.fault), certificate.detail));
-  });
+    if (const facets::Fault fault = certifier.certify(s, contours[s]); fault != facets::Fault::none)
+      throw Error(ErrorCode::CertificateFailed,
+                  fmt::format("signature {} of the {}-tile: {}", s, builder.dim(), facets::fault_name(fault)));
+  };
+  in_parallel(
+      count, kChunk, 0, [&] { return TableCertifier(builder); }, build, [](const TableCertifier&) {});
   figures = CertifiedFigures{};
   figures.alternative = builder.alternative();
   figures.triangulation = builder.triangulation();

@@ -21,6 +21,9 @@
 namespace tegl::gen {
 namespace {
 
+using facets::Fault;
+using facets::fault_name;
+
 constexpr Triangulation kTriangulations[] = {Triangulation::barycentric, Triangulation::compact};
 
 std::vector<int> polygon_sizes(const TileContour& contour) {
@@ -180,11 +183,11 @@ TEST(Certificate, AConeOverATorusFailsAtItsApex) {
       ASSERT_EQ(1u, contour.facets.size());
       ASSERT_EQ(t == Triangulation::barycentric ? Filling::side : Filling::pulled, contour.facets[0].filling);
       ASSERT_EQ(0, contour.facets[0].boundary_euler);
-      ASSERT_TRUE(certify(builder, s, contour).passed());
+      ASSERT_EQ(certify(builder, s, contour), Fault::none);
       contour.facets[0].simplices.clear();
       for (const Simplex& b : contour.boundary)
         contour.facets[0].simplices.push_back({static_cast<std::uint8_t>(builder.own_base()), b[0], b[1], b[2]});
-      EXPECT_EQ(Fault::Link, certify(builder, s, contour).fault);
+      EXPECT_EQ(Fault::link, certify(builder, s, contour));
     }
   }
 }
@@ -194,21 +197,21 @@ TEST(Certificate, EveryKindOfFaultIsNamed) {
   const ContourBuilder builder(lattice, 3, Alternative::low, Triangulation::compact);
   const Signature s = 15;  // one quadrilateral, two triangles
   const TileContour good = builder.build(s);
-  ASSERT_TRUE(certify(builder, s, good).passed());
+  ASSERT_EQ(certify(builder, s, good), Fault::none);
   const auto fault = [&](auto change) {
     TileContour bad = good;
     change(bad.facets[0].simplices);
-    return certify(builder, s, bad).fault;
+    return certify(builder, s, bad);
   };
   using List = std::vector<Simplex>;
-  EXPECT_EQ(Fault::Boundary, fault([](List& l) { l.pop_back(); }));
-  EXPECT_EQ(Fault::RepeatedVertex, fault([](List& l) { l.push_back(l[0]); }));
-  EXPECT_EQ(Fault::RepeatedVertex, fault([](List& l) { l[0][1] = l[0][0]; }));
-  EXPECT_EQ(Fault::Orientation, fault([](List& l) { std::swap(l[0][1], l[0][2]); }));
-  EXPECT_EQ(Fault::Boundary, fault([](List& l) {
+  EXPECT_EQ(Fault::boundary, fault([](List& l) { l.pop_back(); }));
+  EXPECT_EQ(Fault::repeated_vertex, fault([](List& l) { l.push_back(l[0]); }));
+  EXPECT_EQ(Fault::repeated_vertex, fault([](List& l) { l[0][1] = l[0][0]; }));
+  EXPECT_EQ(Fault::orientation, fault([](List& l) { std::swap(l[0][1], l[0][2]); }));
+  EXPECT_EQ(Fault::boundary, fault([](List& l) {
               for (Simplex& t : l) std::swap(t[1], t[2]);
             }));
-  EXPECT_EQ(Fault::Branching, fault([](List& l) {
+  EXPECT_EQ(Fault::branching, fault([](List& l) {
               for (const std::uint8_t v : {std::uint8_t{50}, std::uint8_t{51}})
                 l.push_back({l[0][0], l[0][1], v}), l.push_back({l[0][1], l[0][2], v});
               l.push_back({l[0][0], l[0][1], 52});
@@ -228,9 +231,9 @@ TEST(Certificate, AChordInAFaceOfTheTileIsRefused) {
     simplices.clear();
     for (std::size_t k = 1; k + 1 < cycle.size(); ++k)
       simplices.push_back({cycle[apex], cycle[(apex + k) % 7], cycle[(apex + k + 1) % 7]});
-    const Fault fault = certify(builder, 61, contour).fault;
-    EXPECT_TRUE(fault == Fault::None || fault == Fault::InTileBoundary) << fault_name(fault);
-    refused += fault == Fault::InTileBoundary ? 1 : 0;
+    const Fault fault = certify(builder, 61, contour);
+    EXPECT_TRUE(fault == Fault::none || fault == Fault::in_tile_boundary) << fault_name(fault);
+    refused += fault == Fault::in_tile_boundary ? 1 : 0;
   }
   EXPECT_GT(refused, 0);
   EXPECT_LT(refused, 7);
