@@ -11,6 +11,7 @@
 
 #include "close.hpp"
 #include "extract_generate.hpp"
+#include "extract_progress.hpp"
 #include "pinches.hpp"
 #include "stopwatch.hpp"
 #include "workers.hpp"
@@ -63,7 +64,7 @@ class Extraction {
              const ExtractPlan& plan, ContourOutput<N, Real>& output)
       : source_(source),
         output_(output),
-        options_(options),
+        reporter_(options.progress, grid.axes[N - 1].size() - 1),
         inverted_(options.ambiguity == Ambiguity::high),
         max_vertices_(plan.max_vertices),
         shape_(grid.sizes()),
@@ -101,8 +102,9 @@ class Extraction {
     expect_output();
     Stopwatch watch;
     for (std::size_t first = 0; first < slabs; first += batch_) {
-      report(first, slabs);
       const std::size_t end = std::min(slabs, first + batch_);
+      reporter_.begin_batch(first, end, kPasses);
+      reporter_.tell(static_cast<double>(first));
       prepare(end);
       watch.add_to(stats.read_seconds);
       classify(first, end);
@@ -119,7 +121,7 @@ class Extraction {
     }
     output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
     watch.add_to(stats.close_seconds);
-    report(1, 1);
+    reporter_.tell(static_cast<double>(slabs));
   }
 
  private:
@@ -136,31 +138,44 @@ class Extraction {
   Slab<N>* slab_above(std::size_t k) noexcept { return k + 1 < shape_.layers() ? &slab(k) : nullptr; }
   SlabView<N> view(std::size_t k) noexcept { return {&shape_, {&layer(k), &layer(k + 1)}, &slab(k)}; }
 
-  void report(std::size_t done, std::size_t all) const {
-    if (options_.progress && !options_.progress(static_cast<double>(done) / static_cast<double>(all)))
-      throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {} of {} layers", done, all));
-  }
-
-  /// Calls work(k, chunk, scratch) for all chunks of the layers (or slabs) first ... end - 1, side by side.
+  /// Calls work(k, chunk, scratch) for all chunks of the layers (or slabs) first ... end - 1, side by side. Asks now
+  /// and then whether to go on.
   template <class Work>
   void for_chunks(std::size_t first, std::size_t end, const Work& work) {
     const std::size_t chunks = shape_.chunks();
-    workers_.for_range((end - first) * chunks, kLeastWork / (shape_.size(0) * std::min(shape_.rows(), kChunkRows)) + 1,
+    const std::size_t chunk_samples = shape_.size(0) * std::min(shape_.rows(), kChunkRows);
+    const std::size_t most = kMostWork / chunk_samples + 1;
+    workers_.for_range((end - first) * chunks, kLeastWork / chunk_samples + 1,
                        [&](std::size_t from, std::size_t to, Scratch& scratch) {
-                         for (; from < to; ++from) work(first + from / chunks, from % chunks, scratch);
+                         for (std::size_t next; from < to && !reporter_.stopped(); from = next) {
+                           const std::size_t k = from / chunks;
+                           next = std::min({to, (k + 1) * chunks, from + most});
+                           for (std::size_t i = from; i < next; ++i) work(first + k, i - k * chunks, scratch);
+                           reporter_.add(next - from);
+                         }
                        });
+  }
+
+  /// The same as one of the passes whose progress is told.
+  template <class Work>
+  void pass_over_chunks(std::size_t first, std::size_t end, const Work& work) {
+    reporter_.begin_pass((end - first) * shape_.chunks());
+    for_chunks(first, end, work);
   }
 
   /// The samples for classify(.., end).
   void prepare(std::size_t end) {
-    for (; prepared_ < std::min(end + 2, shape_.layers()); ++prepared_) source_.prepare(prepared_);
+    for (; prepared_ < std::min(end + 2, shape_.layers()); ++prepared_) {
+      source_.prepare(prepared_);
+      reporter_.tell(0);
+    }
   }
 
   /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
   void classify(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
     classified_ = prepared_;
-    for_chunks(from, classified_, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+    pass_over_chunks(from, classified_, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
       counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.words.data());
     });
     for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
@@ -203,7 +218,7 @@ class Extraction {
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     take_planes(first, end);
-    for_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+    pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
       if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.words.data());
       counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.words.data());
     });
@@ -232,7 +247,7 @@ class Extraction {
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
     if (room.vertices == nullptr && room.simplices == nullptr) return;
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
-    for_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+    pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
       if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
       generate_slab(k, chunk, scratch.edges, vertices, room.simplices);
     });
@@ -314,24 +329,29 @@ class Extraction {
       pinches_.add_layer(0, layer(0));
       if (caps_) caps_->add_layer(0, layer(0), nullptr, &slab(0));
     }
+    reporter_.begin_pass(end - first);
     for (std::size_t k = first; k < end; ++k) {
       pinches_.add_slab(k, slab(k));
       if (const Slab<N>* const above = slab_above(k + 1)) pinches_.open_slab(k + 1, *above);
       pinches_.add_layer(k + 1, layer(k + 1));
-      if (!caps_) continue;
-      caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
-      caps_->add_slab(k, view(k));
+      if (caps_) {
+        caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
+        caps_->add_slab(k, view(k));
+      }
+      reporter_.add(1);
     }
   }
 
-  static constexpr std::size_t kLeastWork = 4096;  ///< samples in a task
+  static constexpr std::size_t kLeastWork = 4096;                 ///< samples in a task
+  static constexpr std::size_t kMostWork = std::size_t{1} << 20;  ///< samples between two questions whether to go on
+  static constexpr unsigned kPasses = 4;  ///< over a batch: classify, count, generate, gather borders
   /// The last layer is only classified, and the last slab only looked at for missing values: neither needs planes. (In
   /// 2D a layer is a row, and to pass its planes on takes longer than it saves.)
   static constexpr bool kPassesPlanesOn = N > 2;
 
   SampleSource<N>& source_;
   ContourOutput<N, Real>& output_;
-  const ExtractOptions& options_;
+  ProgressReporter reporter_;
   bool inverted_;
   std::uint64_t max_vertices_;
   RowShape<N> shape_;

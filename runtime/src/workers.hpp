@@ -23,6 +23,7 @@
 #endif
 #ifdef TEGL_PLAIN_THREADS
 #include <atomic>
+#include <exception>
 #include <thread>
 #endif
 
@@ -49,14 +50,22 @@ class Workers {
     if (alone_ || count <= grain) return work(std::size_t{0}, count, own_.local());
 #ifdef TEGL_PLAIN_THREADS
     std::atomic<std::size_t> next = 0;
-    const auto take_parts = [&] {
-      for (std::size_t from; (from = next.fetch_add(grain)) < count;)
-        work(from, std::min(count, from + grain), own_.local());
+    std::vector<std::exception_ptr> errors(this->count());
+    const auto take_parts = [&](std::size_t thread) {
+      try {
+        for (std::size_t from; (from = next.fetch_add(grain)) < count;)
+          work(from, std::min(count, from + grain), own_.local());
+      } catch (...) {
+        errors[thread] = std::current_exception();
+        next = count;
+      }
     };
     std::vector<std::thread> others(this->count() - 1);
-    for (std::thread& other : others) other = std::thread(take_parts);
-    take_parts();
+    for (std::size_t i = 0; i < others.size(); ++i) others[i] = std::thread(take_parts, i + 1);
+    take_parts(0);
     for (std::thread& other : others) other.join();
+    for (const std::exception_ptr& error : errors)
+      if (error) std::rethrow_exception(error);
 #else
     arena_.execute([&] {
       tbb::parallel_for(

@@ -37,6 +37,8 @@ struct ExtractOptions {
   bool normals = false;
   /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
+  /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
+  /// axis) at least once, and within large ones, with fractions that do not fall.
   Progress progress;
 };
 

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Progress is told of every slab, by the thread that asked, with fractions that do not fall; and a contour that is no
+// longer wanted ends where it is, whichever way it is made and however many threads make it.
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fields.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/stream.hpp"
+
+namespace tegl::test {
+namespace {
+
+template <int N>
+struct NoSink final : ContourSink<N, float> {
+  using typename ContourSink<N, float>::Vertex;
+  using typename ContourSink<N, float>::Simplex;
+  void add_vertices(std::span<const Vertex> /*vertices*/) override {}
+  void add_simplices(std::span<const Simplex> /*simplices*/) override {}
+  void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
+};
+
+/// A way to make a contour, and in how many slabs.
+struct Way {
+  std::string name;
+  std::size_t slabs;
+  std::function<void(const ExtractOptions&)> make;
+};
+
+template <int N>
+std::vector<Way> ways(const OwnedImage<float, N>& image) {
+  const std::size_t slabs = image.grid.axes[N - 1].size() - 1;
+  std::vector<Way> result;
+  result.push_back(
+      {"extract", slabs, [&](const ExtractOptions& options) { extract<float>(image.view(), 0.5, options); }});
+  result.push_back({"count", slabs, [&](const ExtractOptions& options) { count(image.view(), 0.5, options); }});
+  result.push_back({"extract_into", slabs, [&](const ExtractOptions& options) {
+                      ExtractOptions silent = options;
+                      silent.progress = {};
+                      const ContourSize size = count(image.view(), 0.5, silent);
+                      std::vector<std::array<float, N>> vertices(size.vertices);
+                      std::vector<std::array<Index, N>> simplices(size.simplices);
+                      extract_into(image.view(), 0.5, ContourRoom<N, float>{vertices, simplices}, options);
+                    }});
+  result.push_back({"extract_streamed", slabs, [&](const ExtractOptions& options) {
+                      std::size_t layer = 1;
+                      for (int a = 0; a < N - 1; ++a) layer *= image.grid.axes[a].size();
+                      FunctionLayers<float, N> layers(image.grid, [&](std::size_t k, float* to) {
+                        std::copy_n(image.values.data() + k * layer, layer, to);
+                      });
+                      NoSink<N> sink;
+                      extract_streamed<float>(layers, 0.5, options, sink);
+                    }});
+  if constexpr (N > 2)
+    result.push_back(
+        {"slice_image", 2, [&](const ExtractOptions& options) { slice_image(image.view(), 0.5, 2.0, options); }});
+  return result;
+}
+
+/// The fractions that a way tells.
+std::vector<double> told(const Way& way, ExtractOptions options) {
+  std::vector<double> fractions;
+  const auto caller = std::this_thread::get_id();
+  options.progress = [&](double fraction) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    fractions.push_back(fraction);
+    return true;
+  };
+  way.make(options);
+  return fractions;
+}
+
+template <int N>
+void expect_told_of_every_slab(const std::array<std::size_t, N>& sizes) {
+  const auto image = noise<float, N>(sizes, 1);
+  for (const Way& way : ways(image))
+    for (const unsigned threads : {1u, 4u}) {
+      SCOPED_TRACE(testing::Message() << way.name << ", " << threads << " threads");
+      ExtractOptions options;
+      options.threads = threads;
+      const std::vector<double> fractions = told(way, options);
+      EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+      EXPECT_GE(fractions.front(), 0.0);
+      EXPECT_EQ(fractions.back(), 1.0);
+      EXPECT_GE(fractions.size(), way.slabs);
+    }
+}
+
+TEST(Progress, IsToldOfEverySlabByTheThreadThatAsked) {
+  expect_told_of_every_slab<2>({300, 40});
+  expect_told_of_every_slab<3>({70, 30, 25});
+  expect_told_of_every_slab<4>({12, 9, 8, 11});
+}
+
+/// A slab of a million samples and more does not keep quiet until it is done.
+TEST(Progress, IsToldWithinLargeSlabs) {
+  const auto image = noise_with_missing<float, 3>(Grid<3>::unit({1500, 1500, 2}), 3, 0.0);
+  ExtractOptions options;
+  options.threads = 1;
+  const std::vector<double> fractions = told(ways(image)[0], options);
+  const auto within = std::count_if(fractions.begin(), fractions.end(), [](double f) { return f > 0.0 && f < 1.0; });
+  EXPECT_GE(within, 6);
+}
+
+template <int N>
+void expect_stopped_whenever(const std::array<std::size_t, N>& sizes) {
+  const auto image = noise<float, N>(sizes, 5);
+  for (const Way& way : ways(image))
+    for (const unsigned threads : {1u, 3u}) {
+      SCOPED_TRACE(testing::Message() << way.name << ", " << threads << " threads");
+      ExtractOptions options;
+      options.threads = threads;
+      // With several threads the number of calls differs from run to run.
+      const std::size_t calls = threads == 1 ? told(way, options).size() : way.slabs;
+      for (std::size_t last = 1; last <= calls; last += 1 + calls / 40) {
+        std::size_t seen = 0;
+        options.progress = [&](double) { return ++seen < last; };
+        try {
+          way.make(options);
+          ADD_FAILURE() << "not cancelled by call " << last << " of " << calls;
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::Cancelled) << error.what();
+        }
+        EXPECT_EQ(seen, last) << "nobody asks again";
+      }
+    }
+}
+
+TEST(Progress, StopsTheWorkAtAnyCall) {
+  expect_stopped_whenever<2>({200, 30});
+  expect_stopped_whenever<3>({40, 30, 12});
+  expect_stopped_whenever<4>({9, 8, 7, 6});
+}
+
+TEST(Progress, WhatItThrowsReachesTheCaller) {
+  const auto image = noise<float, 3>(40, 7);
+  for (const unsigned threads : {1u, 4u})
+    for (const Way& way : ways(image)) {
+      ExtractOptions options;
+      options.threads = threads;
+      int seen = 0;
+      options.progress = [&](double) -> bool {
+        if (++seen < 3) return true;
+        throw std::pair(seen, 'x');
+      };
+      using Thrown = std::pair<int, char>;
+      EXPECT_THROW(way.make(options), Thrown) << way.name;
+      EXPECT_EQ(seen, 3);
+    }
+}
+
+}  // namespace
+}  // namespace tegl::test
