@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
 
 namespace tegl::io_detail {
 
@@ -42,7 +43,14 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t) {
     info->status->error = errno;
     return nullptr;
   }
-  return &(new PendingFile{{}, descriptor, info->status, 0, 0})->base;
+  // Nothing may be thrown through HDF5.
+  auto* const file = new (std::nothrow) PendingFile{{}, descriptor, info->status, 0, 0};
+  if (file == nullptr) {
+    ::close(descriptor);
+    info->status->error = ENOMEM;
+    return nullptr;
+  }
+  return &file->base;
 }
 
 herr_t close_file(H5FD_t* file) {

@@ -6,6 +6,7 @@
 #include "hdf5_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common.hpp"
@@ -16,17 +17,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
+using Reason = std::array<char, 256>;
+
+/// Nothing may be thrown through HDF5, so what is kept has room beforehand.
 herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* out) {
   // The walk starts at the innermost call: the first entry with a text is the reason.
-  auto& reason = *static_cast<std::string*>(out);
-  if (reason.empty() && error->desc != nullptr) reason = error->desc;
+  auto& reason = *static_cast<Reason*>(out);
+  if (reason[0] == '\0' && error->desc != nullptr) std::strncpy(reason.data(), error->desc, reason.size() - 1);
   return 0;
 }
 
 std::string innermost_reason() {
-  std::string reason;
+  Reason reason{};
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &reason);
-  return reason.empty() ? "no reason given" : reason;
+  return reason[0] == '\0' ? "no reason given" : reason.data();
 }
 
 /// The driver takes what it cannot write without complaint.

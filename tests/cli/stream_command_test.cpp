@@ -134,6 +134,24 @@ TEST_F(Stream, NeedsLittleMemoryWhateverTheLengthOfTheLastAxis) {
   EXPECT_EQ(check.json()["components"], 8);
 }
 
+TEST_F(Stream, SaysSoAndLeavesNoFileWhenMemoryRunsOut) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space";
+#endif
+  const std::string raw = write("layers.raw", "");
+  std::filesystem::resize_file(raw, std::uintmax_t{30000} * 30000 * 2);  // a hole
+  const auto before = files();
+  const std::string command = "ulimit -v 500000; exec " TEGL_PROGRAM " contour " + raw +
+                              " --raw 30000x30000x2 --raw-type uint8 --iso 20.5 --threads 1 -q -o " + path("a.vtkhdf") +
+                              " 2> " + path("said");
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 70);
+  std::ifstream said(path("said"));
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(said), {}), HasSubstr("layers.raw: memory ran out"));
+  std::filesystem::remove(path("said"));
+  EXPECT_EQ(files(), before);
+}
+
 TEST_F(Stream, LeavesNoFileWhenItFails) {
   const Samples balls = merging_balls(12, 7);
   const std::string raw = write("short.raw", std::string(1000, '\0'));

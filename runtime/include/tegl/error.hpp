@@ -27,7 +27,8 @@ enum class ErrorCode {
 /// The name of a code as in the enumeration, for messages and JSON.
 const char* error_name(ErrorCode code) noexcept;
 
-/// The one exception type of the library. `what()` says the actual and the expected value.
+/// The one exception type of the library. `what()` says the actual and the expected value. Where memory runs out,
+/// std::bad_alloc passes through it: nothing is lost then, and no half-written file is left.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

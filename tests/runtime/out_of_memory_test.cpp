@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Whichever allocation fails, and whether memory is back after it or not: the caller gets std::bad_alloc or the whole
+// result, and everything is given back.
+#include "failing_memory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "fields.hpp"
+#include "tegl/check.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/stream.hpp"
+
+namespace tegl::test {
+namespace {
+
+/// A number that differs where results do.
+template <class Range>
+std::uint64_t digest(const Range& rows, std::uint64_t sum) {
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(rows.data());
+  for (std::size_t i = 0; i < rows.size() * sizeof(rows[0]); ++i) sum = (sum ^ bytes[i]) * 1099511628211u;
+  return sum;
+}
+template <int N, class Real>
+std::uint64_t digest(const Contour<N, Real>& contour) {
+  return digest(contour.normals, digest(contour.simplices, digest(contour.vertices, 14695981039346656037u)));
+}
+
+/// Keeps what it can without memory of its own.
+template <int N>
+struct DigestSink final : ContourSink<N, float> {
+  using typename ContourSink<N, float>::Vertex;
+  using typename ContourSink<N, float>::Simplex;
+  void add_vertices(std::span<const Vertex> vertices) override { sum = digest(vertices, sum); }
+  void add_normals(std::span<const Vertex> normals) override { sum = digest(normals, sum); }
+  void add_simplices(std::span<const Simplex> simplices) override { sum = digest(simplices, sum); }
+  void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override {
+    sum = digest(std::array{simplex, static_cast<std::uint64_t>(corner), vertex}, sum);
+  }
+  std::uint64_t sum = 14695981039346656037u;
+};
+
+template <int N>
+OwnedImage<float, N> layered(const std::array<std::size_t, N>& sizes, double missing) {
+  return noise_with_missing<float, N>(Grid<N>::unit(sizes), 3, missing);
+}
+
+template <int N>
+std::uint64_t extracted_into(const OwnedImage<float, N>& image, const ExtractOptions& options) {
+  const ContourSize size = count(image.view(), 0.5, options);
+  std::vector<std::array<float, N>> vertices(size.vertices);
+  std::vector<std::array<float, N>> normals(options.normals ? size.vertices : 0);
+  std::vector<std::array<std::uint64_t, N>> simplices(size.simplices);
+  extract_into(image.view(), 0.5, ContourRoom<N, float, std::uint64_t>{vertices, simplices, normals}, options);
+  return digest(normals, digest(simplices, digest(vertices, 1)));
+}
+
+template <int N>
+std::uint64_t streamed(const OwnedImage<float, N>& image, const ExtractOptions& options) {
+  std::size_t layer = 1;
+  for (int a = 0; a < N - 1; ++a) layer *= image.grid.axes[a].size();
+  FunctionLayers<float, N> layers(
+      image.grid, [&](std::size_t k, float* to) { std::copy_n(image.values.data() + k * layer, layer, to); });
+  DigestSink<N> sink;
+  extract_streamed<float>(layers, 0.5, options, sink);
+  return sink.sum;
+}
+
+template <int N>
+void expect_all_ways_survive(const std::array<std::size_t, N>& sizes, unsigned threads) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer has its own memory";
+#endif
+  for (const double missing : {0.0, 0.02}) {
+    const auto image = layered<N>(sizes, missing);
+    ExtractOptions options;
+    options.threads = threads;
+    options.normals = missing == 0.0;
+    options.close = missing != 0.0;
+    options.triangulation = missing == 0.0 ? Triangulation::compact : Triangulation::barycentric;
+    // Threads keep what they took for themselves.
+    const bool alone = threads == 1;
+    EXPECT_GT(expect_survives(
+                  "extract", [&] { return digest(extract<float>(image.view(), 0.5, options)); }, alone),
+              20);
+    EXPECT_GT(expect_survives(
+                  "extract_into", [&] { return extracted_into(image, options); }, alone),
+              20);
+    EXPECT_GT(expect_survives(
+                  "streamed", [&] { return streamed(image, options); }, alone),
+              20);
+    if constexpr (N > 2) {
+      EXPECT_GT(expect_survives(
+                    "slice_image", [&] { return digest(slice_image(image.view(), 0.5, 1.25, options)); }, alone),
+                20);
+      if (!alone) continue;
+      const auto contour = extract<float>(image.view(), 0.5, options);
+      EXPECT_GT(expect_survives(
+                    "slice", [&] { return digest(slice(contour, 1.25)); }, true),
+                10);
+      EXPECT_GT(expect_survives(
+                    "check", [&] { return check(contour).components; }, true),
+                5);
+    }
+  }
+}
+
+TEST(OutOfMemory, IsSurvivedIn2d) { expect_all_ways_survive<2>({50, 12}, 1); }
+TEST(OutOfMemory, IsSurvivedIn3d) { expect_all_ways_survive<3>({11, 8, 7}, 1); }
+TEST(OutOfMemory, IsSurvivedIn4d) { expect_all_ways_survive<4>({5, 4, 4, 5}, 1); }
+TEST(OutOfMemory, IsSurvivedBySeveralThreads) { expect_all_ways_survive<3>({30, 20, 9}, 3); }
+
+#ifdef __linux__
+/// Contours of a size that comes from the system in large blocks, reserved beforehand or grown.
+TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer has its own memory";
+#endif
+  const auto image = layered<3>({50, 50, 40}, 0.0);
+  ExtractOptions options;
+  options.threads = 1;
+  options.normals = true;
+  const std::int64_t before = memory.mapped_bytes;
+  {
+    const auto contour = extract<float>(image.view(), 0.5, options);
+    ASSERT_GE(memory.mapped_bytes - before, 3 * (std::int64_t{1} << 21)) << "three outputs in large blocks";
+  }
+  EXPECT_GT(expect_survives(
+                "extract", [&] { return digest(extract<float>(image.view(), 0.5, options)); }, true),
+            20);
+}
+#endif
+
+}  // namespace
+}  // namespace tegl::test
