@@ -52,13 +52,14 @@ class EdgeWriter {
   EdgeWriter(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
       : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
     for (int a = 0; a < N; ++a) lists_[a].allocate(room(shape.size(0)), a > 0 && a + 1 < N);
+    segments_.reserve(most_segments(shape.size(0)));  // later on, nothing may be thrown
     if (placement.normals() != nullptr) normals_ = std::make_unique<NormalScratch>();
   }
 
   /// Of one for rows of so many samples.
   static constexpr std::size_t bytes(std::size_t samples) noexcept {
     constexpr std::size_t kEach = sizeof(std::uint32_t) + sizeof(std::ptrdiff_t) + N * sizeof(double) + sizeof(Vertex);
-    return N * kEach * room(samples);
+    return N * kEach * room(samples) + most_segments(samples) * sizeof(Segment);
   }
 
   /// From here on, until finish(), edges are those of `target`.
@@ -111,6 +112,8 @@ class EdgeWriter {
     return std::clamp<std::size_t>(samples / 2, 32, 512);
   }
   static constexpr std::size_t room(std::size_t samples) noexcept { return full(samples) + samples + kMargin; }
+  /// Each has an edge at least.
+  static constexpr std::size_t most_segments(std::size_t samples) noexcept { return N * (full(samples) + 1); }
 
   /// Edges along one axis.
   struct List {
