@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "compare.hpp"
+#include "cube_symmetries.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
@@ -62,6 +63,50 @@ Grid<N> bent_grid(std::size_t samples) {
   }
   grid.linear(0, 0) = -1.0;
   return grid;
+}
+
+/// The signature of a half-space, by the signs of `weights[0] + sum of weights[1 + a] x_a`.
+std::uint64_t half_space(const std::array<double, 6>& weights) {
+  std::uint64_t signature = 0;
+  for (unsigned v = 0; v < 32; ++v) {
+    double sum = weights[0];
+    for (unsigned a = 0; a < 5; ++a) sum += weights[1 + a] * ((v >> a & 1u) != 0 ? 0.5 : -0.5);
+    signature |= std::uint64_t{sum >= 0} << v;
+  }
+  return signature;
+}
+
+TEST(CubeSymmetries, HalfSpacesThatAreTheSameUpToSymmetryHaveOneFrame) {
+  const detail::CubeSymmetries symmetries(5);
+  std::mt19937_64 bits(3);
+  for (int i = 0; i < 100; ++i) {
+    std::array<double, 6> weights;
+    for (double& w : weights) w = unit_random(bits) - 0.5;
+    const std::uint64_t signature = half_space(weights);
+    std::shuffle(weights.begin() + 1, weights.end(), bits);
+    for (std::size_t a = 1; a < 6; ++a)
+      if (bits() % 2 != 0) weights[a] = -weights[a];
+    const std::uint64_t turned = half_space(weights);
+    EXPECT_EQ(symmetries.before(symmetries.to_frame_of(signature), signature),
+              symmetries.before(symmetries.to_frame_of(turned), turned));
+  }
+}
+
+TEST(CubeSymmetries, TakeFacesWhereTheyTakeTheirCorners) {
+  const detail::CubeSymmetries symmetries(3);
+  for (std::uint64_t signature = 0; signature < 256; ++signature) {
+    const detail::CubeSymmetry symmetry = symmetries.to_frame_of(signature);
+    const std::uint64_t before = symmetries.before(symmetry, signature);
+    for (unsigned v = 0; v < 8; ++v)
+      EXPECT_EQ(before >> v & 1u, signature >> symmetries.base(symmetry, v, 0) & 1u) << signature;
+    for (unsigned axes = 0; axes < 8; ++axes)
+      for (unsigned base = 0; base < 8; ++base) {
+        if ((base & axes) != 0) continue;
+        const unsigned there = symmetries.axes(symmetry, axes);
+        const unsigned corners = symmetries.base(symmetry, base, 0) | symmetries.base(symmetry, base | axes, 0);
+        EXPECT_EQ(symmetries.base(symmetry, base, there) | there, corners);
+      }
+  }
 }
 
 TEST(ExtractTiles, PlaneImagesHaveTheContoursOfTheTables) {
