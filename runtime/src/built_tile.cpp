@@ -37,7 +37,7 @@ bool is_of_contour(VertexKind kind) {
 /// Numbers the vertices that are needed: the contour's own first, in the builder's order, then what they depend on.
 class Numbering {
  public:
-  explicit Numbering(const facets::TileFacets& tile) : tile_(tile), number_(tile.vertices.size(), kUnused) {
+  explicit Numbering(const facets::TileFacets& tile) : number_(tile.vertices.size(), kUnused) {
     for (std::size_t v = 0; v < tile.vertices.size(); ++v)
       if (is_of_contour(tile.vertices[v].kind)) add(static_cast<VertexId>(v));
     for (std::size_t i = 0; i < order_.size(); ++i) {
@@ -59,7 +59,6 @@ class Numbering {
     order_.push_back(v);
   }
 
-  const facets::TileFacets& tile_;
   std::vector<std::uint16_t> number_;
   std::vector<VertexId> order_;
 };
@@ -141,7 +140,9 @@ std::size_t BuiltTile::bytes() const noexcept {
 BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
   const std::lock_guard lock(from_.mutex_);
   if (from_.builders_.empty()) {
+    from_.builders_.reserve(from_.made_ + 1);  // so that none is lost when it comes back
     builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice());
+    ++from_.made_;
   } else {
     builder_ = std::move(from_.builders_.back());
     from_.builders_.pop_back();

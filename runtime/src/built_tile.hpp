@@ -96,7 +96,7 @@ class BuiltTiles {
   [[nodiscard]] const CubeSymmetries& symmetries() const noexcept { return symmetries_; }
 
   /// The tiles of these signatures. `for_range(count, work)` calls work(from, to) for parts of 0 ... count - 1, maybe
-  /// side by side.
+  /// side by side; if it leaves any out, it throws.
   template <class ForRange>
   std::vector<SeenTile> get(std::span<const std::uint64_t> signatures, const ForRange& for_range) {
     std::vector<SeenTile> result(signatures.size());
@@ -171,7 +171,8 @@ class BuiltTiles {
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::unordered_map<std::uint64_t, Pointer> known_;
-  std::mutex mutex_;  ///< of builders_
+  std::mutex mutex_;      ///< of what follows
+  std::size_t made_ = 0;  ///< builders, lent ones included
   std::vector<std::unique_ptr<facets::FacetBuilder>> builders_;
 };
 

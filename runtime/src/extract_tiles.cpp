@@ -16,6 +16,7 @@
 #include "built_tile.hpp"
 #include "extract_cell.hpp"
 #include "extract_place.hpp"
+#include "extract_progress.hpp"
 #include "face_ranks.hpp"
 #include "grid_cells.hpp"
 #include "stopwatch.hpp"
@@ -124,6 +125,7 @@ class TileExtraction {
       : source_(source),
         options_(options),
         contour_(contour),
+        reporter_(options.progress, grid.axes[N - 1].size() - 1),
         flip_(against_tables(grid, options)),
         shape_(grid.sizes()),
         placement_(grid),
@@ -141,8 +143,8 @@ class TileExtraction {
     source_.keep(3);
     Stopwatch watch;
     for (std::size_t k = 0; k <= slabs; ++k) {
-      if (options_.progress && !options_.progress(static_cast<double>(k) / static_cast<double>(slabs + 1)))
-        throw Error(ErrorCode::Cancelled, "cancelled by the progress callback");
+      reporter_.begin_batch(k == 0 ? 0 : k - 1, k, kPasses);
+      reporter_.tell(k == 0 ? 0.0 : static_cast<double>(k - 1));
       if (k == 0) classify(0);
       if (k < slabs) classify(k + 1);
       watch.add_to(stats.classify_seconds);
@@ -152,12 +154,15 @@ class TileExtraction {
       if (k > 0 && contour_ != nullptr) write(k - 1);
       watch.add_to(stats.generate_seconds);
     }
+    reporter_.tell(static_cast<double>(slabs));
     return {vertices_, simplices_};
   }
 
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
-  struct Nothing {};                                                   ///< that threads keep
+  struct Nothing {};                             ///< that threads keep
+  static constexpr std::size_t kMostWork = 256;  ///< cells or tiles between two questions whether to go on
+  static constexpr unsigned kPasses = 3;         ///< over a slab: build the next one's tiles, perhaps twice; write
   static constexpr std::uint32_t kSlabAbove = std::uint32_t{1} << 31;  ///< for cells of the slab above a layer
 
   TileLayer& layer(std::size_t k) { return layers_[k % layers_.size()]; }
@@ -166,6 +171,19 @@ class TileExtraction {
   template <class Work>
   void for_range(std::size_t count, std::size_t grain, const Work& work) {
     workers_.for_range(count, grain, [&](std::size_t from, std::size_t to, Nothing&) { work(from, to); });
+  }
+
+  /// The same as one of the passes whose progress is told.
+  template <class Work>
+  void pass_over(std::size_t count, std::size_t grain, const Work& work) {
+    reporter_.begin_pass(count);
+    for_range(count, grain, [&](std::size_t from, std::size_t to) {
+      for (std::size_t next; from < to && !reporter_.stopped(); from = next) {
+        next = std::min(to, from + kMostWork);
+        work(from, next);
+        reporter_.add(next - from);
+      }
+    });
   }
 
   void classify(std::size_t k) {
@@ -217,7 +235,8 @@ class TileExtraction {
     std::transform(here.cells.begin(), here.cells.end(), signatures.begin(), [](const Cell& c) { return c.signature; });
     std::sort(signatures.begin(), signatures.end());
     signatures.erase(std::unique(signatures.begin(), signatures.end()), signatures.end());
-    here.tiles = built_.get(signatures, [this](std::size_t count, const auto& work) { for_range(count, 16, work); });
+    here.tiles =
+        built_.get(signatures, [this](std::size_t count, const auto& work) { this->pass_over(count, 16, work); });
     here.simplices.resize(here.cells.size() + 1);
     for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
       for (std::size_t c = from; c < to; ++c) {
@@ -290,7 +309,7 @@ class TileExtraction {
     resize_output(contour_->vertices, vertices_, done);
     if (options_.normals) resize_output(contour_->normals, vertices_, done);
     resize_output(contour_->simplices, slab(k).simplices.back(), done);
-    for_range(slab(k).cells.size(), 16, [&](std::size_t from, std::size_t to) {
+    pass_over(slab(k).cells.size(), 16, [&](std::size_t from, std::size_t to) {
       TilePlaces<N> places(cube_, built_.symmetries());
       std::vector<Index> ids;
       for (std::size_t c = from; c < to; ++c) {
@@ -395,6 +414,7 @@ class TileExtraction {
   SampleSource<N>& source_;
   const ExtractOptions& options_;
   Contour<N, Real>* contour_;
+  ProgressReporter reporter_;
   bool flip_;
   RowShape<N> shape_;
   Placement<N, Real> placement_;
