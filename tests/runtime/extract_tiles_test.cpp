@@ -348,6 +348,21 @@ TEST(Extract5d, MissingValuesAreAnErrorThatSaysWhere) {
   }
 }
 
+TEST(Extract5d, TellsOfProgressFromNothingToAllWithoutFalling) {
+  const auto image = noise<float, 5>(3, 12);
+  ExtractOptions options;
+  std::vector<double> told;
+  options.progress = [&](double fraction) {
+    told.push_back(fraction);
+    return true;
+  };
+  extract(image.view(), 0.5, options);
+  ASSERT_GT(told.size(), 3u);
+  EXPECT_EQ(told.front(), 0.0);
+  EXPECT_EQ(told.back(), 1.0);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+}
+
 TEST(Extract5d, StopsWhenToldTo) {
   const auto image = noise<float, 5>(3, 12);
   ExtractOptions options;

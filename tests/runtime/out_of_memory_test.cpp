@@ -115,6 +115,23 @@ void expect_all_ways_survive(const std::array<std::size_t, N>& sizes, unsigned t
 TEST(OutOfMemory, IsSurvivedIn2d) { expect_all_ways_survive<2>({50, 12}, 1); }
 TEST(OutOfMemory, IsSurvivedIn3d) { expect_all_ways_survive<3>({11, 8, 7}, 1); }
 TEST(OutOfMemory, IsSurvivedIn4d) { expect_all_ways_survive<4>({5, 4, 4, 5}, 1); }
+TEST(OutOfMemory, IsSurvivedIn5d) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer has its own memory";
+#endif
+  const auto corner = sample_field<float, 5>(Grid<5>::unit({2, 2, 2, 2, 2}),
+                                             [](const Point<5>& x) { return 0.25 - x[0] - x[1] - x[2] - x[3] - x[4]; });
+  ExtractOptions options;
+  options.threads = 1;
+  options.normals = true;
+  EXPECT_GT(expect_survives(
+                "extract", [&] { return digest(extract<float>(corner.view(), 0.0, options)); }, true),
+            20);
+  const auto contour = extract<float>(corner.view(), 0.0, options);
+  EXPECT_GT(expect_survives(
+                "check", [&] { return check(contour).components; }, true),
+            5);
+}
 TEST(OutOfMemory, IsSurvivedBySeveralThreads) { expect_all_ways_survive<3>({30, 20, 9}, 3); }
 
 #ifdef __linux__
