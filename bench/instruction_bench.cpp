@@ -89,6 +89,7 @@ std::vector<NamedCase> all_cases() {
   barycentric.triangulation = Triangulation::barycentric;
   ExtractOptions closed;
   closed.close = true;
+  const ExtractOptions normals = with_normals(ExtractOptions{}, true);
   return {
       extract_case<2>("empty", 512),
       extract_case<2>("gyroid", 512),
@@ -103,6 +104,10 @@ std::vector<NamedCase> all_cases() {
       extract_case<4>("sphere", 20),
       extract_case<4>("noise", 10),
       extract_case<4>("sphere", 20, " barycentric", barycentric),
+      extract_case<3>("metaballs", 96, " normals", normals),
+      extract_case<3>("gyroid", 64, " normals", normals),
+      extract_case<3>("noise", 32, " normals", normals),
+      extract_case<4>("balls", 32, " normals", normals),
       {"extract metaballs 96^3 uint8", count_bytes},
       {"slice balls 24^4", count_slice},
       {"slice_image balls 32^4", count_slice_image},

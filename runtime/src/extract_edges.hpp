@@ -53,7 +53,9 @@ class EdgeWriter {
       : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
     for (int a = 0; a < N; ++a) lists_[a].allocate(room(shape.size(0)), a > 0 && a + 1 < N);
     segments_.reserve(most_segments(shape.size(0)));  // later on, nothing may be thrown
-    if (placement.normals() != nullptr) normals_ = std::make_unique<NormalScratch>();
+    if (placement.normals() == nullptr) return;
+    normals_ = std::make_unique<NormalScratch>();
+    for (List& list : lists_) list.normals.resize(room(shape.size(0)));
   }
 
   /// Of one for rows of so many samples.
@@ -124,6 +126,7 @@ class EdgeWriter {
     std::vector<double> end;
     std::vector<double> alphas;
     std::vector<Vertex> points;
+    std::vector<Vertex> normals;  ///< if any are wanted
 
     void allocate(std::size_t most, bool has_end) {
       at.resize(most);
@@ -154,11 +157,12 @@ class EdgeWriter {
   void add(std::size_t row, const Counts& counts, const Firsts& firsts, const ListEdges& list_edges) noexcept {
     const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
     if (most == 0) return;
-    if (most >= kMany) flush();
+    const auto& index = shape_.index_of(row);
+    const bool alone = most >= kMany || (normals_ && !placement_.normals()->is_inside(index));
+    if (alone) flush();
     std::array<std::uint32_t*, 4> out{};
     for (int a = 0; a < N; ++a) out[a] = lists_[a].at.data() + lists_[a].size;
     list_edges(out);
-    const auto& index = shape_.index_of(row);
     std::ptrdiff_t offset = 0;
     for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
     std::size_t longest = 0;
@@ -173,7 +177,7 @@ class EdgeWriter {
       list.size += count;
       longest = std::max(longest, list.size);
     }
-    if (most >= kMany || longest >= full_) flush();
+    if (alone || longest >= full_) flush();
   }
 
   /// The edges at a row's last sample, which no tile starts from: each is the last of its list.
@@ -200,9 +204,8 @@ class EdgeWriter {
     for (int axis = 0; axis < N; ++axis)
       if (lists_[axis].size != 0) make_points(axis, out[axis]);
     if (!in_place)
-      for (const Segment& segment : segments_) put_points(segment);
-    if (normals_)
-      for (const Segment& segment : segments_) put_normals(segment);
+      for (const Segment& segment : segments_) put(segment, lists_[segment.axis].points, target_.vertices.data);
+    if (normals_) flush_normals(in_place);
     segments_.clear();
     for (List& list : lists_) list.size = 0;
   }
@@ -227,24 +230,50 @@ class EdgeWriter {
     placement_.edges(layer, points);
   }
 
-  void put_points(const Segment& segment) const noexcept {
-    Vertex* const to = &target_.vertices[segment.vertex];
-    const Vertex* const from = lists_[segment.axis].points.data() + segment.first;
+  /// The normals of all that is listed, whose places on edges are known.
+  void flush_normals(bool in_place) noexcept {
+    std::array<Vertex*, N> out;
+    for (int axis = 0; axis < N; ++axis) out[axis] = lists_[axis].normals.data();
+    if (in_place)
+      for (const Segment& segment : segments_) out[segment.axis] = &target_.vertices.normal(segment.vertex);
+    for (int axis = 0; axis < N; ++axis) {
+      const List& list = lists_[axis];
+      if (list.size == 0) continue;
+      const auto start_of = [&](std::size_t edge) {
+        const Segment& segment = *std::find_if(segments_.begin(), segments_.end(), [&](const Segment& s) {
+          return s.axis == axis && edge - s.first < s.count;
+        });
+        auto start = start_in(segment.row, axis);
+        start[0] = list.at[edge];
+        return start;
+      };
+      placement_.normals()->edges(start_in(segments_.front().row, axis), axis,
+                                  {list.rows.data(), list.at.data(), list.size}, list.alphas.data(), *normals_,
+                                  out[axis], start_of);
+    }
+    if (!in_place)
+      for (const Segment& segment : segments_) put(segment, lists_[segment.axis].normals, target_.vertices.normals);
+  }
+
+  /// The first sample of the row that edges start in.
+  [[nodiscard]] typename RowShape<N>::Index start_in(std::size_t row, int axis) const noexcept {
+    auto start = shape_.index_of(row);
+    start[N - 1] = run(axis).layer;
+    return start;
+  }
+
+  /// Copies a segment of its list to where it belongs, `all` being the room for all vertices.
+  void put(const Segment& segment, const std::vector<Vertex>& list, Vertex* all) const noexcept {
+    const VertexRun<Vertex>& vertices = target_.vertices;
+    Vertex* const to = all + static_cast<Index>(segment.vertex - vertices.first);
+    const Vertex* const end = all + (run(segment.axis).end - vertices.data);
+    const Vertex* const from = list.data() + segment.first;
     // As many as there may be, for it is slow to find out how few: what is written too much, later ones take the place
     // of. (Segments of a run come in the order of their vertices.)
-    if (segment.count <= kAtOnce && run(segment.axis).end - to >= static_cast<std::ptrdiff_t>(kAtOnce))
+    if (segment.count <= kAtOnce && end - to >= static_cast<std::ptrdiff_t>(kAtOnce))
       std::memcpy(to, from, kAtOnce * sizeof(Vertex));
     else
       std::copy_n(from, segment.count, to);
-  }
-
-  void put_normals(const Segment& segment) noexcept {
-    const List& list = lists_[segment.axis];
-    auto start = shape_.index_of(segment.row);
-    start[N - 1] = run(segment.axis).layer;
-    placement_.normals()->edges(start, segment.axis, list.at.data() + segment.first, segment.count,
-                                list.alphas.data() + segment.first, *normals_,
-                                &target_.vertices.normal(segment.vertex));
   }
 
   const SampleSource<N>& source_;

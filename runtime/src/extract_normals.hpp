@@ -42,7 +42,7 @@ class NormalWriter {
   NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction)
       : source_(source),
         steps_(steps_of(source, grid)),
-        row_size_(grid.axes[0].size()),
+        sizes_(grid.sizes()),
         mapped_(grid.has_world_map()),
         sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
         // A map may make much of small differences, for which float has too few digits.
@@ -51,12 +51,21 @@ class NormalWriter {
     if (mapped_) to_world_ = sign_ * grid.linear.inverse().transpose();
   }
 
-  /// As Placement::edges.
-  void edges(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
-             NormalScratch& scratch, Vertex* out) const noexcept {
+  /// Whether rows may be worked on together: what is around their edges is weighted alike.
+  [[nodiscard]] bool is_inside(const Index& index) const noexcept {
+    for (int a = 1; a + 1 < N; ++a)
+      if (!steps_[a].is_uniform() || index[a] == 0 || index[a] + 2 >= sizes_[a]) return false;
+    return true;
+  }
+
+  /// The normals on edges along `axis`, from samples of the row `start` on, or of rows that are inside of which it is
+  /// one (start[0] means nothing). `start_of(i)` is the index of edge i's first sample.
+  template <class StartOf>
+  void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
+             Vertex* out, const StartOf& start_of) const noexcept {
     if constexpr (std::is_same_v<Real, float>)
-      if (in_float_) return edges_by(start, axis, at, count, alphas, scratch.floats, out);
-    edges_by(start, axis, at, count, alphas, scratch.doubles, out);
+      if (in_float_) return edges_by(start, axis, edges, alphas, scratch.floats, out, start_of);
+    edges_by(start, axis, edges, alphas, scratch.doubles, out, start_of);
   }
 
   /// As Placement::in_cell.
@@ -83,43 +92,45 @@ class NormalWriter {
     (std::make_index_sequence<N>());
   }
 
-  template <class Calc>
-  void edges_by(const Index& start, int axis, const std::uint32_t* at, std::size_t count, const double* alphas,
-                EdgeValues<Calc>& scratch, Vertex* out) const noexcept {
-    EdgeSurroundings<N> edges{start, axis, {}};
+  template <class Calc, class StartOf>
+  void edges_by(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, EdgeValues<Calc>& scratch,
+                Vertex* out, const StartOf& start_of) const noexcept {
+    EdgeSurroundings<N> around{start[N - 1], axis, {}};
     NormalRow<N, Real, Calc> row{scratch.values.data(), 0, axis, {}, nullptr, nullptr, static_cast<Calc>(sign_), out};
-    describe(edges, row);
+    describe(start, around, row);
     if constexpr (std::is_same_v<Calc, double>)
       if (mapped_) row.to_world = to_world_.data();
     if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
-    for (std::size_t i = 0; i < count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
-      row.count = std::min(kEdgesAtOnce, count - i);
-      source_.around_edges(edges, at + i, row.count, scratch.values.data());
+    for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
+      row.count = std::min(kEdgesAtOnce, edges.count - i);
+      const Word at_ends =
+          source_.around_edges(around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
       Calc* const places = scratch.values.data() + kEdgeValues<N> * kEdgesAtOnce;
       for (std::size_t j = 0; j < row.count; ++j) places[j] = static_cast<Calc>(alphas[i + j]);
-      if (row.row_weights != nullptr) fill_row_weights(axis, at + i, row.count, scratch.row_weights.data());
+      if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
       Word left = write_normals(row);
-      if (row.row_weights == nullptr) left |= at_ends(axis, at + i, row.count);
+      // There the weights are not those inside.
+      if (row.row_weights == nullptr) left |= at_ends;
       for (; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
-        row.out[j] = on_edge(start, axis, at[i + j], alphas[i + j]);
+        row.out[j] = on_edge(start_of(i + j), axis, alphas[i + j]);
       }
     }
   }
 
-  /// What the edges of a row have in common.
+  /// What the edges have in common.
   template <class Calc>
-  void describe(EdgeSurroundings<N>& edges, NormalRow<N, Real, Calc>& row) const noexcept {
+  void describe(const Index& start, EdgeSurroundings<N>& around, NormalRow<N, Real, Calc>& row) const noexcept {
     const auto set = [&](int a, const StepWeights& first, const StepWeights& second) {
       row.weights[a] = {static_cast<Calc>(first.backward), static_cast<Calc>(first.forward),
                         static_cast<Calc>(second.backward), static_cast<Calc>(second.forward)};
     };
     set(0, steps_[0].inside(), steps_[0].inside());
     for (int a = 1; a < N; ++a) {
-      const std::size_t first = edges.start[a];
-      const std::size_t second = first + (a == edges.axis ? 1 : 0);
-      edges.exists[a] = {steps_[a].has_backward(first), steps_[a].has_forward(first), steps_[a].has_backward(second),
-                         steps_[a].has_forward(second)};
+      const std::size_t first = start[a];
+      const std::size_t second = first + (a == around.axis ? 1 : 0);
+      around.exists[a] = {steps_[a].has_backward(first), steps_[a].has_forward(first), steps_[a].has_backward(second),
+                          steps_[a].has_forward(second)};
       set(a, steps_[a].at(first), steps_[a].at(second));
     }
   }
@@ -136,16 +147,8 @@ class NormalWriter {
     }
   }
 
-  /// The edges with an end at an end of the row, as bits: there the weights are not those inside. `at` ascends.
-  [[nodiscard]] Word at_ends(int axis, const std::uint32_t* at, std::size_t count) const noexcept {
-    Word bits = at[0] == 0 ? 1 : 0;
-    if (at[count - 1] + (axis == 0 ? 1u : 0u) + 1 >= row_size_) bits |= Word{1} << (count - 1);
-    return bits;
-  }
-
   /// One normal, whatever the values.
-  [[nodiscard]] Vertex on_edge(Index index, int axis, std::size_t from, double alpha) const noexcept {
-    index[0] = from;
+  [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha) const noexcept {
     std::array<double, N> gradient = source_.gradient(index, steps_);
     ++index[axis];
     const std::array<double, N> there = source_.gradient(index, steps_);
@@ -187,7 +190,7 @@ class NormalWriter {
 
   const SampleSource<N>& source_;
   std::array<AxisSteps, N> steps_;
-  std::size_t row_size_;
+  Index sizes_;
   bool mapped_;
   double sign_;
   bool in_float_;

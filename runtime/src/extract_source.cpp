@@ -65,59 +65,59 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
 }
 
 template <Value T, int N>
-template <class Calc>
-void RowSource<T, N>::gather(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                             Calc* out) const noexcept {
-  const bool along_row = edges.axis == 0;
-  const T* const first = row(edges.start);
-  Index second_start = edges.start;
-  if (!along_row) ++second_start[edges.axis];
-  const T* const second = along_row ? first + strides_[0] : row(second_start);
-  // By place: the row that the value is in, displaced so that the sample's own number finds it.
-  std::array<const T*, kEdgeValues<N>> rows;
+template <bool kAlongRow, class Calc>
+std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                                      Calc* out) const noexcept {
+  const std::ptrdiff_t along = strides_[0];
+  const T* const first = layer(around.layer);
+  const T* const second = kAlongRow              ? first + along
+                          : around.axis == N - 1 ? layer(around.layer + 1)
+                                                 : first + strides_[around.axis];
+  // By place: the layer that the value is in, displaced so that the first sample's own place finds it.
+  std::array<const T*, kEdgeValues<N>> from;
   for (int a = 1; a < N; ++a) {
-    const std::array<bool, 4>& exists = edges.exists[a];
-    rows[4 * a] = exists[0] ? next_row(edges.start, a, ~std::size_t{0}) : first;
-    if (a == edges.axis) {
-      rows[4 * a + 1] = second;
-      rows[4 * a + 2] = first;
-    } else {
-      const std::ptrdiff_t ahead = along_row ? strides_[0] : 0;
-      rows[4 * a + 1] = exists[1] ? next_row(edges.start, a, 1) : first;
-      rows[4 * a + 2] = exists[2] ? next_row(second_start, a, ~std::size_t{0}) + ahead : second;
-    }
-    rows[4 * a + 3] = exists[3] ? next_row(second_start, a, 1) + (along_row ? strides_[0] : 0) : second;
+    const auto neighbour = [&](unsigned j, const T* sample) {
+      if (!around.exists[a][j]) return sample;
+      if (a < N - 1) return sample + (j % 2 == 0 ? -strides_[a] : strides_[a]);
+      const std::size_t k = around.layer + (sample == second && !kAlongRow && around.axis == N - 1 ? 1 : 0);
+      return layer(j % 2 == 0 ? k - 1 : k + 1) + (sample - layer(k));
+    };
+    from[4 * a] = neighbour(0, first);
+    from[4 * a + 1] = a == around.axis ? second : neighbour(1, first);
+    from[4 * a + 2] = a == around.axis ? first : neighbour(2, second);
+    from[4 * a + 3] = neighbour(3, second);
   }
   const std::size_t last = row_size_ - 1;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t here = at[i];
-    const auto value = [&](const T* samples, std::size_t k) {
-      return static_cast<Calc>(samples[static_cast<std::ptrdiff_t>(k) * strides_[0]]);
-    };
+  std::uint64_t at_ends = 0;
+  for (std::size_t i = 0; i < edges.count; ++i) {
+    const std::size_t here = edges.at[i];
+    const std::ptrdiff_t place = edges.rows[i] + static_cast<std::ptrdiff_t>(here) * along;
+    const bool at_start = here == 0;
+    const bool at_end = kAlongRow ? here + 1 == last : here == last;
+    at_ends |= std::uint64_t{at_start || at_end} << i;
+    const auto value = [&](const T* samples, std::ptrdiff_t step) { return static_cast<Calc>(samples[place + step]); };
+    const std::ptrdiff_t back = at_start ? 0 : -along;
+    const std::ptrdiff_t ahead = at_end ? 0 : along;
     Calc* const to = out + i;
-    to[0] = value(first, here - (here > 0 ? 1 : 0));
-    to[kEdgesAtOnce] = value(first, here + (here < last ? 1 : 0));
-    if (along_row) {
-      to[2 * kEdgesAtOnce] = value(first, here);
-      to[3 * kEdgesAtOnce] = value(first, here + (here + 1 < last ? 2 : 1));
-    } else {
-      to[2 * kEdgesAtOnce] = value(second, here - (here > 0 ? 1 : 0));
-      to[3 * kEdgesAtOnce] = value(second, here + (here < last ? 1 : 0));
-    }
-    for (unsigned place = 4; place < kEdgeValues<N>; ++place) to[place * kEdgesAtOnce] = value(rows[place], here);
+    to[0] = value(first, back);
+    to[kEdgesAtOnce] = value(first, kAlongRow ? along : ahead);
+    to[2 * kEdgesAtOnce] = kAlongRow ? value(first, 0) : value(second, back);
+    to[3 * kEdgesAtOnce] = value(second, ahead);
+    for (unsigned j = 4; j < kEdgeValues<N>; ++j) to[j * kEdgesAtOnce] = value(from[j], 0);
   }
+  return at_ends;
 }
 
 template <Value T, int N>
-void RowSource<T, N>::around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                                   float* out) const noexcept {
-  gather(edges, at, count, out);
+std::uint64_t RowSource<T, N>::around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                                            float* out) const noexcept {
+  return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
 }
 
 template <Value T, int N>
-void RowSource<T, N>::around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                                   double* out) const noexcept {
-  gather(edges, at, count, out);
+std::uint64_t RowSource<T, N>::around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                                            double* out) const noexcept {
+  return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
 }
 
 template <Value T, int N>

@@ -75,12 +75,12 @@ class SampleSource {
   [[nodiscard]] virtual bool fits_float() const noexcept = 0;
   /// Steps along the last axis, for gradients: they may reach beyond layers that are a part of an image.
   [[nodiscard]] virtual AxisSteps last_steps(const Grid<N>& grid) const { return AxisSteps(grid.axes[N - 1]); }
-  /// Values around the edges from the samples `at` of a row, at most kEdgesAtOnce: kEdgeValues x kEdgesAtOnce. Values
-  /// that float does not hold are asked for as double alone.
-  virtual void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                            float* out) const noexcept = 0;
-  virtual void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                            double* out) const noexcept = 0;
+  /// Values around edges, at most kEdgesAtOnce of them: kEdgeValues x kEdgesAtOnce. Returns, as bits, those with an end
+  /// at an end of its row. Values that float does not hold are asked for as double alone.
+  virtual std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                                     float* out) const noexcept = 0;
+  virtual std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                                     double* out) const noexcept = 0;
   /// The gradient at a sample.
   [[nodiscard]] virtual std::array<double, N> gradient(const Index& index,
                                                        const std::array<AxisSteps, N>& steps) const noexcept = 0;
@@ -101,10 +101,10 @@ class RowSource : public SampleSource<N> {
   [[nodiscard]] bool fits_float() const noexcept final {
     return std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits;
   }
-  void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                    float* out) const noexcept final;
-  void around_edges(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count,
-                    double* out) const noexcept final;
+  std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                             float* out) const noexcept final;
+  std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                             double* out) const noexcept final;
   [[nodiscard]] std::array<double, N> gradient(const Index& index,
                                                const std::array<AxisSteps, N>& steps) const noexcept final;
 
@@ -131,8 +131,8 @@ class RowSource : public SampleSource<N> {
     start[axis] += step;
     return row(start);
   }
-  template <class Calc>
-  void gather(const EdgeSurroundings<N>& edges, const std::uint32_t* at, std::size_t count, Calc* out) const noexcept;
+  template <bool kAlongRow, class Calc>
+  std::uint64_t gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges, Calc* out) const noexcept;
 
   Strides strides_;
   std::size_t row_size_;

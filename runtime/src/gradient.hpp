@@ -76,11 +76,11 @@ inline double derivative(double backward, double value, double forward, const St
 template <int N>
 inline constexpr unsigned kEdgeValues = 4 * N;
 
-/// Edges along `axis` from samples of one row, and where the neighbours of their ends are. (Along the row itself each
-/// sample has its own.)
+/// What edges along `axis` have in common that start in rows of one layer: where the neighbours of their ends are.
+/// (Along the row each sample has its own.)
 template <int N>
 struct EdgeSurroundings {
-  std::array<std::size_t, N> start;  ///< the row; [0] means nothing
+  std::size_t layer;
   int axis;
   std::array<std::array<bool, 4>, N> exists;  ///< by axis from 1 on: the neighbours 0 ... 3
 };
