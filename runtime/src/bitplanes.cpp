@@ -30,72 +30,89 @@ HWY_INLINE Word bits_of(D d, M mask) {
   return bits;
 }
 
-/// 64 adjacent samples against the threshold. `missing` gets the NaNs.
+/// Adjacent samples against the threshold, at most 64. `missing` gets the NaNs.
 template <class T>
-HWY_INLINE Word high_word(const T* samples, T threshold, Word& missing) {
+HWY_INLINE Word high_word(const T* samples, std::size_t length, T threshold, Word& missing) {
   const hn::ScalableTag<T> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const auto limit = hn::Set(d, threshold);
+  [[maybe_unused]] auto none_missing = hn::Eq(limit, limit);
   Word word = 0;
-  missing = 0;
-  if constexpr (std::is_floating_point_v<T>) {
-    auto none_missing = hn::Eq(limit, limit);
-    for (std::size_t i = 0; i < kWordBits; i += kLanes) {
-      const auto values = hn::LoadU(d, samples + i);
+  const auto compare = [&](const auto& values, std::size_t i) HWY_ATTR {
+    if constexpr (std::is_floating_point_v<T>) {
       word |= bits_of(d, hn::Ge(values, limit)) << i;
       none_missing = hn::And(none_missing, hn::Eq(values, values));
+    } else {
+      word |= bits_of(d, hn::Not(hn::Lt(values, limit))) << i;
     }
+  };
+  T rest[kLanes] = {};
+  const std::size_t whole = length - length % kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes) compare(hn::LoadU(d, samples + i), i);
+  if (whole < length) {
+    std::memcpy(rest, samples + whole, (length - whole) * sizeof(T));
+    compare(hn::LoadU(d, rest), whole);
+  }
+  missing = 0;
+  if constexpr (std::is_floating_point_v<T>) {
     if (HWY_UNLIKELY(!hn::AllTrue(d, none_missing)))
-      for (std::size_t i = 0; i < kWordBits; i += kLanes) {
-        const auto values = hn::LoadU(d, samples + i);
+      for (std::size_t i = 0; i < length; i += kLanes) {
+        const auto values = hn::LoadU(d, i < whole ? samples + i : rest);
         missing |= bits_of(d, hn::Not(hn::Eq(values, values))) << i;  // Ne is false for NaN on some sets
       }
-    return word;
-  } else {
-    for (std::size_t i = 0; i < kWordBits; i += kLanes)
-      word |= bits_of(d, hn::Lt(hn::LoadU(d, samples + i), limit)) << i;
-    return ~word;
   }
+  return word;
 }
 
+/// Samples that are not adjacent, at most 64.
+template <class T>
+HWY_INLINE Word gathered_word(const T* samples, std::ptrdiff_t stride, std::size_t length, T threshold, Word& missing) {
+  T gathered[kWordBits];
+  for (std::size_t i = 0; i < length; ++i) gathered[i] = samples[static_cast<std::ptrdiff_t>(i) * stride];
+  return high_word(gathered, length, threshold, missing);
+}
+
+/// One row; returns whether any sample is missing.
 template <class T>
 HWY_INLINE bool classify(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold,
                          Word* high, Word* missing) {
   bool any_missing = false;
-  const std::size_t words = (count + kWordBits - 1) / kWordBits;
-  for (std::size_t w = 0; w < words; ++w) {
-    const std::size_t first = w * kWordBits;
+  for (std::size_t w = 0, first = 0; first < count; ++w, first += kWordBits) {
     const std::size_t length = std::min(kWordBits, count - first);
-    const T* block = samples + static_cast<std::ptrdiff_t>(first) * stride;
-    T gathered[kWordBits];
-    if (stride != 1 || length < kWordBits) {
-      if (stride == 1)
-        std::memcpy(gathered, block, length * sizeof(T));
-      else
-        for (std::size_t i = 0; i < length; ++i) gathered[i] = block[static_cast<std::ptrdiff_t>(i) * stride];
-      std::memset(gathered + length, 0, (kWordBits - length) * sizeof(T));
-      block = gathered;
-    }
-    const Word mask = length == kWordBits ? ~Word{0} : (Word{1} << length) - 1;
+    const T* const block = samples + static_cast<std::ptrdiff_t>(first) * stride;
     Word nans = 0;
-    const Word word = high_word(block, threshold.value, nans) & mask;
-    high[w] = threshold.never ? 0 : word;
+    const Word word = stride != 1           ? gathered_word(block, stride, length, threshold.value, nans)
+                      : length == kWordBits ? high_word(block, kWordBits, threshold.value, nans)
+                                            : high_word(block, length, threshold.value, nans);
+    const Word mask = length == kWordBits ? ~Word{0} : (Word{1} << length) - 1;
+    high[w] = threshold.never ? 0 : word & mask;
     if constexpr (std::is_floating_point_v<T>) {
-      nans &= mask;
       if (nans != 0 && !any_missing) {
         std::fill(missing, missing + w, Word{0});
         any_missing = true;
       }
-      if (any_missing) missing[w] = nans;
+      if (any_missing) missing[w] = nans & mask;
     }
   }
   return any_missing;
 }
 
-#define TEGL_CLASSIFY(T, name)                                                                                     \
-  bool name(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, Word* high, \
-            Word* missing) {                                                                                       \
-    return classify(samples, stride, count, threshold, high, missing);                                             \
+template <class T>
+HWY_INLINE Word classify_all(const SampleRows<T>& samples, const Threshold<T>& threshold, BitRows high,
+                             BitRows missing) {
+  Word any_missing = 0;
+  for (std::size_t r = 0; r < samples.rows; ++r) {
+    const T* const row = samples.first + static_cast<std::ptrdiff_t>(r) * samples.row_stride;
+    const bool any = classify(row, samples.stride, samples.count, threshold, high.first + r * high.pitch,
+                              missing.first + r * missing.pitch);
+    any_missing |= Word{any} << r;
+  }
+  return any_missing;
+}
+
+#define TEGL_CLASSIFY(T, name)                                                                            \
+  Word name(const SampleRows<T>& samples, const Threshold<T>& threshold, BitRows high, BitRows missing) { \
+    return classify_all(samples, threshold, high, missing);                                               \
   }
 TEGL_CLASSIFY(std::uint8_t, classify_u8)
 TEGL_CLASSIFY(std::int8_t, classify_i8)
@@ -114,12 +131,12 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-#define TEGL_DISPATCH(T, name)                                                                                    \
-  HWY_EXPORT(name);                                                                                               \
-  template <>                                                                                                     \
-  bool classify_row<T>(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, \
-                       Word* high, Word* missing) noexcept {                                                      \
-    return HWY_DYNAMIC_DISPATCH(name)(samples, stride, count, threshold, high, missing);                          \
+#define TEGL_DISPATCH(T, name)                                                                     \
+  HWY_EXPORT(name);                                                                                \
+  template <>                                                                                      \
+  Word classify_rows<T>(const SampleRows<T>& samples, const Threshold<T>& threshold, BitRows high, \
+                        BitRows missing) noexcept {                                                \
+    return HWY_DYNAMIC_DISPATCH(name)(samples, threshold, high, missing);                          \
   }
 TEGL_DISPATCH(std::uint8_t, classify_u8)
 TEGL_DISPATCH(std::int8_t, classify_i8)

@@ -45,11 +45,32 @@ Threshold<T> make_threshold(double isovalue) {
   }
 }
 
-/// Classifies `count` samples, `stride` elements apart. Writes ceil(count / 64) words; bits past the
-/// end are 0. `missing` gets the NaNs if there are any, and is left alone otherwise.
-/// Returns whether there are any.
+/// Rows of samples, as far apart from each other as from `first` on: in elements.
+template <Value T>
+struct SampleRows {
+  const T* first;
+  std::ptrdiff_t stride;  ///< from sample to sample
+  std::size_t count;      ///< samples of a row
+  std::ptrdiff_t row_stride;
+  std::size_t rows;  ///< at most 64
+};
+
+/// Where rows of bits go, each `pitch` words from the one before.
+struct BitRows {
+  Word* first;
+  std::size_t pitch;
+};
+
+/// Classifies rows. Writes ceil(count / 64) words for each to `high`; bits past the end are 0. A row of `missing` gets
+/// the NaNs if there are any, and is left alone otherwise. Returns the rows that have any, bit r for row r.
+template <Value T>
+Word classify_rows(const SampleRows<T>& samples, const Threshold<T>& threshold, BitRows high, BitRows missing) noexcept;
+
+/// The same for one row; returns whether there are any.
 template <Value T>
 bool classify_row(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, Word* high,
-                  Word* missing) noexcept;
+                  Word* missing) noexcept {
+  return classify_rows<T>({samples, stride, count, 0, 1}, threshold, {high, 0}, {missing, 0}) != 0;
+}
 
 }  // namespace tegl::detail

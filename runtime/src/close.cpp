@@ -57,9 +57,9 @@ Caps<N, Real>::Caps(const SampleSource<N>& source, const RowShape<N>& shape, con
       border_(shape.words()),
       valid_(shape.words()) {
   for (CapPlanes* planes : {&layers_[0], &layers_[1], &slab_}) {
-    planes->corners.allocate(shape_.rows(), shape_.pitch());
+    planes->corners.allocate(shape_.rows(), shape_.words());
     if constexpr (N == 4)
-      for (EdgePlane& plane : planes->squares) plane.allocate(shape_.rows(), shape_.pitch());
+      for (EdgePlane& plane : planes->squares) plane.allocate(shape_.rows(), shape_.words());
   }
 }
 
@@ -93,13 +93,14 @@ void Caps<N, Real>::add_vertex(const typename RowShape<N>::Index& index,
 template <int N, class Real>
 void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at) {
   const Word* const border = border_cells(0, at);
-  const std::size_t first = at.row * shape_.pitch();
+  const std::size_t first = at.row * shape_.words();
+  const Word* const high = layer.high.data() + at.row * shape_.pitch();
   auto index = shape_.index_of(at.row);
   index[N - 1] = at.layer;
   plane.offset[at.row] = static_cast<Index>(vertices_.size());
   for (std::size_t w = 0; w < shape_.words(); ++w) {
     plane.prefix[first + w] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
-    plane.bits[0][first + w] = (inverted_ ? ~layer.high[first + w] : layer.high[first + w]) & border[w];
+    plane.bits[0][first + w] = (inverted_ ? ~high[w] : high[w]) & border[w];
     for (Word rest = plane.bits[0][first + w]; rest != 0; rest &= rest - 1) {
       index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
       add_vertex<0>(index, {});
@@ -117,7 +118,7 @@ void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const
   const Word* const border = border_cells(Axes, at);
   CellBits<N, Axes> cells(view, at.row);
   for (std::size_t w = 0; w < shape_.words(); ++w) {
-    const std::size_t word = at.row * shape_.pitch() + w;
+    const std::size_t word = at.row * shape_.words() + w;
     plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
     plane.bits[0][word] = 0;
     if (border[w] == 0) continue;
@@ -159,7 +160,7 @@ void Caps<N, Real>::corner_ids(std::size_t row, std::size_t layer, std::size_t i
     if ((signature >> corner & 1u) == 0) continue;
     const unsigned mask = Frame::spread(corner);
     const EdgePlane& plane = layers_[(layer + (mask >> (N - 1) & 1u)) % 2].corners;
-    out[corner] = plane.id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
+    out[corner] = plane.id(shape_.shifted(row, mask), shape_.words(), i + (mask & 1u));
   }
 }
 
@@ -173,7 +174,7 @@ void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i
     const unsigned mask = square % 2 != 0 ? away : 0;
     const unsigned pair = kAxes ^ away;
     const CapPlanes& planes = (pair >> (N - 1) & 1u) != 0 ? slab_ : layers_[(layer + (mask >> (N - 1))) % 2];
-    out[square] = planes.squares[square_plane(pair)].id(shape_.shifted(row, mask), shape_.pitch(), i + (mask & 1u));
+    out[square] = planes.squares[square_plane(pair)].id(shape_.shifted(row, mask), shape_.words(), i + (mask & 1u));
   }
 }
 
@@ -187,7 +188,7 @@ Word Caps<N, Real>::face_cells(const Slab<N>& slab, std::size_t row, std::size_t
     cells = w == at / kWordBits ? Word{1} << (at % kWordBits) : 0;
   }
   if (slab.all_valid) return cells;
-  const Word* const valid = slab.valid.data() + shape_.unshifted(row, side << Omitted) * shape_.pitch();
+  const Word* const valid = slab.valid.data() + shape_.unshifted(row, side << Omitted) * shape_.words();
   if (!kAcrossRow || side == 0) return cells & valid[w];
   return cells & (valid[w] << 1 | (w == 0 ? 0 : valid[w - 1] >> (kWordBits - 1)));
 }
@@ -233,7 +234,7 @@ void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::si
     Index* const cubes = ids.data() + (1u << (N - 1)) + tables::edge_count(N - 1);
     if (counter_.has_cubes())
       for (unsigned j = 0; j < tables::kFaceSlots; ++j)
-        cubes[j] = face.cubes(Omitted, 0).id(row, shape_.pitch(), i) + j;
+        cubes[j] = face.cubes(Omitted, 0).id(row, shape_.words(), i) + j;
     square_ids<Omitted>(row, layer, i, cubes + tables::kFaceSlots);
   }
 }

@@ -115,8 +115,8 @@ class CellEdges {
       const EdgePlane& plane = view.edges(kStreams[s].axis, mask >> (N - 1) & 1u);
       const std::size_t at = view.shape->shifted(row, mask);
       base_[s] = plane.first(at);
-      prefix_[s] = plane.prefix.data() + at * view.shape->pitch();
-      bits_[s] = plane.bits[0].data() + at * view.shape->pitch();
+      prefix_[s] = plane.prefix.data() + at * view.shape->words();
+      bits_[s] = plane.bits[0].data() + at * view.shape->words();
     }
   }
 
@@ -206,9 +206,9 @@ class TileCubes {
       const CubePlane& plane = view.cubes(omitted(s), omitted(s) == 3 ? side(s) : 0);
       const std::size_t at = view.shape->shifted(row, side(s) << omitted(s));
       base_[s] = plane.first(at);
-      prefix_[s] = plane.prefix.data() + at * view.shape->pitch();
+      prefix_[s] = plane.prefix.data() + at * view.shape->words();
       for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
-        bits_[s][slot] = plane.bits[slot].data() + at * view.shape->pitch();
+        bits_[s][slot] = plane.bits[slot].data() + at * view.shape->words();
     }
   }
 

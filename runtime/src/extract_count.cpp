@@ -30,24 +30,22 @@ void Counter<N>::allocate(Layer<N>& layer) const {
 
 template <int N>
 void Counter<N>::allocate(LayerPlanes<N>& planes) const {
-  for (EdgePlane& plane : planes.edges) plane.allocate(shape_.rows(), shape_.pitch());
+  for (EdgePlane& plane : planes.edges) plane.allocate(shape_.rows(), shape_.words());
   planes.chunk_vertices.assign(shape_.chunks(), 0);
-  if (has_cubes_) planes.cubes.allocate(shape_.rows(), shape_.pitch());
+  if (has_cubes_) planes.cubes.allocate(shape_.rows(), shape_.words());
 }
 
 template <int N>
 void Counter<N>::allocate(SlabPlanes<N>& planes) const {
-  planes.active.assign(shape_.rows() * shape_.pitch(), 0);
+  planes.active.assign(shape_.rows() * shape_.words(), 0);
   planes.active_count.assign(shape_.rows(), 0);
-  if (rows_ != nullptr) {
-    constexpr std::size_t kMargin = 64;  // is read and written in vain
-    planes.signatures.resize(shape_.rows() * shape_.size(0) + kMargin);
-    planes.tiles_at.resize(shape_.rows() * shape_.size(0) + kMargin);
+  if (keeps_tiles()) {
+    planes.tiles.allocate(shape_.rows() * shape_.size(0));
+    planes.first_tile.assign(shape_.rows(), 0);
   }
-  planes.edges.allocate(shape_.rows(), shape_.pitch());
+  planes.edges.allocate(shape_.rows(), shape_.words());
   if (has_cubes_)
-    for (CubePlane& plane : planes.cubes) plane.allocate(shape_.rows(), shape_.pitch());
-  planes.first_tile.assign(shape_.rows(), 0);
+    for (CubePlane& plane : planes.cubes) plane.allocate(shape_.rows(), shape_.words());
   planes.own_offset.assign(shape_.rows(), 0);
   planes.simplex_offset.assign(shape_.rows(), 0);
   planes.chunks.assign(shape_.chunks(), {});
@@ -60,7 +58,7 @@ void Counter<N>::allocate_missing(Layer<N>& layer) const {
 
 template <int N>
 void Counter<N>::allocate_valid(Slab<N>& slab) const {
-  slab.valid.assign(shape_.rows() * shape_.pitch(), 0);
+  slab.valid.assign(shape_.rows() * shape_.words(), 0);
 }
 
 template <int N>
@@ -71,15 +69,15 @@ std::size_t Counter<N>::layer_bytes() const noexcept {
 template <int N>
 std::size_t Counter<N>::layer_planes_bytes() const noexcept {
   return shape_.rows() *
-         ((N - 1) * EdgePlane::row_bytes(shape_.pitch()) + (has_cubes_ ? CubePlane::row_bytes(shape_.pitch()) : 0));
+         ((N - 1) * EdgePlane::row_bytes(shape_.words()) + (has_cubes_ ? CubePlane::row_bytes(shape_.words()) : 0));
 }
 
 template <int N>
 std::size_t Counter<N>::slab_planes_bytes() const noexcept {
-  constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t) + sizeof(std::size_t);
-  const std::size_t tiles = rows_ != nullptr ? shape_.size(0) * 2 * sizeof(std::uint16_t) : 0;
-  return shape_.rows() * (shape_.pitch() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.pitch()) +
-                          (has_cubes_ ? (N - 1) * CubePlane::row_bytes(shape_.pitch()) : 0));
+  constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
+  const std::size_t tiles = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + sizeof(std::size_t) : 0;
+  return shape_.rows() * (shape_.words() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.words()) +
+                          (has_cubes_ ? (N - 1) * CubePlane::row_bytes(shape_.words()) : 0));
 }
 
 template <int N>
@@ -87,32 +85,52 @@ void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool inv
                           Word* buffer) const {
   const std::size_t first = chunk * kChunkRows;
   bool uniform = true;
-  for (std::size_t row = first; row < shape_.chunk_end(chunk); ++row) {
-    classify_row(source, k, invert, row, layer, buffer);
+  classify_rows(source, k, invert, first, shape_.chunk_end(chunk), layer, buffer);
+  for (std::size_t row = first; row < shape_.chunk_end(chunk); ++row)
     uniform = uniform && layer.state[row] == layer.state[first];
-  }
   layer.chunk_state[chunk] = uniform ? layer.state[first] : RowState::mixed;
 }
 
 template <int N>
-void Counter<N>::classify_row(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row,
-                              Layer<N>& layer, Word* buffer) const {
-  auto start = shape_.index_of(row);
-  start[N - 1] = k;
-  Word* const high = layer.high.data() + row * shape_.pitch();
-  Word* const missing = layer.missing.empty() ? buffer : layer.missing.data() + row * shape_.pitch();
-  const bool any = source.classify(start, high, missing);
-  if (!any && layer.row_missing[row] != 0) std::fill(missing, missing + shape_.words(), Word{0});
-  layer.row_missing[row] = any ? 1 : 0;
-  if (invert)
-    for (std::size_t w = 0; w < shape_.words(); ++w) high[w] = ~high[w] & shape_.mask(w, false);
-  Word ones = 0;
-  Word zeros = 0;
-  for (std::size_t w = 0; w < shape_.words(); ++w) {
-    ones |= high[w];
-    zeros |= ~high[w] & shape_.mask(w, false);
+void Counter<N>::classify_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first,
+                               std::size_t end, Layer<N>& layer, Word* buffer) const {
+  const std::size_t pitch = shape_.pitch();
+  for (std::size_t row = first; row < end;) {
+    auto start = shape_.index_of(row);
+    start[N - 1] = k;
+    const std::size_t along = N > 2 ? shape_.size(1) - start[1] : 1;
+    const std::size_t rows = std::min({end - row, along, kWordBits});
+    Word* const high = layer.high.data() + row * pitch;
+    const BitRows missing =
+        layer.missing.empty() ? BitRows{buffer, 0} : BitRows{layer.missing.data() + row * pitch, pitch};
+    const Word any_missing = source.classify(start, rows, {high, pitch}, missing);
+    for (std::size_t r = 0; r < rows; ++r) {
+      const bool any = (any_missing >> r & 1u) != 0;
+      if (!any && layer.row_missing[row + r] != 0)
+        std::fill_n(missing.first + r * missing.pitch, shape_.words(), Word{0});
+      layer.row_missing[row + r] = any ? 1 : 0;
+      layer.state[row + r] = finish_row(high + r * pitch, invert, any);
+    }
+    row += rows;
   }
-  layer.state[row] = any || (ones != 0 && zeros != 0) ? RowState::mixed : ones != 0 ? RowState::high : RowState::low;
+}
+
+template <int N>
+RowState Counter<N>::finish_row(Word* high, bool invert, bool any_missing) const {
+  const std::size_t last = shape_.words() - 1;
+  const Word last_mask = shape_.mask(last, false);
+  if (invert) {
+    for (std::size_t w = 0; w < last; ++w) high[w] = ~high[w];
+    high[last] = ~high[last] & last_mask;
+  }
+  Word any = high[last];
+  Word all = high[last] | ~last_mask;
+  for (std::size_t w = 0; w < last; ++w) {
+    any |= high[w];
+    all &= high[w];
+  }
+  if (any_missing || (any != 0 && ~all != 0)) return RowState::mixed;
+  return any != 0 ? RowState::high : RowState::low;
 }
 
 template <int N>
@@ -130,7 +148,7 @@ void Counter<N>::find_valid(const Layer<N>& lower, const Layer<N>& upper, std::s
 template <int N>
 void Counter<N>::find_valid_row(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const {
   constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
-  Word* const valid = slab.valid.data() + row * shape_.pitch();
+  Word* const valid = slab.valid.data() + row * shape_.words();
   std::fill(valid, valid + shape_.words(), Word{0});
   if (!shape_.has_cells(shape_.index_of(row), kMiddle)) return;
   for (const Layer<N>* layer : {&lower, &upper})
@@ -157,7 +175,7 @@ bool Counter<N>::cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab
     if (!exists) continue;
     for (const Slab<N>* slab : {below, above}) {
       if (slab == nullptr) continue;
-      const Word* const valid = slab->valid.data() + shape_.unshifted(row, back) * shape_.pitch();
+      const Word* const valid = slab->valid.data() + shape_.unshifted(row, back) * shape_.words();
       Word carry = 0;
       for (std::size_t w = 0; w < shape_.words(); ++w) {
         out[w] |= valid[w];
@@ -172,7 +190,7 @@ bool Counter<N>::cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab
 template <int N>
 void Counter<N>::count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
                              const Word* valid) const {
-  const std::size_t at = row * shape_.pitch();
+  const std::size_t at = row * shape_.words();
   plane.count[row] = count_edge_row(a, along_row ? nullptr : b, shape_.size(0), valid, plane.bits[0].data() + at,
                                     plane.prefix.data() + at);
 }
@@ -180,7 +198,7 @@ void Counter<N>::count_edges(EdgePlane& plane, std::size_t row, const Word* a, c
 template <int N>
 template <unsigned Axes>
 void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
-  const std::size_t pitch = shape_.pitch();
+  const std::size_t words = shape_.words();
   plane.count[row] = 0;
   if (!shape_.has_cells(shape_.index_of(row), Axes)) return;  // its bits have been 0 from the start
   CellBits<N, Axes> cells(view, row);
@@ -190,14 +208,14 @@ void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::siz
     std::array<Word, tables::kFaceSlots> bits{};
     Word mixed = cells.mixed() & shape_.mask(w, (Axes & 1u) != 0);
     if (valid != nullptr) mixed &= valid[w];
-    plane.prefix[row * pitch + w] = count;
+    plane.prefix[row * words + w] = count;
     for (; mixed != 0; mixed &= mixed - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
       const unsigned vertices = cube_vertices_[cells.signature(bit)];
       for (unsigned slot = 0; slot < vertices; ++slot) bits[slot] |= Word{1} << bit;
       count += vertices;
     }
-    for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) plane.bits[slot][row * pitch + w] = bits[slot];
+    for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) plane.bits[slot][row * words + w] = bits[slot];
   }
   plane.count[row] = count;
 }
@@ -242,20 +260,14 @@ namespace {
 template <int N>
 TileRow tile_row(const RowShape<N>& shape, const SlabView<N>& view, const Slab<N>& slab, std::size_t row) {
   constexpr unsigned kAll = (1u << N) - 1;
-  TileRow tiles{{}, shape.size(0) - 1, slab.all_valid ? nullptr : slab.valid.data() + row * shape.pitch()};
+  TileRow tiles{{}, shape.size(0) - 1, slab.all_valid ? nullptr : slab.valid.data() + row * shape.words()};
   const CellBits<N, kAll> cells(view, row);
   std::copy(cells.rows().begin(), cells.rows().end(), tiles.corners.begin());
   return tiles;
 }
 
 template <int N>
-TileRoom tile_room(const RowShape<N>& shape, Slab<N>& slab, std::size_t row) {
-  const std::size_t first = slab.first_tile[row];
-  return {slab.active.data() + row * shape.pitch(), slab.signatures.data() + first, slab.tiles_at.data() + first};
-}
-
-template <int N>
-void keep_tiles(const TileCount& count, Slab<N>& slab, std::size_t row) {
+void keep_count(const TileCount& count, Slab<N>& slab, std::size_t row) {
   slab.own_offset[row] = count.own_vertices;
   slab.simplex_offset[row] = count.simplices;
   slab.active_count[row] = count.active;
@@ -264,23 +276,50 @@ void keep_tiles(const TileCount& count, Slab<N>& slab, std::size_t row) {
 }  // namespace
 
 template <int N>
-void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const {
+CountScratch Counter<N>::make_scratch() const {
+  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}};
+  if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
+  return scratch;
+}
+
+template <int N>
+TileRoom Counter<N>::tile_room(Slab<N>& slab, std::size_t row, CountScratch& scratch) const {
+  const std::size_t first = keeps_tiles() ? slab.first_tile[row] : 0;
+  TileLists& lists = keeps_tiles() ? slab.tiles : scratch.tiles;
+  return {slab.active.data() + row * shape_.words(), lists.signatures.data() + first, lists.at.data() + first};
+}
+
+template <int N>
+ActiveTiles Counter<N>::tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const {
+  const Slab<N>& slab = *view.slab;
+  if (slab.active_count[row] == 0 || !quick_ || !slab.all_valid) return {};
+  if (keeps_tiles()) {
+    const std::size_t first = slab.first_tile[row];
+    return {slab.tiles.signatures.data() + first, slab.tiles.at.data() + first, slab.active_count[row]};
+  }
+  TileLists& lists = scratch.tiles;
+  const TileRoom room{scratch.words.data(), lists.signatures.data(), lists.at.data()};
+  return {room.signatures, room.at, count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, room).active};
+}
+
+template <int N>
+void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const {
   constexpr unsigned kAll = (1u << N) - 1;
-  Word* const active = slab.active.data() + row * shape_.pitch();
+  Word* const active = slab.active.data() + row * shape_.words();
   slab.own_offset[row] = 0;
   slab.simplex_offset[row] = 0;
   slab.active_count[row] = 0;
   if (!shape_.has_cells(shape_.index_of(row), kAll)) return;
   if (is_uniform(view, row)) return;
   if (rows_ != nullptr) {
-    keep_tiles(count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, tile_room(shape_, slab, row)), slab, row);
+    keep_count(count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, tile_room(slab, row, scratch)), slab, row);
     return;
   }
   CellBits<N, kAll> cells(view, row);
   for (std::size_t w = 0; w < shape_.words(); ++w) {
     cells.load(w);
     Word mixed = cells.mixed() & shape_.mask(w, true);
-    if (!slab.all_valid) mixed &= slab.valid[row * shape_.pitch() + w];
+    if (!slab.all_valid) mixed &= slab.valid[row * shape_.words() + w];
     active[w] = mixed;
     for (; mixed != 0; mixed &= mixed - 1) {
       const unsigned signature = cells.signature(static_cast<unsigned>(std::countr_zero(mixed)));
@@ -293,7 +332,8 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
 }
 
 template <int N>
-void Counter<N>::count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const {
+void Counter<N>::count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const {
+  Word* const buffer = scratch.words.data();
   const Word* const lower = view.layers[0]->high.data() + row * shape_.pitch();
   const Word* const upper = view.layers[1]->high.data() + row * shape_.pitch();
   const RowState state = view.layers[0]->state[row];
@@ -311,15 +351,16 @@ void Counter<N>::count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::siz
       count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
       count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
     }
-  count_tiles(view, slab, row);
+  count_tiles(view, slab, row, scratch);
 }
 
 template <int N>
-void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row) const {
+void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
+                               CountScratch& scratch) const {
   TileCount count;
   if (!is_uniform(view, row))
-    count = count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, tile_room(shape_, slab, row));
-  keep_tiles(count, slab, row);
+    count = count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, tile_room(slab, row, scratch));
+  keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];
   slab.edges.count[row] = count.edges[N - 1];
 }
@@ -404,19 +445,19 @@ void Counter<N>::count_first_layer(Layer<N>& layer, const Slab<N>& above, std::s
 
 template <int N>
 void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above,
-                            std::size_t chunk, Word* buffer) const {
+                            std::size_t chunk, CountScratch& scratch) const {
   if (is_uniform_chunk(view, chunk)) return clear_chunk(upper, slab, chunk);
   // Tiles next to missing values ask for the ranks of their edges.
   const bool ranks = !quick_ || ranks_ || !slab.all_valid || (above != nullptr && !above->all_valid);
   SlabChunk sums;
   std::uint64_t in_layer = 0;
   for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
-    slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
+    if (keeps_tiles()) slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
     if (!ranks && goes_by_tiles(slab, row)) {
-      count_quickly(view, upper, slab, row);
+      count_quickly(view, upper, slab, row, scratch);
     } else {
-      count_layer_row(upper, &slab, above, row, buffer);
-      count_slab_row(view, slab, row, buffer);
+      count_layer_row(upper, &slab, above, row, scratch.words.data());
+      count_slab_row(view, slab, row, scratch);
     }
     const std::uint64_t vertices = offset_layer_row(upper, row, in_layer);
     in_layer += vertices;

@@ -26,11 +26,21 @@ struct TableSet {
   const tables::RegionTable* square = nullptr;  ///< of 2; N = 4, for closed borders
 };
 
+/// What a thread keeps while it counts and lists tiles.
+struct CountScratch {
+  std::vector<Word> words;  ///< of a row
+  TileLists tiles;          ///< of a row, where slabs do not keep them
+};
+
 template <int N>
 class Counter {
  public:
   /// `rows`: the table for the quick way, or null. `ranks`: whether others ask for the ranks of vertices on edges.
   Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks);
+
+  /// Whether slabs keep the lists of their active tiles, four bytes for each sample. Otherwise each list is made twice:
+  /// for large slabs (4D) they are most of what is kept.
+  void keep_tiles(bool keep) noexcept { keeps_tiles_ = keep; }
 
   /// Storage for a layer's bits; for what is counted of a layer or a slab; and for missing values, where they turn up.
   void allocate(Layer<N>& layer) const;
@@ -59,7 +69,12 @@ class Counter {
   /// 3. Critical edges (and cubes) along the last axis, active tiles and what they own; and what is critical in the
   /// upper layer, above which there is `above` (or null). `upper` and `slab` are those of `view`.
   void count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above, std::size_t chunk,
-                  Word* buffer) const;
+                  CountScratch& scratch) const;
+  [[nodiscard]] CountScratch make_scratch() const;
+
+  /// The active tiles of a row that is counted, where the quick way can be taken with them; else none. They stay as
+  /// long as the scratch is left alone.
+  [[nodiscard]] ActiveTiles tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const;
 
   /// Turn counts into places, starting with vertex `first` (and simplex `first_simplex`); return the end.
   std::uint64_t place_layer(Layer<N>& layer, std::uint64_t first) const;
@@ -80,14 +95,17 @@ class Counter {
                             Word* out) const;
 
  private:
-  void classify_row(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t row, Layer<N>& layer,
-                    Word* buffer) const;
+  void classify_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
+                     Layer<N>& layer, Word* buffer) const;
+  /// Brings a classified row's bits into their last form, and says what they have in common.
+  RowState finish_row(Word* high, bool invert, bool any_missing) const;
   void find_valid_row(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;
   void count_layer_row(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row,
                        Word* buffer) const;
-  void count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, Word* buffer) const;
+  void count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
   /// All of the slab's row and of the upper layer's at once, if the row goes by tiles.
-  void count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row) const;
+  void count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
+                     CountScratch& scratch) const;
   /// Whether all samples that a chunk's tiles and edges touch are alike.
   [[nodiscard]] bool is_uniform_chunk(const SlabView<N>& view, std::size_t chunk) const;
   void clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) const;
@@ -98,13 +116,16 @@ class Counter {
                    const Word* valid) const;
   template <unsigned Axes>
   void count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
-  void count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row) const;
+  void count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
+  [[nodiscard]] bool keeps_tiles() const noexcept { return keeps_tiles_ && quick_; }
+  [[nodiscard]] TileRoom tile_room(Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
 
   const RowShape<N>& shape_;
   const tables::TileTable& tile_;
   const RowTable* rows_;
   bool ranks_;
   bool quick_ = false;
+  bool keeps_tiles_ = true;
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
 };

@@ -69,7 +69,7 @@ class EdgeWriter {
   void finish() noexcept { flush(); }
 
   /// The edges of a row of a slab, and of the layer above: by its active tiles.
-  void add_by_tiles(const SlabView<N>& view, std::size_t row) noexcept {
+  void add_by_tiles(const SlabView<N>& view, std::size_t row, const ActiveTiles& tiles) noexcept {
     Counts counts;
     Firsts firsts;
     for (int a = 0; a < N; ++a) {
@@ -78,9 +78,7 @@ class EdgeWriter {
       firsts[a] = plane.first(row);
     }
     add(row, counts, firsts, [&](const std::array<std::uint32_t*, 4>& out) {
-      const Slab<N>& slab = *view.slab;
-      const std::size_t at = slab.first_tile[row];
-      list_tile_edges<N>({slab.signatures.data() + at, slab.tiles_at.data() + at, slab.active_count[row], out});
+      list_tile_edges<N>({tiles.signatures, tiles.at, tiles.count, out});
       list_last(view, row, counts, out);
     });
   }
@@ -100,7 +98,7 @@ class EdgeWriter {
     }
     add(row, counts, firsts, [&](const std::array<std::uint32_t*, 4>& out) {
       for (int a = 0; a < N; ++a)
-        if (counts[a] != 0) list_bits(planes[a]->bits[0].data() + row * shape_.pitch(), shape_.words(), out[a]);
+        if (counts[a] != 0) list_bits(planes[a]->bits[0].data() + row * shape_.words(), shape_.words(), out[a]);
     });
   }
 

@@ -26,7 +26,7 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
                     VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
   const RowShape<4>& shape = *view.shape;
   if (plane.count[row] == 0) return;
-  const Word* const first = plane.bits[0].data() + row * shape.pitch();
+  const Word* const first = plane.bits[0].data() + row * shape.words();
   auto index = shape.index_of(row);
   index[3] = layer;
   CellBits<4, Axes> cells(view, row);
@@ -73,16 +73,16 @@ class TileWriter {
         flip_(flip),
         has_cubes_(has_cubes) {}
 
-  /// `simplices`: where simplex `first_simplex` goes.
-  void write(const SlabView<N>& view, std::size_t row, std::size_t layer, VertexRun<Vertex> vertices,
-             Simplex* simplices, std::uint64_t first_simplex) const noexcept {
+  /// `tiles`: those of the row (Counter::tiles). `simplices`: where simplex `first_simplex` goes.
+  void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const ActiveTiles& tiles,
+             VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
     if (view.slab->active_count[row] == 0) return;
     index[N - 1] = layer;
     Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
     if (rows_ != nullptr && view.slab->all_valid)
-      write_quickly(view, row, index, vertices, out);
+      write_quickly(view, row, index, tiles, vertices, out);
     else
       write_one_by_one(view, row, index, vertices, out);
   }
@@ -96,10 +96,8 @@ class TileWriter {
 
   /// Of rows whose tiles are all valid: then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
-                     VertexRun<Vertex> vertices, Simplex* out) const noexcept {
-    const RowShape<N>& shape = *view.shape;
-    TileOutput<N> output{
-        view.slab->signatures.data() + view.slab->first_tile[row], view.slab->active_count[row], {}, flip_, out};
+                     const ActiveTiles& tiles, VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+    TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
     // The tiles with vertices of their own come in order: their places are found by walking along.
     struct Own {
@@ -137,14 +135,14 @@ class TileWriter {
         return out;
       }
     };
-    Own own{*this, start, vertices, view.slab->active.data() + row * shape.pitch(), view.slab->first_own(row)};
+    Own own{*this, start, vertices, view.slab->active.data() + row * view.shape->words(), view.slab->first_own(row)};
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
   void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
                         VertexRun<Vertex> vertices, Simplex* out) const noexcept {
     const RowShape<N>& shape = *view.shape;
-    const Word* const active = view.slab->active.data() + row * shape.pitch();
+    const Word* const active = view.slab->active.data() + row * shape.words();
     CellBits<N, kAll> cells(view, row);
     CellEdges<N, kAll> edges(view, row);
     [[maybe_unused]] std::optional<TileCubes> cubes;

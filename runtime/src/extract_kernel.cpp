@@ -35,26 +35,31 @@ void check_arguments(double isovalue, const ExtractOptions& options) {
 namespace {
 
 /// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
-/// the next, and needs little memory beside the image.
+/// the next, and needs little memory beside the image. Decides whether the counter keeps lists of tiles.
 template <int N>
-std::size_t batch_size(const RowShape<N>& shape, const Counter<N>& counter, std::size_t sample_bytes,
-                       std::size_t threads, std::size_t thread_bytes) {
+std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::size_t sample_bytes, std::size_t threads,
+                         std::size_t thread_bytes) {
   // Several threads meet after every pass, which takes longer than the way from one cache to the next.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
-  constexpr double kShare = 0.05;       // of the image
+  constexpr double kShare = 0.057;      // of the image: the rest of a sixteenth is for what is not by slabs
   constexpr double kLittle = 1u << 17;  // bytes, however small the image
+  constexpr std::size_t kFew = 2;       // slabs that must fit in with their lists of tiles in 4D, or these are made twice
   const std::size_t layer = shape.rows() * shape.size(0);
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
+  const std::size_t wanted =
+      std::clamp<std::size_t>(threads * samples_per_thread / layer, 1, std::max<std::size_t>(1, shape.layers() - 1));
   // Of layers, one more than slabs is counted, and another one is classified.
   constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
-  const auto fixed =
-      static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
-  const auto each = static_cast<double>(counter.layer_bytes() + counter.layer_planes_bytes() +
-                                        counter.slab_planes_bytes() + kBookkeeping);
-  const double most = (std::max(kLittle, kShare * image) - fixed) / each;
-  const std::size_t slabs =
-      std::min(threads * samples_per_thread / layer, static_cast<std::size_t>(std::max(1.0, most)));
-  return std::clamp<std::size_t>(slabs, 1, shape.layers() - 1);
+  const auto fit = [&] {
+    const auto fixed =
+        static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
+    const auto each = static_cast<double>(counter.layer_bytes() + counter.layer_planes_bytes() +
+                                          counter.slab_planes_bytes() + kBookkeeping);
+    const double most = (std::max(kLittle, kShare * image) - fixed) / each;
+    return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
+  };
+  if (N == 4 && fit() < std::min(wanted, kFew)) counter.keep_tiles(false);
+  return std::max<std::size_t>(1, fit());
 }
 
 template <int N, class Real>
@@ -79,10 +84,10 @@ class Extraction {
         pinches_(shape_, counter_),
         workers_(options.threads,
                  [this] {
-                   return Scratch{std::vector<Word>(shape_.pitch()), {source_, placement_, shape_}};
+                   return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
                  }),
-        batch_(plan.batch == 0 ? batch_size(shape_, counter_, source.sample_bytes(), workers_.count(),
-                                            EdgeWriter<N, Real>::bytes(shape_.size(0)))
+        batch_(plan.batch == 0 ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
+                                              EdgeWriter<N, Real>::bytes(shape_.size(0)))
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_(batch_ + 2),
         slabs_(batch_ + 1) {
@@ -90,6 +95,7 @@ class Extraction {
     if (options.close)
       caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
                     plan.closed_axes);
+    if (!plan.keeps_tiles) counter_.keep_tiles(false);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
     const std::size_t more = kPassesPlanesOn ? 0 : 1;
     for (std::size_t k = 0; k <= batch_ + more; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
@@ -129,7 +135,7 @@ class Extraction {
 
   /// What a thread keeps.
   struct Scratch {
-    std::vector<Word> words;
+    CountScratch counting;
     EdgeWriter<N, Real> edges;
   };
 
@@ -176,7 +182,7 @@ class Extraction {
     const std::size_t from = classified_;
     classified_ = prepared_;
     pass_over_chunks(from, classified_, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
-      counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.words.data());
+      counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data());
     });
     for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
     write_missing(from, classified_);
@@ -202,7 +208,7 @@ class Extraction {
       if (!here.any_missing || !here.missing.empty()) continue;
       counter_.allocate_missing(here);
       for_chunks(k, k + 1, [&](std::size_t, std::size_t chunk, Scratch& scratch) {
-        counter_.classify(source_, k, inverted_, chunk, here, scratch.words.data());
+        counter_.classify(source_, k, inverted_, chunk, here, scratch.counting.words.data());
       });
     }
   }
@@ -219,8 +225,8 @@ class Extraction {
   std::uint64_t count(std::size_t first, std::size_t end) {
     take_planes(first, end);
     pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
-      if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.words.data());
-      counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.words.data());
+      if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.counting.words.data());
+      counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.counting);
     });
     part_.first_vertex = part_.end_vertex;
     part_.first_simplex = part_.end_simplex;
@@ -249,7 +255,7 @@ class Extraction {
     const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
     pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
       if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
-      generate_slab(k, chunk, scratch.edges, vertices, room.simplices);
+      generate_slab(k, chunk, scratch, vertices, room.simplices);
     });
   }
 
@@ -277,22 +283,24 @@ class Extraction {
   }
 
   /// The vertices and simplices of a chunk of slab k, and the vertices of the layer above it there.
-  void generate_slab(std::size_t k, std::size_t chunk, EdgeWriter<N, Real>& edges, VertexRun<Vertex> vertices,
+  void generate_slab(std::size_t k, std::size_t chunk, Scratch& scratch, VertexRun<Vertex> vertices,
                      typename Contour<N, Real>::Simplex* simplices) {
     const SlabView<N> around = view(k);
     const Slab<N>& here = slab(k);
     std::uint32_t busy = here.chunks[chunk].busy;
     if (busy == 0) return;
+    EdgeWriter<N, Real>& edges = scratch.edges;
     edges.start({run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
     for (; busy != 0; busy &= busy - 1) {
       const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(busy));
+      const ActiveTiles tiles = counter_.tiles(around, row, scratch.counting);
       if (counter_.goes_by_tiles(here, row))
-        edges.add_by_tiles(around, row);
+        edges.add_by_tiles(around, row, tiles);
       else
         edges.add_by_bits(&layer(k + 1), &here, row);
       generate_layer_cubes(k + 1, row, vertices);
       generate_slab_cubes(around, k, row, vertices);
-      tiles_.write(around, row, k, vertices, simplices, part_.first_simplex);
+      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex);
     }
     edges.finish();
   }

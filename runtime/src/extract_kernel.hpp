@@ -93,6 +93,7 @@ struct ExtractPlan {
   std::uint64_t max_vertices = kMaxVertices;
   unsigned closed_axes = ~0u;  ///< bit a: whether options.close closes the borders across axis a
   std::size_t batch = 0;       ///< slabs at a time; 0: as many as suit the image
+  bool keeps_tiles = true;     ///< false: lists of active tiles are made twice, whatever memory there is for them
 };
 
 /// The contour of `source` over `grid`, put into `output`. An image without tiles leaves it alone.

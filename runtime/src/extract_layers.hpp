@@ -54,7 +54,7 @@ class RowShape {
     return std::min(rows_, (chunk + 1) * kChunkRows);
   }
   [[nodiscard]] std::size_t words() const noexcept { return words_; }
-  /// Words from row to row: one more, always 0, so that a row may be read shifted.
+  /// Words from row to row of samples: one more, always 0, so that a row may be read shifted.
   [[nodiscard]] std::size_t pitch() const noexcept { return words_ + 1; }
 
   /// The row's index on the axes 1 ... N-2; 0 elsewhere.
@@ -99,22 +99,22 @@ struct RankPlane {
   std::vector<std::uint32_t> count;   ///< vertices of the row; where there are none, its bits mean nothing
   std::vector<Index> chunk_first;     ///< first vertex of each chunk
 
-  void allocate(std::size_t rows, std::size_t pitch) {
-    for (auto& plane : bits) plane.assign(rows * pitch, 0);
-    prefix.assign(rows * pitch, 0);
+  void allocate(std::size_t rows, std::size_t words) {
+    for (auto& plane : bits) plane.assign(rows * words, 0);
+    prefix.assign(rows * words, 0);
     offset.assign(rows, 0);
     count.assign(rows, 0);
     chunk_first.assign(chunk_of(rows - 1) + 1, 0);
   }
   /// Bytes for each row.
-  static constexpr std::size_t row_bytes(std::size_t pitch) noexcept {
-    return pitch * (Slots * sizeof(Word) + sizeof(std::uint32_t)) + sizeof(Index) + sizeof(std::uint32_t);
+  static constexpr std::size_t row_bytes(std::size_t words) noexcept {
+    return words * (Slots * sizeof(Word) + sizeof(std::uint32_t)) + sizeof(Index) + sizeof(std::uint32_t);
   }
   /// The first vertex of a row.
   [[nodiscard]] Index first(std::size_t row) const noexcept { return chunk_first[chunk_of(row)] + offset[row]; }
   /// The first vertex of cell i of a row (of the next cell that has one, if it has none).
-  [[nodiscard]] Index id(std::size_t row, std::size_t pitch, std::size_t i) const noexcept {
-    const std::size_t w = row * pitch + i / kWordBits;
+  [[nodiscard]] Index id(std::size_t row, std::size_t words, std::size_t i) const noexcept {
+    const std::size_t w = row * words + i / kWordBits;
     const Word below = (Word{1} << (i % kWordBits)) - 1;
     Index id = first(row) + prefix[w];
     for (const auto& plane : bits) id += static_cast<Index>(std::popcount(plane[w] & below));
@@ -155,12 +155,31 @@ struct Layer : LayerPlanes<N> {
   bool any_missing = false;
 };
 
+/// The active tiles of a row, in order.
+struct ActiveTiles {
+  const std::uint16_t* signatures = nullptr;
+  const std::uint16_t* at = nullptr;  ///< where they are along the row (modulo 2^16)
+  std::uint32_t count = 0;
+};
+
+/// Room for active tiles.
+struct TileLists {
+  Buffer<std::uint16_t> signatures;
+  Buffer<std::uint16_t> at;
+
+  void allocate(std::size_t tiles) {
+    constexpr std::size_t kMargin = 64;  // is read and written in vain
+    signatures.resize(tiles + kMargin);
+    at.resize(tiles + kMargin);
+  }
+  static constexpr std::size_t bytes(std::size_t tiles) noexcept { return tiles * 2 * sizeof(std::uint16_t); }
+};
+
 /// What is counted of a slab.
 template <int N>
 struct SlabPlanes {
-  std::vector<Word> active;                   ///< rows x pitch: valid tiles with high and low corners
-  Buffer<std::uint16_t> signatures;           ///< of active tiles, in order: of chunks apart, of their rows in turn
-  Buffer<std::uint16_t> tiles_at;             ///< likewise: where they are along the row (modulo 2^16)
+  std::vector<Word> active;                   ///< rows x words: valid tiles with high and low corners
+  TileLists tiles;                            ///< kept or not (Counter): of chunks apart, of their rows in turn
   std::vector<std::size_t> first_tile;        ///< by row
   std::vector<std::uint32_t> active_count;    ///< by row
   EdgePlane edges;                            ///< along the last axis
@@ -179,7 +198,7 @@ struct SlabPlanes {
 
 template <int N>
 struct Slab : SlabPlanes<N> {
-  std::vector<Word> valid;  ///< rows x pitch: tiles without a missing corner; meaningful unless all_valid
+  std::vector<Word> valid;  ///< rows x words: tiles without a missing corner; meaningful unless all_valid
   bool all_valid = true;
 };
 

@@ -11,8 +11,9 @@
 namespace tegl::detail {
 
 template <Value T, int N>
-bool RowSource<T, N>::classify(const Index& start, Word* high, Word* missing) const noexcept {
-  return classify_row(row(start), strides_[0], row_size_, threshold_, high, missing);
+Word RowSource<T, N>::classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept {
+  return classify_rows<T>({row(start), strides_[0], row_size_, N > 2 ? strides_[1] : 0, rows}, threshold_, high,
+                          missing);
 }
 
 template <Value T, int N>

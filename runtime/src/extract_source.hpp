@@ -58,8 +58,8 @@ class SampleSource {
 
   [[nodiscard]] virtual std::size_t sample_bytes() const noexcept = 0;
 
-  /// The row through `start` (start[0] = 0), as classify_row.
-  virtual bool classify(const Index& start, Word* high, Word* missing) const noexcept = 0;
+  /// `rows` rows from the one through `start` (start[0] = 0) on along axis 1, as classify_rows.
+  virtual Word classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept = 0;
 
   /// From sample to sample within a layer; of the last axis nothing.
   [[nodiscard]] virtual std::array<std::ptrdiff_t, N> strides() const noexcept = 0;
@@ -94,7 +94,7 @@ class RowSource : public SampleSource<N> {
   using Strides = std::array<std::ptrdiff_t, N>;
 
   [[nodiscard]] std::size_t sample_bytes() const noexcept final { return sizeof(T); }
-  bool classify(const Index& start, Word* high, Word* missing) const noexcept final;
+  Word classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept final;
   [[nodiscard]] Strides strides() const noexcept final { return strides_; }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;

@@ -197,7 +197,8 @@ class TileExtraction {
       for (std::size_t row = from; row < to; ++row) {
         auto start = shape_.index_of(row);
         start[N - 1] = k;
-        missing[row] = source_.classify(start, here.high.data() + row * shape_.pitch(), ignored.data()) ? 1 : 0;
+        const BitRows high{here.high.data() + row * shape_.pitch(), shape_.pitch()};
+        missing[row] = source_.classify(start, 1, high, {ignored.data(), 0}) != 0 ? 1 : 0;
       }
     });
     if (std::find(missing.begin(), missing.end(), 1) != missing.end())

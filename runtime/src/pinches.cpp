@@ -36,7 +36,7 @@ void PinchCandidates<N>::open_slab(std::size_t k, const Slab<N>& slab) {
   constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
   for (std::size_t row = 0; row < shape_.rows(); ++row) {
     if (!shape_.has_cells(shape_.index_of(row), kMiddle)) continue;
-    for (std::size_t w = 0, at = row * shape_.pitch(); w < shape_.words(); ++w, ++at)
+    for (std::size_t w = 0, at = row * shape_.words(); w < shape_.words(); ++w, ++at)
       invalid[at] = ~slab.valid[at] & shape_.mask(w, true);
   }
 }
@@ -60,10 +60,10 @@ template <int N>
 void PinchCandidates<N>::add_row(const EdgePlane& plane, int axis, std::size_t row, const Slab<N>* below,
                                  const Slab<N>* above) {
   if (plane.count[row] == 0 || !counter_.cells_of_valid_tiles(1u << axis, row, below, above, buffer_.data())) return;
-  const Word* const bits = plane.bits[0].data() + row * shape_.pitch();
+  const Word* const bits = plane.bits[0].data() + row * shape_.words();
   for (std::size_t w = 0; w < shape_.words(); ++w)
     for (Word rest = bits[w] & buffer_[w]; rest != 0; rest &= rest - 1) {
-      const Index id = plane.id(row, shape_.pitch(), w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
+      const Index id = plane.id(row, shape_.words(), w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
       vertices_.push_back(least_ + static_cast<Index>(id - static_cast<Index>(least_)));
     }
 }

@@ -97,8 +97,9 @@ std::size_t expect_streamed(const OwnedImage<T, N>& image, const ExtractOptions&
     detail::LayerSource<T, N> source(layers, noise_isovalue<T>(), options.epsilon);
     Collector<N, Real> collector;
     detail::StreamOutput<N, Real> output(collector, options.normals);
-    detail::extract_to<N, Real>(source, image.grid, detail::generated_tables<N>(options), options,
-                                {.max_vertices = ~std::uint64_t{0}, .batch = batch}, output);
+    const detail::ExtractPlan plan{
+        .max_vertices = ~std::uint64_t{0}, .batch = batch, .keeps_tiles = batch != 2 && batch != 100};
+    detail::extract_to<N, Real>(source, image.grid, detail::generated_tables<N>(options), options, plan, output);
     expect_equal(collector, contour);
     EXPECT_EQ(output.size().vertices, contour.vertices.size());
     EXPECT_EQ(output.size().simplices, contour.simplices.size());
