@@ -22,7 +22,9 @@ class Certifier::Impl {
         simplices_.push_back(s);
       }
     Fault fault = check_simplices();
-    if (fault == Fault::none) fault = check_ridges(tile);
+    if (fault == Fault::none) fault = collect_sigma(lattice, tile);
+    if (fault == Fault::none) fault = check_ridges();
+    if (fault == Fault::none) fault = check_components();
     if (fault == Fault::none) fault = check_links(tile);
     if (fault == Fault::none) fault = check_tile_boundary(lattice, tile);
     return fault;
@@ -50,15 +52,49 @@ class Certifier::Impl {
     return induced(j, i);
   }
 
+  /// Sigma from the contours in the faces; the builder's must be the same.
+  Fault collect_sigma(const FaceLattice& lattice, const TileFacets& tile) {
+    const Face& whole = lattice.faces()[lattice.tile()];
+    sigma_.clear(), sigma_sign_.clear();
+    if (tile.in_face.size() != whole.faces.size() || tile.in_face_sign.size() != whole.faces.size())
+      return Fault::sigma;
+    std::size_t total = 0;
+    for (const Simplices& in_face : tile.in_face) total += in_face.size();
+    map_.clear(total);
+    for (std::size_t g = 0; g < whole.faces.size(); ++g) {
+      if (tile.in_face_sign[g].size() != tile.in_face[g].size()) return Fault::sigma;
+      for (std::size_t j = 0; j < tile.in_face[g].size(); ++j) {
+        std::uint32_t& at = sigma_slot(tile.in_face[g][j]);
+        if (at != SimplexMap::kNone) return Fault::sigma;  // in two faces
+        at = static_cast<std::uint32_t>(sigma_.size());
+        sigma_.push_back(tile.in_face[g][j]);
+        sigma_sign_.push_back(tile.in_face_sign[g][j] * whole.signs[g]);
+      }
+    }
+    if (tile.sigma.size() != sigma_.size() || tile.sigma_sign.size() != sigma_.size()) return Fault::sigma;
+    for (std::size_t j = 0; j < tile.sigma.size(); ++j) {
+      const std::uint32_t at = find_in_sigma(tile.sigma[j]);
+      if (at == SimplexMap::kNone || sigma_sign_[at] != tile.sigma_sign[j]) return Fault::sigma;
+    }
+    return Fault::none;
+  }
+
+  std::uint32_t& sigma_slot(const Simplex& s) {
+    return map_.at(vertex_hash(s), [&](std::uint32_t k) { return sigma_[k] == s; }).value;
+  }
+
+  [[nodiscard]] std::uint32_t find_in_sigma(const Simplex& s) const {
+    return map_.find(vertex_hash(s), [&](std::uint32_t k) { return sigma_[k] == s; });
+  }
+
   /// (1), (3) and branching, from the faces of codimension one.
-  Fault check_ridges(const TileFacets& tile) {
+  Fault check_ridges() {
     if (!adjacency_.build(simplices_)) return Fault::branching;
-    map_.clear(tile.sigma.size());
-    for (std::uint32_t j = 0; j < tile.sigma.size(); ++j)
-      map_.at(vertex_hash(tile.sigma[j]), [&](std::uint32_t k) { return tile.sigma[k] == tile.sigma[j]; }).value = j;
     std::size_t boundary = 0;
     Fault fault = Fault::none;
-    for (std::size_t j = 0; j < simplices_.size(); ++j)
+    reached_.assign(simplices_.size(), false);
+    queue_.clear();
+    for (std::uint32_t j = 0; j < simplices_.size(); ++j)
       for (std::size_t i = 0; i < adjacency_.vertices_per_simplex(); ++i) {
         const Simplex face = without(simplices_[j], static_cast<int>(i));
         if (const std::uint32_t n = adjacency_.neighbour(j, i); n != Adjacency::kNone) {
@@ -66,10 +102,20 @@ class Certifier::Impl {
           continue;
         }
         ++boundary;
-        const std::uint32_t at = map_.find(vertex_hash(face), [&](std::uint32_t k) { return tile.sigma[k] == face; });
-        if (at == SimplexMap::kNone || tile.sigma_sign[at] != induced(j, i)) fault = Fault::boundary;
+        if (!reached_[j]) reached_[j] = true, queue_.push_back(j);
+        const std::uint32_t at = find_in_sigma(face);
+        if (at == SimplexMap::kNone || sigma_sign_[at] != induced(j, i)) fault = Fault::boundary;
       }
-    return boundary == tile.sigma.size() ? fault : Fault::boundary;
+    return boundary == sigma_.size() ? fault : Fault::boundary;
+  }
+
+  /// From the boundary every simplex is reached.
+  Fault check_components() {
+    for (std::size_t k = 0; k < queue_.size(); ++k)
+      for (std::size_t i = 0; i < adjacency_.vertices_per_simplex(); ++i)
+        if (const std::uint32_t n = adjacency_.neighbour(queue_[k], i); n != Adjacency::kNone && !reached_[n])
+          reached_[n] = true, queue_.push_back(n);
+    return queue_.size() == simplices_.size() ? Fault::none : Fault::bubble;
   }
 
   /// (2)
@@ -84,7 +130,7 @@ class Certifier::Impl {
     for (std::uint32_t j = 0; j < simplices_.size(); ++j)
       for (std::size_t i = 0; i < width; ++i) star_[next_[simplices_[j][i]]++] = j;
     on_sigma_.assign(tile.vertices.size(), false);
-    for (const Simplex& s : tile.sigma)
+    for (const Simplex& s : sigma_)
       for (int i = 0; i < size(s); ++i) on_sigma_[s[i]] = true;
     for (std::size_t v = 0; v < tile.vertices.size(); ++v) {
       const auto star = std::span(star_).subspan(start_[v], start_[v + 1] - start_[v]);
@@ -168,8 +214,10 @@ class Certifier::Impl {
     return map_.find(hash(own), [&](std::uint32_t k) { return own_[k] == own; }) != SimplexMap::kNone;
   }
 
-  Simplices simplices_;
-  std::vector<int> signs_;
+  Simplices simplices_, sigma_;
+  std::vector<int> signs_, sigma_sign_;
+  std::vector<bool> reached_;
+  std::vector<std::uint32_t> queue_;
   Adjacency adjacency_;
   Shelling shelling_;
   SimplexMap map_;
@@ -198,8 +246,12 @@ const char* fault_name(Fault fault) noexcept {
       return "branching";
     case Fault::orientation:
       return "orientation";
+    case Fault::sigma:
+      return "Sigma is not what the faces' contours make";
     case Fault::boundary:
       return "boundary is not Sigma";
+    case Fault::bubble:
+      return "a component without boundary";
     case Fault::link:
       return "bad link";
     case Fault::in_tile_boundary:

@@ -58,12 +58,41 @@ FaceLattice::FaceLattice(int dim, std::span<const Signature> maximal_faces) {
     throw std::invalid_argument("faces of a polytope of dimension " +
                                 std::to_string(faces_.empty() ? 0 : faces_.back().dim) + ", expected " +
                                 std::to_string(dim));
+  if (dim > kMaxVertices - 1)
+    throw std::invalid_argument("polytope of dimension " + std::to_string(dim) + ", expected at most " +
+                                std::to_string(kMaxVertices - 1));
   for (Face& face : faces_) {
     for (std::uint32_t g = 0; g < faces_.size() && faces_[g].dim < face.dim; ++g)
       if (faces_[g].dim == face.dim - 1 && (faces_[g].corners & face.corners) == faces_[g].corners)
         face.faces.push_back(g);
+    check(face);
     orient(face);
   }
+}
+
+/// What every polytope has: between a face and one two dimensions lower there are two others (the diamond property),
+/// and the faces of a boundary add up to a sphere's Euler characteristic. Not enough for a proof, but to find what was
+/// forgotten.
+void FaceLattice::check(const Face& face) const {
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument("face with corners " + std::to_string(face.corners) + ": " + what);
+  };
+  if (face.dim > 0 && static_cast<int>(face.faces.size()) < face.dim + 1)
+    refuse(std::to_string(face.faces.size()) + " faces of codimension one, expected " + std::to_string(face.dim + 1) +
+           " or more");
+  int euler = 0;
+  for (const Face& below : faces_) {
+    if (below.dim >= face.dim || (below.corners & ~face.corners) != 0) continue;
+    euler += below.dim % 2 == 0 ? 1 : -1;
+    if (below.dim + 2 != face.dim) continue;
+    const auto between = std::count_if(face.faces.begin(), face.faces.end(),
+                                       [&](std::uint32_t g) { return (below.corners & ~faces_[g].corners) == 0; });
+    if (between != 2)
+      refuse(std::to_string(between) + " faces between it and corners " + std::to_string(below.corners) +
+             ", expected 2");
+  }
+  if (const int sphere = face.dim % 2 == 1 ? 2 : 0; euler != sphere)
+    refuse("a boundary of Euler characteristic " + std::to_string(euler) + ", expected " + std::to_string(sphere));
 }
 
 /// The first face has the sign that outward-normal-first gives to cubes and simplices; two faces induce opposite

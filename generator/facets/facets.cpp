@@ -184,11 +184,13 @@ class FacetBuilder::Impl {
     builder_->euler_characteristics(result_.sigma_euler);
     result_.sigma_sign.assign(builder_->sigma_sign().begin(), builder_->sigma_sign().end());
     const std::vector<std::uint32_t>& faces = lattice_.faces().back().faces;
-    result_.in_face.resize(faces.size());
+    result_.in_face.resize(faces.size()), result_.in_face_sign.resize(faces.size());
     for (std::size_t j = 0; j < faces.size(); ++j) {
       builder_->number(faces[j], map_);
       result_.in_face[j].clear();
-      for (const Simplex& s : pieces_[faces[j]]->contour) result_.in_face[j].push_back(carried(s));
+      const Piece& piece = *pieces_[faces[j]];
+      for (const Simplex& s : piece.contour) result_.in_face[j].push_back(carried(s));
+      result_.in_face_sign[j].assign(piece.sign.begin(), piece.sign.end());
     }
   }
 

@@ -89,19 +89,24 @@ class TileCertifier::Impl {
     const Below& below = below_[j];
     const Simplices& contour = tile_->in_face[j];
     const Signature own = compressed(signature, below.corners);
-    if (lattice().dim() == 2)  // an edge
-      return contour.size() == (std::popcount(own) == 1 ? 1u : 0u) ? Fault::none : Fault::boundary;
+    if (lattice().dim() == 2) {  // an edge: a point, positive if the second end is high, where its ends differ
+      const bool differ = std::popcount(own) == 1;
+      const bool right =
+          contour.size() == (differ ? 1u : 0u) && (!differ || tile_->in_face_sign[j][0] == (own == 2 ? 1 : -1));
+      return right ? Fault::none : Fault::sigma;
+    }
     choices_.clear();
     if (!resolution.choices.empty())
       for (const std::uint32_t g : below.faces) choices_.push_back(resolution.choices[g]);
     std::uint64_t digest = 0;
-    for (const Simplex& s : contour) {
+    for (std::size_t k = 0; k < contour.size(); ++k) {
+      const Simplex& s = contour[k];
       std::uint64_t sum = 0;
       for (int i = 0; i < size(s); ++i) sum += name(below.number[tile_->vertices[s[i]].face], tile_->vertices[s[i]]);
-      digest += mix(sum);
+      digest += mix(sum + static_cast<unsigned>(tile_->in_face_sign[j][k] + 1));
     }
     const auto [fault, expected] = shapes_[below.shape]->alone(own, {choices_, resolution.alternative});
-    return fault != Fault::none ? fault : digest == expected ? Fault::none : Fault::boundary;
+    return fault != Fault::none ? fault : digest == expected ? Fault::none : Fault::sigma;
   }
 
   /// The tile of this lattice by itself: its fault, and the digest of its contour.
@@ -122,10 +127,11 @@ class TileCertifier::Impl {
     if (const Fault fault = certify(signature, resolution); fault != Fault::none) return {fault, 0};
     std::uint64_t digest = 0;
     for (const Facet& facet : tile_->facets)
-      for (const Simplex& s : facet.simplices) {
+      for (Simplex s : facet.simplices) {
+        const int sign = sort_vertices(s);
         std::uint64_t sum = 0;
         for (int i = 0; i < size(s); ++i) sum += name(tile_->vertices[s[i]].face, tile_->vertices[s[i]]);
-        digest += mix(sum);
+        digest += mix(sum + static_cast<unsigned>(sign + 1));
       }
     return {Fault::none, digest};
   }

@@ -42,7 +42,7 @@ TableCertifier::TableCertifier(const ContourBuilder& builder)
   tile_.vertices.resize(256);
   for (std::uint32_t v = 0; v < 256; ++v)
     tile_.vertices[v].face = by_maximal.at(builder.faces_of(static_cast<std::uint8_t>(v)));
-  tile_.in_face.resize(maximal.size());
+  tile_.in_face.resize(maximal.size()), tile_.in_face_sign.resize(maximal.size());
 }
 
 facets::Fault TableCertifier::certify(Signature signature, const TileContour& contour) {
@@ -51,17 +51,20 @@ facets::Fault TableCertifier::certify(Signature signature, const TileContour& co
   for (const Facet& facet : contour.facets)
     for (const Simplex& s : facet.simplices) tile_.facets[0].simplices.push_back(simplex_of(s, n));
   tile_.sigma.clear(), tile_.sigma_sign.clear();
+  const facets::Face& whole = lattice_.faces()[lattice_.tile()];
   for (std::size_t j = 0; j < face_.size(); ++j) {
     const std::uint32_t f = face_[j];
-    tile_.in_face[j].clear();
+    tile_.in_face[j].clear(), tile_.in_face_sign[j].clear();
     for (const Facet& facet : builder_.face_contour(f, signature).facets)
       for (Simplex s : facet.simplices) {
         for (int i = 0; i < n - 1; ++i) s[i] = builder_.lift(f, s[i]);
         facets::Simplex simplex = simplex_of(s, n - 1);
-        const int sign = builder_.tile().faces[f].sign * builder_.orientation() * facet.sign;
-        tile_.sigma_sign.push_back(sign * facets::sort_vertices(simplex));
+        const int sign =
+            builder_.tile().faces[f].sign * builder_.orientation() * facet.sign * facets::sort_vertices(simplex);
         tile_.sigma.push_back(simplex);
+        tile_.sigma_sign.push_back(sign);
         tile_.in_face[j].push_back(simplex);
+        tile_.in_face_sign[j].push_back(sign * whole.signs[j]);
       }
   }
   return certifier_.certify(lattice_, tile_);

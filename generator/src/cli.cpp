@@ -12,6 +12,7 @@
 #include <charconv>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -46,12 +47,13 @@ template <typename Number>
 void set_number(std::string_view option, std::string_view given, Number& number, Number least) {
   const char* const end = given.data() + given.size();
   const auto [stop, error] = std::from_chars(given.data(), end, number);
-  if (error != std::errc{} || stop != end) {
+  const bool in_range = error == std::errc{} && stop == end && number >= least;
+  if (in_range) return;
+  if (least == std::numeric_limits<Number>::min() && std::is_signed_v<Number>) {
     refuse(fmt::format("{} {}: expected a whole number", option, given));
   }
-  if (number < least) {
-    refuse(fmt::format("{} {}: expected {} or more", option, given, least));
-  }
+  refuse(fmt::format("{} {}: expected a whole number from {} to {}", option, given, least,
+                     std::numeric_limits<Number>::max()));
 }
 
 void set_dim(Options& options, std::string_view given) {
@@ -250,7 +252,9 @@ void check_dim(const Options& options, std::string_view command) {
                       : options.command == Command::Certify && sample ? kMaxSampledDim
                                                                       : kMaxEnumeratedDim;
   if (options.dim < lowest || options.dim > highest) {
-    refuse(fmt::format("--dim {}: {} expects {} to {}", options.dim, command, lowest, highest));
+    const bool could_sample = options.command == Command::Certify && options.tile == TileKind::cube;
+    refuse(fmt::format("--dim {}: {} expects {} to {}{}", options.dim, command, lowest, highest,
+                       could_sample && !sample ? fmt::format(", with --sample to {}", kMaxSampledDim) : ""));
   }
 }
 

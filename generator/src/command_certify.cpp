@@ -87,6 +87,12 @@ void print_resolutions(const Options& options, const ResolutionFigures& f, doubl
   if (f.tiles > 0)
     fmt::print("  simplices      {:.2f} per tile, at most {}\n",
                static_cast<double>(f.simplices) / static_cast<double>(f.tiles), f.max_simplices);
+  if (options.dim % 2 == 1) {  // Sigma has odd dimension
+    std::uint64_t components = 0;
+    for (const auto& [euler, count] : f.euler) components += count;
+    fmt::print("  components     {} of Sigma, all of Euler characteristic 0, as in every odd dimension\n", components);
+    return;
+  }
   fmt::print("\n    Euler characteristic   components of Sigma\n");
   for (auto at = f.euler.rbegin(); at != f.euler.rend(); ++at)
     fmt::print("    {:>20}   {:>19}{}\n", at->first, at->second,

@@ -51,6 +51,11 @@ std::string banner(const TableSet& set, Language language, const std::string& wh
   return text;
 }
 
+std::string resolved_certificate(const ResolvedCube& table) {
+  return fmt::format("Certified: {} entries in 3 ways each, {} triangles, {} vertices beside edge points",
+                     table.entries.size(), table.triangles.size() / 3, table.masks.size());
+}
+
 std::vector<EmittedFile> emit(const TableSet& set, Language language) {
   switch (language) {
     case Language::cpp: {

@@ -132,7 +132,8 @@ EmittedFile region_file(const TableSet& set) {
 }
 
 EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
-  std::string text = opening(set, "The cube with every ambiguity resolved freely.");
+  std::string text =
+      opening(set, "The cube with every ambiguity resolved freely. " + resolved_certificate(table) + ".");
   array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
   array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
   fmt::format_to(Out(text),

@@ -116,8 +116,8 @@ EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
   std::string text = opening(set, "resolved", 3);
   std::vector<std::string> squares;
   for (const auto& square : table.squares) squares.push_back(fmt::format("[{}]", fmt::join(square, ",")));
-  fmt::format_to(Out(text), ",\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"", fmt::join(squares, ", "),
-                 digest(table));
+  fmt::format_to(Out(text), ",\n  \"certified_entries\": {},\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"",
+                 table.entries.size(), fmt::join(squares, ", "), digest(table));
   array(text, "first_entry", table.first_entry);
   array(text, "ambiguous_squares", table.ambiguous);
   std::string columns = "\"components\"";

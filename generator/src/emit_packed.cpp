@@ -266,6 +266,7 @@ EmittedFile resolved_file(const TableSet& set, const Dialect& dialect, const Res
 
   Writer out(dialect, "tegl_tile3_resolved");
   out.raw(banner(set, dialect.language, "The cube with every ambiguity resolved freely."));
+  out.comment(resolved_certificate(table));
   out.comment(fmt::format("Digest (FNV-1a) {:016x}. How to read it: docs/tables.md.", digest(table)));
   out.raw("\n");
   array_macros(out, dialect);

@@ -29,6 +29,9 @@ inline std::string tile_name(TileKind kind, int dim) {
 /// The generated-file banner in `//` comments: command, licence, `what`, and the certificate.
 std::string banner(const TableSet& set, Language language, const std::string& what);
 
+/// What was proved of the complete table of the cube, for banners.
+std::string resolved_certificate(const ResolvedCube& table);
+
 /// The command that writes this language, for banners: the C++ one is the command's default.
 std::string command_for(const TableSet& set, Language language);
 

@@ -104,6 +104,13 @@ class Alone {
       if (((edges >> frame.edge_of_face[tile.vertices[tile.sigma[j][0]].face]) & 1u) == 0) continue;
       tile_.sigma.push_back(tile.sigma[j]), tile_.sigma_sign.push_back(tile.sigma_sign[j]);
     }
+    for (std::size_t q = 0; q < tile.in_face.size(); ++q) {
+      tile_.in_face[q].clear(), tile_.in_face_sign[q].clear();
+      for (std::size_t j = 0; j < tile.in_face[q].size(); ++j) {
+        if (((edges >> frame.edge_of_face[tile.vertices[tile.in_face[q][j][0]].face]) & 1u) == 0) continue;
+        tile_.in_face[q].push_back(tile.in_face[q][j]), tile_.in_face_sign[q].push_back(tile.in_face_sign[q][j]);
+      }
+    }
     for (VertexId v = 0; v < tile_.vertices.size(); ++v)
       if (tile_.vertices[v].kind == facets::VertexKind::edge) id_[frame.edge_of_face[tile_.vertices[v].face]] = v;
     for (std::uint32_t own = 0; own < kMaxOwn; ++own) {

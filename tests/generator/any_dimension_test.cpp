@@ -195,6 +195,63 @@ TEST(AnyDimension, WrongFillingsFailEachInItsWay) {
   EXPECT_EQ(certify(cube, wrong), Fault::branching);
 }
 
+TEST(AnyDimension, AContourThatLacksAComponentOrHasOneTurnedFails) {
+  const FaceLattice cube = FaceLattice::cube(3);
+  const TileFacets right = build_facets(cube, 129);  // two opposite corners: two triangles
+  ASSERT_EQ(certify(cube, right), Fault::none);
+  ASSERT_EQ(right.facets.size(), 2u);
+  const auto is_of_last = [&](const Simplex& s) {
+    const Simplex& t = right.facets.back().simplices[0];
+    return std::find(t.begin(), t.end(), s[0]) != t.end();
+  };
+  TileFacets lacking = right, turned = right;
+  lacking.facets.pop_back();
+  std::swap(turned.facets.back().simplices[0][0], turned.facets.back().simplices[0][1]);
+  for (std::size_t j = right.sigma.size(); j-- > 0;) {
+    if (!is_of_last(right.sigma[j])) continue;
+    lacking.sigma.erase(lacking.sigma.begin() + static_cast<std::ptrdiff_t>(j));
+    lacking.sigma_sign.erase(lacking.sigma_sign.begin() + static_cast<std::ptrdiff_t>(j));
+    turned.sigma_sign[j] = -turned.sigma_sign[j];
+  }
+  EXPECT_EQ(certify(cube, lacking), Fault::sigma);
+  EXPECT_EQ(certify(cube, turned), Fault::sigma);
+  TileFacets empty = right;
+  empty.facets.clear(), empty.sigma.clear(), empty.sigma_sign.clear();
+  EXPECT_EQ(certify(cube, empty), Fault::sigma);
+}
+
+TEST(AnyDimension, ABubbleInsideATileFails) {
+  const FaceLattice cube = FaceLattice::cube(3);
+  TileFacets tile = build_facets(cube, 15);
+  const auto first = static_cast<VertexId>(tile.vertices.size());
+  for (std::uint32_t k = 0; k < 4; ++k)
+    tile.vertices.push_back({VertexKind::side, cube.tile(), 1000 + k, kNoVertex, {}});
+  Simplex solid = kNoSimplex;
+  for (VertexId k = 0; k < 4; ++k) solid[k] = static_cast<VertexId>(first + k);
+  for (int i = 0; i < 4; ++i) {
+    Simplex side = without(solid, i);
+    if (i % 2 != 0) std::swap(side[0], side[1]);
+    tile.facets[0].simplices.push_back(side);
+  }
+  EXPECT_EQ(certify(cube, tile), Fault::bubble);
+}
+
+TEST(AnyDimension, FamiliesOfSetsThatAreNoPolytopesAreRefused) {
+  const auto lattice = [](int dim, std::vector<Signature> faces) { return FaceLattice(dim, faces); };
+  EXPECT_NO_THROW(lattice(2, {0b0011, 0b1010, 0b1100, 0b0101}));
+  EXPECT_THROW(lattice(2, {0b0011, 0b1010, 0b1100}), std::invalid_argument) << "a square without a side";
+  EXPECT_THROW(lattice(3, {0b0111, 0b1011, 0b1101}), std::invalid_argument) << "a tetrahedron without a face";
+  EXPECT_THROW(lattice(2, {0b0111, 0b1011, 0b1101, 0b1110}), std::invalid_argument) << "of another dimension";
+  std::vector<Signature> simplex, torus;
+  for (int v = 0; v < 8; ++v) simplex.push_back(0xffu & ~(Signature{1} << v));
+  EXPECT_THROW(lattice(7, simplex), std::invalid_argument);
+  for (unsigned v = 0; v < 7; ++v) {  // the torus of seven vertices
+    torus.push_back(Signature{1} << v | Signature{1} << (v + 1) % 7 | Signature{1} << (v + 3) % 7);
+    torus.push_back(Signature{1} << v | Signature{1} << (v + 2) % 7 | Signature{1} << (v + 3) % 7);
+  }
+  EXPECT_THROW(lattice(3, torus), std::invalid_argument);
+}
+
 TEST(AnyDimension, AConeOverATorusFailsByItsApex) {
   const FaceLattice tesseract = FaceLattice::cube(4);
   TileFacets tile = build_facets(tesseract, 1910);

@@ -37,7 +37,8 @@ struct Face {
 class FaceLattice {
  public:
   /// From the corner sets of the faces of codimension one of a polytope of dimension `dim` with up to 64 corners.
-  /// Throws std::invalid_argument if these are not a polytope's.
+  /// Throws std::invalid_argument for a dimension above 6, and if faces are missing or too many: not every family of
+  /// sets that is no polytope's is found.
   FaceLattice(int dim, std::span<const Signature> maximal_faces);
   static FaceLattice cube(int n);        ///< n = 1 ... 6; corner v has coordinate i = v >> i & 1
   static FaceLattice simplex(int n);     ///< n = 1 ... 6; n + 1 corners
@@ -48,6 +49,7 @@ class FaceLattice {
   [[nodiscard]] std::uint32_t tile() const { return static_cast<std::uint32_t>(faces_.size() - 1); }
 
  private:
+  void check(const Face& face) const;
   void orient(Face& face);
 
   std::vector<Face> faces_;
@@ -102,8 +104,10 @@ struct TileFacets {
   Simplices sigma;            ///< simplices of n - 1 vertices
   std::vector<int> sigma_sign;
   std::vector<int> sigma_euler;  ///< Euler characteristics of Sigma's components
-  /// The contour in each face of codimension one, in the order of the tile's `faces`; not oriented.
+  /// The contour in each face of codimension one, in the order of the tile's `faces`, vertices ascending, and for each
+  /// simplex its sign: of the orientation that it has as a part of the face's own contour.
   std::vector<Simplices> in_face;
+  std::vector<std::vector<int>> in_face_sign;
 };
 
 enum class Geometry : std::uint8_t {
