@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The generated tables by dimension.
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::tables {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 #include "shelling.hpp"
 
@@ -15,6 +17,7 @@ namespace tegl::facets {
 class Certifier::Impl {
  public:
   Fault certify(const FaceLattice& lattice, const TileFacets& tile) {
+    check_form(lattice, tile);
     simplices_.clear(), signs_.clear();
     for (const Facet& facet : tile.facets)
       for (Simplex s : facet.simplices) {
@@ -31,6 +34,32 @@ class Certifier::Impl {
   }
 
  private:
+  /// What the other checks take for granted.
+  static void check_form(const FaceLattice& lattice, const TileFacets& tile) {
+    const int n = lattice.dim();
+    const auto check = [&](const Simplices& simplices, int vertices) {
+      for (const Simplex& s : simplices) {
+        if (size(s) != vertices)
+          throw std::invalid_argument("simplex of " + std::to_string(size(s)) + " vertices, expected " +
+                                      std::to_string(vertices));
+        for (int i = 0; i < vertices; ++i)
+          if (s[i] >= tile.vertices.size())
+            throw std::invalid_argument("vertex " + std::to_string(s[i]) + " of " +
+                                        std::to_string(tile.vertices.size()));
+      }
+    };
+    for (const Facet& facet : tile.facets) check(facet.simplices, n);
+    for (const Simplices& in_face : tile.in_face) check(in_face, n - 1);
+    check(tile.sigma, n - 1);
+    for (const Vertex& v : tile.vertices)
+      if (v.face > lattice.tile())
+        throw std::invalid_argument("vertex in face " + std::to_string(v.face) + " of " +
+                                    std::to_string(lattice.faces().size()));
+    if (lattice.faces().back().faces.size() > 64)
+      throw std::invalid_argument(std::to_string(lattice.faces().back().faces.size()) +
+                                  " faces of codimension one, expected at most 64");
+  }
+
   Fault check_simplices() {
     map_.clear(simplices_.size());
     for (std::uint32_t j = 0; j < simplices_.size(); ++j) {

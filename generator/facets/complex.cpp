@@ -57,22 +57,34 @@ class Collapse {
 
   /// Does the complex, without its first top simplex if `open`, collapse to a point in one of some seeded tries?
   [[nodiscard]] bool to_a_point(bool open) const {
-    constexpr unsigned kTries = 4;
     for (unsigned seed = 0; seed < kTries; ++seed)
-      if (one_try(open, seed) == 1) return true;
+      if (const Left left = one_try(open, seed); left.vertices + left.edges + left.others == 1) return true;
+    return false;
+  }
+
+  /// What is left when no face is free has no ends: as many edges as vertices, and nothing else, are circles.
+  [[nodiscard]] bool to_circles() const {
+    for (unsigned seed = 0; seed < kTries; ++seed)
+      if (const Left left = one_try(false, seed); left.others == 0 && left.edges > 0 && left.edges == left.vertices)
+        return true;
     return false;
   }
 
  private:
+  static constexpr unsigned kTries = 4;
+
   /// How many faces remain when none is free any more.
-  [[nodiscard]] std::size_t one_try(bool open, unsigned seed) const {
+  struct Left {
+    std::size_t vertices = 0, edges = 0, others = 0;
+  };
+
+  [[nodiscard]] Left one_try(bool open, unsigned seed) const {
     std::vector<std::uint16_t> cofaces(down_.size());
     std::vector<bool> gone(down_.size());
     std::vector<std::size_t> free;
-    std::size_t left = down_.size();
     for (std::size_t f = 0; f < down_.size(); ++f) cofaces[f] = static_cast<std::uint16_t>(up_[f].size());
     const auto remove = [&](std::size_t f) {
-      gone[f] = true, --left;
+      gone[f] = true;
       for (const std::size_t g : down_[f])
         if (--cofaces[g] == 1) free.push_back(g);
     };
@@ -89,6 +101,9 @@ class Collapse {
       remove(over);  // in no other face: with one above it, f would be in two
       remove(f);
     }
+    Left left;
+    for (std::size_t f = 0; f < down_.size(); ++f)
+      if (!gone[f]) ++(f < start_[1] ? left.vertices : start_.size() == 2 || f < start_[2] ? left.edges : left.others);
     return left;
   }
 
@@ -168,6 +183,13 @@ Shape shape_of(const Simplices& simplices) {
   if (!adjacency.build(simplices)) return Shape::other;
   const Shape shelled = Shelling().shape(simplices, adjacency, all, kNoVertex);
   return vertices <= 3 || shelled != Shape::other ? shelled : shape_by_collapse(simplices);
+}
+
+bool collapses_to_a_circle(const Simplices& simplices) {
+  if (simplices.empty() || size(simplices.front()) < 2) return false;
+  Adjacency adjacency;
+  // One circle if the complex is connected: collapses keep that.
+  return adjacency.build(simplices) && ridges_of(simplices).connected && Collapse(all_faces(simplices)).to_circles();
 }
 
 int euler_characteristic(const Simplices& simplices) { return simplices.empty() ? 0 : euler_of(all_faces(simplices)); }

@@ -41,7 +41,7 @@ FaceLattice lattice_of(const FaceLattice& lattice, const Face& face) {
 
 class TileCertifier::Impl {
  public:
-  explicit Impl(FaceLattice lattice) : builder_(std::move(lattice)) {
+  Impl(FaceLattice lattice, Build build) : builder_(std::move(lattice)), build_(std::move(build)) {
     const FaceLattice& own = builder_.lattice();
     for (const std::uint32_t g : own.faces().back().faces) {
       Below below{.corners = corner_list(own.faces()[g].corners), .faces = closure(own, g), .number = {}, .shape = 0};
@@ -56,7 +56,7 @@ class TileCertifier::Impl {
   [[nodiscard]] const TileFacets& tile() const { return *tile_; }
 
   Fault certify(Signature signature, const Resolution& resolution) {
-    tile_ = &builder_.build(signature, resolution, Geometry::without);
+    tile_ = build_ ? &build_(signature, resolution) : &builder_.build(signature, resolution, Geometry::without);
     if (const Fault fault = certifier_.certify(lattice(), *tile_); fault != Fault::none) return fault;
     for (std::size_t j = 0; j < below_.size(); ++j)
       if (const Fault fault = certify_face(j, signature, resolution); fault != Fault::none) return fault;
@@ -81,7 +81,7 @@ class TileCertifier::Impl {
     };
     for (std::size_t s = 0; s < shapes_.size(); ++s)
       if (same(*shapes_[s])) return s;
-    shapes_.push_back(std::make_unique<Impl>(std::move(lattice)));
+    shapes_.push_back(std::make_unique<Impl>(std::move(lattice), Build{}));
     return shapes_.size() - 1;
   }
 
@@ -137,6 +137,7 @@ class TileCertifier::Impl {
   }
 
   FacetBuilder builder_;
+  Build build_;  ///< empty: builder_
   Certifier certifier_;
   const TileFacets* tile_ = nullptr;
   std::vector<Below> below_;                   ///< by face of codimension one
@@ -145,7 +146,9 @@ class TileCertifier::Impl {
   std::unordered_map<std::uint64_t, std::uint64_t> remembered_;
 };
 
-TileCertifier::TileCertifier(FaceLattice lattice) : impl_(std::make_unique<Impl>(std::move(lattice))) {}
+TileCertifier::TileCertifier(FaceLattice lattice) : TileCertifier(std::move(lattice), Build{}) {}
+TileCertifier::TileCertifier(FaceLattice lattice, Build build)
+    : impl_(std::make_unique<Impl>(std::move(lattice), std::move(build))) {}
 TileCertifier::~TileCertifier() = default;
 TileCertifier::TileCertifier(TileCertifier&&) noexcept = default;
 TileCertifier& TileCertifier::operator=(TileCertifier&&) noexcept = default;

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "emit_text.hpp"
+#include "tegl/facets/complex.hpp"
 #include "tegl/gen/error.hpp"
 #include "tegl/gen/picture.hpp"
 #include "tegl/gen/table_set.hpp"
@@ -145,20 +146,15 @@ std::size_t simplex_count(const TileContour& contour) {
   return sum;
 }
 
-/// V - E + F - T of a facet of a 4-tile.
-int euler_of(const Facet& facet) {
-  std::array<std::set<std::vector<std::uint8_t>>, 4> faces;
-  for (const Simplex& s : facet.simplices)
-    for (unsigned subset = 1; subset < 16; ++subset) {
-      std::vector<std::uint8_t> face;
-      for (unsigned i = 0; i < 4; ++i)
-        if (((subset >> i) & 1u) != 0) face.push_back(s[i]);
-      std::sort(face.begin(), face.end());
-      faces[face.size() - 1].insert(face);
-    }
-  int euler = 0;
-  for (std::size_t d = 0; d < 4; ++d) euler += (d % 2 == 0 ? 1 : -1) * static_cast<int>(faces[d].size());
-  return euler;
+/// Shown by a collapse to a circle; that the facet is a manifold is its certificate.
+bool is_solid_torus(const Facet& facet) {
+  facets::Simplices simplices;
+  for (const Simplex& s : facet.simplices) {
+    facets::Simplex& simplex = simplices.emplace_back(facets::kNoSimplex);
+    std::copy(s.begin(), s.end(), simplex.begin());
+    facets::sort_vertices(simplex);
+  }
+  return facets::collapses_to_a_circle(simplices);
 }
 
 /// The facet that fills a component of Sigma that is no sphere, if a contour has one.
@@ -225,7 +221,7 @@ class Catalogue4d {
   std::string torus_section(const Case& c, const TileContour& barycentric, const Facet& torus,
                             const TileContour& compact) {
     const Facet* const small = around_torus(compact);
-    if (small == nullptr || euler_of(torus) != 0 || euler_of(*small) != 0)
+    if (small == nullptr || !is_solid_torus(torus) || !is_solid_torus(*small))
       throw Error(ErrorCode::Internal,
                   fmt::format("signature {}: a torus that is not filled by a solid torus", c.signature));
     const std::string name = fmt::format("4d/{}.svg", c.signature);
@@ -273,7 +269,7 @@ cannot fill a torus, but a **solid torus** can, having a torus as its boundary.
 
 The tile's centre counts as low, so the contour in the tile is a copy of the *high side* of the boundary, pushed inwards: of the
 part of the boundary sphere where the corners are high. In these classes that is a solid torus, a ring. Every filling here
-has been checked to have the Euler characteristic 0 of a solid torus, where a ball has 1. In the barycentric triangulation the
+has been shown to be one: it is a manifold (its certificate) and collapses to a circle. In the barycentric triangulation the
 copy is made of the side's own triangulation, its inner vertices half way to the tile's centre (*side vertices*); the compact one
 fills the same torus with fewer tetrahedra.
 

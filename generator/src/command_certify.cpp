@@ -79,7 +79,9 @@ void print_resolutions(const Options& options, const ResolutionFigures& f, doubl
   }
   fmt::print("  certified      {} tiles in {:.1f} s, each with what it has in its faces; no failure\n", f.tiles,
              seconds);
-  if (options.dim > 3) {
+  fmt::print("  facets         {} filled by a simplex, {} by a cone, {} from the side\n", f.by_filling[0],
+             f.by_filling[1], f.by_filling[2]);
+  if (options.dim > 3 && options.dim % 2 == 0) {
     fmt::print("  non-spherical  {} pairs", f.non_spherical);
     if (options.all_resolutions) fmt::print(", {} classes", f.classes_with_non_spherical);
     fmt::print("{}\n", options.all_resolutions ? "; filled in both ways" : "");
@@ -108,10 +110,11 @@ void print_resolutions_json(const Options& options, const ResolutionFigures& f, 
           : fmt::format("\"sample\": {}, \"seed\": {}", options.sample, options.seed);
   fmt::print(
       "{{\"tile\": \"{}\", \"dim\": {}, {}, \"pairs\": {}, \"pairs_up_to_symmetry\": {}, \"certified_tiles\": {}, "
-      "\"non_spherical_pairs\": {}, \"simplices\": {}, \"max_simplices\": {}, \"euler\": {{{}}}, \"seconds\": "
+      "\"non_spherical_pairs\": {}, \"facets\": {{\"simplex\": {}, \"cone\": {}, \"side\": {}}}, \"simplices\": {}, "
+      "\"max_simplices\": {}, \"euler\": {{{}}}, \"seconds\": "
       "{:.1f}}}\n",
-      tile_kind_name(options.tile), options.dim, what, f.pairs, f.pairs_by_class, f.tiles, f.non_spherical, f.simplices,
-      f.max_simplices, fmt::join(euler, ", "), seconds);
+      tile_kind_name(options.tile), options.dim, what, f.pairs, f.pairs_by_class, f.tiles, f.non_spherical,
+      f.by_filling[0], f.by_filling[1], f.by_filling[2], f.simplices, f.max_simplices, fmt::join(euler, ", "), seconds);
 }
 
 /// Per cent on standard error, if somebody looks at it.
@@ -155,7 +158,7 @@ int certify_resolutions(const Options& options) {
 void print_figures(TileKind tile, int dim, const CertifiedFigures& f) {
   fmt::print("{}-{}, {} alternative, {} triangulation\n", dim, tile == TileKind::cube ? "tile" : tile_kind_name(tile),
              alternative_name(f.alternative), triangulation_name(f.triangulation));
-  fmt::print("  certified    {} of {} signatures\n", f.signatures, f.signatures);
+  fmt::print("  certified    all {} signatures\n", f.signatures);
   fmt::print("  facets       {} (at most {} in a tile): {} around spheres, {} around others", f.facets, f.max_facets,
              f.spheres, f.others);
   if (f.others != 0)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Tiles of every dimension by their kind: corners, edges, and the faces as tiles of one dimension less.
 #include "tegl/gen/lattice.hpp"
 
 #include <stdexcept>

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "tegl/gen/cli.hpp"
@@ -56,6 +57,9 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     fmt::print(stderr, "gen: {}\n", error.what());
     return static_cast<int>(error.code());
+  } catch (const std::system_error& error) {  // fmt's, when a long output fills its buffer
+    fmt::print(stderr, "gen: standard output could not be written: {}\n", error.code().message());
+    return static_cast<int>(ErrorCode::WriteFailed);
   } catch (const std::exception& error) {
     fmt::print(stderr, "gen: {}\n", error.what());
     return static_cast<int>(ErrorCode::Internal);

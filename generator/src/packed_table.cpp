@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The words of a packed table, part by part; every number is checked against the bits it has.
 #include "tegl/gen/packed_table.hpp"
 
 #include <algorithm>

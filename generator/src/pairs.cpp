@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Chains of signed simplices: what a contour leaves on each side of a tile, and the sum of that of two neighbours.
 #include "tegl/gen/pairs.hpp"
 
 #include <algorithm>
@@ -154,8 +156,7 @@ PairFigures certify_pairs(const ContourBuilder& builder, std::span<const TileCon
 
 std::string unmatched_text(int dim, const PairFigures& figures) {
   return fmt::format(
-      "{} of {} pairs of neighbouring {}-tiles leave a hole between them: the first is signature {} below {} along "
-      "axis "
+      "{} of {} pairs of neighbouring {}-tiles leave a hole between them: the first is signature {} below {} along axis "
       "{}; expected none",
       figures.unmatched, figures.pairs, dim, figures.below, figures.above, figures.axis);
 }

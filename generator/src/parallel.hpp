@@ -9,6 +9,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -45,7 +46,10 @@ void in_parallel(std::uint64_t count, std::uint64_t chunk, unsigned threads, con
   };
   {
     std::vector<std::jthread> pool;
-    for (unsigned t = 1; t < threads && t * chunk < count; ++t) pool.emplace_back(run);
+    try {
+      for (unsigned t = 1; t < threads && t * chunk < count; ++t) pool.emplace_back(run);
+    } catch (const std::system_error&) {  // no more threads to be had: those that there are do the work
+    }
     run();
   }
   if (!failures.empty()) std::rethrow_exception(failures.begin()->second);

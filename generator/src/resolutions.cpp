@@ -57,13 +57,12 @@ class Worker {
     figures_.tiles += 1;
     figures_.simplices += simplices;
     figures_.max_simplices = std::max(figures_.max_simplices, simplices);
+    for (const facets::Facet& facet : tile.facets) ++figures_.by_filling[static_cast<std::size_t>(facet.filling)];
     bool others = false;
-    // Of an odd-dimensional Sigma the Euler characteristic is 0, whatever it is: fillings tell.
-    const bool odd = lattice.dim() % 2 == 1 && lattice.dim() > 3;
-    for (const facets::Facet& facet : tile.facets) others |= odd && facet.filling == facets::Filling::side;
     for (const int euler : tile.sigma_euler) {
       if (weight > 0) figures_.euler[euler] += weight;
-      others |= !odd && lattice.dim() > 3 && euler != 2;
+      // Of a Sigma of odd dimension the Euler characteristic is 0, whatever it is.
+      others |= lattice.dim() % 2 == 0 && lattice.dim() > 2 && euler != 2;
     }
     return others;
   }
@@ -84,6 +83,7 @@ void add(ResolutionFigures& to, const ResolutionFigures& more) {
   to.pairs += more.pairs, to.pairs_by_class += more.pairs_by_class, to.tiles += more.tiles;
   to.non_spherical += more.non_spherical, to.simplices += more.simplices;
   to.max_simplices = std::max(to.max_simplices, more.max_simplices);
+  for (std::size_t k = 0; k < to.by_filling.size(); ++k) to.by_filling[k] += more.by_filling[k];
   for (const auto& [euler, count] : more.euler) to.euler[euler] += count;
 }
 
@@ -202,7 +202,14 @@ ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std:
   const auto work = [&](Worker& worker, std::uint64_t number) {
     for (std::uint64_t i = number * unit; i < std::min(count, (number + 1) * unit); ++i) {
       Sequence random(seed, i);
-      const FacetSignature signature = random() & lattice.faces().back().corners;
+      // Where half of the corners are high, nearly all of a tile of five or more dimensions hangs together: in every
+      // other tile fewer of them are, or fewer are low, so that there are tiles with several components, too.
+      FacetSignature signature = random();
+      if (const std::uint64_t dice = random(); (dice & 1u) != 0) {
+        for (std::uint64_t times = dice >> 1 & 3u; times > 0; --times) signature &= random();
+        if ((dice & 8u) != 0) signature = ~signature;
+      }
+      signature &= lattice.faces().back().corners;
       for (std::size_t f = 0; f < lattice.faces().size(); ++f)
         worker.choices()[f] = lattice.faces()[f].dim < 2 ? Choice::separate : static_cast<Choice>(random() % 3);
       const Alternative alternative = (random() & 1u) != 0 ? Alternative::high : Alternative::low;

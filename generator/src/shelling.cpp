@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The search for a short order of tetrahedra that takes a ball apart.
 #include "shelling.hpp"
 
 #include <algorithm>

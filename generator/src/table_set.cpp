@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The order of things: contours, certificates, tables, regions.
 #include "tegl/gen/table_set.hpp"
 
 #include <bit>

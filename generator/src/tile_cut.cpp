@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the contour of one tile is cut by a hyperplane of time, for the pictures.
 #include "tile_cut.hpp"
 
 #include <fmt/format.h>

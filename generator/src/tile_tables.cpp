@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours into flat arrays: lists by signature or by class, with the group elements that carry these.
 #include "tegl/gen/tile_tables.hpp"
 
 #include <algorithm>

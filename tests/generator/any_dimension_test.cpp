@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <set>
 #include <tuple>
 
 #include "tegl/facets/certificate.hpp"
+#include "tegl/facets/tile_certifier.hpp"
 #include "tegl/gen/facets.hpp"
 
 namespace tegl::facets {
@@ -280,6 +282,122 @@ TEST(AnyDimension, AChordAcrossAFaceFails) {
     tile.facets[0].simplices.push_back(part);
   }
   EXPECT_EQ(certify(cube, tile), Fault::in_tile_boundary);
+}
+
+/// A builder that spoils what FacetBuilder builds.
+class SpoiltBuilder {
+ public:
+  using Spoil = std::function<void(TileFacets&, Signature, const Resolution&)>;
+  SpoiltBuilder(const FaceLattice& lattice, Spoil spoil) : builder_(lattice), spoil_(std::move(spoil)) {}
+
+  const TileFacets& operator()(Signature signature, const Resolution& resolution) {
+    tile_ = builder_.build(signature, resolution, Geometry::without);
+    spoil_(tile_, signature, resolution);
+    return tile_;
+  }
+
+ private:
+  FacetBuilder builder_;
+  Spoil spoil_;
+  TileFacets tile_;
+};
+
+Fault certified_with(const FaceLattice& lattice, const SpoiltBuilder::Spoil& spoil, Signature signature,
+                     const std::vector<Choice>& choices) {
+  SpoiltBuilder builder(lattice, spoil);
+  TileCertifier certifier(lattice,
+                          [&](Signature s, const Resolution& r) -> const TileFacets& { return builder(s, r); });
+  return certifier.certify(signature, {choices, Alternative::low});
+}
+
+TEST(TileCertifier, SeesWhatATileMakesOfItsFaces) {
+  const FaceLattice lattice = FaceLattice::cube(4);
+  const Signature two_corners = 0x8001;
+  const std::vector<Choice> none;
+  EXPECT_EQ(certified_with(
+                lattice, [](TileFacets&, Signature, const Resolution&) {}, two_corners, none),
+            Fault::none);
+  // Everything lost, in the faces as well: in itself consistent.
+  const auto lose = [](TileFacets& tile, Signature, const Resolution&) {
+    tile.facets.clear(), tile.sigma.clear(), tile.sigma_sign.clear();
+    for (Simplices& in_face : tile.in_face) in_face.clear();
+    for (std::vector<int>& signs : tile.in_face_sign) signs.clear();
+  };
+  EXPECT_EQ(certified_with(lattice, lose, two_corners, none), Fault::sigma);
+  // Everything inside out.
+  const auto turn = [](TileFacets& tile, Signature, const Resolution&) {
+    for (Facet& facet : tile.facets)
+      for (Simplex& s : facet.simplices) std::swap(s[0], s[1]);
+    for (int& sign : tile.sigma_sign) sign = -sign;
+    for (std::vector<int>& signs : tile.in_face_sign)
+      for (int& sign : signs) sign = -sign;
+  };
+  EXPECT_EQ(certified_with(lattice, turn, two_corners, none), Fault::sigma);
+  // Squares resolved the other way round by the tile: right in itself, but not what a neighbour builds.
+  FacetBuilder other(lattice);
+  const auto disagree = [&](TileFacets& tile, Signature signature, const Resolution&) {
+    tile = other.build(signature, {{}, Alternative::high}, Geometry::without);
+  };
+  std::vector<Choice> low(lattice.faces().size(), Choice::separate);
+  for (std::size_t f = 0; f < low.size(); ++f)
+    if (lattice.faces()[f].dim == 2) low[f] = Choice::low;
+  EXPECT_EQ(certified_with(lattice, disagree, 0x0006, low), Fault::sigma);
+  // And squares themselves: an edge whose ends differ has its point.
+  const FaceLattice square = FaceLattice::cube(2);
+  EXPECT_EQ(certified_with(square, lose, 6, none), Fault::sigma);
+  EXPECT_EQ(certified_with(square, turn, 6, none), Fault::sigma);
+}
+
+TEST(TileCertifier, PassesTilesThatNobodyPlannedFor) {
+  // The pyramid over a square, the prism over a triangle, and the prism over that.
+  const std::vector<Signature> pyramid = {0b01111, 0b10011, 0b11010, 0b11100, 0b10101};
+  const std::vector<Signature> prism = {0b000111, 0b111000, 0b011011, 0b110110, 0b101101};
+  std::vector<Signature> duoprism = {0b000000111111, 0b111111000000};
+  for (const Signature f : prism) duoprism.push_back(f | f << 6);
+  std::mt19937_64 random(11);
+  for (const FaceLattice& lattice : {FaceLattice(3, pyramid), FaceLattice(3, prism), FaceLattice(4, duoprism)}) {
+    TileCertifier certifier(lattice);
+    for (int i = 0; i < 200; ++i) {
+      const Signature s = random() & lattice.faces().back().corners;
+      const std::vector<Choice> choices = random_choices(lattice, random);
+      ASSERT_EQ(certifier.certify(s, {choices, Alternative::low}), Fault::none) << "signature " << s;
+    }
+  }
+}
+
+TEST(Complexes, SolidToriCollapseToACircleAndBallsDoNot) {
+  const FaceLattice tesseract = FaceLattice::cube(4);
+  int tori = 0, balls = 0;
+  for (const Signature s : {1910u, 6076u, 28662u, 1u, 6u})
+    for (Facet facet : build_facets(tesseract, s).facets) {
+      for (Simplex& simplex : facet.simplices) sort_vertices(simplex);
+      EXPECT_EQ(collapses_to_a_circle(facet.simplices), facet.boundary_euler == 0);
+      ++(facet.boundary_euler == 0 ? tori : balls);
+    }
+  EXPECT_GT(tori, 2);
+  EXPECT_GT(balls, 1);
+  Simplices circle, two;
+  const auto edge = [](VertexId a, VertexId b) {
+    Simplex s = kNoSimplex;
+    s[0] = a, s[1] = b;
+    return s;
+  };
+  circle = {edge(0, 1), edge(1, 2), edge(0, 2)};
+  two = circle;
+  for (const Simplex& s : circle) two.push_back(edge(static_cast<VertexId>(s[0] + 3), static_cast<VertexId>(s[1] + 3)));
+  EXPECT_TRUE(collapses_to_a_circle(circle));
+  EXPECT_FALSE(collapses_to_a_circle(two));
+  EXPECT_FALSE(collapses_to_a_circle({edge(0, 1), edge(1, 2)}));
+}
+
+TEST(AnyDimension, TilesThatAreNoneAreRefused) {
+  const FaceLattice cube = FaceLattice::cube(3);
+  TileFacets tile = build_facets(cube, 15);
+  tile.facets[0].simplices[0] = without(tile.facets[0].simplices[0], 0);
+  EXPECT_THROW(certify(cube, tile), std::invalid_argument);
+  tile = build_facets(cube, 15);
+  tile.facets[0].simplices[0][0] = 10000;
+  EXPECT_THROW(certify(cube, tile), std::invalid_argument);
 }
 
 TEST(AnyDimension, WrongArgumentsAreSaid) {

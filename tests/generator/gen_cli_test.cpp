@@ -437,6 +437,13 @@ TEST(GenCli, OutWritesTheSameBytesWhereverAndHoweverOften) {
   EXPECT_EQ(first, contents(folder.file("a/second")));
 }
 
+TEST(GenCli, SaysWhenItsOutputCannotBeWritten) {
+  for (const char* const arguments : {"--help", "--dim 4 --classes --json", "--dim 3 --count"}) {
+    const std::string command = std::string(TEGL_GEN_PROGRAM) + " " + arguments + " > /dev/full 2> /dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 5) << arguments;  // NOLINT: no shell text from outside
+  }
+}
+
 TEST(GenCli, OutSaysHowLargeEachFileIsAndHowLongItTook) {
   const Folder folder;
   const Outcome run = gen({"--dim", "2", "--out", folder.file("out")});

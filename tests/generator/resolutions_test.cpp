@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
+#include "parallel.hpp"
 #include "tegl/facets/facets.hpp"
 #include "tegl/gen/facets.hpp"
 #include "tegl/gen/resolutions.hpp"
@@ -86,6 +90,24 @@ TEST(Resolutions, ASampleDoesNotDependOnThreads) {
   EXPECT_EQ(one.simplices, three.simplices);
   EXPECT_EQ(one.euler, three.euler);
   EXPECT_NE(one.simplices, certify_sample(TileKind::cube, 4, 3000, 8, 2).simplices);
+}
+
+TEST(InParallel, TheFailureOfTheSmallestUnitIsTold) {
+  for (int round = 0; round < 50; ++round) {
+    std::atomic<int> done = 0;
+    const auto work = [&](int&, std::uint64_t unit) {
+      if (unit % 10 == 7) throw std::runtime_error(std::to_string(unit));
+      ++done;
+    };
+    try {
+      in_parallel(
+          1000, 4, 4, [] { return 0; }, work, [](int) {});
+      FAIL() << "nothing thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "7");
+      EXPECT_GE(done, 7);
+    }
+  }
 }
 
 /// Names for the vertices of a tile that do not depend on the numbering of corners, once a symmetry has renamed these.

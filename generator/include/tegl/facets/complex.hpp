@@ -62,6 +62,10 @@ enum class Shape { other, ball, sphere };
 /// `ball` and `sphere` are proved; a sphere of dimension 3 or more that resists some tries to collapse is `other`.
 Shape shape_of(const Simplices& simplices);
 
+/// Does the complex collapse to a circle, in one of some tries? An orientable 3-manifold that does is a solid torus:
+/// the regular neighbourhood of that circle.
+bool collapses_to_a_circle(const Simplices& simplices);
+
 /// Euler characteristic of the complex.
 int euler_characteristic(const Simplices& simplices);
 

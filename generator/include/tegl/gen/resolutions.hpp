@@ -4,6 +4,7 @@
 // sample.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -19,11 +20,12 @@ struct ResolutionFigures {
   std::uint64_t pairs = 0;           ///< (signature, resolution of its ambiguous polygons), signatures of all orbits
   std::uint64_t pairs_by_class = 0;  ///< the same for one signature of each class; for a sample its size
   std::uint64_t tiles = 0;           ///< built and certified
-  std::uint64_t non_spherical = 0;   ///< pairs with a component of Sigma that is no sphere
+  std::uint64_t non_spherical = 0;   ///< even n: pairs with a component of Sigma that is no sphere
   std::uint64_t classes_with_non_spherical = 0;
   std::uint64_t simplices = 0;  ///< in all certified tiles
   std::uint64_t max_simplices = 0;
-  std::map<int, std::uint64_t> euler{};  ///< Euler characteristic of a component of Sigma -> components
+  std::array<std::uint64_t, 3> by_filling{};  ///< facets of all certified tiles, by facets::Filling
+  std::map<int, std::uint64_t> euler{};       ///< Euler characteristic of a component of Sigma -> components
 };
 
 /// Called now and then, from any thread but never from two at a time, with how much is done: 0 to 1.
@@ -37,7 +39,8 @@ using Progress = std::function<void(double)>;
                                                         const Progress& progress = {});
 
 /// Tiles number 0 to `count` - 1 of those that `seed` gives: signature and choice of every face of dimension 2 or more,
-/// the tile's own among them, at random; number and seed alone decide. n = 2 to 6. Errors: as above.
+/// the tile's own among them, at random; half of the signatures uniformly, of the others some with fewer high or fewer
+/// low corners. Number and seed alone decide. n = 2 to 6. Errors: as above.
 [[nodiscard]] ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed,
                                                unsigned threads, const Progress& progress = {});
 
