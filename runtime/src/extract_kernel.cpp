@@ -43,7 +43,8 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
   constexpr double kShare = 0.057;      // of the image: the rest of a sixteenth is for what is not by slabs
   constexpr double kLittle = 1u << 17;  // bytes, however small the image
-  constexpr std::size_t kFew = 2;       // slabs that must fit in with their lists of tiles in 4D, or these are made twice
+  // Slabs that must fit in with their lists of tiles in 4D, or these are made twice.
+  const std::size_t few = threads > 1 ? 2 : 1;
   const std::size_t layer = shape.rows() * shape.size(0);
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
   const std::size_t wanted =
@@ -58,7 +59,7 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
     const double most = (std::max(kLittle, kShare * image) - fixed) / each;
     return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
   };
-  if (N == 4 && fit() < std::min(wanted, kFew)) counter.keep_tiles(false);
+  if (N == 4 && fit() < std::min(wanted, few)) counter.keep_tiles(false);
   return std::max<std::size_t>(1, fit());
 }
 
