@@ -24,7 +24,8 @@ constexpr const char* kStyle =
     "stroke-width:1.1;"
     "stroke-dasharray:4 "
     "4;stroke-linecap:butt}.high{fill:#1d1d1d;stroke:#fff}.low{fill:#fff;stroke:#555;stroke-width:1.3}"
-    ".side{fill-opacity:.93;stroke-width:.7}.rim{stroke:#3a3a3a;stroke-width:1.6}"
+    ".behind{opacity:.5;stroke-dasharray:2 "
+    "2}.side{fill-opacity:.93;stroke-width:.7}.rim{stroke:#3a3a3a;stroke-width:1.6}"
     ".mesh{stroke:#fff;stroke-opacity:.55;stroke-width:.8}.segment{stroke:#2f62a8;stroke-width:4}"
     ".towards{stroke:#f0a53c;stroke-width:4}.mark{stroke:#d4145a;stroke-width:5}"
     "text{font:13px sans-serif;fill:#555;text-anchor:middle}</style>\n";
@@ -205,10 +206,16 @@ void draw_edges(const PlacedTile& placed, const Visible& visible, bool hidden, C
     if (visible.edges[e] != hidden)
       canvas.line(placed.at + corner_place(tile, tile.edges[e][0]), placed.at + corner_place(tile, tile.edges[e][1]),
                   hidden ? "hidden" : "edge");
-  for (std::uint32_t v = 0; v < tile.corner_count(); ++v)
-    if (visible.corners[v] != hidden)
-      canvas.dot(placed.at + corner_place(tile, v), ((placed.signature >> v) & 1u) != 0 ? 6.0 : 4.0,
-                 ((placed.signature >> v) & 1u) != 0 ? "high" : "low");
+}
+
+/// Hidden corners are drawn over the facets as well, paler: which ones are high is what the picture is about.
+void draw_corners(const PlacedTile& placed, const Visible& visible, bool hidden, Canvas& canvas) {
+  for (std::uint32_t v = 0; v < placed.tile->corner_count(); ++v) {
+    if (visible.corners[v] == hidden) continue;
+    const bool high = ((placed.signature >> v) & 1u) != 0;
+    canvas.dot(placed.at + corner_place(*placed.tile, v), high ? 6.0 : 4.0,
+               high ? (hidden ? "high behind" : "high") : (hidden ? "low behind" : "low"));
+  }
 }
 
 }  // namespace
@@ -243,7 +250,9 @@ std::string drawn(const Picture& picture, bool alone, double x, double& width, d
       draw_facets(placed, view, canvas);
     else
       draw_segments(placed, canvas);
+    draw_corners(placed, visible, true, canvas);
     draw_edges(placed, visible, false, canvas);
+    draw_corners(placed, visible, false, canvas);
   }
   for (const auto& [a, b] : picture.marks) canvas.line(a, b, "mark");
   return canvas.svg(picture, alone, x, width, height);
