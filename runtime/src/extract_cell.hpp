@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include "corners.hpp"
 #include "extract_layers.hpp"
@@ -132,9 +133,13 @@ class CellEdges {
     constexpr auto kStreams = streams();
     constexpr auto kPlaces = places();
     std::array<Index, kStreamCount> first;
-    for (unsigned s = 0; s < kStreamCount; ++s)
-      first[s] = view.edges(kStreams[s].axis, kStreams[s].mask >> (N - 1) & 1u)
-                     .first(view.shape->shifted(row, kStreams[s].mask));
+    // Unrolled by force: then where the streams' rows are takes an addition or two each.
+    [&]<std::size_t... S>(std::index_sequence<S...>) {
+      ((first[S] = view.edges(kStreams[S].axis, kStreams[S].mask >> (N - 1) & 1u)
+                       .first(view.shape->shifted(row, kStreams[S].mask))),
+       ...);
+    }
+    (std::make_index_sequence<kStreamCount>{});
     for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = first[kPlaces[e].stream];
   }
   /// Numbers of all edges of cell `bit`, of ascending ones; those of edges that are not critical mean nothing.
