@@ -4,6 +4,7 @@
 #include "extract_source.hpp"
 
 #include <bit>
+#include <utility>
 
 #include "corners.hpp"
 #include "tegl/image.hpp"
@@ -104,7 +105,9 @@ std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const E
     to[kEdgesAtOnce] = value(first, kAlongRow ? along : ahead);
     to[2 * kEdgesAtOnce] = kAlongRow ? value(first, 0) : value(second, back);
     to[3 * kEdgesAtOnce] = value(second, ahead);
-    for (unsigned j = 4; j < kEdgeValues<N>; ++j) to[j * kEdgesAtOnce] = value(from[j], 0);
+    // Without a loop, which not every optimisation takes apart.
+    [&]<std::size_t... J>(std::index_sequence<J...>) { ((to[(J + 4) * kEdgesAtOnce] = value(from[J + 4], 0)), ...); }
+    (std::make_index_sequence<kEdgeValues<N> - 4>());
   }
   return at_ends;
 }
