@@ -38,6 +38,13 @@ void require_written(const H5WriteStatus& status, const fs::path& path) {
   if (status.error != 0) fail(ErrorCode::WriteFailed, path, "cannot be written ({})", std::strerror(status.error));
 }
 
+/// Properties of something to be created. Without the time of its creation: equal contents make equal files.
+H5Handle timeless(hid_t kind) {
+  H5Handle properties(H5Pcreate(kind), H5Pclose);
+  H5Pset_obj_track_times(properties.id(), false);
+  return properties;
+}
+
 }  // namespace
 
 bool H5Handle::close() noexcept {
@@ -61,7 +68,8 @@ H5File H5File::create(const fs::path& where, const fs::path& path) {
   auto status = std::make_shared<H5WriteStatus>();
   if (!use_pending_file_driver(access.id(), *status))
     fail(ErrorCode::WriteFailed, path, "cannot be created ({})", innermost_reason());
-  H5Handle handle(H5Fcreate(where.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+  const H5Handle root = timeless(H5P_FILE_CREATE);
+  H5Handle handle(H5Fcreate(where.c_str(), H5F_ACC_TRUNC, root.id(), access.id()), H5Fclose);
   if (handle.id() < 0)
     fail(ErrorCode::WriteFailed, path, "cannot be created ({})",
          status->error != 0 ? std::strerror(status->error) : innermost_reason());
@@ -92,7 +100,8 @@ void H5File::close() {
 }
 
 H5Handle H5File::create_group(const char* name) const {
-  return checked(H5Gcreate2(file_.id(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "creating a group");
+  const H5Handle options = timeless(H5P_GROUP_CREATE);
+  return checked(H5Gcreate2(file_.id(), name, H5P_DEFAULT, options.id(), H5P_DEFAULT), H5Gclose, "creating a group");
 }
 
 H5Handle H5File::open_group(const char* name) const {
@@ -168,7 +177,7 @@ H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std
   const hsize_t most_rows = kChunkBytes / (H5Tget_size(file_type) * std::max<hsize_t>(1, columns));
   const std::array<hsize_t, 2> chunk = {std::clamp<hsize_t>(expected, 1, most_rows), columns};  // stored whole
   const H5Handle space = checked(H5Screate_simple(rank, size.data(), most.data()), H5Sclose, "creating a dataset");
-  const H5Handle options = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "creating a dataset");
+  const H5Handle options = timeless(H5P_DATASET_CREATE);
   checked(H5Pset_chunk(options.id(), rank, chunk.data()), "creating a dataset");
   return {path_, status_,
           checked(H5Dcreate2(group, name, file_type, space.id(), H5P_DEFAULT, options.id(), H5P_DEFAULT), H5Dclose,

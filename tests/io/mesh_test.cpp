@@ -8,9 +8,11 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "io_support.hpp"
 
@@ -55,6 +57,15 @@ TEST(Mesh, GltfKeepsFloatsAndOrder) {
         const Mesh mesh = random_mesh(dim, space_dim, 500, simplices, simplices);
         expect_same(written_and_read(mesh, name), as_floats(mesh));
       }
+}
+
+TEST(Mesh, EqualMeshesMakeEqualFilesWheneverTheyAreWritten) {
+  TempDir dir;
+  const Mesh mesh = random_mesh(3, 4, 100, 200, 5, true);
+  write_mesh(mesh, dir / "first.vtkhdf");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts times in seconds
+  write_mesh(mesh, dir / "second.vtkhdf");
+  EXPECT_EQ(read_file(dir / "first.vtkhdf"), read_file(dir / "second.vtkhdf"));
 }
 
 TEST(Mesh, NormalsGoIntoEveryFormat) {
