@@ -25,7 +25,8 @@ int choice_bits(int dim) { return dim < 2 ? 0 : dim == 2 ? 1 : 2; }
 /// Faces that an order-preserving renumbering of corners turns into each other share a cache.
 class FacetBuilder::Impl {
  public:
-  explicit Impl(FaceLattice lattice) : lattice_(std::move(lattice)) {
+  Impl(FaceLattice lattice, std::size_t max_kept_bytes)
+      : lattice_(std::move(lattice)), max_large_bytes_(max_kept_bytes) {
     const std::size_t count = lattice_.faces().size();
     pieces_.resize(count), transient_.resize(count), codes_.resize(count);
     std::vector<std::vector<Signature>> shapes;
@@ -50,22 +51,22 @@ class FacetBuilder::Impl {
   }
 
   [[nodiscard]] const FaceLattice& lattice() const { return lattice_; }
+  [[nodiscard]] std::size_t kept_bytes() const { return large_bytes_; }
 
   const TileFacets& build(Signature signature, const Resolution& resolution, Geometry geometry) {
-    if (large_bytes_ > kMaxLargeBytes) forget_large();
     for (std::uint32_t f = 0; f < lattice_.tile(); ++f) pieces_[f] = piece_of(f, signature, resolution);
     const std::uint32_t tile = lattice_.tile();
     Piece& piece = transient_[tile];
     builder_->build(tile, pieces_, choice_of(tile, resolution), resolution.alternative, false, piece);
     pieces_[tile] = &piece;
     write(piece, geometry);
+    if (large_bytes_ > max_large_bytes_) forget_large();
     return result_;
   }
 
  private:
   static constexpr int kDirectBits = 16;
   static constexpr int kSmallDim = 3;  ///< there are few resolutions of faces up to this dimension
-  static constexpr std::size_t kMaxLargeBytes = std::size_t{1} << 28;
 
   struct Cache {
     int bits = 0;
@@ -205,6 +206,7 @@ class FacetBuilder::Impl {
   std::vector<std::vector<int>> corners_;  ///< by face
   std::vector<std::uint32_t> shape_;       ///< by face: index into caches_
   std::vector<Cache> caches_;
+  std::size_t max_large_bytes_;
   std::size_t large_bytes_ = 0;
   std::unique_ptr<PieceBuilder> builder_;
   // Of the tile at hand.
@@ -215,10 +217,10 @@ class FacetBuilder::Impl {
   TileFacets result_;
 };
 
-FacetBuilder::FacetBuilder(FaceLattice lattice) {
+FacetBuilder::FacetBuilder(FaceLattice lattice, std::size_t max_kept_bytes) {
   if (lattice.dim() < 2)
     throw std::invalid_argument("tile of dimension " + std::to_string(lattice.dim()) + ", expected 2 or more");
-  impl_ = std::make_unique<Impl>(std::move(lattice));
+  impl_ = std::make_unique<Impl>(std::move(lattice), max_kept_bytes);
 }
 
 FacetBuilder::~FacetBuilder() = default;
@@ -226,6 +228,7 @@ FacetBuilder::FacetBuilder(FacetBuilder&&) noexcept = default;
 FacetBuilder& FacetBuilder::operator=(FacetBuilder&&) noexcept = default;
 
 const FaceLattice& FacetBuilder::lattice() const { return impl_->lattice(); }
+std::size_t FacetBuilder::kept_bytes() const { return impl_->kept_bytes(); }
 
 const TileFacets& FacetBuilder::build(Signature signature, const Resolution& resolution, Geometry geometry) {
   const FaceLattice& lattice = impl_->lattice();

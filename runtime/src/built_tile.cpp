@@ -9,8 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "tegl/error.hpp"
-
 namespace tegl::detail {
 
 using facets::VertexId;
@@ -141,7 +139,7 @@ BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
   const std::lock_guard lock(from_.mutex_);
   if (from_.builders_.empty()) {
     from_.builders_.reserve(from_.made_ + 1);  // so that none is lost when it comes back
-    builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice());
+    builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice(), from_.max_builder_bytes_);
     ++from_.made_;
   } else {
     builder_ = std::move(from_.builders_.back());
@@ -155,16 +153,27 @@ BuiltTiles::BuilderLoan::~BuilderLoan() {
 }
 
 BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(std::uint64_t signature) const {
-  return std::make_shared<const BuiltTile>(
-      from_.cube_, builder_->build(signature, {.choices = {}, .alternative = from_.alternative_}));
+  return too_large_as_error([&] {
+    return std::make_shared<const BuiltTile>(
+        from_.cube_, builder_->build(signature, {.choices = {}, .alternative = from_.alternative_}));
+  });
+}
+
+std::size_t BuiltTiles::kept_bytes() {
+  const std::lock_guard lock(mutex_);
+  std::size_t bytes = bytes_;
+  for (const auto& builder : builders_) bytes += builder->kept_bytes();
+  return bytes;
 }
 
 void BuiltTiles::keep(std::uint64_t signature, const Pointer& tile) {
-  if (bytes_ + tile->bytes() > max_bytes_) {
+  const std::size_t bytes = tile->bytes();
+  if (bytes_ + bytes > max_bytes_) {
     known_.clear();  // the most frequent ones are soon back
     bytes_ = 0;
   }
-  bytes_ += tile->bytes();
+  if (bytes > max_bytes_) return;
+  bytes_ += bytes;
   known_.emplace(signature, tile);
 }
 

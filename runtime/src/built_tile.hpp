@@ -10,10 +10,12 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <stdexcept>
 #include <unordered_map>
 #include <vector>
 
 #include "cube_symmetries.hpp"
+#include "tegl/error.hpp"
 #include "tegl/facets/facets.hpp"
 
 namespace tegl::detail {
@@ -43,6 +45,17 @@ class CubeFaces {
   std::vector<Cell> cells_;
   std::vector<std::uint16_t> numbers_;
 };
+
+/// What `build` returns; where it throws std::length_error, as builders do for tiles of too many vertices, throws
+/// Error{TooLarge}.
+template <class Build>
+decltype(auto) too_large_as_error(const Build& build) {
+  try {
+    return build();
+  } catch (const std::length_error& error) {
+    throw Error(ErrorCode::TooLarge, error.what());
+  }
+}
 
 /// The contour of a tile, every vertex by its number in here. The contour's own vertices come first, face by face and
 /// within a face by the number that all tiles around it know; then those that places depend on.
@@ -86,17 +99,25 @@ struct SeenTile {
 
 /// Built tiles by signature, up to symmetry where symmetries leave a tile's contour as it is: where all of it is coned
 /// (side fillings depend on the order of the axes). What is asked for stays alive as long as someone holds it; beside
-/// that, at most `max_bytes` are kept.
+/// that, at most `max_bytes` are kept: half of it for tiles, the other half, in equal shares, for what each of
+/// `builders` builders keeps of tiles' faces.
 class BuiltTiles {
  public:
   using Pointer = std::shared_ptr<const BuiltTile>;
-  BuiltTiles(const CubeFaces& cube, facets::Alternative alternative, std::size_t max_bytes)
-      : cube_(cube), symmetries_(cube.dim()), alternative_(alternative), max_bytes_(max_bytes) {}
+  BuiltTiles(const CubeFaces& cube, facets::Alternative alternative, std::size_t max_bytes, std::size_t builders)
+      : cube_(cube),
+        symmetries_(cube.dim()),
+        alternative_(alternative),
+        max_bytes_(max_bytes / 2),
+        max_builder_bytes_(max_bytes / 2 / builders) {}
 
   [[nodiscard]] const CubeSymmetries& symmetries() const noexcept { return symmetries_; }
+  /// What is kept at the moment, in tiles and by builders that are not at work.
+  [[nodiscard]] std::size_t kept_bytes();
 
-  /// The tiles of these signatures. `for_range(count, work)` calls work(from, to) for parts of 0 ... count - 1, maybe
-  /// side by side; if it leaves any out, it throws.
+  /// The tiles of these signatures. `for_range(count, work)` calls work(from, to) for parts of 0 ... count - 1, up to
+  /// `builders` of them side by side; if it leaves any out, it throws. Throws Error{TooLarge} for a tile of too many
+  /// vertices.
   template <class ForRange>
   std::vector<SeenTile> get(std::span<const std::uint64_t> signatures, const ForRange& for_range) {
     std::vector<SeenTile> result(signatures.size());
@@ -168,7 +189,8 @@ class BuiltTiles {
   const CubeFaces& cube_;
   CubeSymmetries symmetries_;
   facets::Alternative alternative_;
-  std::size_t max_bytes_;
+  std::size_t max_bytes_;          ///< of tiles
+  std::size_t max_builder_bytes_;  ///< of each builder
   std::size_t bytes_ = 0;
   std::unordered_map<std::uint64_t, Pointer> known_;
   std::mutex mutex_;      ///< of what follows

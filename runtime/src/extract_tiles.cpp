@@ -132,9 +132,9 @@ class TileExtraction {
         cube_(N),
         grid_cells_(cube_, options.close),
         finder_(shape_, options.close),
+        workers_(options.threads, [] { return Nothing{}; }),
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
-               tile_bytes),
-        workers_(options.threads, [] { return Nothing{}; }) {
+               tile_bytes, workers_.count()) {
     if (options.normals) placement_.want_normals(source, grid, options.direction);
   }
 
@@ -422,8 +422,8 @@ class TileExtraction {
   CubeFaces cube_;
   GridCells<N> grid_cells_;
   CellFinder<N> finder_;
-  BuiltTiles built_;
   Workers<Nothing> workers_;
+  BuiltTiles built_;
   std::array<TileLayer, 3> layers_;  ///< by k modulo their number
   std::array<TileSlab, 2> slabs_;
   std::vector<std::vector<Cell>> by_row_;

@@ -3,8 +3,6 @@
 // Single tiles of any dimension: arguments, and the hand-over to the builder.
 #include "tegl/tile_facets.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "built_tile.hpp"
@@ -26,9 +24,7 @@ std::size_t face_number(unsigned base, unsigned axes) {
   if ((base & axes) != 0 || (base | axes) >> N != 0)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("face with base {:#b} and axes {:#b}; expected disjoint sets of {} bits", base, axes, N));
-  const auto& cells = cube_faces<N>().cells();
-  const auto is_it = [&](const auto& cell) { return cell.base == base && cell.axes == axes; };
-  return static_cast<std::size_t>(std::find_if(cells.begin(), cells.end(), is_it) - cells.begin());
+  return cube_faces<N>().number(base, axes);
 }
 
 template <int N>
@@ -39,9 +35,11 @@ facets::TileFacets tile_facets(std::uint64_t signature, std::span<const facets::
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("signature {:#x} of a {}D tile; expected at most {:#x}", signature, N, kCorners));
   if (!signs.empty() && signs.size() != kFaceCount<N>)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("{} signs for the faces of a {}D tile; expected 0 or {}",
-                                                        signs.size(), N, kFaceCount<N>));
-  return facets::build_facets(cube_faces<N>().lattice(), signature, {.choices = signs, .alternative = otherwise});
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} signs for the faces of a {}D tile; expected 0 or {}", signs.size(), N, kFaceCount<N>));
+  return detail::too_large_as_error([&] {
+    return facets::build_facets(cube_faces<N>().lattice(), signature, {.choices = signs, .alternative = otherwise});
+  });
 }
 
 #define TEGL_INSTANTIATE(N)                                          \

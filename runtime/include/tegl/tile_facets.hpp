@@ -32,11 +32,10 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// - separate: what can be cut off is: every part of the contour's boundary that is a sphere gets its own cone. What
 ///   can not be (in a square with two high corners across, where there is no centre to decide; in 4D and more, a part
 ///   that is no sphere) is filled as `otherwise` says;
-/// - low, high: the sign of the face's centre. The contour is a copy of the other sign's regions of the face's
-/// boundary,
-///   moved inwards, so that all of the centre's sign hangs together in the face: in a square with two high corners
-///   across, `low` cuts them off and `high` joins them; in a cube with two high corners across and a high centre, a
-///   tunnel joins these.
+/// - low, high: the sign of the face's centre. The contour is a copy of the other sign's regions of the boundary of
+///   the face, moved inwards, so that all of the centre's sign hangs together in the face: in a square with two high
+///   corners across, `low` cuts them off and `high` joins them; in a cube with two high corners across and a high
+///   centre, a tunnel joins these.
 /// Signs of corners, of edges, and of faces that the contour does not pass mean nothing. Tiles that share a face agree
 /// in it, corner by corner and simplex by simplex, if they have the same signs for it and for its own faces.
 ///

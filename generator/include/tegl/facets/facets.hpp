@@ -12,6 +12,7 @@
 // and the recognition of spheres go beyond it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -115,20 +116,23 @@ enum class Geometry : std::uint8_t {
   without,  ///< vertices lack `copied` and `of`: enough for topology, and faster
 };
 
-/// Builds tiles of one lattice, one after the other. What it has built in faces of dimension up to 3 it keeps, and in
-/// those of dimension 4 up to 256 MiB of it as long as no choices are given. One thread at a time.
+/// Builds tiles of one lattice, one after the other. What it has built in faces of dimension up to 3 it keeps, and
+/// up to a limit what it has built in those of dimension 4 and more without choices. One thread at a time.
 class FacetBuilder {
  public:
-  /// Throws std::invalid_argument for a lattice of dimension less than 2.
-  explicit FacetBuilder(FaceLattice lattice);
+  /// `max_kept_bytes`: the limit. Throws std::invalid_argument for a lattice of dimension less than 2.
+  explicit FacetBuilder(FaceLattice lattice, std::size_t max_kept_bytes = std::size_t{1} << 28);
   ~FacetBuilder();
   FacetBuilder(FacetBuilder&&) noexcept;
   FacetBuilder& operator=(FacetBuilder&&) noexcept;
 
   [[nodiscard]] const FaceLattice& lattice() const;
+  /// What is kept of faces of dimension 4 and more.
+  [[nodiscard]] std::size_t kept_bytes() const;
 
   /// The contour of a tile, valid until the next call. Time: about linear in the simplices of all faces.
-  /// Throws std::invalid_argument for a signature with bits beyond the corners or a wrong number of choices.
+  /// Throws std::invalid_argument for a signature with bits beyond the corners or a wrong number of choices,
+  /// std::length_error for a tile of more than 65 535 vertices (none is known).
   const TileFacets& build(Signature signature, const Resolution& resolution = {}, Geometry geometry = Geometry::with);
 
  private:
@@ -136,7 +140,7 @@ class FacetBuilder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The same for a single tile.
+/// The same for a single tile, with a builder of its own: of many tiles, most of the time would go to making builders.
 TileFacets build_facets(const FaceLattice& lattice, Signature signature, const Resolution& resolution = {});
 
 }  // namespace tegl::facets
