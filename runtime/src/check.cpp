@@ -18,8 +18,8 @@
 
 #include <fmt/format.h>
 
-#include "link_of_tetrahedra.hpp"
 #include "tegl/error.hpp"
+#include "tegl/facets/complex.hpp"
 
 namespace tegl {
 namespace {
@@ -96,16 +96,15 @@ Stars make_stars(const Complex<D>& complex) {
 template <int D>
 class LinkChecker {
  public:
-  explicit LinkChecker(const Complex<D>& complex) : complex_(complex), seen_(complex.vertex_count, kNever) {}
+  explicit LinkChecker(const Complex<D>& complex) : complex_(complex), seen_(complex.vertex_count, kNever) {
+    if constexpr (D == 4) number_.resize(complex.vertex_count);
+  }
 
   /// Adds what the star of `v` says to the report.
   void visit(Index v, std::span<const Index> star, MeshReport& report) {
     load(v, star);
     const std::uint64_t link_vertices = count_link_vertices(v);
-    if constexpr (D == 4) {
-      whole_link_.load(pieces_);
-      triangles_ += whole_link_.edges_above(v);
-    }
+    if constexpr (D == 4) count_link_edges(v);
     sets_.reset(pieces_.size() * D);  // a set per corner of a piece; joined round the vertex of the link
     scan_ridges(v, report);
     if (!is_sphere_or_ball(link_vertices)) ++report.bad_links;
@@ -182,10 +181,23 @@ class LinkChecker {
       for (const Index a : piece) {
         if (seen_[a] == v) continue;
         seen_[a] = v;
+        if constexpr (D == 4) number_[a] = static_cast<Index>(count);
         ++count;
         if (a > v) ++edges_above_;
       }
     return count;
+  }
+
+  void count_link_edges(Index v) {
+    link_edges_.clear();
+    for (const Piece& piece : pieces_)
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < i; ++j)
+          link_edges_.push_back(std::uint64_t{std::min(piece[i], piece[j])} << 32 | std::max(piece[i], piece[j]));
+    std::sort(link_edges_.begin(), link_edges_.end());
+    link_edges_.erase(std::unique(link_edges_.begin(), link_edges_.end()), link_edges_.end());
+    const auto above = std::upper_bound(link_edges_.begin(), link_edges_.end(), std::uint64_t{v} << 32 | kNever);
+    triangles_ += static_cast<std::uint64_t>(link_edges_.end() - above);
   }
 
   /// Whether v is the smallest vertex of the face "v and this ridge", which is then counted here.
@@ -235,15 +247,28 @@ class LinkChecker {
   }
 
   [[nodiscard]] bool is_sphere_or_ball(std::uint64_t link_vertices) {
-    if constexpr (D == 4) return whole_link_.is_sphere_or_ball();
     if (branching_) return false;                            // a ridge in three pieces
     if (connections_ + 1 != pieces_.size()) return false;    // several parts
     if (D >= 2 && fans_ != link_vertices) return false;      // a vertex of the link with several fans: pinched
     auto euler = static_cast<std::int64_t>(pieces_.size());  // of the link
     if constexpr (D == 2) euler = static_cast<std::int64_t>(link_vertices) - euler;
     if constexpr (D == 3) euler += static_cast<std::int64_t>(link_vertices) - static_cast<std::int64_t>(ridge_count_);
-    constexpr std::int64_t kSphere = D % 2 == 1 ? 2 : 0;  // S^0, S^1, S^2: 2, 0, 2
-    return euler == (closed_ ? kSphere : 1);
+    if constexpr (D == 4)
+      euler = static_cast<std::int64_t>(link_vertices + ridge_count_) -
+              static_cast<std::int64_t>(link_edges_.size() + pieces_.size());
+    constexpr std::int64_t kSphere = D % 2 == 1 ? 2 : 0;  // S^0, S^1, S^2, S^3: 2, 0, 2, 0
+    if (euler != (closed_ ? kSphere : 1)) return false;
+    if constexpr (D == 4) return link_vertices < facets::kNoVertex && link_shape() != facets::Shape::other;
+    return true;
+  }
+
+  [[nodiscard]] facets::Shape link_shape() {
+    link_.assign(pieces_.size(), facets::kNoSimplex);
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      for (int i = 0; i < D; ++i) link_[p][i] = static_cast<facets::VertexId>(number_[pieces_[p][i]]);
+      facets::sort_vertices(link_[p]);
+    }
+    return facets::shape_of(link_);
   }
 
   const Complex<D>& complex_;
@@ -259,7 +284,10 @@ class LinkChecker {
   std::uint64_t edges_ = 0;
   std::uint64_t triangles_ = 0;
   std::uint64_t tetrahedra_ = 0;
-  detail::LinkOfTetrahedra whole_link_;  // D = 4
+  // D = 4
+  std::vector<Index> number_;              // in the link at hand
+  std::vector<std::uint64_t> link_edges_;  // the smaller end above, ascending
+  facets::Simplices link_;
   bool closed_ = true;
   bool branching_ = false;
 };

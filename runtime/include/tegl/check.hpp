@@ -32,11 +32,11 @@ struct MeshReport {
 ///
 /// A link is tested whole: no face of it in more than two of its simplices, no pinched vertex, connected, and the Euler
 /// characteristic of a sphere (closed) or a ball. For d = 3 that decides sphere and disc by the classification of
-/// surfaces. For d = 4 the links' own links are tested so, and the link is shown to be a sphere or ball by collapsing
-/// it; one that cannot be shown to be either counts as bad. A simplex has measure zero when one of its heights is at
-/// most 1e-14 of its longest edge: differences of coordinates and the orthogonalisation carry a rounding error of a few
-/// 1e-16 of that edge, while simplices that are merely thin are, for coordinates of float precision, orders of
-/// magnitude thicker.
+/// surfaces. For d = 4 the link is shown to be a sphere or ball by a shelling or else by collapsing it
+/// (facets::shape_of); one that cannot be shown to be either counts as bad, and so does one of 65 535 vertices or more.
+/// A simplex has measure zero when one of its heights is at most 1e-14 of its longest edge: differences of coordinates
+/// and the orthogonalisation carry a rounding error of a few 1e-16 of that edge, while simplices that are merely thin
+/// are, for coordinates of float precision, orders of magnitude thicker.
 ///
 /// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit).
 /// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input; no state, so thread-safe.
