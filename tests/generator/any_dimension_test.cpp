@@ -400,6 +400,24 @@ TEST(AnyDimension, TilesThatAreNoneAreRefused) {
   EXPECT_THROW(certify(cube, tile), std::invalid_argument);
 }
 
+TEST(AnyDimension, ABuilderKeepsNoMoreOfLargeFacesThanItMay) {
+  const FaceLattice lattice = FaceLattice::cube(5);
+  constexpr std::size_t kLimit = 200000;
+  FacetBuilder limited(lattice, kLimit), forgetful(lattice, 0), roomy(lattice);
+  std::mt19937_64 random(12);
+  for (int i = 0; i < 20; ++i) {
+    const Signature s = random() & lattice.faces().back().corners;
+    const TileFacets& tile = limited.build(s);
+    const TileFacets& same = forgetful.build(s);
+    EXPECT_LE(limited.kept_bytes(), kLimit);
+    EXPECT_EQ(forgetful.kept_bytes(), 0u);
+    roomy.build(s);
+    ASSERT_EQ(tile.facets.size(), same.facets.size());
+    for (std::size_t f = 0; f < tile.facets.size(); ++f) EXPECT_EQ(tile.facets[f].simplices, same.facets[f].simplices);
+  }
+  EXPECT_GT(roomy.kept_bytes(), kLimit);
+}
+
 TEST(AnyDimension, WrongArgumentsAreSaid) {
   EXPECT_THROW(FaceLattice::cube(7), std::invalid_argument);
   EXPECT_THROW(build_facets(FaceLattice::cube(2), 16), std::invalid_argument);

@@ -116,6 +116,19 @@ TEST(Check4d, ATurnedSimplexIsInConflictWithAllItsNeighbours) {
   EXPECT_EQ(report_of(simplices).orientation_conflicts, 5u);
 }
 
+/// Simplices around vertex 0, each sharing a tetrahedron with the next: a ball, and so is the link of vertex 0.
+Simplices fan(Index count) {
+  Simplices result;
+  for (Index i = 1; i <= count; ++i) result.push_back({0, i, i + 1, i + 2, i + 3});
+  return result;
+}
+
+TEST(Check4d, LinksOfMoreVerticesThanCanBeShownCountAsBad) {
+  EXPECT_EQ(report_of(fan(1000)).bad_links, 0u);
+  EXPECT_EQ(report_of(fan(65534 - 3)).bad_links, 0u);
+  EXPECT_EQ(report_of(fan(65535 - 3)).bad_links, 1u);
+}
+
 TEST(Check4d, FlatSimplicesAreCounted) {
   const std::vector<double> coordinates = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 0};
   const std::array<Index, 5> simplex = {0, 1, 2, 3, 4};

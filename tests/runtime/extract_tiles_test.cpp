@@ -8,9 +8,13 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "built_tile.hpp"
 #include "compare.hpp"
 #include "cube_symmetries.hpp"
 #include "fields.hpp"
@@ -106,6 +110,39 @@ TEST(CubeSymmetries, TakeFacesWhereTheyTakeTheirCorners) {
         const unsigned corners = symmetries.base(symmetry, base, 0) | symmetries.base(symmetry, base | axes, 0);
         EXPECT_EQ(symmetries.base(symmetry, base, there) | there, corners);
       }
+  }
+}
+
+TEST(BuiltTiles, KeepNoMoreThanTheyMayWhateverTheNumberOfBuilders) {
+  constexpr std::size_t kLimit = std::size_t{1} << 20;
+  const detail::CubeFaces cube(5);
+  std::mt19937_64 bits(4);
+  std::vector<std::uint64_t> signatures(60);
+  for (std::uint64_t& s : signatures) s = bits() & 0xffffffff;
+  for (const std::size_t builders : {1, 4}) {
+    detail::BuiltTiles limited(cube, facets::Alternative::low, kLimit, builders);
+    detail::BuiltTiles roomy(cube, facets::Alternative::low, std::size_t{1} << 28, builders);
+    const auto side_by_side = [&](std::size_t count, const auto& work) {
+      std::vector<std::thread> threads;
+      for (std::size_t i = 0; i < builders; ++i)
+        threads.emplace_back([&, i] { work(i * count / builders, (i + 1) * count / builders); });
+      for (std::thread& thread : threads) thread.join();
+    };
+    const auto tiles = limited.get(signatures, side_by_side), same = roomy.get(signatures, side_by_side);
+    EXPECT_LE(limited.kept_bytes(), kLimit);
+    EXPECT_GT(roomy.kept_bytes(), kLimit);
+    for (std::size_t i = 0; i < signatures.size(); ++i)
+      EXPECT_EQ(tiles[i].tile->simplices, same[i].tile->simplices) << signatures[i];
+  }
+}
+
+TEST(BuiltTiles, WhatIsTooLargeForABuilderIsAnErrorOfTegl) {
+  try {
+    detail::too_large_as_error([]() -> int { throw std::length_error("more than 65535 vertices in a tile"); });
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::TooLarge);
+    EXPECT_NE(std::string(error.what()).find("65535 vertices"), std::string::npos) << error.what();
   }
 }
 

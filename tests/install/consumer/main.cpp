@@ -1,13 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Uses the core from outside: the contour of a ball in 4D, its cut at a time between two steps, and their
-// invariants. Returns 0 only if these are as they must be.
+// invariants; single tiles, their certificate and the recognition of spheres. Returns 0 only if these are as they must
+// be.
 #include <cstdio>
 #include <vector>
 
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/facets/certificate.hpp"
+#include "tegl/facets/complex.hpp"
+#include "tegl/facets/facets.hpp"
+#include "tegl/facets/tile_certifier.hpp"
 #include "tegl/slice.hpp"
+#include "tegl/tile_facets.hpp"
+
+/// A cube with two high corners across and a high centre: a tunnel, of the shape of a cylinder.
+bool tunnel_is_sound() {
+  using namespace tegl::facets;
+  std::vector<Choice> signs(tegl::kFaceCount<3>);
+  signs[tegl::face_number<3>(0, 7)] = Choice::high;
+  const TileFacets tile = tegl::tile_facets<3>(0b10000001, signs);
+  Simplices tunnel = tile.facets.at(0).simplices;
+  for (Simplex& s : tunnel) sort_vertices(s);
+  const FaceLattice cube = FaceLattice::cube(3);
+  TileCertifier certifier(cube);
+  std::printf("3D tile: %zu facet of %zu triangles\n", tile.facets.size(), tunnel.size());
+  return tile.facets.size() == 1 && euler_characteristic(tunnel) == 0 && shape_of(tunnel) == Shape::other &&
+         certify(cube, tile) == Fault::none &&
+         certifier.certify(0b10000001, {.choices = signs, .alternative = Alternative::low}) == Fault::none &&
+         FacetBuilder(cube).build(0b10000001).facets.size() == 2;
+}
 
 int main() {
   constexpr std::size_t kSize = 12;
@@ -30,5 +53,5 @@ int main() {
               static_cast<std::size_t>(cut.simplices), static_cast<long long>(cut.euler));
   const bool sound = whole.components == 1 && whole.boundary_simplices == 0 && whole.euler == 0 &&
                      cut.components == 1 && cut.boundary_simplices == 0 && cut.euler == 2;
-  return sound ? 0 : 1;
+  return sound && tunnel_is_sound() ? 0 : 1;
 }
