@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How fast contours are made, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
-// closed or not, by number of threads, and by size (scaling/...: what bench/scaling plots).
+// closed or not, by number of threads, and by size (scaling/...: what bench/scaling plots); in 5D a smooth field and
+// noise.
 // stages.hpp says what is reported.
 #include <benchmark/benchmark.h>
 
@@ -120,10 +121,20 @@ void add_scaling(const std::string& field, std::initializer_list<std::size_t> si
       add<float, N>("scaling", {field, samples, {}, threads});
 }
 
+/// A smooth field, whose time goes to writing, and noise, whose time goes to building tiles.
+void add_5d() {
+  for (const int threads : {1, 4}) {
+    if (threads > 1 && !kHasThreads) continue;
+    add<float, 5>("extract", {"sphere", 16, {}, threads});
+    add<float, 5>("extract", {"noise", 4, {}, threads});
+  }
+}
+
 void add_all() {
   for (const auto& field : field_names(2)) add_field<2>(field, 4096);
   for (const auto& field : field_names(3)) add_field<3>(field, field == "noise" ? 128 : 256);
   for (const auto& field : field_names(4)) add_field<4>(field, field == "noise" ? 32 : 64);
+  add_5d();
   add_types();
   add_scaling<3>("metaballs", {32, 64, 128, 256, 512});
   add_scaling<3>("gyroid", {32, 64, 128, 256, 512});

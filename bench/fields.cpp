@@ -162,8 +162,10 @@ OwnedImage<float, N> make_field(const std::string& name, std::size_t samples) {
 template void fill_field<2>(const std::string&, std::size_t, float*);
 template void fill_field<3>(const std::string&, std::size_t, float*);
 template void fill_field<4>(const std::string&, std::size_t, float*);
+template void fill_field<5>(const std::string&, std::size_t, float*);
 template OwnedImage<float, 2> make_field<2>(const std::string&, std::size_t);
 template OwnedImage<float, 3> make_field<3>(const std::string&, std::size_t);
 template OwnedImage<float, 4> make_field<4>(const std::string&, std::size_t);
+template OwnedImage<float, 5> make_field<5>(const std::string&, std::size_t);
 
 }  // namespace tegl::bench
