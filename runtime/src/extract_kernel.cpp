@@ -225,7 +225,13 @@ class Extraction {
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     take_planes(first, end);
+    // What is to be written to later is touched by one chunk in so many.
+    const std::size_t pieces = workers_.count() > 1 ? output_.pieces_ahead() : 0;
+    const std::size_t all = (end - first) * shape_.chunks();
+    const std::size_t apart = pieces == 0 ? all : std::max<std::size_t>(1, all / pieces);
     pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      const std::size_t ordinal = (k - first) * shape_.chunks() + chunk;
+      if (ordinal % apart == 0 && ordinal / apart < pieces) output_.touch_ahead(ordinal / apart);
       if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.counting.words.data());
       counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.counting);
     });
@@ -415,6 +421,9 @@ class MemoryOutput final : public ContourOutput<N, Real> {
             normals_ ? contour_.normals.data() + part.first_vertex : nullptr};
   }
 
+  [[nodiscard]] std::size_t pieces_ahead() const noexcept override { return ahead_.size(); }
+  void touch_ahead(std::size_t piece) noexcept override { *static_cast<volatile unsigned char*>(ahead_[piece]) = 0; }
+
   void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) override {
     if (caps != nullptr) add_caps(*caps, all.end_vertex);
     if (!pinches.any_missing()) return;
@@ -436,9 +445,23 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     }
   }
 
+  /// Notes the huge pages that come next, for as much as the last part was, within what all is expected to be.
+  template <class Items>
+  void look_ahead(Items& output, std::uint64_t last, double done) {
+    constexpr std::size_t kItem = sizeof(output[0]);
+    if (output.capacity() * kItem < kLargeBlock) return;
+    const auto rest = static_cast<std::uint64_t>(static_cast<double>(output.size()) * (1.0 - done) / done);
+    const std::size_t more = std::min<std::uint64_t>({last, rest, output.capacity() - output.size()});
+    // Large blocks begin with a page.
+    auto* const block = reinterpret_cast<unsigned char*>(output.data());
+    const std::size_t first = (output.size() * kItem + kLargeBlock - 1) / kLargeBlock * kLargeBlock;
+    for (std::size_t at = first; at < (output.size() + more) * kItem; at += kLargeBlock) ahead_.push_back(block + at);
+  }
+
   Contour<N, Real>& contour_;
   bool normals_;
   std::uint64_t max_vertices_;
+  std::vector<void*> ahead_;
 };
 
 }  // namespace

@@ -82,6 +82,10 @@ class ContourOutput {
   virtual void expect(double /*vertices*/, double /*simplices*/) {}
   /// Room for a part, which is then written; two null pointers: it is not.
   virtual Room open(const ContourPart& part) = 0;
+  /// What the next part is likely to be written to, in pieces that may be touched side by side until it is opened: the
+  /// system then hands them out one by one, and not the same one to several threads.
+  [[nodiscard]] virtual std::size_t pieces_ahead() const noexcept { return 0; }
+  virtual void touch_ahead(std::size_t /*piece*/) noexcept {}
   /// A part is written. `pinches`: the vertices of this part and all before that may have to be doubled.
   virtual void close(const ContourPart& /*part*/, const PinchCandidates<N>& /*pinches*/) {}
   /// All parts are written; `caps` may be null.

@@ -224,6 +224,26 @@ TEST(Plain, EqualsTheKernelNextToMissingValues) {
   expect_plain_missing<3>({9, 8, 30}, 740);
 }
 
+/// Rows that are passed over follow on rows with a contour, in the same storage, and missing values on both.
+TEST(Plain, EqualsTheKernelWhereBusyAndEmptyLayersAlternate) {
+  RecursiveBuilder<3> builder(ExtractOptions{});
+  for (std::uint64_t seed = 760; seed < 764; ++seed) {
+    SCOPED_TRACE(seed);
+    constexpr std::size_t kLayer = 20 * 70;
+    auto image = noise_with_missing<float, 3>(Grid<3>::unit({20, 70, 24}), seed, seed % 2 == 0 ? 0.0 : 0.001);
+    for (std::size_t i = 0; i < image.values.size(); ++i)
+      if (i / kLayer % 6 >= 3 && !(seed % 2 != 0 && i % 1999 == 0)) image.values[i] = seed < 762 ? 0.0F : 1.0F;
+    expect_plain<double>(image.view(), 0.5, {}, builder);
+  }
+}
+
+/// Beyond 2^16 samples, and just within.
+TEST(Plain, EqualsTheKernelInLongRows) {
+  RecursiveBuilder<2> builder(ExtractOptions{});
+  expect_plain<float>(noise<float, 2>({65536, 3}, 780).view(), 0.5, {}, builder);
+  expect_plain<float>(noise<float, 2>({65536 + 70, 3}, 781).view(), 0.5, {}, builder);
+}
+
 /// As large as several of the kernel's working units along every axis.
 TEST(Plain, EqualsTheKernelForImagesOfManyRowsAndLayers) {
   RecursiveBuilder<2> builder2(ExtractOptions{});
