@@ -292,7 +292,8 @@ TileRoom Counter<N>::tile_room(Slab<N>& slab, std::size_t row, CountScratch& scr
 template <int N>
 ActiveTiles Counter<N>::tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const {
   const Slab<N>& slab = *view.slab;
-  if (slab.active_count[row] == 0 || !quick_ || !slab.all_valid) return {};
+  // Signatures are of use in rows of any length, places along the row only where it goes by tiles.
+  if (slab.active_count[row] == 0 || rows_ == nullptr || has_cubes_ || !slab.all_valid) return {};
   if (keeps_tiles()) {
     const std::size_t first = slab.first_tile[row];
     return {slab.tiles.signatures.data() + first, slab.tiles.at.data() + first, slab.active_count[row]};
