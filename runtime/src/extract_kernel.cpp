@@ -399,18 +399,25 @@ class MemoryOutput final : public ContourOutput<N, Real> {
       : contour_(contour), normals_(normals), max_vertices_(max_vertices) {}
 
   /// Address space for the largest contour that can be: memory is taken where it is written to. Where the system
-  /// gives none, outputs grow.
+  /// has too little of it for all outputs and what else is needed, outputs grow.
   void expect(double vertices, double simplices) override {
     constexpr double kMostBytes = 0x1p40;
-    const auto reserve = [&](auto& output, double most, std::size_t size) {
-      try {
-        output.reserve(static_cast<std::size_t>(std::min(most, kMostBytes / static_cast<double>(size))));
-      } catch (const std::bad_alloc&) {
-      }
+    constexpr std::size_t kElse = std::size_t{1} << 26;
+    const auto reserve = [](auto& output, double most) {
+      const auto size = static_cast<double>(sizeof(output[0]));
+      output.reserve(static_cast<std::size_t>(std::min(most, kMostBytes / size)));
     };
-    reserve(contour_.vertices, vertices, sizeof(Vertex));
-    reserve(contour_.simplices, simplices, sizeof(Simplex));
-    if (normals_) reserve(contour_.normals, vertices, sizeof(Vertex));
+    const auto give_back = [](auto& output) { std::remove_reference_t<decltype(output)>().swap(output); };
+    try {
+      reserve(contour_.vertices, vertices);
+      reserve(contour_.simplices, simplices);
+      if (normals_) reserve(contour_.normals, vertices);
+      Buffer<unsigned char>().reserve(kElse);
+    } catch (const std::bad_alloc&) {
+      give_back(contour_.vertices);
+      give_back(contour_.simplices);
+      give_back(contour_.normals);
+    }
   }
 
   Room open(const ContourPart& part) override {

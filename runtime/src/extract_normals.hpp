@@ -152,40 +152,52 @@ class NormalWriter {
     std::array<double, N> gradient = source_.gradient(index, steps_);
     ++index[axis];
     const std::array<double, N> there = source_.gradient(index, steps_);
-    for (int a = 0; a < N; ++a) gradient[a] += alpha * (there[a] - gradient[a]);
+    // Not by their difference, which may be too large for a number.
+    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
     return normal(gradient);
   }
 
   /// 0 where the gradient vanishes.
-  [[nodiscard]] Vertex normal(const std::array<double, N>& gradient) const noexcept {
-    std::array<double, N> v;
-    double square = 0.0;
-    for (int a = 0; a < N; ++a) {
-      if (mapped_) {
-        v[a] = 0.0;
-        for (int b = 0; b < N; ++b) v[a] += to_world_(a, b) * gradient[b];
-      } else {
-        v[a] = sign_ * gradient[a];
-      }
-      square += v[a] * v[a];
+  [[nodiscard]] Vertex normal(std::array<double, N> gradient) const noexcept {
+    std::array<double, N> v = in_world(gradient);
+    double square = square_of(v);
+    if (!(square > 1e-280 && square < 1e280)) {
+      scale(gradient);
+      v = in_world(gradient);
+      scale(v);
+      square = square_of(v);
     }
-    if (!(square > 1e-280 && square < 1e280)) square = scaled(v);
     const double inverse = square > 0.0 ? 1.0 / std::sqrt(square) : 0.0;
     Vertex result;
     for (int a = 0; a < N; ++a) result[a] = static_cast<Real>(v[a] * inverse);
     return result;
   }
 
-  /// Brings the largest component to 1, if there is one; returns the square of the length.
-  static double scaled(std::array<double, N>& v) noexcept {
+  [[nodiscard]] std::array<double, N> in_world(const std::array<double, N>& gradient) const noexcept {
+    std::array<double, N> v{};
+    for (int a = 0; a < N; ++a) {
+      if (!mapped_) v[a] = sign_ * gradient[a];
+      for (int b = 0; b < N && mapped_; ++b) v[a] += to_world_(a, b) * gradient[b];
+    }
+    return v;
+  }
+
+  static double square_of(const std::array<double, N>& v) noexcept {
+    double square = 0.0;
+    for (const double x : v) square += x * x;
+    return square;
+  }
+
+  /// Brings the largest component to 1, if there is one; of infinite ones, all of them, and the others to 0.
+  static void scale(std::array<double, N>& v) noexcept {
     double largest = 0.0;
     for (const double x : v) largest = std::max(largest, std::abs(x));
-    double square = 0.0;
     for (double& x : v) {
-      x = largest > 0.0 ? x / largest : 0.0;
-      square += x * x;
+      if (std::isinf(largest))
+        x = std::isinf(x) ? std::copysign(1.0, x) : 0.0;
+      else
+        x = largest > 0.0 ? x / largest : 0.0;
     }
-    return square;
   }
 
   const SampleSource<N>& source_;

@@ -279,6 +279,23 @@ TEST(Normals, OfSteepAndFlatFieldsHaveLengthOne) {
   }
 }
 
+TEST(Normals, OfTheLargestNumbersAreNumbers) {
+  for (const bool mapped : {false, true}) {
+    Grid<3> grid = Grid<3>::unit({9, 8, 7});
+    if (mapped) grid.linear(0, 1) = 0.25;
+    auto image = noise<double, 3>(grid, 9);
+    for (double& value : image.values)
+      value = value < 0.3 ? std::numeric_limits<double>::lowest()
+                          : (value > 0.6 ? std::numeric_limits<double>::max() : value);
+    const auto contour = extract<double>(image.view(), 0.5, with_normals());
+    ASSERT_GT(contour.normals.size(), 100u);
+    for (const auto& normal : contour.normals) {
+      const double size = length<3, double>(normal);
+      ASSERT_TRUE(size == 0.0 || std::abs(size - 1.0) < 1e-12) << size;
+    }
+  }
+}
+
 TEST(Normals, DoNotChangeHowMuchIsCounted) {
   const auto image = noise<float, 3>(4, 1);
   EXPECT_EQ(count(image.view(), 0.5, with_normals()), count(image.view(), 0.5));

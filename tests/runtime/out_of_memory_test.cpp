@@ -4,9 +4,16 @@
 // result, and everything is given back.
 #include "failing_memory.hpp"
 
+#ifdef __linux__
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fstream>
 #include <span>
 #include <vector>
 
@@ -153,6 +160,43 @@ TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
                 "extract", [&] { return digest(extract<float>(image.view(), 0.5, options)); }, true),
             20);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+/// More room never makes a contour impossible that less room allows: address space that is reserved beforehand, so that
+/// outputs need not move, is not missed elsewhere.
+TEST(OutOfMemory, NeverComesFromMoreAddressSpace) {
+  const auto image = sample_field<float, 3>(centred_grid<3>(90, 1.0), Ball<3>{{}, 0.7});
+  ExtractOptions options;
+  options.threads = 1;
+  const auto succeeds_with = [&](rlim_t more) {
+    const pid_t child = fork();
+    if (child == 0) {
+      std::size_t pages = 0;
+      std::ifstream("/proc/self/statm") >> pages;
+      const rlim_t limit = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more;
+      const rlimit limits{limit, limit};
+      setrlimit(RLIMIT_AS, &limits);
+      try {
+        extract<float>(image.view(), 0.0, options);
+      } catch (const std::bad_alloc&) {
+        _exit(1);
+      }
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status));
+    return WEXITSTATUS(status) == 0;
+  };
+  bool succeeded = false;
+  for (rlim_t more = 0; more <= rlim_t{240} << 20; more += rlim_t{4} << 20) {
+    const bool succeeds = succeeds_with(more);
+    EXPECT_TRUE(succeeds || !succeeded) << "with " << (more >> 20) << " MiB, but not with less";
+    succeeded = succeeded || succeeds;
+  }
+  EXPECT_TRUE(succeeded);
+}
+#endif
 #endif
 
 }  // namespace
