@@ -56,10 +56,12 @@ void StreamingOptions::add_to(CLI::App& app) {
                "read layer by layer and write as it comes, with little memory: from netCDF, HDF5 or --raw, to .vtkhdf");
   raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
                     ->type_name("XxYxZ[xT]");
-  app.add_option("--raw-type", raw_type_, "their type: uint8, int8, uint16, int16, int32, float or double")
-      ->needs(raw_option_);
+  raw_option_->needs(
+      app.add_option("--raw-type", raw_type_, "their type: uint8, int8, uint16, int16, int32, float or double")
+          ->needs(raw_option_));
   app.add_option("--raw-offset", raw_offset_, "bytes before the first value")
       ->needs(raw_option_)
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_flag("--raw-big-endian", raw_big_endian_, "the values' first byte is the highest")->needs(raw_option_);
 }

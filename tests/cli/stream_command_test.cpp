@@ -81,6 +81,17 @@ TEST_F(Stream, HasNormalsOfRawValues) {
   EXPECT_EQ(whole.simplices, streamed.simplices);
 }
 
+TEST_F(Stream, OfRawValuesNamesTheOptionThatIsMissingOrWrong) {
+  const std::string raw = write("a.raw", std::string(64, '\0'));
+  const RunResult untyped = run_tegl({"contour", raw, "--raw", "4x4x4", "--iso", "1", "-o", path("a.vtkhdf")});
+  EXPECT_EQ(untyped.exit, 2);
+  EXPECT_THAT(untyped.err, HasSubstr("--raw-type"));
+  const RunResult before = run_tegl({"contour", raw, "--raw", "4x4x4", "--raw-type", "uint8", "--raw-offset", "-1",
+                                     "--iso", "1", "-o", path("a.vtkhdf")});
+  EXPECT_EQ(before.exit, 2);
+  EXPECT_THAT(before.err, AllOf(HasSubstr("--raw-offset"), HasSubstr("-1")));
+}
+
 TEST_F(Stream, ReadsRawValues) {
   const Samples balls = merging_balls(12, 7);
   const std::string nrrd = write("balls.nrrd", nrrd_bytes(balls));
