@@ -22,6 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A mask's lanes as bits, lane 0 lowest.
 template <class D, class M>
 HWY_INLINE Word bits_of(D d, M mask) {
+  static_assert(hn::MaxLanes(D()) <= 8);
   alignas(8) std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, mask, bytes);
   return bytes[0];

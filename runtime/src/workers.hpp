@@ -9,6 +9,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -36,7 +37,7 @@ class Workers {
   /// `threads`: 0 for all that the machine has. `make_scratch()` is called once for each.
   template <class MakeScratch>
   Workers(unsigned threads, const MakeScratch& make_scratch)
-      : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
+      : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(std::min(threads, most()))),
         alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)),
         own_(make_scratch) {}
 
@@ -76,6 +77,9 @@ class Workers {
   }
 
  private:
+  /// More than the machine has are as many: TBB has room for no others, and says so where libraries are silent.
+  static unsigned most() { return static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())); }
+
   tbb::task_arena arena_;
   bool alone_;
   tbb::enumerable_thread_specific<Scratch> own_;

@@ -135,5 +135,18 @@ TEST(SameBytes, OfManyBatchesOfRows) {
   expect_same_bytes<float>(noise<std::uint8_t, 4>(14, 93).view(), noise_isovalue<std::uint8_t>(), {});
 }
 
+TEST(SameBytes, OfMoreThreadsThanThereAre) {
+  const auto image = noise<float, 3>({67, 40, 40}, 94);
+  ExtractOptions options;
+  options.threads = 1;
+  const auto expected = extract<float>(image.view(), 0.5, options);
+  for (const unsigned threads : {1000u, 0x7fffffffu, 0x80000000u, ~0u}) {
+    options.threads = threads;
+    const auto contour = extract<float>(image.view(), 0.5, options);
+    EXPECT_TRUE(equal_bytes(contour.vertices, expected.vertices)) << threads << " threads";
+    EXPECT_TRUE(equal_bytes(contour.simplices, expected.simplices)) << threads << " threads";
+  }
+}
+
 }  // namespace
 }  // namespace tegl::test
