@@ -34,7 +34,8 @@ class BlockLayers final : public LayerReader<T, N> {
     const std::size_t first = k / block_ * block_;
     if (first != first_) {
       values_ = ValueArray();  // one block at a time
-      values_ = read_(first, std::min(block_, grid_.axes[N - 1].size() - first));
+      first_ = kNone;
+      values_ = read_block(first, std::min(block_, grid_.axes[N - 1].size() - first));
       first_ = first;
     }
     std::visit(
@@ -47,12 +48,22 @@ class BlockLayers final : public LayerReader<T, N> {
   }
 
  private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  ValueArray read_block(std::size_t first, std::size_t count) const {
+    try {
+      return read_(first, count);
+    } catch (const Error& error) {
+      throw Error(error.code(), fmt::format("{} (layers {} to {})", error.what(), first, first + count - 1));
+    }
+  }
+
   Grid<N> grid_;
   std::function<ValueArray(std::size_t, std::size_t)> read_;
   std::size_t block_;
   std::size_t layer_size_ = 1;
   ValueArray values_;
-  std::size_t first_ = std::numeric_limits<std::size_t>::max();
+  std::size_t first_ = kNone;
 };
 
 /// Bytes of a block beyond which layers are read one by one.

@@ -128,6 +128,17 @@ TEST(Layers, OfRawValuesAreThoseOfTheFile) {
   expect_layers_of(any, open_raw_layers(dir / "big.raw", {{3, 4, 5}, "int16", 0, true}).layers);
 }
 
+TEST(Layers, ThatCannotBeReadAreNamed) {
+  TempDir dir;
+  write_file(dir / "a.raw", std::string(100, 'x'));
+  OpenLayersResult opened = open_raw_layers(dir / "a.raw", {{10, 10}, "uint8"});
+  fs::resize_file(dir / "a.raw", 75);
+  auto& layers = *std::get<std::unique_ptr<LayerReader<std::uint8_t, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
+  std::array<std::uint8_t, 10> row;
+  layers.read(6, row.data());
+  expect_error(ErrorCode::MalformedFile, {"a.raw", "(layers 7 to 7)"}, [&] { layers.read(7, row.data()); });
+}
+
 TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
   const TempDir dir;
   write_file(dir / "values.raw", std::string(100, 'x'));
