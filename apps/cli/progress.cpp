@@ -32,11 +32,13 @@ InterruptHandler::InterruptHandler() {
   interrupt_requested.store(false);
   handle(SIGINT, request_interrupt);
   handle(SIGTERM, request_interrupt);
+  handle(SIGHUP, request_interrupt);
 }
 
 InterruptHandler::~InterruptHandler() {
   handle(SIGINT, SIG_DFL);
   handle(SIGTERM, SIG_DFL);
+  handle(SIGHUP, SIG_DFL);
 }
 
 bool InterruptHandler::requested() noexcept { return interrupt_requested.load(); }

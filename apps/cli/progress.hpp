@@ -12,7 +12,7 @@
 
 namespace tegl::cli {
 
-/// While one of these lives, the first SIGINT or SIGTERM asks the program to stop, which it does at the
+/// While one of these lives, the first SIGINT, SIGTERM or SIGHUP asks the program to stop, which it does at the
 /// next progress call, with its files cleaned up; the second one ends it at once. One at a time.
 class InterruptHandler {
  public:

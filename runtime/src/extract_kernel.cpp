@@ -73,6 +73,7 @@ class Extraction {
         reporter_(options.progress, grid.axes[N - 1].size() - 1),
         inverted_(options.ambiguity == Ambiguity::high),
         max_vertices_(plan.max_vertices),
+        max_vertices_at_once_(plan.max_vertices_at_once),
         shape_(grid.sizes()),
         tables_(tables),
         rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
@@ -235,6 +236,7 @@ class Extraction {
       if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.counting.words.data());
       counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.counting);
     });
+    const std::uint64_t before = part_.first_vertex;
     part_.first_vertex = part_.end_vertex;
     part_.first_simplex = part_.end_simplex;
     std::uint64_t active = 0;
@@ -245,6 +247,12 @@ class Extraction {
       place_layer(k + 1);
     }
     check_vertex_count(part_.end_vertex, max_vertices_);
+    if (part_.end_vertex - before > max_vertices_at_once_)
+      throw Error(
+          ErrorCode::TooLarge,
+          fmt::format("{} vertices between layers {} and {} and in what comes before them; expected at most {}: "
+                      "contour parts of the image instead",
+                      part_.end_vertex - before, first, end, max_vertices_at_once_));
     return active;
   }
 
@@ -369,6 +377,7 @@ class Extraction {
   ProgressReporter reporter_;
   bool inverted_;
   std::uint64_t max_vertices_;
+  std::uint64_t max_vertices_at_once_;
   RowShape<N> shape_;
   TableSet<N> tables_;
   std::optional<RowTable> rows_;

@@ -97,7 +97,9 @@ struct ExtractPlan {
   std::uint64_t max_vertices = kMaxVertices;
   unsigned closed_axes = ~0u;  ///< bit a: whether options.close closes the borders across axis a
   std::size_t batch = 0;       ///< slabs at a time; 0: as many as suit the image
-  bool keeps_tiles = true;     ///< false: lists of active tiles are made twice, whatever memory there is for them
+  /// Of two batches, one after the other: numbers in simplices are told apart modulo 2^32.
+  std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;
+  bool keeps_tiles = true;  ///< false: lists of active tiles are made twice, whatever memory there is for them
 };
 
 /// The contour of `source` over `grid`, put into `output`. An image without tiles leaves it alone.

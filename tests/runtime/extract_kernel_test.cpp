@@ -3,10 +3,14 @@
 // The private parts of the extraction: bit planes against the plain comparison, limits.
 #include "extract_kernel.hpp"
 
+#include <fstream>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "bitplanes.hpp"
 #include "fields.hpp"
@@ -46,6 +50,65 @@ TEST(BitPlanesOfFloats, MarkMissingSamples) {
   EXPECT_EQ(missing, (std::vector<Word>{0, Word{1} << 6, 0, Word{1} << 7}));
   EXPECT_EQ(high, (std::vector<Word>{~Word{0}, ~(Word{1} << 6), ~Word{0}, 0x7f}));
 }
+
+TEST(Limits, NumbersOfTwoBatchesAreToldApart) {
+  const auto image = test::noise<std::uint8_t, 3>(8, 7);
+  const ExtractOptions options;
+  ImageSource<std::uint8_t, 3> source(image.view(), 100.0, 0.0);
+  const auto run = [&](std::uint64_t limit) {
+    return extract_source<3, float>(source, image.grid, generated_tables<3>(options), options, nullptr,
+                                    {.batch = 1, .max_vertices_at_once = limit});
+  };
+  const std::uint64_t count = run(~std::uint64_t{0}).vertices.size();
+  EXPECT_EQ(run(count).vertices.size(), count);
+  EXPECT_EQ(run(count / 2).vertices.size(), count) << "two slabs of seven";
+  try {
+    run(count / 8);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::TooLarge);
+    EXPECT_NE(std::string(error.what()).find(std::to_string(count / 8)), std::string::npos) << error.what();
+  }
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these need address space
+/// Does the contour fit into so much more address space than the process has?
+bool fits_into(const OwnedImage<float, 3>& image, std::size_t more) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::ifstream status("/proc/self/statm");
+    std::size_t pages = 0;
+    status >> pages;
+    const rlim_t bytes = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + more;
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+    ExtractOptions options;
+    options.threads = 1;
+    try {
+      _exit(extract<float>(image.view(), 0.5, options).simplices.empty() ? 2 : 0);
+    } catch (const std::bad_alloc&) {
+      _exit(1);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) < 2) << status;
+  return WEXITSTATUS(status) == 0;
+}
+
+TEST(Limits, WhereLittleAddressSpaceDoesMoreDoesToo) {
+  auto image = test::noise<float, 3>(120, 7);
+  for (std::size_t i = 0; i < image.values.size(); ++i)  // a few sheets
+    image.values[i] = static_cast<float>(i / (120 * 120) % 12) / 12.0F;
+  bool fitted = false;
+  for (std::size_t mebibytes = 8; mebibytes < 1200; mebibytes += mebibytes < 128 ? 12 : 60) {
+    const bool fits = fits_into(image, mebibytes << 20);
+    EXPECT_TRUE(fits || !fitted) << mebibytes << " MiB";
+    fitted |= fits;
+  }
+  EXPECT_TRUE(fitted);
+}
+#endif
 
 TEST(Limits, MoreVerticesThanNumbersAreAnError) {
   EXPECT_NO_THROW(check_vertex_count(kMaxVertices, kMaxVertices));
