@@ -35,7 +35,7 @@ struct ExtractOptions {
   /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
   /// along edges). Normals of a vertex are as exact as its type allows.
   bool normals = false;
-  /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
+  /// How many threads work; 0, or more than there are: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
   /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
   /// axis) at least once, and within large ones, with fractions that do not fall.
