@@ -65,7 +65,7 @@ TEST(CasePictures, ShowCornersEdgesAndPolygons) {
   const auto files = emit_cases(3);
   const std::string& low = text_of(files, "3d/006_low.svg");
   EXPECT_EQ(2u, count_of(low, "class=\"high\""));
-  EXPECT_EQ(6u, count_of(low, "class=\"low\""));
+  EXPECT_EQ(6u, count_of(low, "class=\"low"));
   EXPECT_EQ(9u, count_of(low, "class=\"edge\"")) << "three edges of a cube are hidden";
   EXPECT_EQ(3u, count_of(low, "class=\"hidden\""));
   EXPECT_EQ(2u, count_of(low, "<polygon")) << "two triangles";
