@@ -72,7 +72,8 @@ void print_resolutions(const Options& options, const ResolutionFigures& f, doubl
     fmt::print("{}-{}, every resolution of its ambiguous faces of dimension 2\n", options.dim, tile);
     fmt::print("  pairs          {} of a signature and a resolution, in {} classes of signatures\n", f.pairs,
                f.classes);
-    fmt::print("  up to symmetry {} (all resolutions of one signature of each class)\n", f.pairs_by_class);
+    fmt::print("  up to symmetry {} of one signature of each class, {} if its own symmetries count too\n",
+               f.pairs_by_class, f.orbits);
   } else {
     fmt::print("{}-{}, a sample: signatures and choices in all faces at random, seed {}\n", options.dim, tile,
                options.seed);
@@ -109,11 +110,12 @@ void print_resolutions_json(const Options& options, const ResolutionFigures& f, 
           ? fmt::format("\"classes\": {}, \"classes_with_non_spherical\": {}", f.classes, f.classes_with_non_spherical)
           : fmt::format("\"sample\": {}, \"seed\": {}", options.sample, options.seed);
   fmt::print(
-      "{{\"tile\": \"{}\", \"dim\": {}, {}, \"pairs\": {}, \"pairs_up_to_symmetry\": {}, \"certified_tiles\": {}, "
+      "{{\"tile\": \"{}\", \"dim\": {}, {}, \"pairs\": {}, \"pairs_up_to_symmetry\": {}, \"orbits\": {}, "
+      "\"certified_tiles\": {}, "
       "\"non_spherical_pairs\": {}, \"facets\": {{\"simplex\": {}, \"cone\": {}, \"side\": {}}}, \"simplices\": {}, "
       "\"max_simplices\": {}, \"euler\": {{{}}}, \"seconds\": "
       "{:.1f}}}\n",
-      tile_kind_name(options.tile), options.dim, what, f.pairs, f.pairs_by_class, f.tiles, f.non_spherical,
+      tile_kind_name(options.tile), options.dim, what, f.pairs, f.pairs_by_class, f.orbits, f.tiles, f.non_spherical,
       f.by_filling[0], f.by_filling[1], f.by_filling[2], f.simplices, f.max_simplices, fmt::join(euler, ", "), seconds);
 }
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <bit>
 #include <mutex>
 #include <string>
@@ -67,10 +67,12 @@ class Worker {
     return others;
   }
 
-  void count_pair(std::uint64_t orbit, bool non_spherical) {
-    figures_.pairs += orbit;
-    figures_.pairs_by_class += 1;
-    if (non_spherical) figures_.non_spherical += orbit;
+  /// A pair that stands for `alike` ones of its signature, which has an orbit of `orbit`.
+  void count_pair(std::uint64_t orbit, std::uint64_t alike, bool non_spherical) {
+    figures_.pairs += orbit * alike;
+    figures_.pairs_by_class += alike;
+    figures_.orbits += 1;
+    if (non_spherical) figures_.non_spherical += orbit * alike;
   }
 
  private:
@@ -80,6 +82,7 @@ class Worker {
 };
 
 void add(ResolutionFigures& to, const ResolutionFigures& more) {
+  to.orbits += more.orbits;
   to.pairs += more.pairs, to.pairs_by_class += more.pairs_by_class, to.tiles += more.tiles;
   to.non_spherical += more.non_spherical, to.simplices += more.simplices;
   to.max_simplices = std::max(to.max_simplices, more.max_simplices);
@@ -105,6 +108,53 @@ ResolutionFigures on_threads(const FaceLattice& lattice, std::uint64_t units, un
       [&](const Worker& worker) { add(total, worker.figures()); });
   return total;
 }
+
+/// The resolutions of one signature up to the symmetries that keep it: how its stabiliser moves the ambiguous polygons.
+/// A resolution is a set of polygons, those with a high centre, as bits.
+class ResolutionOrbits {
+ public:
+  ResolutionOrbits(const FaceLattice& lattice, FacetSignature signature, const std::vector<std::uint32_t>& polygons,
+                   const std::vector<TileSymmetry>& elements) {
+    for (const TileSymmetry& g : elements) {
+      const auto image = [&g](FacetSignature corners) {
+        FacetSignature moved = 0;
+        for (std::size_t c = 0; c < g.corner.size(); ++c) moved |= ((corners >> c) & 1u) << g.corner[c];
+        return moved;
+      };
+      if (g.inverts || image(signature) != signature) continue;
+      std::vector<std::size_t> to;
+      for (const std::uint32_t f : polygons) {
+        const FacetSignature moved = image(lattice.faces()[f].corners);
+        to.push_back(static_cast<std::size_t>(
+            std::find_if(polygons.begin(), polygons.end(),
+                         [&](std::uint32_t h) { return lattice.faces()[h].corners == moved; }) -
+            polygons.begin()));
+      }
+      // By bytes, so that a set is moved by three look-ups.
+      Permutation& permutation = permutations_.emplace_back();
+      for (std::size_t byte = 0; byte < permutation.size(); ++byte)
+        for (std::uint32_t value = 0; value < 256; ++value)
+          for (std::size_t i = 8 * byte; i < std::min(polygons.size(), 8 * byte + 8); ++i)
+            if (((value >> (i - 8 * byte)) & 1u) != 0) permutation[byte][value] |= std::uint32_t{1} << to[i];
+    }
+  }
+
+  /// How many resolutions the orbit has, if this is its smallest; else 0.
+  [[nodiscard]] std::uint64_t length_if_smallest(std::uint32_t resolution) const {
+    std::uint64_t keep = 0;
+    for (const Permutation& p : permutations_) {
+      const std::uint32_t moved =
+          p[0][resolution & 0xffu] | p[1][resolution >> 8 & 0xffu] | p[2][resolution >> 16 & 0xffu];
+      if (moved < resolution) return 0;
+      keep += moved == resolution ? 1 : 0;
+    }
+    return permutations_.size() / keep;
+  }
+
+ private:
+  using Permutation = std::array<std::array<std::uint32_t, 256>, 3>;
+  std::vector<Permutation> permutations_;
+};
 
 /// Some resolutions of one class's signature.
 struct Unit {
@@ -168,9 +218,11 @@ ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads
   const auto elements = symmetries(tiles.tile(n), GroupKind::Full, false);
   const Transversal classes = transversal(tiles.tile(n), elements);
   std::vector<std::vector<std::uint32_t>> ambiguous;
+  std::vector<ResolutionOrbits> orbits;
   std::vector<Unit> units;
   for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
     ambiguous.push_back(ambiguous_polygons(lattice, classes.representatives[c]));
+    orbits.emplace_back(lattice, classes.representatives[c], ambiguous[c], elements);
     const std::uint64_t resolutions = std::uint64_t{1} << ambiguous[c].size();
     for (std::uint64_t begin = 0; begin < resolutions; begin += kUnit)
       units.push_back({c, begin, std::min(resolutions, begin + kUnit)});
@@ -180,13 +232,15 @@ ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads
     const auto& [c, begin, end] = units[number];
     const std::uint64_t orbit = classes.orbit_length[c];
     for (std::uint64_t r = begin; r < end; ++r) {
+      const std::uint64_t alike = orbits[c].length_if_smallest(static_cast<std::uint32_t>(r));
+      if (alike == 0) continue;
       std::fill(worker.choices().begin(), worker.choices().end(), Choice::separate);
       for (std::size_t i = 0; i < ambiguous[c].size(); ++i)
         worker.choices()[ambiguous[c][i]] = ((r >> i) & 1u) != 0 ? Choice::high : Choice::low;
-      const bool others = worker.certify(classes.representatives[c], Alternative::low, orbit);
+      const bool others = worker.certify(classes.representatives[c], Alternative::low, orbit * alike);
       if (others) worker.certify(classes.representatives[c], Alternative::high, 0);
       if (others) with_others[c] = true;
-      worker.count_pair(orbit, others);
+      worker.count_pair(orbit, alike, others);
     }
   };
   ResolutionFigures figures = on_threads(lattice, units.size(), threads, progress, work);
@@ -213,7 +267,7 @@ ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std:
       for (std::size_t f = 0; f < lattice.faces().size(); ++f)
         worker.choices()[f] = lattice.faces()[f].dim < 2 ? Choice::separate : static_cast<Choice>(random() % 3);
       const Alternative alternative = (random() & 1u) != 0 ? Alternative::high : Alternative::low;
-      worker.count_pair(1, worker.certify(signature, alternative, 1));
+      worker.count_pair(1, 1, worker.certify(signature, alternative, 1));
     }
   };
   return on_threads(lattice, (count + unit - 1) / unit, threads, progress, work);

@@ -19,6 +19,7 @@ struct ResolutionFigures {
   std::uint64_t classes = 0;         ///< of signatures; 0 for a sample
   std::uint64_t pairs = 0;           ///< (signature, resolution of its ambiguous polygons), signatures of all orbits
   std::uint64_t pairs_by_class = 0;  ///< the same for one signature of each class; for a sample its size
+  std::uint64_t orbits = 0;          ///< pairs up to all symmetries of the tile
   std::uint64_t tiles = 0;           ///< built and certified
   std::uint64_t non_spherical = 0;   ///< even n: pairs with a component of Sigma that is no sphere
   std::uint64_t classes_with_non_spherical = 0;
@@ -32,9 +33,10 @@ struct ResolutionFigures {
 using Progress = std::function<void(double)>;
 
 /// For every class of signatures under all symmetries of a tile, every resolution (low or high) of its ambiguous
-/// polygons. What is not spherical is filled in both ways: two tiles. All tiles are certified with what they have in
-/// their faces (facets::TileCertifier). n = 2 to 4. `threads`: 0 = one per processor.
-/// Errors: CertificateFailed, naming signature, resolution and fault.
+/// polygons, up to the symmetries that keep the signature: what is built moves with them as long as no larger face is
+/// joined, so one tile of each orbit is built and stands for all. What is not spherical is filled in both ways: two
+/// tiles. All tiles are certified with what they have in their faces (facets::TileCertifier). n = 2 to 4. `threads`: 0
+/// = one per processor. Errors: CertificateFailed, naming signature, resolution and fault.
 [[nodiscard]] ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads,
                                                         const Progress& progress = {});
 
