@@ -67,6 +67,14 @@ struct ContourSize {
   bool operator==(const ContourSize&) const = default;
 };
 
+/// Named numbers of every vertex, or of every simplex.
+struct Attribute {
+  std::string name;
+  std::string unit;       ///< may be empty
+  int width = 1;          ///< how many numbers each has
+  Buffer<double> values;  ///< #V (or #S) x width, row = vertex (or simplex)
+};
+
 /// Which way the orientation of a contour points: normals towards low (descent), or towards high (ascent).
 enum class GradientDirection { descent, ascent };
 
@@ -85,6 +93,8 @@ struct Contour {
   std::array<std::string, N> axis_names;  ///< taken from the grid
   std::array<std::string, N> axis_units;
   GradientDirection direction = GradientDirection::descent;
+  std::vector<Attribute> vertex_attributes;   ///< `extract` makes none
+  std::vector<Attribute> simplex_attributes;  ///< likewise
 
   /// The vertices as an Eigen matrix without a copy; valid while `vertices` is unchanged.
   [[nodiscard]] auto vertex_matrix() const {
