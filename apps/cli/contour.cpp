@@ -26,15 +26,6 @@ constexpr const char* kExamples =
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
 
-/// The contour in one type for all dimensions.
-template <class Real>
-Mesh extract_mesh(const AnyImage& image, double isovalue, const ExtractOptions& options, ExtractStats& stats) {
-  const auto of_owned = [&](const auto& owned) {
-    return to_mesh(extract<Real>(owned.view(), isovalue, options, &stats));
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
-}
-
 class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
@@ -83,14 +74,10 @@ class ContourCommand final : public Command {
 
     options.progress = bar.stage("contour");
     ExtractStats& stats = result.stats.emplace();
-    result.mesh = options_.single_precision() ? extract_mesh<float>(input.image, *result.isovalue, options, stats)
-                                              : extract_mesh<double>(input.image, *result.isovalue, options, stats);
+    result.mesh = extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
+                                    [](const auto& contour) { return to_mesh(contour); });
     result.seconds.add(stats);
-    if (result.mesh.simplices.empty()) {
-      throw Error(ErrorCode::EmptyResult,
-                  fmt::format("no contour at {}: every tile that it passes touches a missing sample",
-                              number(*result.isovalue)));
-    }
+    if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
     input.image = AnyImage();  // its memory is of more use to the check
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);

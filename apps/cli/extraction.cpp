@@ -97,6 +97,11 @@ void require_contour(const ReadImageResult& input, double isovalue) {
                                                   number(range.min), number(range.max)));
 }
 
+void fail_without_contour(double isovalue) {
+  throw Error(ErrorCode::EmptyResult,
+              fmt::format("no contour at {}: every tile that it passes touches a missing sample", number(isovalue)));
+}
+
 void check_result(ContourResult& result, ProgressBar& bar) {
   const Progress progress = bar.stage("check");
   Stopwatch watch;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The options that `contour` and `slice` share, and what both do before and after the extraction.
+// The options of commands that contour an image, and what they do before and after the extraction.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "progress.hpp"
@@ -25,6 +26,8 @@ class ExtractionOptions {
 
   /// --iso as a number. Throws InvalidArgument if it is missing or not a finite number.
   [[nodiscard]] double isovalue() const;
+  /// --threads: 0 for all that the machine has.
+  [[nodiscard]] unsigned threads() const { return threads_; }
   /// True for --precision float.
   [[nodiscard]] bool single_precision() const { return precision_ == "float"; }
   /// The library's options, without progress. Throws InvalidArgument for an epsilon outside of [0, 0.5).
@@ -49,6 +52,20 @@ int image_dim(const AnyImage& image);
 /// Throws EmptyResult, saying why, unless a contour of the isovalue can exist: two samples along every axis,
 /// and samples on both sides of the isovalue.
 void require_contour(const ReadImageResult& input, double isovalue);
+
+/// Throws EmptyResult for an extraction that gave nothing though samples lie on both sides of the isovalue.
+[[noreturn]] void fail_without_contour(double isovalue);
+
+/// What `use` makes of the contour, a Contour<N, float> or Contour<N, double>, of an image of any type.
+template <class Result, class Use>
+Result extract_any(const AnyImage& image, double isovalue, const ExtractOptions& options, bool single_precision,
+                   ExtractStats& stats, const Use& use) {
+  const auto of_owned = [&](const auto& owned) -> Result {
+    if (single_precision) return use(extract<float>(owned.view(), isovalue, options, &stats));
+    return use(extract<double>(owned.view(), isovalue, options, &stats));
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
 
 /// Fills the report and the seconds of the check.
 void check_result(ContourResult& result, ProgressBar& bar);

@@ -66,6 +66,15 @@ ExitCode run(Command& command, const Streams& streams) {
   }
 }
 
+/// "info, contour or check".
+std::string command_names(const CLI::App& program) {
+  std::string names;
+  const std::vector<const CLI::App*> commands = program.get_subcommands([](const CLI::App*) { return true; });
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    names += (i == 0 ? "" : i + 1 == commands.size() ? " or " : ", ") + commands[i]->get_name();
+  return names;
+}
+
 /// A command line that CLI11 refused, or a request for help.
 ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json,
                 std::string_view first_word) {
@@ -79,7 +88,7 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
     what = what.substr(0, what.find(':')) + " is given more than once; expected it once";
   if (help == "tegl" && !first_word.empty() && first_word.front() != '-') {
-    what = fmt::format("there is no command '{}'; expected info, contour, slice or check", first_word);
+    what = fmt::format("there is no command '{}'; expected {}", first_word, command_names(program));
   }
   const std::string message = fmt::format("{} (see {} --help)", what, help);
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);

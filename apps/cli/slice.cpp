@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "contour_input.hpp"
 #include "cuts.hpp"
 #include "extraction.hpp"
 #include "numbers.hpp"
@@ -212,13 +213,7 @@ class SliceCommand final : public Command {
   }
 
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {
-    std::vector<std::string> given = options_.given();
-    if (!variable().empty()) given.emplace_back("--var");
-    if (!given.empty()) {
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("{} is a saved contour, which {} cannot change; expected --at and --output alone", file(),
-                              fmt::join(given, ", ")));
-    }
+    refuse_image_options(file(), options_.given(), variable(), "--at and --output alone");
     const Progress reading = bar.stage("read");
     Stopwatch watch;
     const Mesh mesh = read_mesh(file());

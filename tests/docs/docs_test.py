@@ -93,9 +93,13 @@ def links(source, _=None):
 def options(source, programs):
     page = (source / "docs/command-line.md").read_text(encoding="utf-8")
     count = 0
-    for program in (["tegl"], *(["tegl", command] for command in ("info", "contour", "slice", "check")), ["gen"]):
-        call = [f"{programs}/{program[0]}", *program[1:], "--help"]
-        text = subprocess.run(call, text=True, capture_output=True, check=True).stdout
+    help_of = lambda program: subprocess.run([f"{programs}/{program[0]}", *program[1:], "--help"], text=True,
+                                             capture_output=True, check=True).stdout
+    listed = help_of(["tegl"]).split("Subcommands:")[1].split("Exit codes:")[0]
+    commands_of_tegl = re.findall(r"^  ([a-z]+) ", listed, re.MULTILINE)
+    assert {"info", "contour", "slice", "check"} <= set(commands_of_tegl), commands_of_tegl
+    for program in (["tegl"], *(["tegl", command] for command in commands_of_tegl), ["gen"]):
+        text = help_of(program)
         for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", text))):
             if f"`{option}" not in page and f" {option}" not in page:
                 sys.exit(f"docs/command-line.md does not mention {option} of {' '.join(program)}")

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contour_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "numbers.hpp"
+#include "output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+/// The contour with coordinates in double.
+template <int N, class Real>
+Contour<N, double> widened(Contour<N, Real> contour) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return contour;
+  } else {
+    const auto widen = [](const auto& from, auto& to) {
+      to.resize(from.size());
+      for (std::size_t i = 0; i < from.size(); ++i) std::copy(from[i].begin(), from[i].end(), to[i].begin());
+    };
+    Contour<N, double> result;
+    widen(contour.vertices, result.vertices);
+    widen(contour.normals, result.normals);
+    result.simplices = std::move(contour.simplices);
+    result.axis_names = std::move(contour.axis_names);
+    result.axis_units = std::move(contour.axis_units);
+    result.direction = contour.direction;
+    return result;
+  }
+}
+
+void require_simplices(const ContourInput& input) {
+  if (input.size().simplices > 0) return;
+  throw Error(ErrorCode::EmptyResult, "the saved contour is empty; expected one with simplices");
+}
+
+}  // namespace
+
+AnyContour to_any_contour(const Mesh& mesh) {
+  // Segments of a planar mesh come back from some formats with a third coordinate, 0.
+  const int dim = mesh.dim == 1 ? 2 : mesh.space_dim;
+  if (dim == 2) return to_contour<2>(mesh);
+  if (dim == 3) return to_contour<3>(mesh);
+  return to_contour<4>(mesh);
+}
+
+MeshSize ContourInput::size() const {
+  return std::visit(
+      [&](const auto& any) {
+        return MeshSize{space_dim() - 1, any.vertices.size(), any.simplices.size()};
+      },
+      contour);
+}
+
+std::string ContourInput::axis_name(int axis) const {
+  const auto a = static_cast<std::size_t>(axis);
+  return std::visit([&](const auto& any) { return axis_label(any.axis_names.at(a), a); }, contour);
+}
+
+std::string ContourInput::axis_unit(int axis) const {
+  return std::visit([&](const auto& any) { return any.axis_units.at(static_cast<std::size_t>(axis)); }, contour);
+}
+
+ContourResult ContourInput::to_result() const {
+  ContourResult result;
+  result.input = file;
+  result.variable = variable;
+  result.image_dim = space_dim();
+  result.isovalue = isovalue;
+  result.stats = stats;
+  result.seconds = seconds;
+  return result;
+}
+
+void add_input_keys(Json& json, const ContourInput& input) {
+  json["input"] = input.file;
+  json["variable"] = input.variable.empty() ? Json(nullptr) : Json(input.variable);
+  json["image_dim"] = input.space_dim();
+  json["isovalue"] = input.isovalue ? Json(*input.isovalue) : Json(nullptr);
+}
+
+std::string input_text(const ContourInput& input) {
+  std::string text =
+      report_line("input", input.variable.empty() ? input.file : fmt::format("{} ({})", input.file, input.variable));
+  if (input.isovalue) text += report_line("isovalue", number(*input.isovalue));
+  const MeshSize size = input.size();
+  text += report_line("contour", fmt::format("{}, {}", counted(size.vertices, "vertex", "vertices"),
+                                             counted_simplices(size.dim, size.simplices)));
+  return text;
+}
+
+void refuse_image_options(const std::string& file, const std::vector<std::string>& given, const std::string& variable,
+                          const std::string& expected) {
+  std::vector<std::string> refused = given;
+  if (!variable.empty()) refused.emplace_back("--var");
+  if (refused.empty()) return;
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a saved contour, which {} cannot change; expected {}",
+                                                      file, fmt::join(refused, ", "), expected));
+}
+
+ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description)
+    : Command(program, name, description,
+              "an image (with --iso), or a contour that 'tegl contour' saved (.vtkhdf, .ply, .glb ...)") {
+  options_.add_to(app(), false);
+  add_variable();
+  add_quiet();
+}
+
+ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) const {
+  require_input(file());
+  ContourInput result;
+  result.file = file();
+  Stopwatch watch;
+  if (find_mesh_file_format(file()) != nullptr) {
+    std::vector<std::string> given = options_.given();
+    std::erase(given, "--threads");
+    refuse_image_options(file(), given, variable(), "none of the options for images but --threads");
+    const Progress reading = bar.stage("read");
+    result.contour = to_any_contour(read_mesh(file()));
+    require_simplices(result);
+    result.seconds.read = watch.lap();
+    reading(1);
+    return result;
+  }
+  result.isovalue = options_.isovalue();
+  ExtractOptions options = options_.library_options();
+  ReadImageResult input = read(bar.stage("read"));
+  result.variable = input.info.variable;
+  require_contour(input, *result.isovalue);
+  result.seconds.read = watch.lap();
+  options.progress = bar.stage("contour");
+  result.contour = extract_any<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
+                                           result.stats.emplace(),
+                                           [](auto&& contour) { return AnyContour(widened(std::move(contour))); });
+  if (result.size().simplices == 0) fail_without_contour(*result.isovalue);
+  result.seconds.add(*result.stats);
+  if (keep_image) result.image = std::move(input);
+  return result;
+}
+
+}  // namespace tegl::cli

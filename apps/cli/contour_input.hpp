@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The FILE of commands that work on contours: an image, which is contoured first, or a contour that `tegl contour`
+// saved.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "commands.hpp"
+#include "extraction.hpp"
+#include "progress.hpp"
+#include "result.hpp"
+#include "tegl/contour.hpp"
+#include "tegl/io.hpp"
+
+namespace tegl::cli {
+
+/// A contour in 2, 3 or 4 dimensions.
+using AnyContour = std::variant<Contour<2, double>, Contour<3, double>, Contour<4, double>>;
+
+/// The contour of a mesh. Throws UnsupportedData unless its simplices are segments in the plane, triangles in space or
+/// tetrahedra in 4-space.
+AnyContour to_any_contour(const Mesh& mesh);
+
+/// A contour to work on, and where it came from.
+struct ContourInput {
+  AnyContour contour;
+  std::string file;
+  std::string variable;                  ///< netCDF: the variable read
+  std::optional<double> isovalue;        ///< none for a saved contour
+  std::optional<ExtractStats> stats;     ///< none for a saved contour
+  std::optional<ReadImageResult> image;  ///< where it was asked for, and FILE is one
+  StageSeconds seconds;                  ///< of reading and contouring
+
+  /// 2, 3 or 4: the dimension of the space that the contour lies in.
+  [[nodiscard]] int space_dim() const { return static_cast<int>(contour.index()) + 2; }
+  [[nodiscard]] MeshSize size() const;
+  /// The name of an axis of the contour, or its customary letter; and its unit, which may be empty.
+  [[nodiscard]] std::string axis_name(int axis) const;
+  [[nodiscard]] std::string axis_unit(int axis) const;
+
+  /// What a report says of where a result came from; mesh, output, check and the stages after the contour are left to
+  /// the caller.
+  [[nodiscard]] ContourResult to_result() const;
+};
+
+/// Sets the keys "input", "variable", "image_dim" and "isovalue".
+void add_input_keys(Json& json, const ContourInput& input);
+
+/// The lines of a report on the input: the file, the isovalue if it has one, the size of the contour.
+std::string input_text(const ContourInput& input);
+
+/// A command whose FILE is an image (with --iso and the other options of the extraction, and --var) or a saved contour
+/// (without any of them but --threads).
+class ContourInputCommand : public Command {
+ protected:
+  /// Adds FILE, --json, --quiet, --var and the options of the extraction.
+  ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description);
+
+  /// --threads: 0 for all that the machine has.
+  [[nodiscard]] unsigned threads() const { return options_.threads(); }
+
+  /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`. Throws InvalidArgument if --iso is
+  /// missing for an image, or options of images are given with a saved contour; EmptyResult if there is no contour; and
+  /// what the readers throw.
+  [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false) const;
+
+ private:
+  ExtractionOptions options_;
+};
+
+/// Throws InvalidArgument, naming them, if any of the options `given` go with the saved contour `file`, which they
+/// cannot change. `expected`: the options that would do, for the message.
+void refuse_image_options(const std::string& file, const std::vector<std::string>& given, const std::string& variable,
+                          const std::string& expected);
+
+}  // namespace tegl::cli
