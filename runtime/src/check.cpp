@@ -12,43 +12,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "disjoint_sets.hpp"
+#include "stars.hpp"
 #include "tegl/error.hpp"
 #include "tegl/facets/complex.hpp"
 
 namespace tegl {
 namespace {
-
-/// Disjoint sets of 0 … n-1 with path halving; the smaller number leads, so results do not depend on the order of
-/// joins.
-class DisjointSets {
- public:
-  void reset(std::size_t n) {
-    parent_.resize(n);
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// True if the two were in different sets.
-  bool join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    if (a > b) std::swap(a, b);
-    parent_[b] = a;
-    return true;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// A complex of D-simplices, valid vertex numbers only.
 template <int D>
@@ -59,37 +34,8 @@ struct Complex {
   [[nodiscard]] std::size_t size() const { return rows.size() / (D + 1); }
   [[nodiscard]] const Index* operator[](std::size_t s) const { return rows.data() + s * (D + 1); }
   /// Whether a simplex repeats a vertex.
-  [[nodiscard]] bool is_collapsed(std::size_t s) const {
-    const Index* row = (*this)[s];
-    for (int i = 0; i < D; ++i)
-      for (int j = i + 1; j <= D; ++j)
-        if (row[i] == row[j]) return true;
-    return false;
-  }
+  [[nodiscard]] bool is_collapsed(std::size_t s) const { return detail::is_collapsed<D + 1>((*this)[s]); }
 };
-
-/// The simplices around each vertex: numbers members[first[v] … first[v + 1]), ascending. Collapsed simplices are left
-/// out.
-struct Stars {
-  std::vector<std::size_t> first;
-  Buffer<Index> members;
-};
-
-template <int D>
-Stars make_stars(const Complex<D>& complex) {
-  Stars stars;
-  stars.first.assign(complex.vertex_count + 2, 0);  // counted two places up, so that filling leaves it right
-  for (std::size_t s = 0; s < complex.size(); ++s)
-    if (!complex.is_collapsed(s))
-      for (int i = 0; i <= D; ++i) ++stars.first[complex[s][i] + std::size_t{2}];
-  std::partial_sum(stars.first.begin(), stars.first.end(), stars.first.begin());
-  stars.members.resize(stars.first.back());
-  for (std::size_t s = 0; s < complex.size(); ++s)
-    if (!complex.is_collapsed(s))
-      for (int i = 0; i <= D; ++i) stars.members[stars.first[complex[s][i] + std::size_t{1}]++] = static_cast<Index>(s);
-  stars.first.pop_back();
-  return stars;
-}
 
 /// The link of one vertex at a time: a complex of (D-1)-simplices ("pieces"), oriented so that the vertex followed by a
 /// piece is the simplex that it comes from.
@@ -275,8 +221,8 @@ class LinkChecker {
   std::vector<Index> seen_;  // the last vertex in whose link each vertex was met
   std::vector<Piece> pieces_;
   std::vector<Ridge> ridges_;
-  DisjointSets sets_;
-  DisjointSets whole_;
+  detail::DisjointSets sets_;
+  detail::DisjointSets whole_;
   std::uint64_t ridge_count_ = 0;
   std::uint64_t fans_ = 0;
   std::uint64_t connections_ = 0;
@@ -342,9 +288,9 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
   MeshReport report;
   report.dim = D;
   report.simplices = complex.size();
-  const Stars stars = make_stars(complex);
+  const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count);
   LinkChecker<D> links(complex);
-  DisjointSets connected;
+  detail::DisjointSets connected;
   connected.reset(complex.vertex_count);
   std::uint64_t sound = 0;
   std::uint64_t joins = 0;
@@ -356,10 +302,10 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
       if (connected.join(complex[s][0], complex[s][i])) ++joins;
   }
   for (std::size_t v = 0; v < complex.vertex_count; ++v) {
-    if (stars.first[v] == stars.first[v + 1]) continue;
+    const std::span<const Index> star = stars.of(v);
+    if (star.empty()) continue;
     ++report.vertices;
-    links.visit(static_cast<Index>(v),
-                std::span(stars.members).subspan(stars.first[v], stars.first[v + 1] - stars.first[v]), report);
+    links.visit(static_cast<Index>(v), star, report);
   }
   report.unused_vertices = complex.vertex_count - report.vertices;
   report.components = report.vertices - joins;

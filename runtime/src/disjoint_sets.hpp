@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Disjoint sets of numbers, joined one by one: by one thread, or by many at a time. In both the smallest number of a
+// set leads it, so that the outcome does not depend on the order of joins.
+//
+// Based on: R. E. Tarjan and J. van Leeuwen, Worst-case analysis of set union algorithms, 1984 (path halving); R. J.
+// Anderson and H. Woll, Wait-free parallel algorithms for the union-find problem, 1991 (roots are linked by
+// compare-and-swap, always in the direction of one order, and so never in a ring).
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+/// Sets of 0 ... n-1, for one thread.
+class DisjointSets {
+ public:
+  void reset(std::size_t n) {
+    parent_.resize(n);
+    std::iota(parent_.begin(), parent_.end(), Index{0});
+  }
+  Index find(Index i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// True if the two were in different sets.
+  bool join(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return false;
+    if (a > b) std::swap(a, b);
+    parent_[b] = a;
+    return true;
+  }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+/// Sets of 0 ... n-1. Any number of threads may call `join` and `find` at a time; `find` gives the smallest number of
+/// the set once no thread joins any more. A number's parent is never larger than itself.
+class SharedDisjointSets {
+ public:
+  explicit SharedDisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+
+  Index find(Index i) noexcept {
+    while (true) {
+      const Index parent = load(i);
+      if (parent == i) return i;
+      const Index grandparent = load(parent);
+      // Halves the path. A thread that was faster has only moved i closer to the root.
+      Index expected = parent;
+      if (grandparent != parent) at(i).compare_exchange_weak(expected, grandparent, std::memory_order_relaxed);
+      i = grandparent;
+    }
+  }
+  void join(Index a, Index b) noexcept {
+    while (true) {
+      a = find(a);
+      b = find(b);
+      if (a == b) return;
+      if (a > b) std::swap(a, b);
+      Index expected = b;  // still a root?
+      if (at(b).compare_exchange_strong(expected, a, std::memory_order_relaxed)) return;
+    }
+  }
+
+ private:
+  std::atomic_ref<Index> at(Index i) noexcept { return std::atomic_ref<Index>(parent_[i]); }
+  Index load(Index i) noexcept { return at(i).load(std::memory_order_relaxed); }
+
+  Buffer<Index> parent_;
+};
+
+}  // namespace tegl::detail
