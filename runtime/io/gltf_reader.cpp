@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
 
@@ -75,6 +76,7 @@ class GltfReader {
     read_scene();
     // Parts without normals leave those of the others without a use.
     if (mesh_.normals.size() != mesh_.coordinates.size()) mesh_.normals.clear();
+    take_attributes();
     read_extras();
     if (mesh_.dim == 0) mesh_.dim = 2;
     return std::move(mesh_);
@@ -261,6 +263,7 @@ class GltfReader {
     const View points = vectors(attributes, "POSITION", mesh_.coordinates,
                                 [&](const Eigen::Vector3d& point) -> Eigen::Vector3d { return place * point; });
     if (attributes.contains("NORMAL")) read_normals(attributes, place, points.count);
+    read_attributes(attributes, points.count);
     const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
     const bool indexed = primitive.contains("indices");
     View indices;
@@ -304,6 +307,61 @@ class GltfReader {
     if (view.count != points) malformed("{} normals of {} positions", view.count, points);
   }
 
+  /// Application-specific attributes of floats: those whose names start with an underscore (section 3.7.2.1).
+  void read_attributes(const Json& attributes, std::size_t points) {
+    constexpr std::size_t kFloat = 5126;
+    constexpr std::array<std::string_view, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    for (const auto& [semantic, accessor] : attributes.items()) {
+      if (!semantic.starts_with('_')) continue;
+      const std::size_t index = number_at(attributes, semantic.c_str(), std::nullopt);
+      const Json& description = element("accessors", index);
+      const auto type = std::ranges::find(kTypes, text_at(description, "type"));
+      if (type == kTypes.end() || number_at(description, "componentType", std::nullopt) != kFloat) continue;
+      const auto width = static_cast<std::size_t>(type - kTypes.begin()) + 1;
+      const View view = view_of(index, width);
+      if (view.count != points) malformed("{} values of {} for {} positions", view.count, semantic, points);
+      const auto known = std::ranges::find(semantics_, semantic);
+      const auto place = static_cast<std::size_t>(known - semantics_.begin());
+      if (known == semantics_.end()) {
+        semantics_.push_back(semantic);
+        attributes_.push_back({semantic.substr(1), "", static_cast<int>(width), {}});
+      }
+      if (attributes_[place].width != static_cast<int>(width)) continue;
+      for (std::size_t v = 0; v < view.count; ++v) {
+        std::array<float, 4> raw;
+        std::memcpy(raw.data(), view.bytes.data() + v * view.stride, width * sizeof(float));
+        attributes_[place].values.insert(attributes_[place].values.end(), raw.begin(),
+                                         raw.begin() + static_cast<std::ptrdiff_t>(width));
+      }
+    }
+  }
+
+  /// The attributes that all parts have; names, units and order as the writer left them in the first mesh.
+  void take_attributes() {
+    std::erase_if(attributes_, [&](Attribute& attribute) {
+      return attribute.values.size() != mesh_.coordinates.size() / 3 * static_cast<std::size_t>(attribute.width);
+    });
+    FileNames names({});
+    const Json& meshes = member(json_, "meshes");
+    const Json& first = meshes.is_array() && !meshes.empty() ? meshes[0] : meshes;
+    for (const Json& text : member(member(member(first, "extras"), "tegl"), "attributes")) {
+      const std::string semantic = text_at(text, "semantic");
+      const auto found = std::ranges::find_if(
+          attributes_, [&](const Attribute& attribute) { return "_" + attribute.name == semantic; });
+      if (found == attributes_.end()) continue;
+      mesh_.vertex_attributes.push_back(std::move(*found));
+      attributes_.erase(found);
+      Attribute& taken = mesh_.vertex_attributes.back();
+      if (const std::string name = text_at(text, "name"); !name.empty()) taken.name = name;
+      taken.name = names.make(taken.name);
+      taken.unit = text_at(text, "unit");
+    }
+    for (Attribute& other : attributes_) {
+      other.name = names.make(other.name.empty() ? "_" : other.name);
+      mesh_.vertex_attributes.push_back(std::move(other));
+    }
+  }
+
   [[nodiscard]] std::size_t index_value(const View& view, std::size_t i) const {
     const unsigned char* at = view.bytes.data() + i * view.stride;
     switch (view.component) {
@@ -341,6 +399,8 @@ class GltfReader {
   Bytes binary_;
   std::vector<Bytes> buffers_;
   std::size_t visited_ = 0;
+  std::vector<Attribute> attributes_;   ///< of all parts so far, by the names in the file
+  std::vector<std::string> semantics_;  ///< the same with their underscore
   Mesh mesh_;
 };
 

@@ -2,7 +2,8 @@
 //
 // glTF 2.0: .glb, and .gltf with the buffer inside as base64, so that it is one file. Coordinates are float, as the
 // format has no other; axis names and what is needed to read a mesh back are in asset.extras. Without normals viewers
-// shade faces flat, as the specification asks.
+// shade faces flat, as the specification asks. Vertex attributes of up to four numbers become _NAME attributes, whose
+// names and units are in the mesh's extras; the format has no place for others.
 //
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
 #include <algorithm>
@@ -12,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
 #include "output_file.hpp"
@@ -60,6 +62,42 @@ std::vector<std::array<float, 3>> normals(const Mesh& mesh) {
   return result;
 }
 
+/// The vertex attributes that glTF has a place for, as float.
+struct GltfAttribute {
+  std::string semantic;
+  const Attribute* attribute;
+  std::vector<float> values;
+};
+
+/// Of up to four numbers; names start with an underscore (section 3.7.2.1) and are spelled with plain capitals.
+std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesystem::path& path) {
+  std::vector<GltfAttribute> result;
+  FileNames names({});
+  for (const Attribute& attribute : mesh.vertex_attributes) {
+    constexpr int kMostNumbers = 4;
+    if (attribute.width > kMostNumbers) continue;
+    std::string word = as_word(attribute.name);
+    for (char& c : word)
+      if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    GltfAttribute& added = result.emplace_back(GltfAttribute{names.make("_" + word), &attribute, {}});
+    added.values.reserve(attribute.values.size());
+    for (const double value : attribute.values) {
+      if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
+        fail(ErrorCode::UnsupportedData, path, "vertex {} has {} as '{}'; expected what float holds",
+             added.values.size() / static_cast<std::size_t>(attribute.width), value, attribute.name);
+      added.values.push_back(static_cast<float>(value));
+    }
+  }
+  return result;
+}
+
+/// Everything that the buffer holds, in its order.
+struct Content {
+  const Mesh& mesh;
+  Positions points;
+  std::vector<GltfAttribute> attributes;
+};
+
 Json asset(const Mesh& mesh) {
   Json extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
   extras["axis_names"] = mesh.axis_names;
@@ -68,7 +106,8 @@ Json asset(const Mesh& mesh) {
 }
 
 /// Everything but the buffer itself. glTF allows no empty accessor: an empty mesh is a scene without nodes.
-Json document(const Mesh& mesh, const Positions& points, std::size_t buffer_bytes) {
+Json document(const Content& content, std::size_t buffer_bytes) {
+  const auto& [mesh, points, attributes] = content;
   Json json = {{"asset", asset(mesh)}, {"scene", 0}};
   if (points.values.empty() || mesh.simplices.empty()) {
     json["scenes"] = Json::array({Json{{"name", "empty contour"}}});
@@ -110,6 +149,22 @@ Json document(const Mesh& mesh, const Positions& points, std::size_t buffer_byte
                                    {"byteLength", position_bytes},
                                    {"target", kVertexBuffer}});
   }
+  std::size_t offset = position_bytes + index_bytes + (points.normals.empty() ? 0 : position_bytes);
+  for (const GltfAttribute& added : attributes) {
+    constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    const std::size_t view = json["bufferViews"].size();
+    json["meshes"][0]["primitives"][0]["attributes"][added.semantic] = json["accessors"].size();
+    json["accessors"].push_back({{"bufferView", view},
+                                 {"componentType", kFloat},
+                                 {"count", points.values.size()},
+                                 {"type", kTypes[static_cast<std::size_t>(added.attribute->width) - 1]}});
+    const std::size_t bytes = added.values.size() * sizeof(float);
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", kVertexBuffer}});
+    offset += bytes;
+    Json& texts = json["meshes"][0]["extras"]["tegl"]["attributes"];
+    texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
+  }
   json["buffers"] = Json::array({Json{{"byteLength", buffer_bytes}}});
   return json;
 }
@@ -134,35 +189,38 @@ std::span<const unsigned char> as_raw(const Range& range) {
 }
 
 /// What the buffer holds, part after part.
-std::array<std::span<const unsigned char>, 3> buffer_parts(const Mesh& mesh, const Positions& points) {
-  return {as_raw(points.values), as_raw(mesh.simplices), as_raw(points.normals)};
+std::vector<std::span<const unsigned char>> buffer_parts(const Content& content) {
+  std::vector<std::span<const unsigned char>> parts = {as_raw(content.points.values), as_raw(content.mesh.simplices),
+                                                       as_raw(content.points.normals)};
+  for (const GltfAttribute& added : content.attributes) parts.push_back(as_raw(added.values));
+  return parts;
 }
 
-std::size_t buffer_size(const Mesh& mesh, const Positions& points) {
+std::size_t buffer_size(const Content& content) {
   std::size_t bytes = 0;
-  for (const auto part : buffer_parts(mesh, points)) bytes += part.size();
+  for (const auto part : buffer_parts(content)) bytes += part.size();
   return bytes;
 }
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-void write_text(const Mesh& mesh, const Positions& points, Json json, OutputFile& file) {
+void write_text(const Content& content, Json json, OutputFile& file) {
   if (json.contains("buffers")) {
     std::vector<unsigned char> buffer;
-    for (const auto part : buffer_parts(mesh, points)) buffer.insert(buffer.end(), part.begin(), part.end());
+    for (const auto part : buffer_parts(content)) buffer.insert(buffer.end(), part.begin(), part.end());
     json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(buffer);
   }
   file.write(dumped(json));
 }
 
-void write_binary(const Mesh& mesh, const Positions& points, const Json& json, OutputFile& file) {
+void write_binary(const Content& content, const Json& json, OutputFile& file) {
   constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
   constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
   constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
   std::string text = dumped(json);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const bool has_buffer = json.contains("buffers");
-  const std::uint64_t buffer_bytes = has_buffer ? buffer_size(mesh, points) : 0;
+  const std::uint64_t buffer_bytes = has_buffer ? buffer_size(content) : 0;
   const std::uint64_t total = 12 + 8 + text.size() + (has_buffer ? 8 + buffer_bytes : 0);
   if (total > std::numeric_limits<std::uint32_t>::max())
     fail(ErrorCode::TooLarge, file.target(), "{} bytes as .glb; expected at most 2^32 - 1 (write .ply or .vtkhdf)",
@@ -179,21 +237,21 @@ void write_binary(const Mesh& mesh, const Positions& points, const Json& json, O
   if (!has_buffer) return;
   word(buffer_bytes);
   word(kBinChunk);
-  for (const auto part : buffer_parts(mesh, points)) file.write_range(part);
+  for (const auto part : buffer_parts(content)) file.write_range(part);
 }
 
 }  // namespace
 
 void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   OutputFile file(path);
-  Positions points = positions(mesh, path);
-  points.normals = normals(mesh);
+  Content content{mesh, positions(mesh, path), gltf_attributes(mesh, path)};
+  content.points.normals = normals(mesh);
   tick(progress, 0.5, path);
-  const Json json = document(mesh, points, buffer_size(mesh, points));
+  const Json json = document(content, buffer_size(content));
   if (lower_name(path).ends_with(".glb"))
-    write_binary(mesh, points, json, file);
+    write_binary(content, json, file);
   else
-    write_text(mesh, points, json, file);
+    write_text(content, json, file);
   tick(progress, 1.0, path);
   file.commit();
 }

@@ -112,6 +112,34 @@ bool H5File::has(hid_t group, const char* name) const {
   return H5Lexists(group, name, H5P_DEFAULT) > 0 && H5Oexists_by_name(group, name, H5P_DEFAULT) > 0;
 }
 
+H5Handle H5File::open_dataset(hid_t group, const char* name) const {
+  return checked(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, "opening a dataset");
+}
+
+std::vector<std::string> H5File::number_datasets(hid_t group) const {
+  H5G_info_t info{};
+  checked(H5Gget_info(group, &info), "listing a group");
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const auto name_of = [&](char* to, std::size_t size) {
+      return H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, to, size, H5P_DEFAULT);
+    };
+    const ssize_t length = name_of(nullptr, 0);
+    constexpr ssize_t kLongest = 1 << 16;
+    if (length < 0 || length > kLongest) fail(code_, path_, "listing a group failed in HDF5 ({})", innermost_reason());
+    std::string name(static_cast<std::size_t>(length) + 1, '\0');
+    name_of(name.data(), name.size());
+    name.pop_back();
+    if (!has(group, name.c_str())) continue;
+    const H5Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
+    if (object.id() < 0 || H5Iget_type(object.id()) != H5I_DATASET) continue;
+    const H5Handle type(H5Dget_type(object.id()), H5Tclose);
+    const H5T_class_t kind = H5Tget_class(type.id());
+    if (kind == H5T_INTEGER || kind == H5T_FLOAT) names.push_back(std::move(name));
+  }
+  return names;
+}
+
 void H5File::put_text(hid_t object, const char* name, const std::string& text) const {
   // Fixed length and null-padded: what VTK compares the grid's type with.
   const H5Handle type = checked(H5Tcopy(H5T_C_S1), H5Tclose, "writing an attribute");
@@ -211,9 +239,15 @@ void H5Table::replace(hid_t memory_type, const void* value, std::uint64_t row, s
   write(memory_type, value, std::array{row, column}, std::array{std::uint64_t{1}, std::uint64_t{1}});
 }
 
+int H5File::rank(hid_t group, const char* name) const {
+  const H5Handle dataset = open_dataset(group, name);
+  const H5Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "opening a dataset");
+  return H5Sget_simple_extent_ndims(space.id());
+}
+
 std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {
   if (!has(group, name)) fail(code_, path_, "no dataset '{}'; expected it", name);
-  const H5Handle dataset = checked(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, "opening a dataset");
+  const H5Handle dataset = open_dataset(group, name);
   const H5Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "opening a dataset");
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 1 || rank > 2) fail(code_, path_, "dataset '{}' of {} dimensions; expected 1 or 2", name, rank);
@@ -229,7 +263,7 @@ std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {
 }
 
 void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to) const {
-  const H5Handle dataset = checked(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, "opening a dataset");
+  const H5Handle dataset = open_dataset(group, name);
   checked(H5Dread(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), "reading a dataset");
 }
 

@@ -59,6 +59,7 @@ class H5Table {
   /// One value of a row that is there already.
   void replace(hid_t memory_type, const void* value, std::uint64_t row, std::uint64_t column);
   [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
+  [[nodiscard]] hid_t id() const noexcept { return dataset_.id(); }
 
  private:
   friend class H5File;
@@ -89,6 +90,9 @@ class H5File {
   [[nodiscard]] H5Handle create_group(const char* name) const;
   [[nodiscard]] H5Handle open_group(const char* name) const;
   [[nodiscard]] bool has(hid_t group, const char* name) const;
+  [[nodiscard]] H5Handle open_dataset(hid_t group, const char* name) const;
+  /// The names of a group's datasets of numbers, in alphabetical order.
+  [[nodiscard]] std::vector<std::string> number_datasets(hid_t group) const;
 
   void put_text(hid_t object, const char* name, const std::string& text) const;
   void put_numbers(hid_t object, const char* name, std::span<const std::int64_t> numbers) const;
@@ -101,6 +105,8 @@ class H5File {
   [[nodiscard]] H5Table create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
                                      std::uint64_t expected) const;
 
+  /// How many dimensions a dataset has.
+  [[nodiscard]] int rank(hid_t group, const char* name) const;
   /// The sizes of a dataset, checked to be no larger than the file can hold; MalformedFile if it is not there.
   [[nodiscard]] std::vector<std::uint64_t> sizes(hid_t group, const char* name) const;
   /// Reads a whole dataset as `memory_type` into room for all its values.

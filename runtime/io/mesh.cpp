@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
 
@@ -44,6 +45,8 @@ void check_mesh(const Mesh& mesh, const fs::path& path) {
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.coordinates.size())
     fail(ErrorCode::InvalidArgument, path, "mesh of {} numbers in normals; expected {}, as in coordinates, or none",
          mesh.normals.size(), mesh.coordinates.size());
+  check_attributes(mesh.vertex_attributes, vertex_count(mesh), "vertices", path);
+  check_attributes(mesh.simplex_attributes, simplex_count(mesh), "simplices", path);
   const std::size_t vertices = vertex_count(mesh);
   const auto bad = std::find_if(mesh.simplices.begin(), mesh.simplices.end(), [&](Index i) { return i >= vertices; });
   if (bad != mesh.simplices.end())
@@ -111,6 +114,8 @@ Mesh to_mesh(const Contour<N, Real>& contour) {
     for (std::size_t c = 0; c < N; ++c) mesh.simplices[s * N + c] = contour.simplices[s][c];
   mesh.axis_names = as_vector(contour.axis_names);
   mesh.axis_units = as_vector(contour.axis_units);
+  mesh.vertex_attributes = contour.vertex_attributes;
+  mesh.simplex_attributes = contour.simplex_attributes;
   return mesh;
 }
 
@@ -141,6 +146,8 @@ Contour<N, double> to_contour(const Mesh& mesh) {
     contour.axis_names[static_cast<std::size_t>(a)] = axis_text(mesh.axis_names, a);
     contour.axis_units[static_cast<std::size_t>(a)] = axis_text(mesh.axis_units, a);
   }
+  contour.vertex_attributes = mesh.vertex_attributes;
+  contour.simplex_attributes = mesh.simplex_attributes;
   return contour;
 }
 

@@ -10,8 +10,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
 
+#include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
 
@@ -63,6 +65,48 @@ std::optional<Scalar> scalar_of(std::string_view name) {
     if (name == kNames[i].first || name == kNames[i].second) return static_cast<Scalar>(i);
   return std::nullopt;
 }
+
+/// What comments of the writer say of an attribute, by its first property.
+struct AttributeText {
+  std::string name;
+  std::string unit;
+  std::size_t width = 1;
+};
+using AttributeTexts = std::map<std::string, AttributeText>;
+
+/// The attributes among the scalar properties of an element: those that comments describe, and any other by its own
+/// name.
+class AttributeColumns {
+ public:
+  /// `free`: the properties that are not something else.
+  AttributeColumns(const Element& element, const std::vector<bool>& free, const AttributeTexts& texts) {
+    FileNames names({});
+    const auto is_free = [&](std::size_t p) { return free[p] && !element.properties[p].count_type; };
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      if (!is_free(p)) continue;
+      const auto found = texts.find(element.properties[p].name);
+      AttributeText text = found == texts.end() ? AttributeText{} : found->second;
+      if (text.name.empty()) text.name = element.properties[p].name;
+      std::size_t width = 0;
+      while (width < text.width && p + width < element.properties.size() && is_free(p + width)) ++width;
+      columns_.push_back(p);
+      attributes_.push_back({names.make(text.name), text.unit, static_cast<int>(width), {}});
+      attributes_.back().values.reserve(static_cast<std::size_t>(element.count) * width);
+      p += width - 1;
+    }
+  }
+  void add(const Item& item) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const auto first = item.scalars.begin() + static_cast<std::ptrdiff_t>(columns_[i]);
+      attributes_[i].values.insert(attributes_[i].values.end(), first, first + attributes_[i].width);
+    }
+  }
+  std::vector<Attribute> take() { return std::move(attributes_); }
+
+ private:
+  std::vector<std::size_t> columns_;  ///< the first of each
+  std::vector<Attribute> attributes_;
+};
 
 class PlyReader {
  public:
@@ -133,12 +177,25 @@ class PlyReader {
   /// "comment tegl space_dim 2", "comment tegl axis 0 name lon", as the writer leaves them.
   void read_comment(std::string_view line, const std::vector<std::string_view>& parts) {
     if (parts.size() < 4 || parts[1] != "tegl") return;
+    if (parts[2] == "vertex" || parts[2] == "simplex") read_attribute_comment(line, parts);
     if (parts[2] == "space_dim") planar_ = parts[3] == "2";
     std::uint64_t axis = 0;
     if (parts.size() < 6 || parts[2] != "axis" || !parse_number(parts[3], axis) || axis > 2) return;
     auto& texts = parts[4] == "unit" ? mesh_.axis_units : mesh_.axis_names;
     texts.resize(3);
     texts[static_cast<std::size_t>(axis)] = line.substr(static_cast<std::size_t>(parts[5].data() - line.data()));
+  }
+
+  /// "comment tegl vertex attribute u_0 3 u", "comment tegl vertex unit u_0 m s-1".
+  void read_attribute_comment(std::string_view line, const std::vector<std::string_view>& parts) {
+    auto& described = parts[2] == "vertex" ? of_vertices_ : of_simplices_;
+    std::uint64_t width = 0;
+    const bool is_unit = parts[3] == "unit";
+    const std::size_t text = is_unit ? 5 : 6;
+    if (parts.size() <= text || (!is_unit && (parts[3] != "attribute" || !parse_number(parts[5], width)))) return;
+    AttributeText& it = described[std::string(parts[4])];
+    (is_unit ? it.unit : it.name) = line.substr(static_cast<std::size_t>(parts[text].data() - line.data()));
+    if (!is_unit) it.width = std::max<std::size_t>(1, static_cast<std::size_t>(width));
   }
 
   void read_format(std::string_view name) {
@@ -266,13 +323,19 @@ class PlyReader {
     const auto normal_columns = columns_of(element, {"nx", "ny", "nz"});
     mesh_.coordinates.resize(3 * static_cast<std::size_t>(element.count));
     if (normal_columns) mesh_.normals.resize(mesh_.coordinates.size());
+    std::vector<bool> others(element.properties.size(), true);
+    for (const std::size_t column : *columns) others[column] = false;
+    for (std::size_t a = 0; a < 3 && normal_columns; ++a) others[(*normal_columns)[a]] = false;
+    AttributeColumns attributes(element, others, of_vertices_);
     Item item;
     for (std::size_t v = 0; v < element.count; ++v) {
       read_item(element, element.properties.size(), item);
       for (std::size_t a = 0; a < 3; ++a) mesh_.coordinates[3 * v + a] = item.scalars[(*columns)[a]];
       for (std::size_t a = 0; a < 3 && normal_columns; ++a)
         mesh_.normals[3 * v + a] = item.scalars[(*normal_columns)[a]];
+      attributes.add(item);
     }
+    mesh_.vertex_attributes = attributes.take();
   }
 
   /// Where three numbers are among the properties, if they are.
@@ -303,6 +366,9 @@ class PlyReader {
     if (face ? list >= count || !element.properties[list].count_type : first >= count || second >= count)
       fail(ErrorCode::MalformedFile, path_, "PLY element '{}' without {}", element.name,
            face ? "a list vertex_indices" : "vertex1 and vertex2");
+    std::vector<bool> others(count, true);
+    if (!face) others[first] = others[second] = false;
+    AttributeColumns attributes(element, others, of_simplices_);
     Item item;
     mesh_.simplices.reserve(static_cast<std::size_t>(element.count) * (face ? 3 : 2));
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -314,8 +380,10 @@ class PlyReader {
         mesh_.simplices.push_back(vertex_number(item.list[0]));
         if (face) mesh_.simplices.push_back(vertex_number(item.list[corner - 1]));
         mesh_.simplices.push_back(vertex_number(item.list[corner]));
+        attributes.add(item);
       }
     }
+    mesh_.simplex_attributes = attributes.take();
   }
 
   fs::path path_;
@@ -323,6 +391,7 @@ class PlyReader {
   std::size_t at_ = 0;
   Encoding encoding_ = Encoding::Ascii;
   std::vector<Element> elements_;
+  AttributeTexts of_vertices_, of_simplices_;
   Mesh mesh_;
   bool planar_ = false;
 };

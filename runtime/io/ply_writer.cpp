@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// PLY, binary little-endian, with coordinates and normals as double: lossless. Segments become an `edge` element.
+// PLY, binary little-endian, with coordinates, normals and attributes as double: lossless. Segments become an `edge`
+// element. Attributes become properties after the usual ones, with comments that say their names and units.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
+#include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
 #include "output_file.hpp"
@@ -26,64 +27,131 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string header(const Mesh& mesh) {
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by tegl\n";
-  text += fmt::format("comment tegl space_dim {}\n", mesh.space_dim);
-  for (int a = 0; a < mesh.space_dim; ++a) {
-    const std::string name = one_line(axis_text(mesh.axis_names, a));
-    const std::string unit = one_line(axis_text(mesh.axis_units, a));
-    if (!name.empty()) text += fmt::format("comment tegl axis {} name {}\n", a, name);
-    if (!unit.empty()) text += fmt::format("comment tegl axis {} unit {}\n", a, unit);
+/// An attribute and the names of its properties.
+struct Properties {
+  const Attribute* attribute;
+  std::vector<std::string> names;
+};
+
+/// Properties have names of one word; comments say what the attribute's name and unit are.
+std::vector<Properties> properties_of(const std::vector<Attribute>& attributes, FileNames names) {
+  std::vector<Properties> result;
+  for (const Attribute& attribute : attributes) {
+    Properties& properties = result.emplace_back(Properties{&attribute, {}});
+    for (int i = 0; i < attribute.width; ++i)
+      properties.names.push_back(
+          names.make(as_word(attribute.name) + (attribute.width > 1 ? "_" + std::to_string(i) : "")));
   }
-  text += fmt::format("element vertex {}\n", vertex_count(mesh));
-  for (const char* const name : {"x", "y", "z"}) text += fmt::format("property double {}\n", name);
-  if (!mesh.normals.empty())
-    for (const char* const name : {"nx", "ny", "nz"}) text += fmt::format("property double {}\n", name);
-  text += mesh.dim == 1
-              ? fmt::format("element edge {}\nproperty uint vertex1\nproperty uint vertex2\n", simplex_count(mesh))
-              : fmt::format("element face {}\nproperty list uchar uint vertex_indices\n", simplex_count(mesh));
-  return text + "end_header\n";
+  return result;
 }
 
-void write_vertices(const Mesh& mesh, OutputFile& file, const Progress& progress) {
-  const std::size_t count = vertex_count(mesh);
-  std::vector<std::array<double, 3>> block;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    block.clear();
-    for (std::size_t v = first; v < std::min(first + kBlock, count); ++v) {
-      block.push_back(position(mesh, v));
-      if (!mesh.normals.empty()) block.push_back(normal(mesh, v));
-    }
-    file.write(block.data(), block.size() * sizeof(block[0]));
-    tick(progress, 0.5 * static_cast<double>(first) / static_cast<double>(count), file.target());
-  }
-}
+class PlyWriter {
+ public:
+  PlyWriter(const Mesh& mesh, OutputFile& file, const Progress& progress)
+      : mesh_(mesh),
+        file_(file),
+        progress_(progress),
+        of_vertices_(properties_of(mesh.vertex_attributes, FileNames({"x", "y", "z", "nx", "ny", "nz"}))),
+        of_simplices_(properties_of(mesh.simplex_attributes,
+                                    FileNames({"vertex_indices", "vertex_index", "vertex1", "vertex2"}))) {}
 
-void write_faces(const Mesh& mesh, OutputFile& file, const Progress& progress) {
-  constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(Index);
-  const std::size_t count = simplex_count(mesh);
-  std::vector<unsigned char> block;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    block.resize(std::min(kBlock, count - first) * kFaceBytes);
-    for (std::size_t i = 0; i < block.size() / kFaceBytes; ++i) {
-      block[i * kFaceBytes] = 3;
-      std::memcpy(&block[i * kFaceBytes + 1], &mesh.simplices[3 * (first + i)], 3 * sizeof(Index));
-    }
-    file.write(block.data(), block.size());
-    tick(progress, 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(count), file.target());
+  void run() {
+    file_.write(header());
+    in_blocks(vertex_count(mesh_), 0.0, [this](std::size_t v) { put_vertex(v); });
+    in_blocks(simplex_count(mesh_), 0.5, [this](std::size_t s) { put_simplex(s); });
   }
-}
+
+ private:
+  std::string header() const {
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by tegl\n";
+    text += fmt::format("comment tegl space_dim {}\n", mesh_.space_dim);
+    for (int a = 0; a < mesh_.space_dim; ++a) {
+      const std::string name = one_line(axis_text(mesh_.axis_names, a));
+      const std::string unit = one_line(axis_text(mesh_.axis_units, a));
+      if (!name.empty()) text += fmt::format("comment tegl axis {} name {}\n", a, name);
+      if (!unit.empty()) text += fmt::format("comment tegl axis {} unit {}\n", a, unit);
+    }
+    text += comments("vertex", of_vertices_) + comments("simplex", of_simplices_);
+    text += fmt::format("element vertex {}\n", vertex_count(mesh_));
+    for (const char* const name : {"x", "y", "z"}) text += fmt::format("property double {}\n", name);
+    if (!mesh_.normals.empty())
+      for (const char* const name : {"nx", "ny", "nz"}) text += fmt::format("property double {}\n", name);
+    text += declarations(of_vertices_);
+    text += mesh_.dim == 1
+                ? fmt::format("element edge {}\nproperty uint vertex1\nproperty uint vertex2\n", simplex_count(mesh_))
+                : fmt::format("element face {}\nproperty list uchar uint vertex_indices\n", simplex_count(mesh_));
+    return text + declarations(of_simplices_) + "end_header\n";
+  }
+
+  /// "comment tegl vertex attribute FIRST-PROPERTY WIDTH NAME", "comment tegl vertex unit FIRST-PROPERTY UNIT".
+  static std::string comments(const char* kind, const std::vector<Properties>& all) {
+    std::string text;
+    for (const Properties& properties : all) {
+      const Attribute& attribute = *properties.attribute;
+      text += fmt::format("comment tegl {} attribute {} {} {}\n", kind, properties.names[0], attribute.width,
+                          one_line(attribute.name));
+      if (!attribute.unit.empty())
+        text += fmt::format("comment tegl {} unit {} {}\n", kind, properties.names[0], one_line(attribute.unit));
+    }
+    return text;
+  }
+
+  static std::string declarations(const std::vector<Properties>& all) {
+    std::string text;
+    for (const Properties& properties : all)
+      for (const std::string& name : properties.names) text += fmt::format("property double {}\n", name);
+    return text;
+  }
+
+  /// Calls put(row) for all rows; what these put is written a block at a time.
+  template <class Put>
+  void in_blocks(std::size_t rows, double done, const Put& put) {
+    for (std::size_t first = 0; first < rows; first += kBlock) {
+      tick(progress_, done + 0.5 * static_cast<double>(first) / static_cast<double>(rows), file_.target());
+      block_.clear();
+      for (std::size_t row = first; row < std::min(first + kBlock, rows); ++row) put(row);
+      file_.write(block_.data(), block_.size());
+    }
+  }
+
+  template <class T>
+  void put(const T* values, std::size_t count) {
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(values);
+    block_.insert(block_.end(), bytes, bytes + count * sizeof(T));
+  }
+
+  void put_attributes(const std::vector<Properties>& all, std::size_t row) {
+    for (const Properties& properties : all) {
+      const auto width = static_cast<std::size_t>(properties.attribute->width);
+      put(properties.attribute->values.data() + row * width, width);
+    }
+  }
+
+  void put_vertex(std::size_t v) {
+    put(position(mesh_, v).data(), 3);
+    if (!mesh_.normals.empty()) put(normal(mesh_, v).data(), 3);
+    put_attributes(of_vertices_, v);
+  }
+
+  void put_simplex(std::size_t s) {
+    const auto corners = static_cast<std::size_t>(mesh_.dim) + 1;
+    if (mesh_.dim == 2) block_.push_back(3);
+    put(mesh_.simplices.data() + s * corners, corners);
+    put_attributes(of_simplices_, s);
+  }
+
+  const Mesh& mesh_;
+  OutputFile& file_;
+  const Progress& progress_;
+  std::vector<Properties> of_vertices_, of_simplices_;
+  std::vector<unsigned char> block_;
+};
 
 }  // namespace
 
 void write_ply(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   OutputFile file(path);
-  file.write(header(mesh));
-  write_vertices(mesh, file, progress);
-  if (mesh.dim == 1)
-    file.write_range(std::span<const Index>(mesh.simplices));
-  else
-    write_faces(mesh, file, progress);
+  PlyWriter(mesh, file, progress).run();
   tick(progress, 1.0, path);
   file.commit();
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "common.hpp"
 #include "hdf5_file.hpp"
@@ -43,8 +44,15 @@ class Reader {
     read_points();
     const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
     if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 3 ? static_cast<int>(dims[0]) : 2;
-    if (file_.has(group_.id(), "PointData") && (mesh_.dim == 3 || (dims.size() == 2 && dims[1] == 4))) add_times();
+    // Tetrahedra of other programs with a point array t are taken for contours in 4-space.
+    if (file_.has(group_.id(), "PointData") && (dims.size() == 2 ? dims[1] == 4 : mesh_.dim == 3)) add_times();
     read_normals();
+    std::set<std::string> taken;
+    if (mesh_.space_dim == 4) taken.insert(kTimes);
+    if (!mesh_.normals.empty()) taken.insert(kNormals);
+    if (!mesh_.normals.empty() && mesh_.space_dim == 4) taken.insert(kNormalTimes);
+    mesh_.vertex_attributes = attributes("PointData", vertex_count(mesh_), taken);
+    mesh_.simplex_attributes = attributes("CellData", simplex_count(mesh_), {});
     if (dims.size() == 2 && dims[1] == 2) flatten(mesh_, path_);
     const auto n = static_cast<std::size_t>(mesh_.space_dim);
     mesh_.axis_names = split(file_.get_text(group_.id(), "tegl_axis_names"), n);
@@ -114,12 +122,12 @@ class Reader {
   /// x y z and the point array t, side by side.
   void add_times() {
     const H5Handle point_data = file_.open_group("VTKHDF/PointData");
-    if (!file_.has(point_data.id(), "t")) return;
+    if (!file_.has(point_data.id(), kTimes)) return;
     const std::size_t vertices = mesh_.coordinates.size() / 3;
-    if (length(point_data.id(), "t") != vertices)
-      fail(ErrorCode::MalformedFile, path_, "point array 't' of {} values; expected {}", length(point_data.id(), "t"),
-           vertices);
-    add_fourth(point_data, "t", mesh_.coordinates);
+    if (length(point_data.id(), kTimes) != vertices)
+      fail(ErrorCode::MalformedFile, path_, "point array 't' of {} values; expected {}",
+           length(point_data.id(), kTimes), vertices);
+    add_fourth(point_data, kTimes, mesh_.coordinates);
     mesh_.space_dim = 4;
   }
 
@@ -151,6 +159,44 @@ class Reader {
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
   }
 
+  /// The arrays of a group that have a row for each vertex or simplex, those of the writer first and in its order.
+  [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
+                                                  const std::set<std::string>& taken) const {
+    std::vector<Attribute> result;
+    if (!file_.has(group_.id(), group_name)) return result;
+    const H5Handle group = file_.open_group((std::string("VTKHDF/") + group_name).c_str());
+    std::vector<std::pair<std::int64_t, std::string>> found;
+    for (const std::string& name : file_.number_datasets(group.id())) {
+      const H5Handle dataset = file_.open_dataset(group.id(), name.c_str());
+      const auto order = file_.get_numbers(dataset.id(), kAttributeOrder);
+      if (!taken.contains(name) && has_rows(group.id(), name.c_str(), rows))
+        found.emplace_back(order.empty() ? std::numeric_limits<std::int64_t>::max() : order[0], name);
+    }
+    std::sort(found.begin(), found.end());
+    FileNames names({});
+    for (const auto& [order, name] : found) {
+      const auto size = file_.sizes(group.id(), name.c_str());
+      const H5Handle dataset = file_.open_dataset(group.id(), name.c_str());
+      const std::string own_name = file_.get_text(dataset.id(), kAttributeName);
+      Attribute& attribute = result.emplace_back();
+      attribute.name = names.make(own_name.empty() ? name : own_name);
+      attribute.unit = file_.get_text(dataset.id(), kAttributeUnit);
+      attribute.width = size.size() == 1 ? 1 : static_cast<int>(size[1]);
+      attribute.values.resize(rows * static_cast<std::size_t>(attribute.width));
+      if (rows > 0) file_.read(group.id(), name.c_str(), H5T_NATIVE_DOUBLE, attribute.values.data());
+    }
+    return result;
+  }
+
+  /// Whether a dataset is a list or a table of so many rows.
+  [[nodiscard]] bool has_rows(hid_t group, const char* name, std::size_t rows) const {
+    const int rank = file_.rank(group, name);
+    if (rank < 1 || rank > 2) return false;
+    const auto size = file_.sizes(group, name);
+    constexpr std::uint64_t kMostColumns = 1 << 16;
+    return size[0] == rows && (size.size() == 1 || (size[1] > 0 && size[1] <= kMostColumns));
+  }
+
   const fs::path& path_;
   H5File file_;
   H5Handle group_;
@@ -162,7 +208,9 @@ class Reader {
 void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress) {
   VtkhdfWriter writer(
       path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh)});
-  const std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
+  std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
+  for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
+    for (const Attribute& attribute : *attributes) all += attribute.values.size();
   const auto in_blocks = [&](auto values, std::size_t before, std::size_t columns, auto&& append) {
     const std::size_t most = kMostRows * columns;
     for (std::size_t at = 0; at < values.size(); at += most) {
@@ -177,6 +225,19 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size() + mesh.normals.size(),
             static_cast<std::size_t>(mesh.dim) + 1,
             [&](std::span<const Index> part) { writer.append_simplices(part); });
+  std::size_t done = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
+  const auto append_attributes = [&](const char* group, const std::vector<Attribute>& attributes) {
+    for (std::size_t i = 0; i < attributes.size(); ++i) {
+      const auto width = static_cast<std::size_t>(attributes[i].width);
+      H5Table table = writer.attribute_table(group, attributes[i], i);
+      in_blocks(std::span<const double>(attributes[i].values), done, width, [&](std::span<const double> part) {
+        table.append(H5T_NATIVE_DOUBLE, part.data(), part.size() / width);
+      });
+      done += attributes[i].values.size();
+    }
+  };
+  append_attributes("PointData", mesh.vertex_attributes);
+  append_attributes("CellData", mesh.simplex_attributes);
   tick(progress, 1.0, path);
   writer.commit();
 }

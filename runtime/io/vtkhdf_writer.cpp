@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // VTKHDF, unstructured grids, written: triangles, segments, or tetrahedra whose vertices carry the time as the point
-// array "t". Normals are the point array "Normals", with the fourth component in "normal_t". All of these are double:
-// lossless. Axis names and units are attributes of the group, which VTK does not
-// look at.
+// array "t". Normals are the point array "Normals", with the fourth component in "normal_t", and attributes are point
+// and cell arrays. All of these are double: lossless. Axis names and units are attributes of the group, those of arrays
+// of the arrays; VTK does not look at them.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
 #include "vtkhdf_writer.hpp"
@@ -35,6 +35,11 @@ H5Handle create_root(const H5File& file, const VtkhdfLayout& layout) {
   return group;
 }
 
+std::set<std::string> reserved_point_names(int space_dim) {
+  if (space_dim == 4) return {kNormals, kNormalTimes, kTimes};
+  return {kNormals};
+}
+
 }  // namespace
 
 VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout& layout)
@@ -48,7 +53,7 @@ VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout
       types(file.create_table(group, "Types", H5T_STD_U8LE, 0, layout.expected_simplices)) {
   const H5Handle point_data = file.create_group("VTKHDF/PointData");
   if (layout.space_dim == 4)
-    times.emplace(file.create_table(point_data.id(), "t", H5T_IEEE_F64LE, 0, layout.expected_vertices));
+    times.emplace(file.create_table(point_data.id(), kTimes, H5T_IEEE_F64LE, 0, layout.expected_vertices));
 }
 
 VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
@@ -57,7 +62,8 @@ VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
       space_dim_(static_cast<std::size_t>(layout.space_dim)),
       expected_vertices_(layout.expected_vertices),
       file_(H5File::create(pending_.path(), target)),
-      group_(create_root(file_, layout)) {
+      group_(create_root(file_, layout)),
+      point_names_(reserved_point_names(layout.space_dim)) {
   tables_.emplace(file_, group_->id(), layout);
   constexpr std::int64_t kFirst = 0;
   tables_->offsets.append(H5T_NATIVE_INT64, &kFirst, 1);
@@ -105,6 +111,25 @@ void VtkhdfWriter::append_ids(hid_t type, const void* ids, std::size_t count) {
     tables_->offsets.append(H5T_NATIVE_INT64, offsets_.data(), rows);
     tables_->types.append(H5T_NATIVE_UINT8, types_.data(), rows);
   }
+}
+
+H5Table VtkhdfWriter::attribute_table(const char* group, const Attribute& attribute, std::size_t order) {
+  const bool of_points = std::string_view(group) == "PointData";
+  const std::string path = std::string("VTKHDF/") + group;
+  const H5Handle data =
+      file_.has(group_->id(), group) ? file_.open_group(path.c_str()) : file_.create_group(path.c_str());
+  // HDF5 takes names with a slash for paths, and "." for the group itself.
+  std::string wished = attribute.name == "." ? "_" : attribute.name;
+  std::replace(wished.begin(), wished.end(), '/', '_');
+  const std::string name = (of_points ? point_names_ : cell_names_).make(wished);
+  const auto columns = static_cast<std::uint64_t>(attribute.width);
+  H5Table table =
+      file_.create_table(data.id(), name.c_str(), H5T_IEEE_F64LE, columns == 1 ? 0 : columns, row_count(attribute));
+  const std::array<std::int64_t, 1> place = {static_cast<std::int64_t>(order)};
+  file_.put_numbers(table.id(), kAttributeOrder, place);
+  if (name != attribute.name) file_.put_text(table.id(), kAttributeName, attribute.name);
+  if (!attribute.unit.empty()) file_.put_text(table.id(), kAttributeUnit, attribute.unit);
+  return table;
 }
 
 void VtkhdfWriter::replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "attributes.hpp"
 #include "hdf5_file.hpp"
 #include "output_file.hpp"
 
@@ -38,6 +39,9 @@ class VtkhdfWriter {
   /// `ids`: rows of dim + 1 vertex numbers; the vertices may come later.
   void append_simplices(std::span<const std::uint32_t> ids) { append_ids(H5T_NATIVE_UINT32, ids.data(), ids.size()); }
   void append_simplices(std::span<const std::uint64_t> ids) { append_ids(H5T_NATIVE_UINT64, ids.data(), ids.size()); }
+  /// `group`: "PointData" or "CellData"; `order`: the place among the attributes of that group. To be filled by
+  /// `append` of as many rows as vertices or simplices, and gone before commit().
+  H5Table attribute_table(const char* group, const Attribute& attribute, std::size_t order);
   /// Another vertex for one corner of a simplex that was appended.
   void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex);
   /// Completes the file and moves it to the target.
@@ -66,6 +70,8 @@ class VtkhdfWriter {
   std::vector<double> positions_, times_;
   std::vector<std::int64_t> offsets_;
   std::vector<unsigned char> types_;
+  FileNames point_names_{{}};
+  FileNames cell_names_{{}};
 };
 
 }  // namespace tegl::io_detail

@@ -148,8 +148,15 @@ std::string mesh_bytes(const Mesh& mesh, const std::string& name) {
   return read_file(dir / name);
 }
 
+Mesh mesh_with_attributes(int dim, int space_dim) {
+  Mesh mesh = random_mesh(dim, space_dim, 20, 30, 1, true);
+  add_attributes(mesh, 2);
+  return mesh;
+}
+
 TEST(Fuzz, Ply) {
   fuzz("a.ply", mesh_bytes(random_mesh(2, 3, 20, 30, 1), "a.ply"), read_as_mesh);
+  fuzz("d.ply", mesh_bytes(mesh_with_attributes(2, 3), "a.ply"), read_as_mesh);
   fuzz("b.ply", mesh_bytes(random_mesh(1, 2, 20, 30, 1), "a.ply"), read_as_mesh);
   fuzz("c.ply",
        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
@@ -160,9 +167,13 @@ TEST(Fuzz, Ply) {
 TEST(Fuzz, Gltf) {
   fuzz("a.gltf", mesh_bytes(random_mesh(2, 3, 20, 30, 1), "a.gltf"), read_as_mesh);
   fuzz("b.glb", mesh_bytes(random_mesh(1, 2, 20, 30, 1), "a.glb"), read_as_mesh);
+  fuzz("c.gltf", mesh_bytes(mesh_with_attributes(2, 3), "a.gltf"), read_as_mesh);
 }
 
-TEST(Fuzz, VtkHdf) { fuzz("a.vtkhdf", mesh_bytes(random_mesh(3, 4, 20, 30, 1), "a.vtkhdf"), read_as_mesh); }
+TEST(Fuzz, VtkHdf) {
+  fuzz("a.vtkhdf", mesh_bytes(random_mesh(3, 4, 20, 30, 1), "a.vtkhdf"), read_as_mesh);
+  fuzz("b.vtkhdf", mesh_bytes(mesh_with_attributes(3, 4), "a.vtkhdf"), read_as_mesh);
+}
 
 }  // namespace
 }  // namespace tegl::test

@@ -157,6 +157,33 @@ inline Mesh random_mesh(int dim, int space_dim, std::size_t vertices, std::size_
   return mesh;
 }
 
+/// Attributes of widths 1 to 3 with random values, of vertices and of simplices.
+inline void add_attributes(Mesh& mesh, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> number(-1000, 1000);
+  const auto add = [&](std::vector<Attribute>& to, const char* name, const char* unit, int width, std::size_t rows) {
+    Attribute& attribute = to.emplace_back(Attribute{name, unit, width, {}});
+    for (std::size_t i = 0; i < rows * static_cast<std::size_t>(width); ++i) attribute.values.push_back(number(random));
+  };
+  const std::size_t vertices = mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim);
+  const std::size_t simplices = mesh.simplices.size() / static_cast<std::size_t>(mesh.dim + 1);
+  add(mesh.vertex_attributes, "temperature of water", "degC", 1, vertices);
+  add(mesh.vertex_attributes, "flow", "m s-1", 3, vertices);
+  add(mesh.vertex_attributes, "age", "", 2, vertices);
+  add(mesh.simplex_attributes, "label", "", 1, simplices);
+  add(mesh.simplex_attributes, "flux/area", "kg m-2 s-1", 3, simplices);
+}
+
+inline void expect_same(const std::vector<Attribute>& a, const std::vector<Attribute>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].name, b[i].name);
+    EXPECT_EQ(a[i].unit, b[i].unit);
+    EXPECT_EQ(a[i].width, b[i].width);
+    EXPECT_TRUE(a[i].values == b[i].values) << a[i].name;
+  }
+}
+
 inline void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.dim, b.dim);
   EXPECT_EQ(a.space_dim, b.space_dim);
@@ -169,6 +196,8 @@ inline void expect_same(const Mesh& a, const Mesh& b) {
   EXPECT_TRUE(a.simplices == b.simplices);
   EXPECT_EQ(a.axis_names, b.axis_names);
   EXPECT_EQ(a.axis_units, b.axis_units);
+  expect_same(a.vertex_attributes, b.vertex_attributes);
+  expect_same(a.simplex_attributes, b.simplex_attributes);
 }
 
 }  // namespace tegl::test

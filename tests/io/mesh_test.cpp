@@ -29,6 +29,8 @@ Mesh written_and_read(const Mesh& mesh, const std::string& name) {
 Mesh as_floats(Mesh mesh) {
   for (double& value : mesh.coordinates) value = static_cast<float>(value);
   for (double& value : mesh.normals) value = static_cast<float>(value);
+  for (Attribute& attribute : mesh.vertex_attributes)
+    for (double& value : attribute.values) value = static_cast<float>(value);
   return mesh;
 }
 
@@ -77,6 +79,79 @@ TEST(Mesh, NormalsGoIntoEveryFormat) {
       const Mesh mesh = random_mesh(dim, space_dim, 70000, 1000, 5, true);
       expect_same(written_and_read(mesh, name), lossless ? mesh : as_floats(mesh));
     }
+}
+
+TEST(Mesh, AttributesWithTheirNamesAndUnitsGoIntoPlyAndVtkhdf) {
+  for (const char* name : {"a.ply", "a.vtkhdf"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3), std::pair(3, 4)})
+      for (const std::size_t simplices : {0U, 1U, 70000U}) {
+        SCOPED_TRACE(testing::Message() << name << " dim " << dim << ", " << simplices);
+        if (find_mesh_file_format(name)->most_dim < dim) continue;
+        Mesh mesh = random_mesh(dim, space_dim, 2 * simplices, simplices, simplices, simplices == 1);
+        add_attributes(mesh, simplices);
+        expect_same(written_and_read(mesh, name), mesh);
+      }
+}
+
+TEST(Mesh, AttributesOfUpToFourNumbersPerVertexGoIntoGltf) {
+  for (const char* name : {"a.gltf", "a.glb"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3)}) {
+      SCOPED_TRACE(testing::Message() << name << " dim " << dim);
+      Mesh mesh = random_mesh(dim, space_dim, 300, 400, 1, true);
+      add_attributes(mesh, 2);
+      Mesh wide = mesh;
+      Attribute& five = wide.vertex_attributes.emplace_back(Attribute{"five", "", 5, {}});
+      five.values.assign(5 * 300, 0.0);
+      mesh.simplex_attributes.clear();
+      expect_same(written_and_read(wide, name), as_floats(mesh));
+    }
+}
+
+TEST(Mesh, AttributesMayHaveNamesThatFormatsUseThemselves) {
+  Mesh mesh = random_mesh(2, 3, 3, 2, 1, true);
+  for (const char* name :
+       {"x", "X", "nz", "t", "Normals", "a/b", "a_b", "a b", ".", "..", "\xc3\xa4", "_", "vertex1"}) {
+    const auto i = static_cast<double>(mesh.vertex_attributes.size());
+    mesh.vertex_attributes.push_back({name, "unit of it", 1, {i, 0.5, -i}});
+    mesh.simplex_attributes.push_back({name, "", 2, {i, 1, 2, 3}});
+  }
+  for (const char* name : {"a.ply", "a.vtkhdf", "a.gltf"}) {
+    SCOPED_TRACE(name);
+    Mesh expected = std::string(name) == "a.gltf" ? as_floats(mesh) : mesh;
+    if (std::string(name) == "a.gltf") expected.simplex_attributes.clear();
+    expect_same(written_and_read(mesh, name), expected);
+  }
+  Mesh contour = random_mesh(3, 4, 4, 1, 1, true);
+  contour.vertex_attributes = {{"t", "", 1, {1, 2, 3, 4}}, {"normal_t", "", 1, {5, 6, 7, 8}}};
+  expect_same(written_and_read(contour, "a.vtkhdf"), contour);
+}
+
+TEST(Mesh, TetrahedraInSpaceKeepATimeAsAnAttribute) {
+  Mesh mesh = random_mesh(3, 3, 4, 1, 1);
+  mesh.vertex_attributes = {{"t", "s", 1, {1, 2, 3, 4}}};
+  expect_same(written_and_read(mesh, "a.vtkhdf"), mesh);
+}
+
+TEST(Mesh, AttributesThatContradictTheMeshAreRefused) {
+  TempDir dir;
+  const auto refused = [&](std::vector<Attribute> attributes, const std::string& part) {
+    Mesh mesh = random_mesh(2, 3, 3, 1, 7);
+    mesh.vertex_attributes = std::move(attributes);
+    for (const char* name : {"a.ply", "a.glb", "a.vtkhdf"})
+      expect_error(ErrorCode::InvalidArgument, {name, part}, [&] { write_mesh(mesh, dir / name); });
+  };
+  refused({{"", "", 1, {1, 2, 3}}}, "attribute of vertices by the name ''");
+  refused({{"a", "", 1, {1, 2, 3}}, {"a", "", 1, {1, 2, 3}}}, "by the name 'a'; expected names, each once");
+  refused({{"a", "", 1, {1, 2}}}, "attribute 'a' of 2 numbers, 1 for each of 3 vertices; expected 3");
+  refused({{"a", "", 0, {}}}, "expected a width of 1 or more");
+  Mesh mesh = random_mesh(2, 3, 3, 1, 7);
+  mesh.simplex_attributes = {{"label", "", 1, {1, 2, 3}}};
+  expect_error(ErrorCode::InvalidArgument, {"1 for each of 1 simplices; expected 1"},
+               [&] { write_mesh(mesh, dir / "a.ply"); });
+  mesh.simplex_attributes.clear();
+  mesh.vertex_attributes = {{"a", "", 1, {1, std::nan(""), 3}}};
+  expect_error(ErrorCode::UnsupportedData, {"vertex 1 has nan as 'a'"}, [&] { write_mesh(mesh, dir / "a.glb"); });
+  EXPECT_EQ(dir.files(), 0U);
 }
 
 TEST(Mesh, NormalsOfLengthZeroPointUpInGltf) {
@@ -138,12 +213,16 @@ TEST(Mesh, ContoursBecomeMeshesAndBack) {
   contour.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
   contour.axis_names = {"x", "y", "z"};
   contour.axis_units = {"mm", "mm", "mm"};
+  contour.vertex_attributes = {{"age", "s", 1, {1, 2, 3}}};
+  contour.simplex_attributes = {{"flow", "m", 2, {1, 2, 3, 4}}};
   const auto back = to_contour<3>(to_mesh(contour));
   EXPECT_EQ(back.vertices[2], (std::array<double, 3>{6, 7, 8.5}));
   EXPECT_TRUE(back.simplices == contour.simplices);
   ASSERT_EQ(back.normals.size(), 3U);
   EXPECT_EQ(back.normals[2], (std::array<double, 3>{0, 0, -1}));
   EXPECT_EQ(back.axis_names, contour.axis_names);
+  expect_same(back.vertex_attributes, contour.vertex_attributes);
+  expect_same(back.simplex_attributes, contour.simplex_attributes);
   EXPECT_EQ(back.axis_units, contour.axis_units);
   expect_error(ErrorCode::UnsupportedData, {"2-simplices in 3-space; expected 3-simplices in 4-space"},
                [&] { to_contour<4>(to_mesh(contour)); });
@@ -226,6 +305,9 @@ TEST(Mesh, ReadsPlyOfOtherPrograms) {
   EXPECT_EQ(mesh.coordinates[11], 0.5);
   EXPECT_EQ((std::vector<Index>(mesh.simplices.begin(), mesh.simplices.end())),
             (std::vector<Index>{0, 1, 2, 0, 2, 3, 0, 2, 1}));
+  // Other properties are attributes; a polygon's goes to all of its triangles.
+  expect_same(mesh.vertex_attributes, {{"red", "", 1, {255, 255, 255, 255}}});
+  expect_same(mesh.simplex_attributes, {{"flag", "", 1, {7, 7, 8}}});
   // Big-endian, with an element to pass over in front.
   std::string bytes =
       "ply\nformat binary_big_endian 1.0\nelement extra 1\nproperty list int double list\nelement vertex 2\n"

@@ -50,6 +50,14 @@ expect("times of contour4", [t.GetValue(i) for i in range(4)], [7.0, 7.5, 8.0, 9
 expect("normals of contour4", contour4.GetPointData().GetArray("Normals").GetTuple(3), (0.6, 0.0, 0.0))
 expect("time of normals of contour4", contour4.GetPointData().GetArray("normal_t").GetValue(3), -0.8)
 
+temperature = surface.GetPointData().GetArray("temperature")
+expect("temperatures of surface", [temperature.GetValue(i) for i in range(4)], [1.0, 2.0, 3.0, 4.5])
+expect("flow of surface", surface.GetPointData().GetArray("flow").GetTuple(3), (1.0, 2.0, 3.0))
+label = surface.GetCellData().GetArray("label")
+expect("labels of surface", [label.GetValue(i) for i in range(4)], [7.0, 8.0, 9.0, 10.0])
+expect("ages of contour4", contour4.GetPointData().GetArray("age").GetValue(3), 4.0)
+expect("elements of contour4", contour4.GetCellData().GetArray("dsigma").GetTuple(0), (0.1, 0.2, 0.3, 0.4))
+
 empty = read(vtkHDFReader(), folder / "empty.vtkhdf")
 expect("points of empty", empty.GetNumberOfPoints(), 0)
 expect("cells of empty", empty.GetNumberOfCells(), 0)

@@ -30,6 +30,11 @@ int main(int argc, char** argv) {
     auto contour4 = mesh_of(3, 4, {0, 0, 0, 7, 1, 0, 0, 7.5, 0, 1, 0, 8, 0, 0, 0.1, 9}, {0, 1, 2, 3});
     surface.normals = {0, 0, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     contour4.normals = {0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0.6, 0, 0, -0.8};
+    surface.vertex_attributes = {{"temperature", "degC", 1, {1, 2, 3, 4.5}},
+                                 {"flow", "m s-1", 3, {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3}}};
+    surface.simplex_attributes = {{"label", "", 1, {7, 8, 9, 10}}};
+    contour4.vertex_attributes = {{"age", "s", 1, {1, 2, 3, 4}}};
+    contour4.simplex_attributes = {{"dsigma", "", 4, {0.1, 0.2, 0.3, 0.4}}};
     tegl::write_mesh(lines, folder / "lines.vtkhdf");
     tegl::write_mesh(surface, folder / "surface.vtkhdf");
     tegl::write_mesh(surface, folder / "surface.ply");

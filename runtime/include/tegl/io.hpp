@@ -123,6 +123,8 @@ struct Mesh {
   Buffer<Index> simplices;              ///< #S x (dim + 1), row = simplex
   std::vector<std::string> axis_names;  ///< space_dim names, may be empty
   std::vector<std::string> axis_units;
+  std::vector<Attribute> vertex_attributes;   ///< rows as many as vertices; names not empty and different
+  std::vector<Attribute> simplex_attributes;  ///< likewise, as many as simplices
 };
 
 /// What a file with a certain extension holds.
@@ -148,11 +150,14 @@ Contour<N, double> to_contour(const Mesh& mesh);
 /// Writes by extension: .ply (lossless) and .gltf/.glb (coordinates as float) hold segments and triangles in the plane
 /// or in space; .vtkhdf (lossless) these and 4D contours, as tetrahedra with t as a point array. Normals go
 /// into all of them: as nx, ny, nz (.ply), NORMAL (.gltf/.glb; 0 as (0, 0, 1), as the format has none of length 0), and
-/// the point arrays Normals and, in 4-space, normal_t (.vtkhdf). Written under another name beside the target and
-/// renamed at the end: never half a file. An empty mesh gives a valid file.
+/// the point arrays Normals and, in 4-space, normal_t (.vtkhdf). Attributes become properties of vertices and of faces
+/// or edges (.ply), point and cell arrays (.vtkhdf; both as double, with names and units), and _NAME attributes of
+/// vertices (.gltf/.glb; as float, of up to four numbers: others, and those of simplices, have no place there and are
+/// left out). Written under another name beside the target and renamed at the end: never half a file. An empty mesh
+/// gives a valid file.
 /// Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh), InvalidArgument (a mesh that
-/// contradicts itself), UnsupportedData (.gltf: coordinates beyond float), TooLarge (.glb beyond 4 GiB), WriteFailed,
-/// Cancelled.
+/// contradicts itself), UnsupportedData (.gltf: coordinates or attributes beyond float), TooLarge (.glb beyond 4 GiB),
+/// WriteFailed, Cancelled.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
 
 /// A VTKHDF file (.vtkhdf) that a streamed contour goes to as it comes: what write_mesh would write of the whole
@@ -181,9 +186,10 @@ class ContourFile final : public ContourSink<N, Real> {
 
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
 /// triangles; glTF: nodes applied), and triangles of .stl and .obj, where vertices with equal coordinates become one.
-/// Normals are read where one of the formats of write_mesh has them for all vertices. What write_mesh wrote comes back
-/// with the same numbering, names and units. Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData,
-/// TooLarge.
+/// Normals are read where one of the formats of write_mesh has them for all vertices, and so are attributes: of other
+/// programs any numbers by a name of their own (PLY: scalar properties; VTKHDF: arrays of one or two dimensions; glTF:
+/// _NAME as float). What write_mesh wrote comes back with the same numbering, names and units. Errors: FileNotFound,
+/// MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge.
 Mesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace tegl

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Checks and file names of attributes.
+#include "attributes.hpp"
+
+#include "common.hpp"
+
+namespace tegl::io_detail {
+
+void check_attributes(std::span<const Attribute> attributes, std::size_t rows, std::string_view what,
+                      const std::filesystem::path& path) {
+  std::set<std::string_view> names;
+  for (const Attribute& attribute : attributes) {
+    if (attribute.name.empty() || !names.insert(attribute.name).second)
+      fail(ErrorCode::InvalidArgument, path, "attribute of {} by the name '{}'; expected names, each once", what,
+           attribute.name);
+    if (attribute.width < 1 || attribute.values.size() != rows * static_cast<std::size_t>(attribute.width))
+      fail(ErrorCode::InvalidArgument, path, "attribute '{}' of {} numbers, {} for each of {} {}; expected {}",
+           attribute.name, attribute.values.size(), attribute.width, rows, what,
+           attribute.width < 1 ? "a width of 1 or more"
+                               : std::to_string(rows * static_cast<std::size_t>(attribute.width)));
+  }
+}
+
+std::string FileNames::make(const std::string& wished) {
+  std::string name = wished;
+  for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}", wished, i);
+  return name;
+}
+
+std::string as_word(std::string_view text) {
+  std::string word(text);
+  for (char& c : word) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!plain) c = '_';
+  }
+  return word.empty() ? "_" : word;
+}
+
+}  // namespace tegl::io_detail
