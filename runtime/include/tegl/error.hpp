@@ -42,4 +42,10 @@ class Error : public std::runtime_error {
 /// and the operation throws `Error{Cancelled}`.
 using Progress = std::function<bool(double fraction)>;
 
+/// What every long operation on contours takes.
+struct WorkOptions {
+  unsigned threads = 0;  ///< how many work; 0: all that the machine has. The result is the same, byte by byte.
+  Progress progress = {};
+};
+
 }  // namespace tegl
