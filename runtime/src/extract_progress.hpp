@@ -19,8 +19,9 @@ namespace tegl::detail {
 class ProgressReporter {
  public:
   /// `progress` may hold nothing, and must outlive this.
-  ProgressReporter(const Progress& progress, std::size_t slabs)
-      : progress_(progress), slabs_(slabs), caller_(std::this_thread::get_id()) {}
+  /// `unit`: what slabs are, where they are something else.
+  ProgressReporter(const Progress& progress, std::size_t slabs, const char* unit = "slabs")
+      : progress_(progress), slabs_(slabs), unit_(unit), caller_(std::this_thread::get_id()) {}
 
   /// A batch of slabs is next, of which `passes` passes are the work.
   void begin_batch(std::size_t first, std::size_t end, unsigned passes) noexcept {
@@ -56,8 +57,8 @@ class ProgressReporter {
     }
     if (goes_on) return;
     stopped_.store(true, std::memory_order_relaxed);
-    throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {:.0f} of {} slabs",
-                                                  std::floor(last_ * static_cast<double>(slabs_)), slabs_));
+    throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {:.0f} of {} {}",
+                                                  std::floor(last_ * static_cast<double>(slabs_)), slabs_, unit_));
   }
   /// Whether threads may as well leave the rest of their work.
   [[nodiscard]] bool stopped() const noexcept { return stopped_.load(std::memory_order_relaxed); }
@@ -65,6 +66,7 @@ class ProgressReporter {
  private:
   const Progress& progress_;
   std::size_t slabs_;
+  const char* unit_;
   std::thread::id caller_;
   double first_ = 0.0, share_ = 0.0, last_ = 0.0;
   int pass_ = 0;
