@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Loops in blocks that do not depend on the number of threads, so that what is summed up by blocks does not either; and
+// progress of several passes after each other.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "tegl/error.hpp"
+#include "workers.hpp"
+
+namespace tegl::detail {
+
+/// Tells `progress`; throws Cancelled where it says stop.
+inline void tell(const Progress& progress, double fraction) {
+  if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "cancelled by the progress callback");
+}
+
+/// The progress of a pass that takes the whole from `first` to `last`.
+inline Progress part_of(const Progress& progress, double first, double last) {
+  if (!progress) return {};
+  return [&progress, first, last](double fraction) { return progress(first + (last - first) * fraction); };
+}
+
+/// How many blocks of `size` there are in `count`; the last one may be smaller.
+constexpr std::size_t block_count(std::size_t count, std::size_t size) noexcept { return (count + size - 1) / size; }
+
+/// Calls work(block, from, to, scratch) for all blocks of 0 … count - 1, side by side on `threads` threads (0: all that
+/// the machine has), each with its own scratch, made by `make_scratch`. `progress` is told between some of the blocks,
+/// by the caller's thread.
+template <class MakeScratch, class Work>
+void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress,
+                    const MakeScratch& make_scratch, const Work& work) {
+  using Scratch = decltype(make_scratch());
+  Workers<Scratch> workers(threads, make_scratch);
+  const std::size_t blocks = block_count(count, size);
+  const std::size_t batch = std::max<std::size_t>(64, block_count(blocks, 64));
+  for (std::size_t first = 0; first < blocks; first += batch) {
+    tell(progress, static_cast<double>(first) / static_cast<double>(blocks));
+    workers.for_range(std::min(batch, blocks - first), 1, [&](std::size_t from, std::size_t to, Scratch& scratch) {
+      for (std::size_t b = first + from; b < first + to; ++b)
+        work(b, b * size, std::min(count, (b + 1) * size), scratch);
+    });
+  }
+  tell(progress, 1.0);
+}
+
+/// Without scratch: work(block, from, to).
+template <class Work>
+void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress, const Work& work) {
+  struct Nothing {};
+  for_each_block(
+      count, size, threads, progress, [] { return Nothing{}; },
+      [&](std::size_t block, std::size_t from, std::size_t to, Nothing&) { work(block, from, to); });
+}
+
+}  // namespace tegl::detail
