@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <functional>
 #include <queue>
 
+#include "errors.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
@@ -288,16 +288,6 @@ TEST(Components, RepeatingAVertexConnectAllTheSame) {
   EXPECT_EQ(labels.vertices[2], 0u);
   EXPECT_EQ(labels.vertices[1], kNoComponent);
   EXPECT_EQ(components(contour, labels)[0].size, 0.0);
-}
-
-void expect_error(ErrorCode code, const std::string& part, const std::function<void()>& work) {
-  try {
-    work();
-    ADD_FAILURE() << "no error; expected " << error_name(code);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 TEST(Components, WrongArgumentsAreNamed) {

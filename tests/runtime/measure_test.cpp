@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <functional>
 
+#include "errors.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
@@ -233,16 +233,6 @@ TEST(MeasureCuts, ComeInTheOrderAskedForWhateverItIs) {
   EXPECT_EQ(found[3].size, 0.0);
   EXPECT_EQ(found[3].content, 0.0);
   EXPECT_TRUE(measure_cuts(contour, {}).empty());
-}
-
-void expect_error(ErrorCode code, const std::string& part, const std::function<void()>& work) {
-  try {
-    work();
-    ADD_FAILURE() << "no error; expected " << error_name(code);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-  }
 }
 
 TEST(Measure, WrongArgumentsAreNamedAndItCanBeCancelled) {

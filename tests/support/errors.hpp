@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Errors that have to come.
+#pragma once
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tegl/error.hpp"
+
+namespace tegl::test {
+
+/// Expects that `work` throws a tegl::Error with this code, and `part` in its message.
+template <class Work>
+void expect_error(ErrorCode code, const std::string& part, const Work& work) {
+  try {
+    work();
+    ADD_FAILURE() << "no error; expected " << error_name(code) << " with '" << part << "'";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), code) << error.what();
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace tegl::test
