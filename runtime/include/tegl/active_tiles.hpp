@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The active tiles of an image at an isovalue, found without looking at all tiles: an index is built once, and then
+// asked for as many isovalues as are wanted.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tegl/contour.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/image.hpp"
+
+namespace tegl {
+
+/// Tiles by number: axis 0 fastest, (samples - 1) of them along every axis.
+using TileNumber = std::uint64_t;
+
+/// The tiles between the samples of an image. A row of them is a line along axis 0.
+template <int N>
+class TileGrid {
+ public:
+  using Index = std::array<std::size_t, N>;
+
+  TileGrid() = default;
+  /// Of an image of so many samples. An axis of one sample (or none) leaves no tiles.
+  explicit TileGrid(const Index& samples) noexcept {
+    count_ = 1;
+    for (int a = 0; a < N; ++a) {
+      sizes_[a] = samples[a] > 0 ? samples[a] - 1 : 0;
+      strides_[a] = count_;
+      count_ *= sizes_[a];
+    }
+  }
+  /// Tiles along an axis.
+  [[nodiscard]] std::size_t size(int axis) const noexcept { return sizes_[axis]; }
+  /// How much the number grows from a tile to the next along an axis.
+  [[nodiscard]] TileNumber stride(int axis) const noexcept { return strides_[axis]; }
+  [[nodiscard]] TileNumber count() const noexcept { return count_; }
+  [[nodiscard]] std::size_t rows() const noexcept { return count_ == 0 ? 0 : count_ / sizes_[0]; }
+
+  [[nodiscard]] TileNumber number(const Index& index) const noexcept {
+    TileNumber number = 0;
+    for (int a = 0; a < N; ++a) number += index[a] * strides_[a];
+    return number;
+  }
+  /// Of the tile's lowest corner. Precondition: number < count().
+  [[nodiscard]] Index index(TileNumber number) const noexcept {
+    Index index;
+    for (int a = 0; a < N; ++a, number /= sizes_[a - 1]) index[a] = number % sizes_[a];
+    return index;
+  }
+  /// Rows by number: tiles row * size(0) ... (row + 1) * size(0) - 1. Precondition: number < count().
+  [[nodiscard]] std::size_t row(TileNumber number) const noexcept { return number / sizes_[0]; }
+
+ private:
+  Index sizes_{};
+  std::array<TileNumber, N> strides_{};
+  TileNumber count_ = 0;
+};
+
+/// Rows of tiles, a bit each.
+class TileRowSet {
+ public:
+  explicit TileRowSet(std::size_t rows) : rows_(rows), words_((rows + 63) / 64) {}
+  void add(std::size_t row) noexcept { words_[row / 64] |= std::uint64_t{1} << (row % 64); }
+  void add_all() noexcept;
+  /// As `find` tells them, or in any other order. O(tiles).
+  template <int N>
+  void add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) noexcept;
+  [[nodiscard]] bool has(std::size_t row) const noexcept { return (words_[row / 64] >> (row % 64) & 1u) != 0; }
+  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::size_t count() const noexcept;
+  /// ceil(rows / 64) words, lowest bit first; bits behind the last row are 0.
+  [[nodiscard]] const std::vector<std::uint64_t>& words() const noexcept { return words_; }
+
+ private:
+  std::size_t rows_;
+  std::vector<std::uint64_t> words_;
+};
+
+/// How active tiles are found.
+enum class ActiveMethod : std::uint8_t {
+  full_scan,      ///< every sample is looked at for every isovalue; nothing is built
+  interval_tree,  ///< Cignoni et al. 1997: O(log n + k) for k active tiles
+  span_space,     ///< buckets of tiles by their greatest value, sorted by their least; Livnat et al. 1996, Shen et al.
+  min_max_tree,   ///< a pyramid over bricks of tiles; Wilhelms, Van Gelder 1992
+};
+/// "full-scan", "interval-tree", ...
+std::string_view active_method_name(ActiveMethod method) noexcept;
+/// All methods, in the order of the enumeration.
+std::vector<ActiveMethod> active_methods();
+
+/// What is known of the image that an index was built for.
+template <int N>
+struct IndexedImage {
+  std::array<std::size_t, N> sizes{};  ///< samples
+  std::string value_type;              ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  std::uint64_t digest = 0;            ///< of sizes, type and the bits of all values
+  bool any_missing = false;            ///< whether any value is NaN
+
+  bool operator==(const IndexedImage&) const = default;
+};
+
+/// What `image` is to an index. Reads all values: as fast as memory. Errors: Cancelled.
+template <Value T, int N>
+IndexedImage<N> identify(const Image<T, N>& image, unsigned threads = 0, const Progress& progress = {});
+
+/// Where an index is saved to, and loaded from: bytes one after the other. What they throw reaches their caller.
+class ByteSink {
+ public:
+  ByteSink() = default;
+  ByteSink(const ByteSink&) = delete;
+  ByteSink& operator=(const ByteSink&) = delete;
+  virtual ~ByteSink() = default;
+  virtual void write(const void* data, std::size_t bytes) = 0;
+};
+class ByteSource {
+ public:
+  ByteSource() = default;
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+  virtual ~ByteSource() = default;
+  /// Reads up to so many bytes, fewer only at the end; returns how many.
+  virtual std::size_t read(void* data, std::size_t bytes) = 0;
+};
+
+/// What the file of an index says of it.
+struct ActiveTilesHead {
+  std::uint32_t version = 0;
+  ActiveMethod method = ActiveMethod::full_scan;
+  std::vector<std::uint64_t> sizes;  ///< of the image: 2 to 5 axes, axis 0 first
+  std::string value_type;            ///< as in IndexedImage
+  std::uint64_t digest = 0;
+  bool any_missing = false;
+};
+/// Reads the beginning of an index, whatever its image. Errors: MalformedFile, UnsupportedFormat as load_active_tiles.
+ActiveTilesHead read_active_tiles_head(ByteSource& from);
+
+namespace detail {
+class IndexWriter;
+}
+
+/// The active tiles of an image at any isovalue T: those with min < T <= max over their corners, and no corner missing.
+///
+/// Thread-safe, and the answer does not depend on the number of threads. `find`, `find_rows` and `extract` take finite
+/// isovalues; InvalidIsovalue otherwise. Some methods look at the image's values when asked (`needs_image`): then the
+/// values must outlive the index; the view need not. The values must not change.
+template <int N>
+class ActiveTiles {
+ public:
+  virtual ~ActiveTiles() = default;
+  ActiveTiles(const ActiveTiles&) = delete;
+  ActiveTiles& operator=(const ActiveTiles&) = delete;
+
+  [[nodiscard]] virtual ActiveMethod method() const noexcept = 0;
+  [[nodiscard]] const IndexedImage<N>& image() const noexcept { return image_; }
+  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
+  /// Bytes that the index holds beside the image.
+  [[nodiscard]] virtual std::size_t memory_bytes() const noexcept = 0;
+  [[nodiscard]] virtual bool needs_image() const noexcept { return false; }
+  /// Whether all active tiles are found. Otherwise (`choose_tiles`) `extract` makes the contour in those that are, as
+  /// if there were no others.
+  [[nodiscard]] virtual bool is_complete() const noexcept { return true; }
+
+  /// The active tiles, ascending, each once.
+  [[nodiscard]] std::vector<TileNumber> find(double isovalue) const;
+  /// The rows that have active tiles, and perhaps more: those that are worth looking at.
+  [[nodiscard]] TileRowSet find_rows(double isovalue) const;
+
+  /// Writes the index; `load_active_tiles` reads it. The format is described in docs/active-tiles.md. Errors: those of
+  /// the sink; InvalidArgument where nothing can be saved (`choose_tiles`).
+  void save(ByteSink& to) const;
+
+ protected:
+  explicit ActiveTiles(IndexedImage<N> image) : image_(std::move(image)), grid_(image_.sizes) {}
+
+  /// Appends the active tiles, each once, in any order. `isovalue` is finite.
+  virtual void collect(double isovalue, std::vector<TileNumber>& tiles) const = 0;
+  /// Adds at least the rows that have active tiles. By default: those of `collect`.
+  virtual void collect_rows(double isovalue, TileRowSet& rows) const;
+  /// What follows the head of the file.
+  virtual void write(detail::IndexWriter& to) const = 0;
+
+ private:
+  IndexedImage<N> image_;
+  TileGrid<N> grid_;
+};
+
+struct ActiveTilesOptions {
+  /// How many threads build; 0, or more than there are: all that the machine has.
+  unsigned threads = 0;
+  Progress progress;
+};
+
+/// Builds an index. About linear in the number of tiles, in time and in memory while it is built. Images of up to
+/// 2^32 tiles take half the memory of larger ones. Errors: Cancelled.
+template <Value T, int N>
+std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
+                                                   const ActiveTilesOptions& options = {});
+
+/// Reads an index that was saved, and makes sure that it belongs to the image: sizes, value type and digest of the
+/// values. Errors: MalformedFile (no index, damaged, or cut short), UnsupportedFormat (written by another version, or
+/// on a machine of another byte order), InvalidArgument (an index of another image), Cancelled.
+template <Value T, int N>
+std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
+                                                  const ActiveTilesOptions& options = {});
+
+/// These tiles and no others, whatever the isovalue: for `extract` to make the contour of a part. They should be all
+/// tiles that a component of the contour passes, or it is cut open where they end. Errors: InvalidArgument unless the
+/// numbers are ascending and those of tiles.
+template <Value T, int N>
+std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vector<TileNumber> tiles);
+
+}  // namespace tegl

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What all indexes of active tiles share: order, rows, and the head of a file.
+#include "tegl/active_tiles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "active_tiles_head.hpp"
+#include "index_file.hpp"
+
+namespace tegl {
+
+namespace {
+
+constexpr std::array<std::string_view, 4> kMethodNames = {"full-scan", "interval-tree", "span-space", "min-max-tree"};
+
+/// Many numbers are put in order by a bit each, few by comparisons.
+void put_in_order(std::vector<TileNumber>& tiles, TileNumber end) {
+  constexpr TileNumber kTilesPerBit = 256;
+  if (tiles.size() < end / kTilesPerBit || tiles.size() < 2) return std::sort(tiles.begin(), tiles.end());
+  std::vector<std::uint64_t> bits((end + 63) / 64);
+  for (const TileNumber tile : tiles) bits.data()[tile / 64] |= std::uint64_t{1} << (tile % 64);
+  TileNumber* to = tiles.data();
+  for (std::size_t w = 0; w < bits.size(); ++w)
+    for (std::uint64_t word = bits.data()[w]; word != 0; word &= word - 1)
+      *to++ = w * 64 + static_cast<unsigned>(std::countr_zero(word));
+}
+
+void require_finite(double isovalue) {
+  if (!std::isfinite(isovalue))
+    throw Error(ErrorCode::InvalidIsovalue, fmt::format("isovalue {}; expected a finite number", isovalue));
+}
+
+}  // namespace
+
+std::string_view active_method_name(ActiveMethod method) noexcept {
+  return kMethodNames[static_cast<std::size_t>(method)];
+}
+
+std::vector<ActiveMethod> active_methods() {
+  std::vector<ActiveMethod> methods;
+  for (std::size_t i = 0; i < kMethodNames.size(); ++i) methods.push_back(static_cast<ActiveMethod>(i));
+  return methods;
+}
+
+void TileRowSet::add_all() noexcept {
+  std::fill(words_.begin(), words_.end(), ~std::uint64_t{0});
+  if (rows_ % 64 != 0) words_.back() >>= 64 - rows_ % 64;
+}
+
+std::size_t TileRowSet::count() const noexcept {
+  std::size_t count = 0;
+  for (const std::uint64_t word : words_) count += static_cast<std::size_t>(std::popcount(word));
+  return count;
+}
+
+template <int N>
+void TileRowSet::add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) noexcept {
+  // Neighbours are often of one row: only where a tile is not of the last one is there a division.
+  const TileNumber along = grid.size(0);
+  TileNumber first = 1;
+  TileNumber end = 0;
+  for (const TileNumber tile : tiles) {
+    if (tile >= first && tile < end) continue;
+    const std::size_t row = grid.row(tile);
+    first = row * along;
+    end = first + along;
+    add(row);
+  }
+}
+
+template <int N>
+std::vector<TileNumber> ActiveTiles<N>::find(double isovalue) const {
+  require_finite(isovalue);
+  std::vector<TileNumber> tiles;
+  if (grid_.count() == 0) return tiles;
+  collect(isovalue, tiles);
+  if (!std::is_sorted(tiles.begin(), tiles.end())) put_in_order(tiles, grid_.count());
+  return tiles;
+}
+
+template <int N>
+TileRowSet ActiveTiles<N>::find_rows(double isovalue) const {
+  require_finite(isovalue);
+  TileRowSet rows(grid_.rows());
+  if (grid_.count() != 0) collect_rows(isovalue, rows);
+  return rows;
+}
+
+template <int N>
+void ActiveTiles<N>::collect_rows(double isovalue, TileRowSet& rows) const {
+  std::vector<TileNumber> tiles;
+  collect(isovalue, tiles);
+  rows.add_rows_of(grid_, tiles);
+}
+
+template <int N>
+void ActiveTiles<N>::save(ByteSink& to) const {
+  if (!is_complete())
+    throw Error(ErrorCode::InvalidArgument, "chosen tiles cannot be saved; expected an index of all active tiles");
+  detail::IndexWriter writer(to);
+  detail::write_head(writer, method(), image_);
+  write(writer);
+  writer.finish();
+}
+
+namespace detail {
+
+void write_magic(IndexWriter& to, ActiveMethod method, int dim) {
+  to.value(kIndexMagic);
+  to.value(kIndexByteOrder);
+  to.value(kIndexVersion);
+  to.text(active_method_name(method));
+  to.value(static_cast<std::uint32_t>(dim));
+}
+
+ActiveTilesHead read_head(IndexReader& from) {
+  if (from.value<std::array<char, 8>>("name of the format") != kIndexMagic)
+    throw Error(ErrorCode::MalformedFile, "not an index of active tiles; expected a file that 'tegl index' wrote");
+  if (from.value<std::uint32_t>("byte order") != kIndexByteOrder)
+    throw Error(ErrorCode::UnsupportedFormat,
+                "the index was written on a machine of another byte order; build it anew");
+  ActiveTilesHead head;
+  head.version = from.value<std::uint32_t>("version");
+  if (head.version != kIndexVersion)
+    throw Error(ErrorCode::UnsupportedFormat,
+                fmt::format("the index has version {}; expected {}: build it anew", head.version, kIndexVersion));
+  constexpr std::size_t kLongName = 64;
+  const std::string method = from.text(kLongName, "name of the method");
+  const auto* const name = std::find(kMethodNames.begin(), kMethodNames.end(), method);
+  if (name == kMethodNames.end())
+    throw Error(ErrorCode::UnsupportedFormat, fmt::format("the index is of the method '{}'; expected one of {}", method,
+                                                          fmt::join(kMethodNames, ", ")));
+  head.method = static_cast<ActiveMethod>(name - kMethodNames.begin());
+  const auto dim = from.value<std::uint32_t>("dimension");
+  if (dim < 2 || dim > 5) IndexReader::damaged(fmt::format("it is of dimension {}; expected 2 to 5", dim));
+  for (std::uint32_t a = 0; a < dim; ++a) head.sizes.push_back(from.value<std::uint64_t>("sizes of the image"));
+  head.value_type = from.text(kLongName, "value type");
+  head.digest = from.value<std::uint64_t>("digest of the values");
+  head.any_missing = from.value<std::uint8_t>("note of missing values") != 0;
+  return head;
+}
+
+void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, std::string_view value_type,
+                        std::uint64_t digest) {
+  if (!std::equal(head.sizes.begin(), head.sizes.end(), sizes.begin(), sizes.end()) || head.value_type != value_type)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the index is of an image of {} {}; expected the one of {} {}",
+                            fmt::join(head.sizes, " x "), head.value_type, fmt::join(sizes, " x "), value_type));
+  if (head.digest != digest)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the index is of an image with other values: digest {:016x}; expected {:016x}", head.digest,
+                            digest));
+}
+
+}  // namespace detail
+
+ActiveTilesHead read_active_tiles_head(ByteSource& from) {
+  detail::IndexReader reader(from);
+  return detail::read_head(reader);
+}
+
+#define TEGL_INSTANTIATE(N)      \
+  template class ActiveTiles<N>; \
+  template void TileRowSet::add_rows_of<N>(const TileGrid<N>&, const std::vector<TileNumber>&) noexcept;
+TEGL_INSTANTIATE(2)
+TEGL_INSTANTIATE(3)
+TEGL_INSTANTIATE(4)
+TEGL_INSTANTIATE(5)
+#undef TEGL_INSTANTIATE
+
+}  // namespace tegl
