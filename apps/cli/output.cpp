@@ -41,15 +41,9 @@ void require_input(const fs::path& path) {
   if (access(path.c_str(), R_OK) != 0) fail_input(fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 
-void require_output(const fs::path& output, const fs::path& input) {
+void require_text_output(const fs::path& output, const fs::path& input) {
   std::error_code error;
-  if (find_output_format(output) == nullptr) {
-    const std::string extension = output.extension().string();
-    fail(output, fmt::format("{}; {}",
-                             extension.empty() ? "the name has no extension"
-                                               : fmt::format("the extension '{}' is not known", extension),
-                             kExpectedExtensions));
-  }
+  if (output.empty()) fail(output, "is no name of a file");
   if (fs::is_directory(output, error)) fail(output, "is a directory; expected the name of a file");
   if (fs::equivalent(output, input, error)) fail(output, "is the input itself; expected another file");
   const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
@@ -62,12 +56,28 @@ void require_output(const fs::path& output, const fs::path& input) {
   }
 }
 
+void require_output(const fs::path& output, const fs::path& input) {
+  if (find_output_format(output) == nullptr) {
+    const std::string extension = output.extension().string();
+    fail(output, fmt::format("{}; {}",
+                             extension.empty() ? "the name has no extension"
+                                               : fmt::format("the extension '{}' is not known", extension),
+                             kExpectedExtensions));
+  }
+  require_text_output(output, input);
+}
+
 void require_output_holds(const fs::path& output, int simplex_dim) {
   const MeshFileFormat* const format = find_output_format(output);
   if (format != nullptr && simplex_dim <= format->most_dim) return;
   fail(output,
        fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf", output.extension().string(),
                    simplex_dim + 1, simplex_dim == 3 ? "tetrahedra" : "simplices", simplex_dim + 1));
+}
+
+WrittenFiles::~WrittenFiles() {
+  std::error_code ignored;
+  for (const fs::path& path : paths_) fs::remove(path, ignored);
 }
 
 std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progress& progress) {

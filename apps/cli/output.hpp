@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "tegl/io.hpp"
 
@@ -20,7 +22,25 @@ void require_output(const std::filesystem::path& output, const std::filesystem::
 /// Throws WriteFailed unless the format of `output` holds simplices of this dimension.
 void require_output_holds(const std::filesystem::path& output, int simplex_dim);
 
+/// Throws WriteFailed unless `output` can be expected to be written as a text file, of any extension.
+void require_text_output(const std::filesystem::path& output, const std::filesystem::path& input);
+
 /// Writes the mesh and returns the file's size in bytes. Errors: WriteFailed, Cancelled.
 std::uint64_t write_output(const Mesh& mesh, const std::filesystem::path& output, const Progress& progress);
+
+/// The files that a command has written so far: removed again unless all could be.
+class WrittenFiles {
+ public:
+  WrittenFiles() = default;
+  ~WrittenFiles();
+  WrittenFiles(const WrittenFiles&) = delete;
+  WrittenFiles& operator=(const WrittenFiles&) = delete;
+
+  void add(std::filesystem::path written) { paths_.push_back(std::move(written)); }
+  void keep() noexcept { paths_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> paths_;
+};
 
 }  // namespace tegl::cli

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -225,17 +224,12 @@ class SliceCommand final : public Command {
 
   /// All or nothing: what was written is removed if one of the files cannot be.
   static void write_all(std::vector<ContourResult>& results, ProgressBar& bar) {
-    std::vector<std::string> written;
-    try {
-      for (ContourResult& result : results) {
-        write_result(result, bar);
-        written.push_back(result.output);
-      }
-    } catch (...) {
-      std::error_code ignored;
-      for (const std::string& output : written) std::filesystem::remove(output, ignored);
-      throw;
+    WrittenFiles written;
+    for (ContourResult& result : results) {
+      write_result(result, bar);
+      written.add(result.output);
     }
+    written.keep();
   }
 
   ExtractionOptions options_;

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "common.hpp"
+#include "tegl/io.hpp"
 
 namespace tegl::io_detail {
 
@@ -81,3 +82,9 @@ void OutputFile::commit() {
 }
 
 }  // namespace tegl::io_detail
+
+void tegl::write_text(std::string_view text, const std::filesystem::path& path) {
+  io_detail::OutputFile file(path);
+  file.write(text);
+  file.commit();
+}

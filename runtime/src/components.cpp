@@ -104,7 +104,7 @@ Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& 
 }  // namespace
 
 template <int N, class Real>
-ComponentLabels label_components(const Contour<N, Real>& contour, const ComponentOptions& options) {
+ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOptions& options) {
   detail::require_vertices(contour);
   const std::size_t vertices = contour.vertices.size();
   const std::size_t simplices = contour.simplices.size();
@@ -132,7 +132,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const Componen
 
 template <int N, class Real>
 std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                     const ComponentOptions& options) {
+                                     const WorkOptions& options) {
   require_labels(contour, labels);
   const std::span<const Index> rows = detail::rows_of(contour);
   std::vector<detail::FaceCounts> faces;
@@ -215,13 +215,12 @@ void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& l
   add(labels.simplices, contour.simplex_attributes);
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                           \
-  template ComponentLabels label_components(const Contour<N, Real>&, const ComponentOptions&);              \
-  template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&,            \
-                                                const ComponentOptions&);                                   \
-  template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&); \
-  template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,              \
-                                              const std::vector<bool>&);                                    \
+#define TEGL_INSTANTIATE(N, Real)                                                                                     \
+  template ComponentLabels label_components(const Contour<N, Real>&, const WorkOptions&);                             \
+  template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const WorkOptions&); \
+  template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&);           \
+  template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \
+                                              const std::vector<bool>&);                                              \
   template void add_component_attribute(Contour<N, Real>&, const ComponentLabels&)
 TEGL_INSTANTIATE(2, float);
 TEGL_INSTANTIATE(2, double);

@@ -102,8 +102,7 @@ void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin
 
 /// At which values the contour's cut is open: where an (N-2)-face whose orientations do not cancel is cut.
 template <int N, class Real>
-std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values,
-                                 const MeasureOptions& options) {
+std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& options) {
   std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertices.size(), kBlock));
   const detail::Stars stars = detail::make_stars<N>(detail::rows_of(contour), contour.vertices.size());
   detail::count_faces<N>(detail::rows_of(contour), stars, {}, 1, false, options.threads,
@@ -147,7 +146,7 @@ std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) 
 }  // namespace
 
 template <int N, class Real>
-Measures<N> measure(const Contour<N, Real>& contour, const MeasureOptions& options) {
+Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options) {
   detail::require_vertices(contour);
   Measures<N> result;
   if (contour.simplices.empty()) return result;
@@ -175,7 +174,7 @@ Measures<N> measure(const Contour<N, Real>& contour, const MeasureOptions& optio
 
 template <int N, class Real>
 std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
-                                      const MeasureOptions& options) {
+                                      const WorkOptions& options) {
   detail::require_vertices(contour);
   for (const double t : at)
     if (!std::isfinite(t))
@@ -214,26 +213,20 @@ std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span
   return result;
 }
 
-template Measures<2> measure(const Contour<2, float>&, const MeasureOptions&);
-template Measures<2> measure(const Contour<2, double>&, const MeasureOptions&);
-template Measures<3> measure(const Contour<3, float>&, const MeasureOptions&);
-template Measures<3> measure(const Contour<3, double>&, const MeasureOptions&);
-template Measures<4> measure(const Contour<4, float>&, const MeasureOptions&);
-template Measures<4> measure(const Contour<4, double>&, const MeasureOptions&);
-template Measures<5> measure(const Contour<5, float>&, const MeasureOptions&);
-template Measures<5> measure(const Contour<5, double>&, const MeasureOptions&);
+template Measures<2> measure(const Contour<2, float>&, const WorkOptions&);
+template Measures<2> measure(const Contour<2, double>&, const WorkOptions&);
+template Measures<3> measure(const Contour<3, float>&, const WorkOptions&);
+template Measures<3> measure(const Contour<3, double>&, const WorkOptions&);
+template Measures<4> measure(const Contour<4, float>&, const WorkOptions&);
+template Measures<4> measure(const Contour<4, double>&, const WorkOptions&);
+template Measures<5> measure(const Contour<5, float>&, const WorkOptions&);
+template Measures<5> measure(const Contour<5, double>&, const WorkOptions&);
 
-template std::vector<CutMeasures> measure_cuts(const Contour<3, float>&, std::span<const double>,
-                                               const MeasureOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<3, double>&, std::span<const double>,
-                                               const MeasureOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<4, float>&, std::span<const double>,
-                                               const MeasureOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<4, double>&, std::span<const double>,
-                                               const MeasureOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<5, float>&, std::span<const double>,
-                                               const MeasureOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<5, double>&, std::span<const double>,
-                                               const MeasureOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<3, float>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<3, double>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<4, float>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<4, double>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<5, float>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<5, double>&, std::span<const double>, const WorkOptions&);
 
 }  // namespace tegl

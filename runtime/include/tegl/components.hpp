@@ -14,12 +14,6 @@
 
 namespace tegl {
 
-struct ComponentOptions {
-  /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
-  unsigned threads = 0;
-  Progress progress;
-};
-
 /// The label of a vertex that no simplex has.
 inline constexpr Index kNoComponent = std::numeric_limits<Index>::max();
 
@@ -40,7 +34,7 @@ struct ComponentLabels {
 /// Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S + #V) time nearly, 8 bytes per vertex and 4
 /// per simplex. Thread-safe.
 template <int N, class Real>
-ComponentLabels label_components(const Contour<N, Real>& contour, const ComponentOptions& options = {});
+ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOptions& options = {});
 
 /// What is known of one component.
 template <int N>
@@ -69,7 +63,7 @@ struct Component {
 /// around a vertex; 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
 template <int N, class Real>
 std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                     const ComponentOptions& options = {});
+                                     const WorkOptions& options = {});
 
 /// A contour for each component, in the order of the labels, with vertices and simplices in the order that they have
 /// in the whole, and with its normals, attributes, names and units. Vertices in no simplex are left out.

@@ -160,6 +160,10 @@ Contour<N, double> to_contour(const Mesh& mesh);
 /// WriteFailed, Cancelled.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
 
+/// Writes bytes as they are: tables and graphs as text. Under another name first, so never half a file. Errors:
+/// WriteFailed.
+void write_text(std::string_view text, const std::filesystem::path& path);
+
 /// A VTKHDF file (.vtkhdf) that a streamed contour goes to as it comes: what write_mesh would write of the whole
 /// contour, the same datasets with the same bytes. Written under another name beside the target: nothing is at the
 /// target before `commit`, nor ever if that is not called. Memory: a few MiB. Errors, of all functions: WriteFailed;

@@ -14,12 +14,6 @@
 
 namespace tegl {
 
-struct MeasureOptions {
-  /// How many threads work; 0: all that the machine has. The result is the same, byte by byte.
-  unsigned threads = 0;
-  Progress progress;
-};
-
 /// Measures of a whole contour.
 template <int N>
 struct Measures {
@@ -43,7 +37,7 @@ struct Measures {
 /// Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S log s) time for s simplices around a vertex,
 /// 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
 template <int N, class Real>
-Measures<N> measure(const Contour<N, Real>& contour, const MeasureOptions& options = {});
+Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options = {});
 
 /// Measures of one cut "last coordinate = at".
 struct CutMeasures {
@@ -60,12 +54,12 @@ struct CutMeasures {
 /// knots (H. B. Curry and I. J. Schoenberg, On Pólya frequency functions IV, 1966), of degree N - 2, times the spatial
 /// part of the simplex's normal vector; with the distance of the cut's plane from the origin, which is linear in t, it
 /// gives the content. Where the curve jumps, as pieces lie flat at one time, it is the limit from below, at the
-/// contour's first time the one from above; so it is that of `slice`. Beyond the contour all is 0.
-/// Errors: InvalidArgument (a value that is not finite, a vertex number out of range); Cancelled.
-/// O(#S log s + h) time for h pairs of a simplex and a cut of it; memory as `measure`, and up to 64 MiB, or 64 bytes
-/// for each value. Thread-safe.
+/// contour's first time the one from above. That is the cut that `slice` makes, but where missing values leave the time
+/// before without a contour: `slice` then takes the limit from above. Beyond the contour all is 0. Errors:
+/// InvalidArgument (a value that is not finite, a vertex number out of range); Cancelled. O(#S log s + h) time for h
+/// pairs of a simplex and a cut of it; memory as `measure`, and up to 64 MiB, or 64 bytes for each value. Thread-safe.
 template <int N, class Real>
 std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
-                                      const MeasureOptions& options = {});
+                                      const WorkOptions& options = {});
 
 }  // namespace tegl
