@@ -21,49 +21,58 @@
 
 namespace tegl::detail {
 
-/// Throws InvalidArgument unless the last world coordinate depends on the last axis alone, and it alone on that axis.
+/// Throws InvalidArgument unless one world coordinate depends on its axis alone, and it alone on that axis.
 template <int N>
-void check_last_axis_is_apart(const Grid<N>& grid) {
-  constexpr int kLast = N - 1;
-  bool apart = grid.linear(kLast, kLast) != 0.0;
-  for (int a = 0; a < kLast; ++a) apart = apart && grid.linear(kLast, a) == 0.0 && grid.linear(a, kLast) == 0.0;
+void check_axis_is_apart(const Grid<N>& grid, int axis) {
+  bool apart = grid.linear(axis, axis) != 0.0;
+  for (int a = 0; a < N; ++a)
+    apart = apart && (a == axis || (grid.linear(axis, a) == 0.0 && grid.linear(a, axis) == 0.0));
   if (!apart)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("direct cut of a grid whose world map mixes axis {} with others; expected a last row and "
-                            "column that are zero but for their diagonal element",
-                            kLast));
+                fmt::format("direct cut of a grid whose world map mixes axis {} with others; expected a row {} and a "
+                            "column {} that are zero but for their diagonal element",
+                            axis, axis, axis));
 }
 
-/// World coordinate of sample i along the last axis, as the extraction computes it.
+/// World coordinate of sample i along an axis that is apart, as the extraction computes it.
 template <int N, class Real>
-Real last_coordinate(const Grid<N>& grid, std::size_t i) {
-  const double x = grid.axes[N - 1][i];
-  return static_cast<Real>(grid.has_world_map() ? grid.linear(N - 1, N - 1) * x + grid.offset(N - 1) : x);
+Real world_coordinate(const Grid<N>& grid, int axis, std::size_t i) {
+  const double x = grid.axes[axis][i];
+  return static_cast<Real>(grid.has_world_map() ? grid.linear(axis, axis) * x + grid.offset(axis) : x);
 }
 
 /// The layers {first, count} of the slabs that meet `at`; of an axis of one sample, that.
 template <int N, class Real>
-std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, double at) {
-  check_last_axis_is_apart(grid);
+std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis, double at) {
+  if (axis < 0 || axis >= N)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+  check_axis_is_apart(grid, axis);
   const Real rounded = rounded_at<Real>(at);
-  const std::size_t size = grid.axes[N - 1].size();
+  const std::size_t size = grid.axes[axis].size();
   std::size_t first = size;
   std::size_t last = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    const Real here = last_coordinate<N, Real>(grid, i);
-    const Real next = last_coordinate<N, Real>(grid, std::min(i + 1, size - 1));
+    const Real here = world_coordinate<N, Real>(grid, axis, i);
+    const Real next = world_coordinate<N, Real>(grid, axis, std::min(i + 1, size - 1));
     if (rounded < std::min(here, next) || rounded > std::max(here, next)) continue;
     first = std::min(first, i);
     last = std::min(i + 1, size - 1);
   }
   if (first == size) {
-    const auto& axis = grid.axes[N - 1];
+    const auto& cut = grid.axes[axis];
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("cut at {}; expected a coordinate between {} and {}, the ends of axis {}{}", at,
-                            last_coordinate<N, Real>(grid, 0), last_coordinate<N, Real>(grid, size - 1), N - 1,
-                            axis.name.empty() ? "" : " (" + axis.name + ")"));
+                            world_coordinate<N, Real>(grid, axis, 0), world_coordinate<N, Real>(grid, axis, size - 1),
+                            axis, cut.name.empty() ? "" : " (" + cut.name + ")"));
   }
   return {first, last - first + 1};
+}
+
+/// Across another axis than the last, gradients in the slab need the layers beside it: these are contoured too.
+template <int N>
+std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size) {
+  const std::size_t first = layers.first - (layers.first > 0);
+  return {first, std::min(size, layers.first + layers.second + 1) - first};
 }
 
 }  // namespace tegl::detail
@@ -71,23 +80,34 @@ std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, double at
 namespace tegl {
 
 template <class Real, Value T, int N>
+Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue, int axis, double at,
+                                        const ExtractOptions& options, ExtractStats* stats) {
+  detail::check_arguments(isovalue, options);
+  auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
+  const bool is_last = axis == N - 1;
+  if (!is_last && options.normals) layers = detail::with_neighbours<N>(layers, image.size(axis));
+  const Image<T, N> slab = image.part(axis, layers.first, layers.second);
+  // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.
+  detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
+  const unsigned across_others = ((1u << N) - 1) & ~(1u << axis);
+  const Contour<N, Real> contour = detail::extract_source<N, Real>(
+      source, slab.grid(), detail::generated_tables<N>(options), options, stats, {.closed_axes = across_others});
+  return slice(contour, Hyperplane<N>::across(axis, at));
+}
+
+template <class Real, Value T, int N>
 Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, double at, const ExtractOptions& options,
                                  ExtractStats* stats) {
-  detail::check_arguments(isovalue, options);
-  const auto [first, count] = detail::layers_around<N, Real>(image.grid(), at);
-  const Image<T, N> slab = image.part(N - 1, first, count);
-  detail::ImageSource<T, N> source(image, isovalue, options.epsilon, first);
-  constexpr unsigned kAcrossOthers = (1u << (N - 1)) - 1;
-  const Contour<N, Real> contour = detail::extract_source<N, Real>(
-      source, slab.grid(), detail::generated_tables<N>(options), options, stats, {.closed_axes = kAcrossOthers});
-  return slice(contour, at);
+  return slice_image_across<Real>(image, isovalue, N - 1, at, options, stats);
 }
 
 }  // namespace tegl
 
-#define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                \
-  template tegl::Contour<N - 1, Real> tegl::slice_image<Real, T, N>(const Image<T, N>&, double, double, \
-                                                                    const ExtractOptions&, ExtractStats*);
+#define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                            \
+  template tegl::Contour<N - 1, Real> tegl::slice_image<Real, T, N>(const Image<T, N>&, double, double,             \
+                                                                    const ExtractOptions&, ExtractStats*);          \
+  template tegl::Contour<N - 1, Real> tegl::slice_image_across<Real, T, N>(const Image<T, N>&, double, int, double, \
+                                                                           const ExtractOptions&, ExtractStats*);
 #define TEGL_INSTANTIATE_SLICE_IMAGE(T) \
   TEGL_INSTANTIATE_ONE(T, 3, float)     \
   TEGL_INSTANTIATE_ONE(T, 3, double)    \

@@ -26,6 +26,7 @@ constexpr bool is_vertex_point(PointKey key) { return lower_end(key) == upper_en
 struct Piece {
   std::array<PointKey, 4> points;
   int count = 0;
+  Index simplex = 0;  ///< the simplex
 };
 
 /// The points, ascending, around which the pieces are not one fan (of polygons) or one path (of segments), or from

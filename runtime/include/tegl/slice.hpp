@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of a contour by a hyperplane "last coordinate = constant": what a 4D contour looks like at time t.
+// Cuts of a contour by hyperplanes: what a 4D contour looks like at time t, or along any other hyperplane.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "tegl/extract.hpp"
+#include "tegl/hyperplane.hpp"
 
 namespace tegl {
 
@@ -11,7 +15,8 @@ namespace tegl {
 /// coordinate left out. N = 4: triangles at time `at`; N = 3: segments. Names, units and direction are taken over; the
 /// cut's orientation points to the same side, low or high, as the contour's. Normals of the contour's vertices, if it
 /// has any, become those of the cut's: interpolated like the points, without their last component, of length 1, or 0
-/// where nothing is left.
+/// where nothing is left. Vertex attributes are interpolated like the points; simplex attributes are those of the
+/// simplex that each of the cut's lies in.
 ///
 /// Points. The cut's vertices lie on the edges between a vertex below and one above the hyperplane, interpolated in
 /// double from the one below. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above, or as
@@ -31,6 +36,27 @@ namespace tegl {
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
+/// The cut by any hyperplane, in the coordinates of `frame_of(hyperplane)`: along x of a 4D contour a surface in y, z
+/// and t. All that is said above holds, with "above" as the side that the hyperplane's normal points to, and the layers
+/// of the axis that it is across, if it is across one: the last axis is the special case. Vertices lie on the
+/// hyperplane if <normal, x> equals the offset as computed in double, and if the normal is a multiple of an axis, if
+/// the coordinate equals the quotient in Real. Orientation: the cut's positive side in the frame's coordinates is that
+/// of the contour, also where the frame is left-handed. Names and units of axes are kept where the frame's axis is one
+/// of the contour's, and empty elsewhere.
+/// Errors: those of `frame_of`. Cost: as above.
+template <int N, class Real>
+Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
+
+/// The cuts by parallel hyperplanes <normal, x> = offsets[i], all found in one pass over the contour: each the same,
+/// bit by bit, as `slice` gives it. The offsets may come in any order. `threads`: how many make cuts at a time; 0 for
+/// all that the machine has. Errors: those of `slice`; Cancelled. O(#S log k + #V) plus the cuts' own cost; 8 #V bytes,
+/// and memory for all cuts.
+template <int N, class Real>
+std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
+                                              const Eigen::Matrix<double, N, 1>& normal,
+                                              std::span<const double> offsets, unsigned threads = 0,
+                                              const Progress& progress = {});
+
 /// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
 /// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
 /// Equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit; where values are missing
@@ -44,5 +70,12 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 template <class Real = float, Value T, int N>
 Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, double at,
                                  const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
+
+/// The same across any axis: the cut by x_axis = at, in the other coordinates. Only a slab of layers of that axis is
+/// contoured (for normals, the layers beside it too); all said of the last axis holds for this one, but that normals
+/// are the same up to rounding.
+template <class Real = float, Value T, int N>
+Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue, int axis, double at,
+                                        const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
 
 }  // namespace tegl

@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cuts of simplicial contours by hyperplanes. What follows speaks of "last coordinate = constant"; in other hyperplanes
+// the height over them takes the last coordinate's place, and a right-handed frame with the normal that of the axes.
+// None of it depends on more than the order of the vertices' heights, so any function of the vertices would do.
+//
+// Orientation. Let (v_0 … v_{N-1}) be a contour's simplex, positive towards d: det[v_1 - v_0, …, v_{N-1} - v_0, d] > 0,
+// and g a direction inside the simplex with a positive last component. A simplex of the cut with edges f_1 … f_{N-2}
+// must be positive towards the same d, taken inside the hyperplane: det[f_1, …, f_{N-2}, d, e_{N-1}] > 0. As g is
+// e_{N-1} times a positive number plus a part inside the hyperplane, exchanging two columns gives det[f_1, …, f_{N-2},
+// g, d] < 0: the cut (f_1 … f_{N-2}), followed by the way up, is a negative frame of the simplex. So the orientation
+// follows from which vertices are above and from their order alone, also where coordinates coincide.
+//
+// Why the cut is closed where the contour is. Let h be the hyperplane's coordinate, and call a vertex at h "on". If on
+// vertices count as above, simplices have points on the same edges as at h - e, for any e > 0 smaller than the distance
+// to the next vertex below: combinatorially the cut is that at h - e, a manifold. If they count as below, it is the cut
+// at h + e; and as the argument is about one vertex at a time, groups of on vertices without an edge between them may
+// count differently. A group (on vertices connected by edges among themselves) counts as below if no edge of it goes
+// down, else as above: the limit from below where there is one.
+// The points around an on vertex u are then drawn together into u. That keeps the manifold if those points span a disc
+// (of discs drawn to points a surface comes out unchanged: R. L. Moore, Concerning upper semi-continuous collections of
+// continua, 1925), but pinches it where h is a critical value at u. There the points are left apart, each in u's place.
+//
+// Why the cut at a layer of the image is that layer's contour M: the on vertices are M's vertices (up to samples that
+// equal the isovalue). With tiles below, each face of M is met by one simplex from below; the cut of that simplex is
+// the face, other simplices collapse. Without any (the first layer, or missing values below) M's vertices count as
+// below, and the simplices above cut to its faces in the same way; if the contour is closed at its first layer, the cap
+// lies flat in the hyperplane with nothing below. Where tiles below are missing under a part of M alone, the faces
+// met from above are boundary faces of the contour, and are added as they are.
+#include "cutter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "index_map.hpp"
+#include "radix_sort.hpp"
+#include "slice_piece.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// Where a vertex lies; on_low and on_high lie on the hyperplane and count as below and above it.
+enum class Side : std::uint8_t { below, on_low, on_high, above };
+constexpr bool is_high(Side side) { return side >= Side::on_high; }
+
+/// The vertices of a simplex with those of `high` (bit j: vertex j) first, by an even permutation.
+template <int N>
+std::array<Index, N> high_first(const std::array<Index, N>& simplex, unsigned high) {
+  std::array<Index, N> sorted = simplex;
+  std::array<bool, N> is_first;
+  int high_count = 0;
+  for (int j = 0; j < N; ++j) high_count += is_first[j] = ((high >> j) & 1u) != 0;
+  bool odd = false;
+  for (int i = 1; i < N; ++i)
+    for (int j = i; j > 0 && is_first[j] && !is_first[j - 1]; --j) {
+      std::swap(sorted[j], sorted[j - 1]);
+      std::swap(is_first[j], is_first[j - 1]);
+      odd = !odd;
+    }
+  // There are at least three vertices, so two on one side to make the permutation even with.
+  if (odd && high_count >= 2) std::swap(sorted[0], sorted[1]);
+  if (odd && high_count < 2) std::swap(sorted[N - 2], sorted[N - 1]);
+  return sorted;
+}
+
+/// The pairs (above, below) of places in the order of `high_first` whose edges the cut's points lie on, in the
+/// orientation derived at the top of this file.
+using Pairs = std::array<std::pair<int, int>, 4>;
+template <int N>
+std::pair<Pairs, int> cut_pairs(int high_count) {
+  if constexpr (N == 3)
+    return high_count == 1 ? std::pair{Pairs{{{0, 2}, {0, 1}}}, 2} : std::pair{Pairs{{{0, 2}, {1, 2}}}, 2};
+  if constexpr (N == 4) {
+    if (high_count == 1) return {Pairs{{{0, 1}, {0, 2}, {0, 3}}}, 3};
+    if (high_count == 2) return {Pairs{{{0, 2}, {0, 3}, {1, 3}, {1, 2}}}, 4};
+    return {Pairs{{{0, 3}, {1, 3}, {2, 3}}}, 3};
+  }
+}
+
+template <int N, class Real>
+class Cutter {
+ public:
+  Cutter(const Contour<N, Real>& contour, const Section<N>& section, double level, const std::vector<Index>& touching)
+      : contour_(contour), section_(section), level_(level), touching_(touching) {}
+
+  Contour<N - 1, Real> cut() {
+    find_on_vertices();
+    if (!on_.empty()) group_on_vertices();
+    cut_simplices();
+    if (!on_.empty()) draw_together();
+    number_points();
+    Contour<N - 1, Real> result;
+    for (int i = 0, a = 0; i < N - 1; ++i, ++a) {
+      a += a == section_.dropped_axis();
+      if (!section_.keeps_axis(i)) continue;
+      result.axis_names[i] = contour_.axis_names[a];
+      result.axis_units[i] = contour_.axis_units[a];
+    }
+    result.direction = contour_.direction;
+    result.vertices.resize(keys_.size());
+    for (std::size_t i = 0; i < keys_.size(); ++i) result.vertices[i] = position(keys_[i]);
+    if (!contour_.normals.empty()) {
+      result.normals.resize(keys_.size());
+      for (std::size_t i = 0; i < keys_.size(); ++i) result.normals[i] = normal(keys_[i]);
+    }
+    for (const Attribute& attribute : contour_.vertex_attributes)
+      result.vertex_attributes.push_back(interpolated(attribute));
+    emit(result);
+    return result;
+  }
+
+ private:
+  /// An (N-2)-face that lies in the hyperplane, as seen from one of its simplices.
+  struct OnFace {
+    std::array<Index, N - 1> vertices;  // ascending
+    Index simplex;
+    int omitted;  // the place in the simplex of the vertex that is not in the face
+  };
+  static constexpr unsigned kAll = (1u << N) - 1;
+
+  /// Bit j: `test` holds for the side of vertex j.
+  template <class Test>
+  [[nodiscard]] unsigned corners(const std::array<Index, N>& simplex, const Test& test) const {
+    unsigned mask = 0;
+    for (int j = 0; j < N; ++j) mask |= static_cast<unsigned>(test(side(simplex[j]))) << j;
+    return mask;
+  }
+
+  [[nodiscard]] double height(Index v) const { return section_.height(contour_.vertices[v]); }
+  [[nodiscard]] bool is_on(Index v) const { return height(v) == level_; }
+
+  /// On vertices count as above until they are grouped.
+  [[nodiscard]] Side side(Index v) const {
+    const double here = height(v);
+    if (here != level_) return here < level_ ? Side::below : Side::above;
+    return is_low_[on_(v)] ? Side::on_low : Side::on_high;
+  }
+
+  void find_on_vertices() {
+    std::vector<Index> on;
+    for (const Index s : touching_)
+      for (const Index v : contour_.simplices[s])
+        if (is_on(v)) on.push_back(v);
+    sort_by_bits(on, 32, [](Index v) { return v; });
+    on.erase(std::unique(on.begin(), on.end()), on.end());
+    is_low_.assign(on.size(), false);
+    on_ = IndexMap(std::move(on));
+  }
+
+  /// Makes groups of on vertices without a way down count as below.
+  void group_on_vertices() {
+    std::vector<std::size_t> parent(on_.size());  // disjoint sets
+    std::iota(parent.begin(), parent.end(), std::size_t{0});
+    const auto find = [&parent](std::size_t i) {
+      while (parent[i] != i) i = parent[i] = parent[parent[i]];
+      return i;
+    };
+    std::vector<bool> has_way_down(on_.size(), false);  // of vertices, then of sets
+    for (const Index s : touching_) {
+      const auto& simplex = contour_.simplices[s];
+      const bool down = corners(simplex, [](Side side) { return side == Side::below; }) != 0;
+      std::optional<std::size_t> last;
+      for (const Index v : simplex) {
+        if (!is_on(v)) continue;
+        const std::size_t here = on_(v);
+        if (last) parent[find(here)] = find(*last);
+        last = here;
+        if (down) has_way_down[here] = true;
+      }
+    }
+    for (std::size_t i = 0; i < on_.size(); ++i)
+      if (has_way_down[i]) has_way_down[find(i)] = true;
+    for (std::size_t i = 0; i < on_.size(); ++i) is_low_[i] = !has_way_down[find(i)];
+  }
+
+  void cut_simplices() {
+    for (const Index s : touching_) {
+      const auto& simplex = contour_.simplices[s];
+      const unsigned high = corners(simplex, is_high);
+      if (high != 0 && high != kAll) pieces_.push_back(make_piece(s, high));
+    }
+  }
+
+  /// The piece between the `high` vertices of a simplex and the others.
+  [[nodiscard]] Piece make_piece(Index simplex, unsigned high) const {
+    const std::array<Index, N> sorted = high_first<N>(contour_.simplices[simplex], high);
+    const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
+    Piece piece;
+    piece.simplex = simplex;
+    piece.count = count;
+    for (int i = 0; i < count; ++i) piece.points[i] = edge_point(sorted[pairs[i].second], sorted[pairs[i].first]);
+    return piece;
+  }
+
+  /// The end of a point's edge that is on; an edge has at most one, as its ends would be in one group.
+  [[nodiscard]] std::optional<Index> on_end(PointKey key) const {
+    if (on_.empty()) return std::nullopt;
+    if (is_on(upper_end(key))) return upper_end(key);
+    if (is_on(lower_end(key))) return lower_end(key);
+    return std::nullopt;
+  }
+
+  /// Draws the points around on vertices together. Where the result is pinched and the points themselves were not, the
+  /// vertices concerned are left apart; each round leaves more of them so, and with all apart nothing is pinched.
+  void draw_together() {
+    const std::vector<Piece> faces = faces_met_from_above();
+    std::vector<bool> apart(on_.size(), false);
+    std::vector<PointKey> excused;
+    for (int round = 0;; ++round) {
+      std::vector<Piece> drawn = drawn_pieces(apart);
+      drawn.insert(drawn.end(), faces.begin(), faces.end());
+      const std::vector<PointKey> pinched = detail::pinched_points(drawn);
+      if (round == 0 && !pinched.empty()) excused = detail::pinched_points(pieces_);
+      if (leave_apart(pinched, excused, round >= kMostRounds, apart)) continue;
+      pieces_ = std::move(drawn);
+      return;
+    }
+  }
+
+  [[nodiscard]] std::vector<Piece> drawn_pieces(const std::vector<bool>& apart) const {
+    std::vector<Piece> result;
+    result.reserve(pieces_.size());
+    for (const Piece& piece : pieces_) {
+      Piece drawn;
+      drawn.simplex = piece.simplex;
+      for (int i = 0; i < piece.count; ++i) {
+        const std::optional<Index> on = on_end(piece.points[i]);
+        const PointKey key = on && !apart[on_(*on)] ? vertex_point(*on) : piece.points[i];
+        // Points drawn together are neighbours in the cycle: they share the on vertex.
+        const bool repeats = drawn.count > 0 &&
+                             (drawn.points[drawn.count - 1] == key || (i == piece.count - 1 && drawn.points[0] == key));
+        if (!repeats) drawn.points[drawn.count++] = key;
+      }
+      if (drawn.count >= N - 1) result.push_back(drawn);
+    }
+    return result;
+  }
+
+  /// Marks the on vertices among the pinched points (or all on vertices), except those around which the points were
+  /// pinched before, as a contour may be next to missing values. True if that changes anything.
+  bool leave_apart(const std::vector<PointKey>& pinched, const std::vector<PointKey>& excused, bool all,
+                   std::vector<bool>& apart) const {
+    std::vector<bool> candidates(apart.size(), all && !pinched.empty());
+    for (const PointKey key : pinched)
+      if (is_vertex_point(key)) candidates[on_(upper_end(key))] = true;
+    for (const PointKey key : excused)
+      if (const std::optional<Index> on = on_end(key)) candidates[on_(*on)] = false;
+    bool changed = false;
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      if (!candidates[i] || apart[i]) continue;
+      apart[i] = true;
+      changed = true;
+    }
+    return changed;
+  }
+
+  /// The contour's boundary faces among vertices that count as above, whose simplex is above; see the top of this file.
+  [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
+    std::vector<OnFace> on_faces;
+    for (const Index s : touching_)
+      gather_on_faces(s, corners(contour_.simplices[s], [](Side side) { return side == Side::on_high; }), on_faces);
+    std::sort(on_faces.begin(), on_faces.end(), [](const OnFace& a, const OnFace& b) {
+      return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
+    });
+    std::vector<Piece> faces;
+    for (std::size_t i = 0, j = 0; i < on_faces.size(); i = j) {
+      while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
+      const auto& simplex = contour_.simplices[on_faces[i].simplex];
+      if (j - i != 1 || side(simplex[on_faces[i].omitted]) != Side::above) continue;
+      Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
+      for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
+      faces.push_back(face);
+    }
+    return faces;
+  }
+
+  void gather_on_faces(Index s, unsigned on, std::vector<OnFace>& on_faces) const {
+    for (int omitted = 0; omitted < N; ++omitted) {
+      if ((on | (1u << omitted)) != kAll) continue;
+      OnFace face{{}, s, omitted};
+      for (int j = 0, k = 0; j < N; ++j)
+        if (j != omitted) face.vertices[k++] = contour_.simplices[s][j];
+      std::sort(face.vertices.begin(), face.vertices.end());
+      on_faces.push_back(face);
+    }
+  }
+
+  /// Numbers the points in the order of their keys, and puts numbers in the place of keys.
+  void number_points() {
+    struct Corner {
+      PointKey key;
+      std::size_t at;  // 4 times the piece, plus the point's place in it
+    };
+    std::vector<Corner> all;
+    all.reserve(4 * pieces_.size());
+    Index most = 0;
+    for (std::size_t p = 0; p < pieces_.size(); ++p)
+      for (int i = 0; i < pieces_[p].count; ++i) {
+        all.push_back({pieces_[p].points[i], 4 * p + static_cast<std::size_t>(i)});
+        most = std::max({most, lower_end(all.back().key), upper_end(all.back().key)});
+      }
+    // Both vertex numbers side by side in as few bits as there are.
+    const auto bits = static_cast<unsigned>(std::bit_width(most));
+    sort_by_bits(all, 2 * bits,
+                 [bits](const Corner& corner) { return PointKey{lower_end(corner.key)} << bits | upper_end(corner.key); });
+    for (const Corner& corner : all) {
+      if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
+      pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;
+    }
+    if (keys_.size() > std::numeric_limits<Index>::max())
+      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", keys_.size(),
+                                                   std::numeric_limits<Index>::max()));
+  }
+
+  /// A point's edge, which is both times the same vertex if that is on, and how far up it lies.
+  struct Place {
+    Index low;
+    Index high;
+    double share;
+  };
+  [[nodiscard]] Place place(PointKey key) const {
+    if (const std::optional<Index> on = on_end(key)) return {*on, *on, 0.0};
+    const double below = height(lower_end(key));
+    return {lower_end(key), upper_end(key), (level_ - below) / (height(upper_end(key)) - below)};
+  }
+
+  static double between(double low, double high, double share) { return low + share * (high - low); }
+  static std::array<double, N> between(const std::array<Real, N>& low, const std::array<Real, N>& high, double share) {
+    std::array<double, N> x;
+    for (int a = 0; a < N; ++a) x[a] = between(static_cast<double>(low[a]), static_cast<double>(high[a]), share);
+    return x;
+  }
+
+  [[nodiscard]] std::array<Real, N - 1> position(PointKey key) const {
+    const auto [low, high, share] = place(key);
+    const std::array<double, N - 1> y =
+        section_.within(between(contour_.vertices[low], contour_.vertices[high], share));
+    std::array<Real, N - 1> result;
+    for (int a = 0; a < N - 1; ++a) result[a] = static_cast<Real>(y[a]);
+    return result;
+  }
+
+  /// The contour's normal there, within the hyperplane: what is left there of a gradient is that of the field in the
+  /// hyperplane.
+  [[nodiscard]] std::array<Real, N - 1> normal(PointKey key) const {
+    const auto [low, high, share] = place(key);
+    const std::array<double, N - 1> v = section_.within(between(contour_.normals[low], contour_.normals[high], share));
+    double square = 0.0;
+    for (const double component : v) square += component * component;
+    std::array<Real, N - 1> result;
+    for (int a = 0; a < N - 1; ++a) result[a] = square > 0.0 ? static_cast<Real>(v[a] / std::sqrt(square)) : Real{0};
+    return result;
+  }
+
+  [[nodiscard]] Attribute interpolated(const Attribute& attribute) const {
+    const auto width = static_cast<std::size_t>(attribute.width);
+    Attribute result{attribute.name, attribute.unit, attribute.width, {}};
+    result.values.reserve(keys_.size() * width);
+    for (const PointKey key : keys_) {
+      const auto [low, high, share] = place(key);
+      for (std::size_t i = 0; i < width; ++i)
+        result.values.push_back(between(attribute.values[low * width + i], attribute.values[high * width + i], share));
+    }
+    return result;
+  }
+
+  void emit(Contour<N - 1, Real>& result) const {
+    std::vector<Index> inherited;  // the simplex that each of the cut's comes from
+    const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
+      std::array<Index, N - 1> simplex;
+      for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
+      if (!section_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
+      result.simplices.push_back(simplex);
+      inherited.push_back(piece.simplex);
+    };
+    for (const Piece& piece : pieces_) {
+      if constexpr (N == 3) {
+        add(piece, {0, 1});
+      } else if (piece.count == 3) {
+        add(piece, {0, 1, 2});
+      } else if (splits_from_first(result, piece)) {
+        add(piece, {0, 1, 2});
+        add(piece, {0, 2, 3});
+      } else {
+        add(piece, {1, 2, 3});
+        add(piece, {1, 3, 0});
+      }
+    }
+    for (const Attribute& attribute : contour_.simplex_attributes) {
+      const auto width = static_cast<std::size_t>(attribute.width);
+      Attribute& rows = result.simplex_attributes.emplace_back();
+      rows = {attribute.name, attribute.unit, attribute.width, {}};
+      rows.values.reserve(inherited.size() * width);
+      for (const Index s : inherited) {
+        const double* const row = attribute.values.data() + s * width;
+        rows.values.insert(rows.values.end(), row, row + width);
+      }
+    }
+  }
+
+  /// The shorter diagonal; of two equal ones that with the first end in lexicographic order of the coordinates, so
+  /// that the choice depends on the points' places alone.
+  static bool splits_from_first(const Contour<N - 1, Real>& result, const Piece& piece) {
+    const auto corner = [&](int i) -> const std::array<Real, N - 1>& { return result.vertices[piece.points[i]]; };
+    const auto length = [&](int i, int j) {
+      double sum = 0.0;
+      for (int a = 0; a < N - 1; ++a) {
+        const double d = static_cast<double>(corner(j)[a]) - static_cast<double>(corner(i)[a]);
+        sum += d * d;
+      }
+      return sum;
+    };
+    const double first = length(0, 2);
+    const double second = length(1, 3);
+    if (first != second) return first < second;
+    return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
+  }
+
+  static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart at once, to bound the time
+
+  const Contour<N, Real>& contour_;
+  const Section<N>& section_;
+  const double level_;
+  const std::vector<Index>& touching_;  ///< simplices not wholly on one side
+  IndexMap on_;                         ///< vertices on the hyperplane, of those simplices
+  std::vector<bool> is_low_;            ///< of these
+  std::vector<Piece> pieces_;
+  std::vector<PointKey> keys_;
+};
+
+}  // namespace
+
+template <int N, class Real>
+Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level,
+                                   const std::vector<Index>& touching) {
+  return Cutter<N, Real>(contour, section, level, touching).cut();
+}
+
+template Contour<2, float> cut_simplices(const Contour<3, float>&, const Section<3>&, double,
+                                         const std::vector<Index>&);
+template Contour<2, double> cut_simplices(const Contour<3, double>&, const Section<3>&, double,
+                                          const std::vector<Index>&);
+template Contour<3, float> cut_simplices(const Contour<4, float>&, const Section<4>&, double,
+                                         const std::vector<Index>&);
+template Contour<3, double> cut_simplices(const Contour<4, double>&, const Section<4>&, double,
+                                          const std::vector<Index>&);
+
+}  // namespace tegl::detail

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Frames of hyperplanes.
+#include "tegl/hyperplane.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tegl/error.hpp"
+
+namespace tegl {
+
+template <int N>
+HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
+  const auto& normal = hyperplane.normal;
+  double most = normal.cwiseAbs().maxCoeff();
+  if (!normal.allFinite() || !(most > 0.0))
+    throw Error(ErrorCode::InvalidArgument, "normal of a hyperplane that is 0 or not finite; expected another");
+  if (!std::isfinite(hyperplane.offset))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("cut at {}; expected a finite coordinate", hyperplane.offset));
+  HyperplaneFrame<N> frame;
+  for (int a = 0; a < N; ++a)
+    if (std::abs(normal[a]) == most) frame.dropped = a;
+  // Divided by the largest component first: the length of what is left neither overflows nor vanishes.
+  const Eigen::Matrix<double, N, 1> shrunk = normal / most;
+  const double length = shrunk.norm();
+  frame.up = shrunk / length;
+  frame.origin = frame.up * (hyperplane.offset / most / length);
+  const int k = frame.dropped;
+  const Eigen::Matrix<double, N, 1> nearer = frame.up[k] < 0.0 ? (-frame.up).eval() : frame.up;
+  // The rotation in the plane of e_k and u that takes one to the other takes e_i to e_i - u_i / (1 + u_k) (e_k + u).
+  for (int i = 0, column = 0; i < N; ++i) {
+    if (i == k) continue;
+    Eigen::Matrix<double, N, 1> axis = -(nearer[i] / (1.0 + nearer[k])) * nearer;
+    axis[k] -= nearer[i] / (1.0 + nearer[k]);
+    axis[i] += 1.0;
+    frame.axes.col(column++) = axis;
+  }
+  // A rotation keeps the sign of det[e_0 … without e_k … e_{N-1}, e_k], which N - 1 - k exchanges bring to 1.
+  frame.is_right_handed = ((N - 1 - k) % 2 == 0) == (frame.up[k] > 0.0);
+  return frame;
+}
+
+template <int N, class Real>
+void scale_axes(Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& factors) {
+  for (int a = 0; a < N; ++a)
+    if (!(factors[a] > 0.0) || !std::isfinite(factors[a]))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("factor {} of axis {}; expected a finite number above 0", factors[a], a));
+  for (auto& vertex : contour.vertices)
+    for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(static_cast<double>(vertex[a]) * factors[a]);
+  for (auto& normal : contour.normals) {
+    Eigen::Matrix<double, N, 1> turned;
+    for (int a = 0; a < N; ++a) turned[a] = static_cast<double>(normal[a]) / factors[a];
+    const double length = turned.norm();
+    for (int a = 0; a < N; ++a) normal[a] = length > 0.0 ? static_cast<Real>(turned[a] / length) : Real{0};
+  }
+}
+
+template HyperplaneFrame<2> frame_of(const Hyperplane<2>&);
+template HyperplaneFrame<3> frame_of(const Hyperplane<3>&);
+template HyperplaneFrame<4> frame_of(const Hyperplane<4>&);
+template void scale_axes(Contour<2, float>&, const Eigen::Matrix<double, 2, 1>&);
+template void scale_axes(Contour<2, double>&, const Eigen::Matrix<double, 2, 1>&);
+template void scale_axes(Contour<3, float>&, const Eigen::Matrix<double, 3, 1>&);
+template void scale_axes(Contour<3, double>&, const Eigen::Matrix<double, 3, 1>&);
+template void scale_axes(Contour<4, float>&, const Eigen::Matrix<double, 4, 1>&);
+template void scale_axes(Contour<4, double>&, const Eigen::Matrix<double, 4, 1>&);
+
+}  // namespace tegl
