@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// scrubber_bench [STEPS SAMPLES CUTS]: what a cut by `Scrubber` costs, on one thread: medians over CUTS cuts (101) of a
+// gyroid of SAMPLES^3 (36) that drifts for STEPS time steps (86), beside `slice` of the same contour. Then the same
+// with more and fewer time steps, for which a cut stays as large while the contour does not, and with fewer samples,
+// for which it does not: the time follows the cut. One line of a Markdown table for each.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "run.hpp"
+#include "tegl/scrubber.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl::bench {
+namespace {
+
+double seconds_of(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// A gyroid with 16 samples to the period that drifts along x by a tenth of one in a step.
+Contour<4, float> drifting_gyroid(std::size_t samples, std::size_t steps) {
+  OwnedImage<float, 4> image{Grid<4>::unit({samples, samples, samples, steps}), {}};
+  constexpr double kPerSample = 2.0 * std::numbers::pi / 16.0;
+  std::vector<double> sine(samples), cosine(samples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    sine[i] = std::sin(kPerSample * static_cast<double>(i));
+    cosine[i] = std::cos(kPerSample * static_cast<double>(i));
+  }
+  for (std::size_t t = 0; t < steps; ++t)
+    for (std::size_t z = 0; z < samples; ++z)
+      for (std::size_t y = 0; y < samples; ++y)
+        for (std::size_t x = 0; x < samples; ++x) {
+          const double at = kPerSample * (static_cast<double>(x) + 1.6 * static_cast<double>(t)) + 0.1;
+          image.values.push_back(
+              static_cast<float>(std::sin(at) * cosine[y] + sine[y] * cosine[z] + sine[z] * std::cos(at)));
+        }
+  return extract(image.view(), 0.05);
+}
+
+/// The median time of a cut at times where no sample is, and of one at samples.
+template <class Cut>
+std::pair<double, double> medians(std::size_t steps, int cuts, const Cut& cut) {
+  std::mt19937_64 bits(1);
+  std::vector<double> between, at_steps;
+  for (int i = 0; i < cuts; ++i) {
+    const double t = static_cast<double>(steps - 1) * static_cast<double>(bits() >> 11) * 0x1p-53;
+    between.push_back(seconds_of([&] { cut(t); }));
+    at_steps.push_back(seconds_of([&] { cut(std::round(t)); }));
+  }
+  return {median(between), median(at_steps)};
+}
+
+void measure(std::size_t samples, std::size_t steps, int cuts) {
+  const Contour<4, float> contour = drifting_gyroid(samples, steps);
+  std::vector<double> builds;
+  ScrubberOptions options;
+  options.threads = 1;
+  for (int i = 0; i < 3; ++i)
+    builds.push_back(seconds_of([&] { Scrubber<4, float>(contour, Eigen::Vector4d::UnitW(), options); }));
+  const Scrubber<4, float> scrubber(contour, Eigen::Vector4d::UnitW(), options);
+  std::vector<double> triangles;
+  const auto scrubbed = medians(
+      steps, cuts, [&](double t) { triangles.push_back(static_cast<double>(scrubber.cut(t).simplices.size())); });
+  const auto sliced = medians(steps, std::min(cuts, 11), [&](double t) { (void)slice(contour, t); });
+  std::printf("| %zu³ × %zu | %.2f | %.0f | %.2f | %.2f | %.0f | %.2f | %.1f | %.2f | %.0f |\n", samples, steps,
+              1e-6 * static_cast<double>(contour.simplices.size()),
+              1e-3 * static_cast<double>(contour_bytes(contour)) / 1e3, median(builds),
+              static_cast<double>(scrubber.memory()) / static_cast<double>(contour.simplices.size()), median(triangles),
+              1e3 * scrubbed.first, 1.0 / scrubbed.first, 1e3 * scrubbed.second, 1e3 * sliced.first);
+  std::fflush(stdout);
+}
+
+}  // namespace
+}  // namespace tegl::bench
+
+int main(int argc, char** argv) {
+  const auto number = [&](int i, int otherwise) { return argc > i ? std::max(2, std::atoi(argv[i])) : otherwise; };
+  const auto steps = static_cast<std::size_t>(number(1, 86));
+  const auto samples = static_cast<std::size_t>(number(2, 36));
+  const int cuts = number(3, 101);
+  std::printf(
+      "| samples | tetrahedra, millions | contour, MB | build, s | index, bytes each | triangles of a cut | cut, ms | "
+      "cuts per second | cut at a step, ms | slice, ms |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  tegl::bench::measure(samples, steps, cuts);
+  tegl::bench::measure(samples, std::max<std::size_t>(2, steps / 4), cuts);
+  tegl::bench::measure(samples, 2 * steps, cuts);
+  tegl::bench::measure(samples / 2, 4 * steps, cuts);
+  tegl::bench::measure(samples / 4, 4 * steps, cuts);
+}
