@@ -113,6 +113,14 @@ void VtkhdfWriter::append_ids(hid_t type, const void* ids, std::size_t count) {
   }
 }
 
+void VtkhdfWriter::append_cells(unsigned char type, std::span<const std::uint32_t> ids,
+                                std::span<const std::int64_t> ends) {
+  tables_->connectivity.append(H5T_NATIVE_UINT32, ids.data(), ids.size());
+  tables_->offsets.append(H5T_NATIVE_INT64, ends.data(), ends.size());
+  const std::vector<unsigned char> types(ends.size(), type);
+  tables_->types.append(H5T_NATIVE_UINT8, types.data(), types.size());
+}
+
 H5Table VtkhdfWriter::attribute_table(const char* group, const Attribute& attribute, std::size_t order) {
   const bool of_points = std::string_view(group) == "PointData";
   const std::string path = std::string("VTKHDF/") + group;

@@ -39,6 +39,9 @@ class VtkhdfWriter {
   /// `ids`: rows of dim + 1 vertex numbers; the vertices may come later.
   void append_simplices(std::span<const std::uint32_t> ids) { append_ids(H5T_NATIVE_UINT32, ids.data(), ids.size()); }
   void append_simplices(std::span<const std::uint64_t> ids) { append_ids(H5T_NATIVE_UINT64, ids.data(), ids.size()); }
+  /// Other cells, of any number of vertices, instead of simplices: all of one VTK type. `ends`: where the ids of each
+  /// end, counted from the first of the file on.
+  void append_cells(unsigned char type, std::span<const std::uint32_t> ids, std::span<const std::int64_t> ends);
   /// `group`: "PointData" or "CellData"; `order`: the place among the attributes of that group. To be filled by
   /// `append` of as many rows as vertices or simplices, and gone before commit().
   H5Table attribute_table(const char* group, const Attribute& attribute, std::size_t order);

@@ -8,8 +8,10 @@ import pathlib
 import subprocess
 import sys
 
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOPLY import vtkPLYReader
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 
 def read(reader, path):
@@ -66,4 +68,62 @@ ply = read(vtkPLYReader(), folder / "surface.ply")
 expect("cells of ply", cells(ply), [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 expect("point of ply", round(ply.GetPoint(3)[2], 6), 0.1)
 expect("normal of ply", ply.GetPointData().GetNormals().GetTuple(0), (0.0, 0.0, -1.0))
-print("VTK reads 5 files as written")
+
+
+def values(array):
+    return [array.GetTuple(i) for i in range(array.GetNumberOfTuples())]
+
+
+def total(grid, measure):
+    """The sum of the sizes of all cells, as VTK computes them."""
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputData(grid)
+    sizes.Update()
+    return sum(value for value, in values(sizes.GetOutput().GetCellData().GetArray(measure)))
+
+
+def expect_near(name, actual, expected):
+    if abs(actual - expected) > 1e-9 * expected:
+        sys.exit(f"{name}: {actual}; expected {expected}")
+
+
+# The contour is a plane, and its facets are what the tiles cut it into: together they have the size of the plane over 4,
+# 4 x 4 and 4 x 4 x 4 cells, the polyhedra in the three dimensions that VTK sees of them.
+segments = read(vtkXMLUnstructuredGridReader(), folder / "segments.vtu")
+expect("type of segments", {segments.GetCellType(i) for i in range(segments.GetNumberOfCells())}, {3})
+expect_near("length", total(segments, "Length"), 4 * (1 + 0.4**2)**0.5)
+
+polygons = read(vtkXMLUnstructuredGridReader(), folder / "polygons.vtu")
+again = read(vtkHDFReader(), folder / "polygons.vtkhdf")
+for grid in (polygons, again):
+    expect("type of polygons", {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())}, {7})
+    expect_near("area", total(grid, "Area"), 16 * (1 + 0.4**2 + 0.3**2)**0.5)
+    expect("normals of polygons", grid.GetPointData().GetArray("Normals").GetNumberOfTuples(),
+           grid.GetNumberOfPoints())
+expect("cells of polygons", cells(again), cells(polygons))
+expect("signatures of polygons", values(again.GetCellData().GetArray("signature")),
+       values(polygons.GetCellData().GetArray("signature")))
+axis_names = polygons.GetFieldData().GetAbstractArray("axis_names")
+expect("names of axes", [axis_names.GetValue(i) for i in range(3)], ["", "", "height & <time>"])
+
+polyhedra = read(vtkXMLUnstructuredGridReader(), folder / "polyhedra.vtu")
+expect("type of polyhedra", {polyhedra.GetCellType(i) for i in range(polyhedra.GetNumberOfCells())}, {42})
+expect_near("volume", total(polyhedra, "Volume"), 64.0)
+t = polyhedra.GetPointData().GetArray("t")
+for i in range(polyhedra.GetNumberOfPoints()):
+    x, y, z = polyhedra.GetPoint(i)
+    expect_near("time of a point", t.GetValue(i), 0.37 + 0.4 * x + 0.3 * y + 0.2 * z)
+for i in range(polyhedra.GetNumberOfCells()):
+    cell = polyhedra.GetCell(i)
+    # Closed: each edge is in two faces, once in either direction.
+    edges = []
+    for f in range(cell.GetNumberOfFaces()):
+        ids = cell.GetFace(f).GetPointIds()
+        ring = [ids.GetId(k) for k in range(ids.GetNumberOfIds())]
+        edges += zip(ring, ring[1:] + ring[:1])
+    expect("edges of a polyhedron", len(set(edges)), len(edges))
+    expect("edges of a polyhedron, reversed", set((b, a) for a, b in edges), set(edges))
+
+nothing = read(vtkXMLUnstructuredGridReader(), folder / "nothing.vtu")
+expect("cells of nothing", nothing.GetNumberOfCells(), 0)
+print("VTK reads 10 files as written")

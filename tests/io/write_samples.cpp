@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Writes small meshes of every kind into a folder, for readers that are not ours.
+#include <array>
 #include <filesystem>
 #include <iostream>
 
@@ -16,6 +17,28 @@ tegl::Mesh mesh_of(int dim, int space_dim, const std::vector<double>& coordinate
   mesh.coordinates.assign(coordinates.begin(), coordinates.end());
   mesh.simplices.assign(simplices.begin(), simplices.end());
   return mesh;
+}
+
+/// The facets of the hyperplane x_last = 0.37 + 0.4 x + 0.3 y + 0.2 z over 4^(N-1) unit cells, with normals.
+template <int N>
+tegl::FacetHierarchy<N, double> facets_of_plane() {
+  constexpr std::array<double, 3> kSlopes = {0.4, 0.3, 0.2};
+  std::array<std::size_t, N> sizes;
+  sizes.fill(5);
+  tegl::OwnedImage<double, N> image{tegl::Grid<N>::unit(sizes), {}};
+  image.grid.axes[N - 1].name = "height & <time>";
+  std::size_t samples = 1;
+  for (const std::size_t size : sizes) samples *= size;
+  for (std::size_t i = 0; i < samples; ++i) {
+    double value = -0.37;
+    std::size_t rest = i;
+    for (std::size_t a = 0; a < N; ++a, rest /= 5)
+      value += static_cast<double>(rest % 5) * (a + 1 == N ? 1.0 : -kSlopes[a]);
+    image.values.push_back(value);
+  }
+  tegl::ExtractOptions options;
+  options.normals = true;
+  return tegl::extract_facets<double>(image.view(), 0.0, options);
 }
 
 }  // namespace
@@ -40,6 +63,11 @@ int main(int argc, char** argv) {
     tegl::write_mesh(surface, folder / "surface.ply");
     tegl::write_mesh(contour4, folder / "contour4.vtkhdf");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.vtkhdf");
+    tegl::write_facets(facets_of_plane<2>(), folder / "segments.vtu");
+    tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtu");
+    tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtkhdf");
+    tegl::write_facets(facets_of_plane<4>(), folder / "polyhedra.vtu");
+    tegl::write_facets(tegl::FacetHierarchy<4, float>(), folder / "nothing.vtu");
   } catch (const tegl::Error& error) {
     std::cerr << error.what() << "\n";
     return 1;

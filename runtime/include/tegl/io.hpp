@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
+#include "tegl/facet_hierarchy.hpp"
 #include "tegl/image.hpp"
 #include "tegl/layers.hpp"
 #include "tegl/stream.hpp"
@@ -163,6 +164,17 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progr
 /// Writes bytes as they are: tables and graphs as text. Under another name first, so never half a file. Errors:
 /// WriteFailed.
 void write_text(std::string_view text, const std::filesystem::path& path);
+
+/// Writes the contour's facets without triangulation, by extension: .vtu (XML, raw appended data) holds the segments of
+/// 2D contours (VTK_LINE), the polygons of 3D ones (VTK_POLYGON) and the polyhedra of 4D ones (VTK_POLYHEDRON, with t
+/// as a point array); .vtkhdf the first two, as its polyhedra came after the versions that VTK 9.1 reads. Points, and
+/// what else is lossless, as write_mesh does it. Polygons of a polyhedron are oriented as parts of its boundary. Cell
+/// arrays: `sample` and `signature`, as in FacetPlace, and `cap`, 1 for parts of the border. Never half a file. Memory:
+/// that of a few numbers per facet. Errors: UnsupportedFormat, WriteFailed, Cancelled. read_mesh does not read polygons
+/// and polyhedra.
+template <int N, class Real>
+void write_facets(const FacetHierarchy<N, Real>& facets, const std::filesystem::path& path,
+                  const Progress& progress = {});
 
 /// A VTKHDF file (.vtkhdf) that a streamed contour goes to as it comes: what write_mesh would write of the whole
 /// contour, the same datasets with the same bytes. Written under another name beside the target: nothing is at the

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTU: VTK's XML files of unstructured grids, here with their arrays as raw bytes behind the XML.
+//
+// Based on: Kitware, "VTK File Formats" (XML formats, appended data).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "output_file.hpp"
+
+namespace tegl::io_detail {
+
+/// Bytes on their way into a file.
+class ByteSink {
+ public:
+  explicit ByteSink(OutputFile& file) : file_(file) {}
+  template <class T>
+  void put(T value) {
+    file_.write(&value, sizeof value);
+    bytes_ += sizeof value;
+  }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+
+ private:
+  OutputFile& file_;
+  std::uint64_t bytes_ = 0;
+};
+
+/// An array of a VTU file.
+struct VtuArray {
+  std::string name;
+  std::string type;    ///< "Float64", "Int64", "Int32", "UInt8"
+  unsigned columns;    ///< 1: no columns
+  std::uint64_t rows;  ///< as they are announced; `put` writes as many
+  unsigned bytes;      ///< of a value
+  std::size_t items;   ///< put(sink, i) is called for i = 0 ... items - 1
+  std::function<void(ByteSink&, std::size_t)> put;
+};
+
+/// The arrays of a grid, and words about its axes.
+struct VtuGrid {
+  std::uint64_t points = 0, cells = 0;
+  std::vector<VtuArray> point_arrays, cell_arrays;
+  std::string normals;  ///< the name of the point array that is the normals; empty: none
+  VtuArray coordinates;
+  std::vector<VtuArray> topology;  ///< connectivity, offsets, types; of polyhedra faces and faceoffsets
+  std::vector<std::string> axis_names, axis_units;
+};
+
+/// Errors: WriteFailed, Cancelled.
+void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress);
+
+}  // namespace tegl::io_detail
