@@ -310,16 +310,16 @@ void make_room(std::vector<PolygonRun>& runs, const FacetHierarchy<3, Real>& fac
 }  // namespace
 
 template <class Real>
-Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method, unsigned threads,
-                             const Progress& progress) {
+Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
+                             const WorkOptions& options) {
   constexpr std::size_t kRun = 1024;
   const std::size_t count = facets.count(2);
   std::vector<PolygonRun> runs((count + kRun - 1) / kRun);
   const PolygonTriangulator<Real> triangulator(facets, method);
-  detail::ProgressReporter reporter(progress, 1, "passes");
+  detail::ProgressReporter reporter(options.progress, 1, "passes");
   reporter.begin_batch(0, 1, 1);
   reporter.begin_pass(std::max<std::size_t>(1, runs.size()));
-  detail::Workers<PolygonScratch> workers(threads, [] { return PolygonScratch(); });
+  detail::Workers<PolygonScratch> workers(options.threads, [] { return PolygonScratch(); });
   workers.for_range(runs.size(), 1, [&](std::size_t from, std::size_t to, PolygonScratch& scratch) {
     for (std::size_t r = from; r < to && !reporter.stopped(); ++r) {
       for (std::size_t f = r * kRun; f < std::min(count, (r + 1) * kRun); ++f) triangulator.add(f, scratch, runs[r]);
@@ -354,9 +354,7 @@ Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTrian
 TEGL_INSTANTIATE(2)
 TEGL_INSTANTIATE(3)
 TEGL_INSTANTIATE(4)
-template Contour<3, float> triangulate(const FacetHierarchy<3, float>&, PolygonTriangulation, unsigned,
-                                       const Progress&);
-template Contour<3, double> triangulate(const FacetHierarchy<3, double>&, PolygonTriangulation, unsigned,
-                                        const Progress&);
+template Contour<3, float> triangulate(const FacetHierarchy<3, float>&, PolygonTriangulation, const WorkOptions&);
+template Contour<3, double> triangulate(const FacetHierarchy<3, double>&, PolygonTriangulation, const WorkOptions&);
 
 }  // namespace tegl

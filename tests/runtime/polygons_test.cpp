@@ -279,7 +279,7 @@ TEST(ContoursFromPolygons, AreTheSameForAnyNumberOfThreads) {
   const auto image = noise<float, 3>(30, 8);
   const auto facets = extract_facets<float>(image.view(), 0.5);
   for (const PolygonTriangulation method : kMethods) {
-    const auto one = triangulate(facets, method, 1), four = triangulate(facets, method, 4);
+    const auto one = triangulate(facets, method, {1}), four = triangulate(facets, method, {4});
     EXPECT_EQ(one.vertices, four.vertices);
     EXPECT_EQ(one.simplices, four.simplices);
   }
@@ -288,7 +288,7 @@ TEST(ContoursFromPolygons, AreTheSameForAnyNumberOfThreads) {
 TEST(ContoursFromPolygons, CanBeCancelled) {
   const auto facets = extract_facets<float>(noise<float, 3>(20, 8).view(), 0.5);
   try {
-    triangulate(facets, PolygonTriangulation::fan, 1, [](double) { return false; });
+    triangulate(facets, PolygonTriangulation::fan, {1, [](double) { return false; }});
     FAIL() << "not cancelled";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);

@@ -59,10 +59,9 @@ std::array<double, N> polygon_barycentre(std::span<const std::array<double, N>> 
 /// two points of one square of the grid, which the cube on the other side might draw too, are forbidden.
 ///
 /// The points of `facets` keep their numbers; barycentres come last, with the mean of their polygon's normals, if there
-/// are any. Triangles come polygon by polygon. The same for any number of threads (0: all that the machine has).
-/// Errors: TooLarge, Cancelled. O(size).
+/// are any. Triangles come polygon by polygon. Errors: TooLarge, Cancelled. O(size).
 template <class Real>
-Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method, unsigned threads = 0,
-                             const Progress& progress = {});
+Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
+                             const WorkOptions& options = {});
 
 }  // namespace tegl
