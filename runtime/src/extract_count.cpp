@@ -6,6 +6,9 @@
 #include "extract_count.hpp"
 
 #include <algorithm>
+#include <bit>
+
+#include "tile_selection.hpp"
 
 namespace tegl::detail {
 
@@ -82,10 +85,13 @@ std::size_t Counter<N>::slab_planes_bytes() const noexcept {
 
 template <int N>
 void Counter<N>::classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
-                          Word* buffer) const {
+                          Word* buffer, const TileSelection* selection) const {
   const std::size_t first = chunk * kChunkRows;
   bool uniform = true;
-  classify_rows(source, k, invert, first, shape_.chunk_end(chunk), layer, buffer);
+  if (selection == nullptr)
+    classify_rows(source, k, invert, first, shape_.chunk_end(chunk), layer, buffer);
+  else
+    classify_selected(source, k, invert, chunk, layer, buffer, *selection);
   for (std::size_t row = first; row < shape_.chunk_end(chunk); ++row)
     uniform = uniform && layer.state[row] == layer.state[first];
   layer.chunk_state[chunk] = uniform ? layer.state[first] : RowState::mixed;
@@ -112,6 +118,45 @@ void Counter<N>::classify_rows(const SampleSource<N>& source, std::size_t k, boo
       layer.state[row + r] = finish_row(high + r * pitch, invert, any);
     }
     row += rows;
+  }
+}
+
+template <int N>
+void Counter<N>::classify_selected(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk,
+                                   Layer<N>& layer, Word* buffer, const TileSelection& selection) const {
+  const std::uint32_t selected = selection.rows(k, chunk);
+  const std::size_t first = chunk * kChunkRows;
+  const std::size_t end = shape_.chunk_end(chunk);
+  for (std::size_t row = first, next; row < end; row = next) {
+    const std::uint32_t rest = selected >> (row - first);
+    const bool here = (rest & 1u) != 0;
+    next = std::min(end, row + static_cast<std::size_t>(std::countr_zero(here ? ~rest : rest)));
+    if (here) {
+      classify_rows(source, k, invert, row, next, layer, buffer);
+    } else if (selection.only_these()) {
+      std::fill(layer.state.begin() + static_cast<std::ptrdiff_t>(row),
+                layer.state.begin() + static_cast<std::ptrdiff_t>(next), RowState::low);
+    } else {
+      guess_rows(source, k, invert, row, next, layer);
+    }
+  }
+}
+
+template <int N>
+void Counter<N>::guess_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first,
+                            std::size_t end, Layer<N>& layer) const {
+  bool high = false;
+  for (std::size_t row = first; row < end; ++row) {
+    auto index = shape_.index_of(row);
+    if (row == first || index[1] == 0) {  // else the row before is its neighbour, and as it is
+      index[N - 1] = k;
+      high = source.is_high(index) != invert;
+    }
+    layer.state[row] = high ? RowState::high : RowState::low;
+    if (!ranks_ && !has_cubes_) continue;
+    // Borders are closed, and cubes counted, by bits.
+    for (std::size_t w = 0; w < shape_.words(); ++w)
+      layer.high[row * shape_.pitch() + w] = high ? shape_.mask(w, false) : 0;
   }
 }
 

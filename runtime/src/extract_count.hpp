@@ -32,6 +32,8 @@ struct CountScratch {
   TileLists tiles;          ///< of a row, where slabs do not keep them
 };
 
+class TileSelection;
+
 template <int N>
 class Counter {
  public:
@@ -56,9 +58,10 @@ class Counter {
   // By chunks of rows, which may be done in any order and side by side. A pass needs the passes before it on all rows
   // of what it looks at.
 
-  /// 1. Classifies layer `k`; `invert` for the high-connected alternative. `buffer`: pitch words.
+  /// 1. Classifies layer `k`; `invert` for the high-connected alternative. `buffer`: pitch words. `selection`: what is
+  /// looked at; null: all.
   void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
-                Word* buffer) const;
+                Word* buffer, const TileSelection* selection) const;
   /// After all chunks of a layer are classified. If samples are missing, and there is no storage for them so far, then
   /// the layer is to be classified once more when there is.
   static void find_missing(Layer<N>& layer);
@@ -97,6 +100,12 @@ class Counter {
  private:
   void classify_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
                      Layer<N>& layer, Word* buffer) const;
+  /// The selected rows of a chunk; of the others, which are uniform, what they have in common.
+  void classify_selected(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
+                         Word* buffer, const TileSelection& selection) const;
+  /// Rows first ... end - 1 without an active tile, by one sample of each that may differ from the one before.
+  void guess_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
+                  Layer<N>& layer) const;
   /// Brings a classified row's bits into their last form, and says what they have in common.
   RowState finish_row(Word* high, bool invert, bool any_missing) const;
   void find_valid_row(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;

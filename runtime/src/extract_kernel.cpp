@@ -14,6 +14,7 @@
 #include "extract_progress.hpp"
 #include "pinches.hpp"
 #include "stopwatch.hpp"
+#include "tile_selection.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
@@ -74,6 +75,7 @@ class Extraction {
         inverted_(options.ambiguity == Ambiguity::high),
         max_vertices_(plan.max_vertices),
         max_vertices_at_once_(plan.max_vertices_at_once),
+        selection_(plan.selection),
         shape_(grid.sizes()),
         tables_(tables),
         rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
@@ -184,12 +186,13 @@ class Extraction {
     const std::size_t from = classified_;
     classified_ = prepared_;
     pass_over_chunks(from, classified_, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
-      counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data());
+      counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data(), selection_);
     });
-    for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
-    write_missing(from, classified_);
     const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
     const std::size_t valid_from = first == 0 ? 0 : first + 1;
+    if (selection_ != nullptr && selection_->only_these()) return select_tiles(valid_from, valid_end);
+    for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
+    write_missing(from, classified_);
     bool all = true;
     for (std::size_t k = valid_from; k < valid_end; ++k) {
       slab(k).all_valid = !layer(k).any_missing && !layer(k + 1).any_missing;
@@ -203,6 +206,17 @@ class Extraction {
     });
   }
 
+  /// The tiles that count, where it is not the samples that tell.
+  void select_tiles(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      slab(k).all_valid = false;
+      if (slab(k).valid.empty()) counter_.allocate_valid(slab(k));
+    }
+    for_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch&) {
+      selection_->write_valid(k, chunk, shape_.chunk_end(chunk) - chunk * kChunkRows, shape_.words(), slab(k).valid);
+    });
+  }
+
   /// Missing samples of layers that had no storage for any so far.
   void write_missing(std::size_t first, std::size_t end) {
     for (std::size_t k = first; k < end; ++k) {
@@ -210,7 +224,7 @@ class Extraction {
       if (!here.any_missing || !here.missing.empty()) continue;
       counter_.allocate_missing(here);
       for_chunks(k, k + 1, [&](std::size_t, std::size_t chunk, Scratch& scratch) {
-        counter_.classify(source_, k, inverted_, chunk, here, scratch.counting.words.data());
+        counter_.classify(source_, k, inverted_, chunk, here, scratch.counting.words.data(), selection_);
       });
     }
   }
@@ -378,6 +392,7 @@ class Extraction {
   bool inverted_;
   std::uint64_t max_vertices_;
   std::uint64_t max_vertices_at_once_;
+  const TileSelection* selection_;
   RowShape<N> shape_;
   TableSet<N> tables_;
   std::optional<RowTable> rows_;

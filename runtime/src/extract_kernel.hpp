@@ -56,6 +56,7 @@ struct ContourPart {
   double done;  ///< share of the image whose contour is counted
 };
 
+class TileSelection;
 template <int N, class Real>
 class Caps;
 template <int N>
@@ -99,6 +100,7 @@ struct ExtractPlan {
   std::size_t batch = 0;       ///< slabs at a time; 0: as many as suit the image
   /// Of two batches, one after the other: numbers in simplices are told apart modulo 2^32.
   std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;
+  const TileSelection* selection = nullptr;  ///< what to look at; null: all
   bool keeps_tiles = true;  ///< false: lists of active tiles are made twice, whatever memory there is for them
 };
 

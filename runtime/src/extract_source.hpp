@@ -61,6 +61,9 @@ class SampleSource {
   /// `rows` rows from the one through `start` (start[0] = 0) on along axis 1, as classify_rows.
   virtual Word classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept = 0;
 
+  /// One sample.
+  [[nodiscard]] virtual bool is_high(const Index& index) const noexcept = 0;
+
   /// From sample to sample within a layer; of the last axis nothing.
   [[nodiscard]] virtual std::array<std::ptrdiff_t, N> strides() const noexcept = 0;
   /// For edges along `axis` from samples of layer k on, all critical: the place on the edge, 0 at its first end and 1
@@ -95,6 +98,9 @@ class RowSource : public SampleSource<N> {
 
   [[nodiscard]] std::size_t sample_bytes() const noexcept final { return sizeof(T); }
   Word classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept final;
+  [[nodiscard]] bool is_high(const Index& index) const noexcept final {
+    return !threshold_.never && row(index)[static_cast<std::ptrdiff_t>(index[0]) * strides_[0]] >= threshold_.value;
+  }
   [[nodiscard]] Strides strides() const noexcept final { return strides_; }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;

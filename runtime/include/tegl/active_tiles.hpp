@@ -218,4 +218,15 @@ std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vector<TileNumber> tiles);
 
+/// As `extract` without an index: the same contour, byte by byte, with the same numbers. Looks at the samples in rows
+/// with active tiles alone, and at one for every 32 other rows or so: the time is that of the active rows. The index is
+/// trusted: only sizes and value type are compared. If it is not complete, the contour is the one in the tiles that it
+/// finds, as if all others had missing corners. Where the border is closed (`close`) next to missing values, all
+/// samples are looked at, and the index is of no use. ExtractStats::find_seconds has the time that the index took.
+/// Errors: those of `extract`; InvalidArgument for an index of an image of other sizes or value type, or for `close`
+/// with one that is not complete.
+template <class Real = float, Value T, int N>
+requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                                          const ActiveTiles<N>& active, ExtractStats* stats = nullptr);
+
 }  // namespace tegl
