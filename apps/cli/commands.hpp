@@ -62,5 +62,6 @@ std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_contour_command(CLI::App& program);
 std::unique_ptr<Command> make_slice_command(CLI::App& program);
 std::unique_ptr<Command> make_check_command(CLI::App& program);
+std::unique_ptr<Command> make_index_command(CLI::App& program);
 
 }  // namespace tegl::cli

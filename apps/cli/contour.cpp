@@ -13,6 +13,7 @@
 #include "progress.hpp"
 #include "result.hpp"
 #include "streaming.hpp"
+#include "tegl/active_tiles_io.hpp"
 
 namespace tegl::cli {
 
@@ -23,6 +24,7 @@ constexpr const char* kExamples =
     "  tegl contour head.nii.gz --iso 60 -o head.ply\n"
     "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --close -o warm_water.vtkhdf\n"
+    "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
 
@@ -36,6 +38,7 @@ class ContourCommand final : public Command {
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    app().add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote");
     streaming_.add_to(app());
     add_variable();
     add_quiet();
@@ -47,6 +50,11 @@ class ContourCommand final : public Command {
     ExtractOptions options = options_.library_options();
     require_input(file());
     require_output(output_, file());
+    if (!index_.empty()) {
+      require_input(index_);
+      if (streaming_.wanted())
+        throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream and no --raw");
+    }
 
     ProgressBar bar(streams.err, wants_progress());
     ContourResult result;
@@ -74,13 +82,30 @@ class ContourCommand final : public Command {
 
     options.progress = bar.stage("contour");
     ExtractStats& stats = result.stats.emplace();
-    result.mesh = extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
-                                    [](const auto& contour) { return to_mesh(contour); });
+    result.mesh = index_.empty()
+                      ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
+                                          [](const auto& contour) { return to_mesh(contour); })
+                      : extract_by_index(input.image, options, bar, result);
     result.seconds.add(stats);
     if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
     input.image = AnyImage();  // its memory is of more use to the check
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);
+  }
+
+  /// The contour by --index, whose reading counts as such.
+  Mesh extract_by_index(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+    const auto of_owned = [&](const auto& owned) {
+      Stopwatch watch;
+      const auto view = owned.view();
+      const auto active = read_active_tiles(index_, view, {.threads = options.threads, .progress = bar.stage("index")});
+      result.seconds.read += watch.lap();
+      options.progress = bar.stage("contour");
+      if (options_.single_precision())
+        return to_mesh(extract<float>(view, *result.isovalue, options, *active, &*result.stats));
+      return to_mesh(extract<double>(view, *result.isovalue, options, *active, &*result.stats));
+    };
+    return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
@@ -102,6 +127,7 @@ class ContourCommand final : public Command {
   ExtractionOptions options_;
   StreamingOptions streaming_;
   std::string output_;
+  std::string index_;
   bool no_check_ = false;
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "commands.hpp"
+#include "index.hpp"
 #include "numbers.hpp"
 #include "output.hpp"
 #include "progress.hpp"
@@ -259,13 +260,20 @@ class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
       : Command(program, "info", "What is in a file: axes, values, histogram, isovalues worth a try",
-                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped)") {
+                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped); or an index (.tindex)") {
     add_variable();
     app().footer(kExamples);
   }
 
   ExitCode run(const Streams& streams) override {
     require_input(file());
+    if (is_index_file(file())) {
+      if (!variable().empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("{} is an index, which has no variables; expected no --var", file()));
+      streams.out.write(index_info(streams.out, file(), json()));
+      return ExitCode::Ok;
+    }
     if (variable().empty()) {
       const std::vector<ImageVariable> variables = list_image_variables(file());
       if (variables.size() > 1) {

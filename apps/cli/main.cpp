@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_contour_command(program));
   commands.push_back(tegl::cli::make_slice_command(program));
   commands.push_back(tegl::cli::make_check_command(program));
+  commands.push_back(tegl::cli::make_index_command(program));
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
