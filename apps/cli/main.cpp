@@ -109,6 +109,8 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_slice_command(program));
   commands.push_back(tegl::cli::make_check_command(program));
   commands.push_back(tegl::cli::make_index_command(program));
+  commands.push_back(tegl::cli::make_components_command(program));
+  commands.push_back(tegl::cli::make_measure_command(program));
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
