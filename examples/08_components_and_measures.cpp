@@ -19,7 +19,7 @@ constexpr std::size_t kSize = 32, kSteps = 20;
 /// Positive inside: a ball of radius 4 + 0.2 t, and one that is there around t = 9.5.
 float inside(double x, double y, double z, double t) {
   const double growing = 4.0 + 0.2 * t - std::hypot(x - 9.0, y - 15.5, z - 15.5);
-  const double passing = 5.0 - std::hypot(x - 24.0, y - 15.5, z - 15.5, t - 9.5);
+  const double passing = 5.0 - std::hypot(std::hypot(x - 24.0, y - 15.5, z - 15.5), t - 9.5);
   return static_cast<float>(std::max(growing, passing));
 }
 
