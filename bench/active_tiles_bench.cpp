@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Indexes of active tiles: what each method costs to build and keep, what a query costs as the active tiles grow, and
+// what a sweep over 256 isovalues gains. Writes tables in Markdown.
+//
+//   active_tiles_bench [--queries N] [--csv FILE] IMAGE...
+//
+// One thread. Times of queries and contours are the least of a few runs. `--csv` keeps every single query.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "memory.hpp"
+#include "tegl/active_tiles_io.hpp"
+#include "tegl/io.hpp"
+
+namespace tegl::bench {
+namespace {
+
+constexpr int kRuns = 3;
+
+/// The least seconds of several runs.
+template <class Work>
+double least_seconds(const Work& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < kRuns; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return least;
+}
+
+struct Query {
+  double isovalue;
+  double active;           ///< tiles
+  double seconds;          ///< to find them
+  double extract_seconds;  ///< to find them and make the contour
+};
+
+/// time = start + each * active, by least squares; and the share of the variance that it explains.
+struct Fit {
+  double start = 0, each = 0, explained = 0;
+};
+
+Fit fit_line(const std::vector<Query>& queries) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (const Query& q : queries) {
+    n += 1;
+    x += q.active;
+    y += q.seconds;
+    xx += q.active * q.active;
+    xy += q.active * q.seconds;
+    yy += q.seconds * q.seconds;
+  }
+  const double sxx = xx - x * x / n, sxy = xy - x * y / n, syy = yy - y * y / n;
+  Fit fit;
+  fit.each = sxx > 0 ? sxy / sxx : 0;
+  fit.start = (y - fit.each * x) / n;
+  fit.explained = sxx > 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
+  return fit;
+}
+
+/// Isovalues over the range of the values: for 8 bits and up to 256 queries, one between any two values.
+template <class Owned>
+std::vector<double> isovalues_of(const Owned& owned, int queries) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto value : owned.values) {
+    if (!std::isfinite(static_cast<double>(value))) continue;
+    low = std::min(low, static_cast<double>(value));
+    high = std::max(high, static_cast<double>(value));
+  }
+  std::vector<double> isovalues;
+  for (int i = 0; i < queries; ++i) isovalues.push_back(low + (high - low) * (i + 0.5) / queries);
+  return isovalues;
+}
+
+template <class Owned>
+void measure(const std::string& name, const Owned& owned, int queries, std::FILE* csv) {
+  const auto image = owned.view();
+  ExtractOptions options;
+  options.threads = 1;
+  const std::vector<double> isovalues = isovalues_of(owned, queries);
+  const double plain = [&] {
+    double sum = 0;
+    for (const double isovalue : isovalues) sum += least_seconds([&] { extract<float>(image, isovalue, options); });
+    return sum;
+  }();
+  const double identify_seconds = least_seconds([&] { identify(image, 1); });
+  fmt::print(
+      "\n## {}\n\n{} samples, {} isovalues; all contours without an index: {:.3f} s; digest of the values: "
+      "{:.1f} ms\n\n",
+      name, owned.values.size(), queries, plain, 1e3 * identify_seconds);
+  fmt::print(
+      "| method | build s | index | bytes per tile | most memory while built | median query | query = a + b k "
+      "| explained | all contours s | of those without |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const ActiveMethod method : active_methods()) {
+    const std::uint64_t before = memory_bytes("VmRSS");
+    reset_peak_memory();
+    const auto start = std::chrono::steady_clock::now();
+    auto index = build_active_tiles(image, method, {.threads = 1, .progress = {}});
+    const double build = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
+    std::vector<Query> done;
+    double contours = 0;
+    for (const double isovalue : isovalues) {
+      std::vector<TileNumber> tiles;
+      Query query{isovalue, 0, least_seconds([&] { tiles = index->find(isovalue); }), 0};
+      query.active = static_cast<double>(tiles.size());
+      query.extract_seconds = least_seconds([&] { extract<float>(image, isovalue, options, *index); });
+      contours += query.extract_seconds;
+      done.push_back(query);
+      if (csv != nullptr)
+        fmt::print(csv, "{},{},{},{},{},{}\n", name, active_method_name(method), query.isovalue, query.active,
+                   query.seconds, query.extract_seconds);
+    }
+    const Fit fit = fit_line(done);
+    std::sort(done.begin(), done.end(), [](const Query& a, const Query& b) { return a.seconds < b.seconds; });
+    const auto bytes = static_cast<double>(index->memory_bytes());
+    fmt::print(
+        "| {} | {:.3f} | {:.2f} MB | {:.2f} | {:.0f} MB | {:.3f} ms | {:.3f} ms + {:.2f} ns k | {:.3f} | {:.3f} "
+        "| {:.2f} |\n",
+        active_method_name(method), build, bytes / 1e6, bytes / static_cast<double>(index->grid().count()),
+        static_cast<double>(peak) / 1e6, 1e3 * done[done.size() / 2].seconds, 1e3 * fit.start, 1e9 * fit.each,
+        fit.explained, contours, contours / plain);
+    std::fflush(stdout);
+  }
+}
+
+int run(int argc, char** argv) {
+  int queries = 256;
+  std::FILE* csv = nullptr;
+  std::vector<std::string> files;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool more = i + 1 < argc;
+    if (argument == "--queries" && more)
+      queries = std::max(1, std::stoi(argv[++i]));
+    else if (argument == "--csv" && more)
+      csv = std::fopen(argv[++i], "w");
+    else
+      files.push_back(argument);
+  }
+  if (files.empty()) {
+    fmt::print(stderr, "usage: active_tiles_bench [--queries N] [--csv FILE] IMAGE...\n");
+    return 2;
+  }
+  if (csv != nullptr) fmt::print(csv, "image,method,isovalue,active_tiles,find_seconds,extract_seconds\n");
+  for (const std::string& file : files) {
+    const ReadImageResult read = read_image(file);
+    const std::string name = std::filesystem::path(file).filename().string();
+    std::visit(
+        [&](const auto& typed) { std::visit([&](const auto& owned) { measure(name, owned, queries, csv); }, typed); },
+        read.image);
+  }
+  if (csv != nullptr) std::fclose(csv);
+  return 0;
+}
+
+}  // namespace
+}  // namespace tegl::bench
+
+int main(int argc, char** argv) {
+  try {
+    return tegl::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "active_tiles_bench: {}\n", error.what());
+    return 1;
+  }
+}
