@@ -4,6 +4,7 @@
 #include "extract_kernel.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -39,7 +40,7 @@ namespace {
 /// the next, and needs little memory beside the image. Decides whether the counter keeps lists of tiles.
 template <int N>
 std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::size_t sample_bytes, std::size_t threads,
-                         std::size_t thread_bytes) {
+                         std::size_t thread_bytes, bool ahead) {
   // Several threads meet after every pass, which takes longer than the way from one cache to the next.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
   constexpr double kShare = 0.057;      // of the image: the rest of a sixteenth is for what is not by slabs
@@ -50,13 +51,14 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
   const std::size_t wanted =
       std::clamp<std::size_t>(threads * samples_per_thread / layer, 1, std::max<std::size_t>(1, shape.layers() - 1));
-  // Of layers, one more than slabs is counted, and another one is classified.
+  // Of layers, one more than slabs is counted, and another one is classified; or the next batch's are classified too.
+  const std::size_t bits = (ahead ? 2 : 1) * counter.layer_bytes();
   constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
   const auto fit = [&] {
     const auto fixed =
         static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
-    const auto each = static_cast<double>(counter.layer_bytes() + counter.layer_planes_bytes() +
-                                          counter.slab_planes_bytes() + kBookkeeping);
+    const auto each = static_cast<double>(bits + counter.layer_planes_bytes() + counter.slab_planes_bytes() +
+                                          (ahead ? 2 : 1) * kBookkeeping);
     const double most = (std::max(kLittle, kShare * image) - fixed) / each;
     return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
   };
@@ -90,20 +92,21 @@ class Extraction {
                  [this] {
                    return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
                  }),
+        ahead_(workers_.count() > 1 && source.is_at_hand()),
         batch_(plan.batch == 0 ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
-                                              EdgeWriter<N, Real>::bytes(shape_.size(0)))
+                                              EdgeWriter<N, Real>::bytes(shape_.size(0)), ahead_)
                                : std::min(plan.batch, shape_.layers() - 1)),
-        layers_(batch_ + 2),
-        slabs_(batch_ + 1) {
+        layers_((ahead_ ? 2 : 1) * batch_ + 2),
+        slabs_((ahead_ ? 2 : 1) * batch_ + 1) {
     if (options.normals) placement_.want_normals(source, grid, options.direction);
     if (options.close)
       caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
                     plan.closed_axes);
     if (!plan.keeps_tiles) counter_.keep_tiles(false);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
-    const std::size_t more = kPassesPlanesOn ? 0 : 1;
-    for (std::size_t k = 0; k <= batch_ + more; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
-    for (std::size_t k = 0; k < batch_ + more; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
+    const std::size_t counted = kPassesPlanesOn ? batch_ + 1 : layers_.size();
+    for (std::size_t k = 0; k < counted; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
+    for (std::size_t k = 0; k + 1 < counted; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
     source.keep(layers_.size() + (options.normals ? 1 : 0));  // gradients look back to the layer before
   }
 
@@ -113,17 +116,26 @@ class Extraction {
     Stopwatch watch;
     for (std::size_t first = 0; first < slabs; first += batch_) {
       const std::size_t end = std::min(slabs, first + batch_);
-      reporter_.begin_batch(first, end, kPasses);
+      const bool classified = ahead_ && first != 0;
+      reporter_.begin_batch(first, end, kPasses - (classified ? 1 : 0));
       reporter_.tell(static_cast<double>(first));
-      prepare(end);
-      watch.add_to(stats.read_seconds);
-      classify(first, end);
-      watch.add_to(stats.classify_seconds);
+      if (!classified) {
+        prepare(end);
+        watch.add_to(stats.read_seconds);
+        classify(first, end);
+        watch.add_to(stats.classify_seconds);
+      }
       stats.active_tiles += count(first, end);
       watch.add_to(stats.find_seconds);
       part_.done = static_cast<double>(end) / static_cast<double>(slabs);
-      generate(first, end, output_.open(part_));
-      watch.add_to(stats.generate_seconds);
+      const auto room = output_.open(part_);
+      if (ahead_ && end < slabs) {
+        const double share = generate_ahead(first, end, std::min(slabs, end + batch_), room);
+        watch.share_between(stats.classify_seconds, share, stats.generate_seconds);
+      } else {
+        generate(first, end, room);
+        watch.add_to(stats.generate_seconds);
+      }
       gather_border(first, end);
       watch.add_to(stats.close_seconds);
       output_.close(part_, pinches_);
@@ -183,11 +195,18 @@ class Extraction {
 
   /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
   void classify(std::size_t first, std::size_t end) {
+    pass_over_chunks(classified_, prepared_,
+                     [&](std::size_t k, std::size_t chunk, Scratch& scratch) { classify_chunk(k, chunk, scratch); });
+    finish_classification(first, end);
+  }
+  void classify_chunk(std::size_t k, std::size_t chunk, Scratch& scratch) {
+    counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data(), selection_);
+  }
+
+  /// What is missing in the layers that the slabs first ... end - 1 need, whose samples are classified.
+  void finish_classification(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
     classified_ = prepared_;
-    pass_over_chunks(from, classified_, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
-      counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data(), selection_);
-    });
     const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
     const std::size_t valid_from = first == 0 ? 0 : first + 1;
     if (selection_ != nullptr && selection_->only_these()) return select_tiles(valid_from, valid_end);
@@ -240,13 +259,7 @@ class Extraction {
   /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     take_planes(first, end);
-    // What is to be written to later is touched by one chunk in so many.
-    const std::size_t pieces = workers_.count() > 1 ? output_.pieces_ahead() : 0;
-    const std::size_t all = (end - first) * shape_.chunks();
-    const std::size_t apart = pieces == 0 ? all : std::max<std::size_t>(1, all / pieces);
     pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
-      const std::size_t ordinal = (k - first) * shape_.chunks() + chunk;
-      if (ordinal % apart == 0 && ordinal / apart < pieces) output_.touch_ahead(ordinal / apart);
       if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.counting.words.data());
       counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.counting);
     });
@@ -280,12 +293,45 @@ class Extraction {
   }
 
   void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
-    if (room.vertices == nullptr && room.simplices == nullptr) return;
-    const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
+    if (!is_wanted(room)) return;
     pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
-      if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
-      generate_slab(k, chunk, scratch, vertices, room.simplices);
+      generate_chunk(k, chunk, scratch, room);
     });
+  }
+  static bool is_wanted(const typename ContourOutput<N, Real>::Room& room) noexcept {
+    return room.vertices != nullptr || room.simplices != nullptr;
+  }
+  void generate_chunk(std::size_t k, std::size_t chunk, Scratch& scratch,
+                      const typename ContourOutput<N, Real>::Room& room) {
+    const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
+    if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
+    generate_slab(k, chunk, scratch, vertices, room.simplices);
+  }
+
+  /// Generates the slabs first ... end - 1 and classifies what those up to `next_end` need, side by side: the one waits
+  /// for memory where the other computes, and threads meet once. What is likely to be written to next is touched by one
+  /// chunk in so many. Returns the classification's share of the time.
+  double generate_ahead(std::size_t first, std::size_t end, std::size_t next_end,
+                        const typename ContourOutput<N, Real>::Room& room) {
+    prepare(next_end);
+    const bool wanted = is_wanted(room);
+    const std::size_t slabs = std::max(end - first, prepared_ - classified_);
+    const std::size_t pieces = output_.pieces_ahead();
+    const std::size_t apart = pieces == 0 ? 0 : std::max<std::size_t>(1, slabs * shape_.chunks() / pieces);
+    std::atomic<std::int64_t> classifying = 0, generating = 0;
+    pass_over_chunks(0, slabs, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      const std::size_t ordinal = k * shape_.chunks() + chunk;
+      if (apart != 0 && ordinal % apart == 0 && ordinal / apart < pieces) output_.touch_ahead(ordinal / apart);
+      const std::int64_t start = Stopwatch::nanoseconds();
+      if (wanted && first + k < end) generate_chunk(first + k, chunk, scratch, room);
+      const std::int64_t middle = Stopwatch::nanoseconds();
+      if (classified_ + k < prepared_) classify_chunk(classified_ + k, chunk, scratch);
+      generating.fetch_add(middle - start, std::memory_order_relaxed);
+      classifying.fetch_add(Stopwatch::nanoseconds() - middle, std::memory_order_relaxed);
+    });
+    finish_classification(end, next_end);
+    const double both = static_cast<double>(classifying + generating);
+    return both > 0.0 ? static_cast<double>(classifying) / both : 0.0;
   }
 
   /// Where the points on edges of a chunk go, of a layer or along the last axis. Other vertices may come between them.
@@ -403,6 +449,7 @@ class Extraction {
   std::optional<Caps<N, Real>> caps_;
   PinchCandidates<N> pinches_;
   Workers<Scratch> workers_;
+  bool ahead_;                    ///< whether the next batch is classified while one is generated
   std::size_t batch_;             ///< slabs at a time
   std::vector<Layer<N>> layers_;  ///< by k modulo their number
   std::vector<Slab<N>> slabs_;
@@ -445,9 +492,10 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   }
 
   Room open(const ContourPart& part) override {
-    resize_output(contour_.vertices, part.end_vertex, part.done);
-    resize_output(contour_.simplices, part.end_simplex, part.done);
-    if (normals_) resize_output(contour_.normals, part.end_vertex, part.done);
+    ahead_.clear();
+    resize(contour_.vertices, part.end_vertex, part);
+    resize(contour_.simplices, part.end_simplex, part);
+    if (normals_) resize(contour_.normals, part.end_vertex, part);
     return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex,
             normals_ ? contour_.normals.data() + part.first_vertex : nullptr};
   }
@@ -474,6 +522,13 @@ class MemoryOutput final : public ContourOutput<N, Real> {
       Simplex& narrow = contour_.simplices.emplace_back();
       for (int j = 0; j < N; ++j) narrow[j] = static_cast<Index>(caps.number(simplex[j], first));
     }
+  }
+
+  template <class Items>
+  void resize(Items& output, std::uint64_t size, const ContourPart& part) {
+    const std::uint64_t last = size - output.size();
+    resize_output(output, size, part.done);
+    look_ahead(output, last, part.done);
   }
 
   /// Notes the huge pages that come next, for as much as the last part was, within what all is expected to be.

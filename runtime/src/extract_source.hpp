@@ -56,6 +56,9 @@ class SampleSource {
   /// for the extraction. May throw.
   virtual void prepare(std::size_t /*k*/) {}
 
+  /// Whether all layers are ready from the start, and need no memory.
+  [[nodiscard]] virtual bool is_at_hand() const noexcept { return false; }
+
   [[nodiscard]] virtual std::size_t sample_bytes() const noexcept = 0;
 
   /// `rows` rows from the one through `start` (start[0] = 0) on along axis 1, as classify_rows.
@@ -159,6 +162,7 @@ class ImageSource final : public RowSource<T, N> {
         last_axis_(image.grid().axes[N - 1]),
         first_(first) {}
 
+  [[nodiscard]] bool is_at_hand() const noexcept override { return true; }
   [[nodiscard]] AxisSteps last_steps(const Grid<N>& /*grid*/) const override { return AxisSteps(last_axis_, first_); }
 
  private:

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 namespace tegl::detail {
 
@@ -14,6 +15,18 @@ class Stopwatch {
     const auto now = Clock::now();
     seconds += std::chrono::duration<double>(now - last_).count();
     last_ = now;
+  }
+  /// The same, to two: a share of it to the first.
+  void share_between(double& first, double share, double& second) noexcept {
+    double both = 0.0;
+    add_to(both);
+    first += share * both;
+    second += (1.0 - share) * both;
+  }
+
+  /// Since some moment.
+  static std::int64_t nanoseconds() noexcept {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
   }
 
  private:
