@@ -11,6 +11,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 // The thread sanitizer does not see how the installed TBB, which is not built for it, orders things: there, plain
@@ -71,7 +72,8 @@ class Workers {
     arena_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, count, grain),
-          [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end(), own_.local()); });
+          [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end(), own_.local()); },
+          affinity_);
     });
 #endif
   }
@@ -82,6 +84,7 @@ class Workers {
 
   tbb::task_arena arena_;
   bool alone_;
+  tbb::affinity_partitioner affinity_;  ///< a thread gets the parts that it got the last time: they are in its caches
   tbb::enumerable_thread_specific<Scratch> own_;
 };
 
