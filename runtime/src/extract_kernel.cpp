@@ -43,8 +43,8 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
                          std::size_t thread_bytes, bool ahead) {
   // Several threads meet after every pass, which takes longer than the way from one cache to the next.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
-  constexpr double kShare = 0.057;      // of the image: the rest of a sixteenth is for what is not by slabs
-  constexpr double kLittle = 1u << 17;  // bytes, however small the image
+  const double share = ahead ? 0.05 : 0.057;  // of the image: the rest of a sixteenth is for what is not by slabs
+  constexpr double kLittle = 1u << 17;        // bytes, however small the image
   // Slabs that must fit in with their lists of tiles in 4D, or these are made twice.
   const std::size_t few = threads > 1 ? 2 : 1;
   const std::size_t layer = shape.rows() * shape.size(0);
@@ -59,7 +59,7 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
         static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
     const auto each = static_cast<double>(bits + counter.layer_planes_bytes() + counter.slab_planes_bytes() +
                                           (ahead ? 2 : 1) * kBookkeeping);
-    const double most = (std::max(kLittle, kShare * image) - fixed) / each;
+    const double most = (std::max(kLittle, share * image) - fixed) / each;
     return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
   };
   if (N == 4 && fit() < std::min(wanted, few)) counter.keep_tiles(false);
