@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Seeds as a cover of components by trees (and Whole2, which covers tree by tree).
+#include <algorithm>
+#include <tuple>
+
+#include "level_sweep.hpp"
+#include "seed_methods.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+/// The part of a progress from `from` to `to`.
+Progress part_of(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
+}
+
+/// Sweeps among `picked` alone, up and down in turn, as long as picks can be spared.
+std::vector<std::uint32_t> spare(const SeedGraph& graph, std::vector<std::uint32_t> picked, SweepDirection last) {
+  std::vector<bool> allowed(graph.roots.size());
+  for (int in_vain = 0; in_vain < 2;) {
+    std::fill(allowed.begin(), allowed.end(), false);
+    for (const std::uint32_t tree : picked) allowed[tree] = true;
+    last = last == SweepDirection::up ? SweepDirection::down : SweepDirection::up;
+    auto fewer =
+        sweep_levels(graph, {.direction = last, .pick = SweepPick::farthest, .allowed = &allowed, .progress = {}});
+    in_vain = fewer.picked.size() < picked.size() ? 0 : in_vain + 1;
+    if (fewer.picked.size() < picked.size()) picked = std::move(fewer.picked);
+  }
+  return picked;
+}
+
+/// Trees around roots that are still there, and what roots that have gone depend on.
+class Whole2 {
+ public:
+  Whole2(const SeedGraph& graph, Dependence dependence)
+      : graph_(graph),
+        dependence_(dependence),
+        sets_(graph.roots.size()),
+        users_(graph.roots.size()),
+        asked_(graph.roots.size(), kNever) {}
+
+  std::vector<std::uint32_t> run(const Progress& progress) {
+    std::vector<std::uint32_t> kept;
+    std::size_t link = 0;
+    for (std::uint32_t root = 0; root < graph_.roots.size(); ++root) {
+      if (root % 4096 == 0) report_progress(progress, static_cast<double>(root) / static_cast<double>(sets_.count()));
+      ask(root);
+      std::vector<SeedLink> around;
+      for (; link < graph_.links.size() && graph_.links[link].a == root; ++link)
+        if (!depends(graph_.links[link].b, root)) around.push_back(graph_.links[link]);
+      if (!cover(root, around)) kept.push_back(root);
+    }
+    return kept;
+  }
+
+ private:
+  static constexpr std::uint32_t kNever = ~0u;
+
+  /// Finds all that depend on a root.
+  void ask(std::uint32_t root) {
+    if (dependence_ == Dependence::sets) return;
+    std::vector<std::uint32_t> open{root};
+    asked_[root] = root;
+    while (!open.empty()) {
+      const std::uint32_t next = open.back();
+      open.pop_back();
+      for (const std::uint32_t user : users_[next]) {
+        if (asked_[user] == root) continue;
+        asked_[user] = root;
+        open.push_back(user);
+      }
+    }
+  }
+  [[nodiscard]] bool depends(std::uint32_t tree, std::uint32_t on) {
+    return dependence_ == Dependence::sets ? sets_.find(tree) == sets_.find(on) : asked_[tree] == on;
+  }
+
+  /// Whether `around` covers the root: then it goes, by the fewest that do.
+  bool cover(std::uint32_t root, std::vector<SeedLink>& around) {
+    std::sort(around.begin(), around.end(),
+              [](const SeedLink& p, const SeedLink& q) { return std::tie(p.first, p.b) < std::tie(q.first, q.b); });
+    std::vector<std::uint32_t> chosen;
+    std::uint32_t level = graph_.first[root];
+    for (std::size_t i = 0; level < graph_.end[root];) {
+      std::uint32_t farthest = level;
+      std::uint32_t by = 0;
+      for (; i < around.size() && around[i].first <= level; ++i)
+        if (around[i].end > farthest) {
+          farthest = around[i].end;
+          by = around[i].b;
+        }
+      if (farthest == level) return false;
+      chosen.push_back(by);
+      level = farthest;
+    }
+    if (dependence_ == Dependence::ancestors) {
+      for (const std::uint32_t tree : chosen) users_[tree].push_back(root);
+    } else {
+      for (const std::uint32_t tree : chosen) {
+        const std::uint32_t set = sets_.find(root);
+        const std::uint32_t other = sets_.find(tree);
+        if (set != other) sets_.hang(set, other);
+      }
+    }
+    return true;
+  }
+
+  const SeedGraph& graph_;
+  Dependence dependence_;
+  DisjointSets sets_;
+  std::vector<std::vector<std::uint32_t>> users_;  ///< which roots that have gone it helps to cover
+  std::vector<std::uint32_t> asked_;               ///< the last root that it was found to depend on
+};
+
+}  // namespace
+
+SeedCover cover_components(const SeedGraph& graph, const Progress& progress) {
+  auto up = sweep_levels(graph, {.direction = SweepDirection::up, .progress = part_of(progress, 0.0, 0.25)});
+  auto down = sweep_levels(graph, {.direction = SweepDirection::down, .progress = part_of(progress, 0.25, 0.5)});
+  SeedCover cover;
+  cover.trees = spare(graph, std::move(up.picked), SweepDirection::up);
+  auto other = spare(graph, std::move(down.picked), SweepDirection::down);
+  if (other.size() < cover.trees.size()) cover.trees = std::move(other);
+  cover.bound = pack_components(graph, part_of(progress, 0.8, 1.0));
+  return cover;
+}
+
+std::uint64_t pack_components(const SeedGraph& graph, const Progress& progress) {
+  std::uint64_t most = 0;
+  double done = 0;
+  for (const SweepDirection direction : {SweepDirection::up, SweepDirection::down}) {
+    const auto part = part_of(progress, done, done + 0.5);
+    most =
+        std::max(most, sweep_levels(graph, {.direction = direction, .pick = SweepPick::all, .progress = part}).times);
+    done += 0.5;
+  }
+  return most;
+}
+
+std::vector<std::uint32_t> whole2(const SeedGraph& graph, Dependence dependence, const Progress& progress) {
+  return Whole2(graph, dependence).run(progress);
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is left of the tiles when those go whose range lies in a neighbour's: trees of tiles, and the links between
+// them.
+//
+// Based on: Hung Chiang-Han, A new approach of seed-set finding for iso-surface extraction, Taiwan Tech 2005, 3.3
+// (grouping) and 3.4.1 (Whole1). Nothing is lost for later: a tile's component at any isovalue is that of the neighbour
+// that its range lies in, so some smallest seed set has roots of trees alone.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "padded_tiles.hpp"
+
+namespace tegl::detail {
+
+/// Disjoint sets with paths halved on the way.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count);
+  [[nodiscard]] std::uint32_t find(std::uint32_t i) noexcept {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// `root` is a root, and hangs on `on` from now on.
+  void hang(std::uint32_t root, std::uint32_t on) noexcept { parent_[root] = on; }
+  [[nodiscard]] std::size_t count() const noexcept { return parent_.size(); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Two trees have neighbouring tiles that are both active at levels first ... end - 1.
+struct SeedLink {
+  std::uint32_t a, b;  ///< trees
+  std::uint32_t first, end;
+  bool operator==(const SeedLink&) const = default;
+};
+
+/// Trees by number, in the order in which a scan meets their roots. Between two neighbouring values that bound ranges
+/// the same tiles are active: such an interval is a level.
+struct SeedGraph {
+  std::vector<Place> roots;
+  std::vector<std::uint32_t> first, end;  ///< the root is active at levels first ... end - 1
+  std::uint32_t levels = 0;
+  std::vector<SeedLink> links;  ///< a < b, ascending by a, b, first; those of one pair neither overlap nor touch
+  std::uint64_t constant_tiles = 0;
+  std::uint64_t groups = 0;
+};
+
+struct SeedGraphOptions {
+  Neighbourhood neighbourhood = Neighbourhood::all;
+  std::vector<int> order;  ///< all axes
+  /// Links of root groups alone, in both directions where both are: a is the tree whose root's group has the tile.
+  bool of_root_groups = false;
+  bool with_links = true;
+  Progress progress;
+};
+
+template <class Key>
+SeedGraph make_seed_graph(const RangeMap<Key>& map, const SeedGraphOptions& options);
+
+/// Puts links in order, and makes one of those that overlap or touch.
+void merge_links(std::vector<SeedLink>& links);
+
+/// Trees of which one link covers all levels hang on its other end, and so on until there are none: as above, no
+/// smallest seed set gets larger.
+void contract(SeedGraph& graph);
+
+/// Throws Cancelled if the callback says so.
+void report_progress(const Progress& progress, double fraction);
+
+}  // namespace tegl::detail

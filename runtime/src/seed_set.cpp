@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Seed sets by any method, from an image.
+#include "tegl/seed_set.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "padded_tiles.hpp"
+#include "seed_graph.hpp"
+#include "seed_methods.hpp"
+
+namespace tegl {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kNeighbourhoodNames = {"faces", "faces-and-edges", "all"};
+constexpr std::array<std::string_view, 7> kMethodNames = {
+    "cover", "whole1", "whole2-disjoint-sets", "whole2", "volume-thinning", "sweeping", "climbing"};
+
+std::vector<int> checked_order(const std::vector<int>& order, int dim) {
+  if (order.empty()) return detail::default_order(dim);
+  const std::vector<int> axes = detail::default_order(dim);
+  if (!std::is_permutation(order.begin(), order.end(), axes.begin(), axes.end()))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("scan order [{}]; expected all of the axes 0 to {}, each once",
+                                                        fmt::join(order, ", "), dim - 1));
+  return order;
+}
+
+Progress after(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
+}
+
+/// From ranges to places of seeds.
+template <class Key>
+class SeedFinder {
+ public:
+  SeedFinder(const detail::RangeMap<Key>& map, const SeedSetOptions& options, SeedSetStats& stats)
+      : map_(map),
+        options_(options),
+        order_(checked_order(options.scan_order, map.tiles.dim())),
+        progress_(after(options.progress, 0.1, 1.0)),
+        stats_(stats) {}
+
+  std::vector<detail::Place> find() {
+    const auto neighbours = map_.tiles.neighbours(options_.neighbourhood, order_);
+    switch (options_.method) {
+      case SeedMethod::sweeping:
+        return detail::sweep_tiles(map_, neighbours, order_, progress_);
+      case SeedMethod::climbing:
+        return detail::climb_tiles(map_, neighbours, order_, progress_);
+      case SeedMethod::whole1:
+        return make_graph(order_, false, false).roots;
+      case SeedMethod::whole2:
+        return of_whole2(detail::Dependence::ancestors);
+      case SeedMethod::whole2_disjoint_sets:
+        return of_whole2(detail::Dependence::sets);
+      default:
+        return of_cover();
+    }
+  }
+
+  detail::SeedGraph make_graph(std::vector<int> order, bool with_links, bool of_root_groups) {
+    detail::SeedGraphOptions options;
+    options.neighbourhood = options_.neighbourhood;
+    options.order = std::move(order);
+    options.with_links = with_links;
+    options.of_root_groups = of_root_groups;
+    options.progress = after(progress_, 0.0, 0.5);
+    detail::SeedGraph graph = detail::make_seed_graph(map_, options);
+    stats_.constant_tiles = graph.constant_tiles;
+    stats_.groups = graph.groups;
+    stats_.whole1 = graph.roots.size();
+    return graph;
+  }
+
+  detail::SeedGraph make_small_graph() {
+    auto graph = make_graph(detail::default_order(map_.tiles.dim()), true, false);
+    detail::contract(graph);
+    return graph;
+  }
+
+ private:
+  static std::vector<detail::Place> places(const detail::SeedGraph& graph, const std::vector<std::uint32_t>& trees) {
+    std::vector<detail::Place> places;
+    for (const std::uint32_t tree : trees) places.push_back(graph.roots[tree]);
+    return places;
+  }
+  std::vector<detail::Place> of_whole2(detail::Dependence dependence) {
+    const auto graph = make_graph(order_, true, true);
+    return places(graph, detail::whole2(graph, dependence, after(progress_, 0.5, 1.0)));
+  }
+  std::vector<detail::Place> of_cover() {
+    const auto graph = make_small_graph();
+    const auto cover = detail::cover_components(graph, after(progress_, 0.5, 1.0));
+    stats_.lower_bound = cover.bound;
+    return places(graph, cover.trees);
+  }
+
+  const detail::RangeMap<Key>& map_;
+  const SeedSetOptions& options_;
+  std::vector<int> order_;
+  Progress progress_;
+  SeedSetStats& stats_;
+};
+
+template <Value T>
+SeedSet to_seed_set(const detail::RangeMap<detail::KeyOf<T>>& map, const SeedSetOptions& options,
+                    std::vector<detail::Place> places) {
+  std::sort(places.begin(), places.end());  // places are in the order of numbers
+  SeedSet set;
+  set.method = options.method;
+  set.neighbourhood = options.neighbourhood;
+  for (const detail::Place place : places) {
+    set.tiles.push_back(map.tiles.number(place));
+    const bool never = map.constant(place);
+    set.least.push_back(never ? 0.0 : static_cast<double>(detail::value_of<T>(map.least[place])));
+    set.greatest.push_back(never ? 0.0 : static_cast<double>(detail::value_of<T>(map.greatest[place])));
+  }
+  return set;
+}
+
+}  // namespace
+
+std::string_view neighbourhood_name(Neighbourhood neighbourhood) noexcept {
+  return kNeighbourhoodNames[static_cast<std::size_t>(neighbourhood)];
+}
+std::string_view seed_method_name(SeedMethod method) noexcept { return kMethodNames[static_cast<std::size_t>(method)]; }
+std::vector<SeedMethod> seed_methods() {
+  std::vector<SeedMethod> methods;
+  for (std::size_t i = 0; i < kMethodNames.size(); ++i) methods.push_back(static_cast<SeedMethod>(i));
+  return methods;
+}
+
+template <Value T, int N>
+SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options, SeedSetStats* stats) {
+  SeedSetStats own;
+  SeedSetStats& found = stats != nullptr ? *stats : own;
+  found = {};
+  found.tiles = TileGrid<N>(image.grid().sizes()).count();
+  const auto map = detail::map_ranges(image, options.threads, after(options.progress, 0.0, 0.1));
+  SeedFinder<detail::KeyOf<T>> finder(map, options, found);
+  std::vector<detail::Place> places;
+  if (options.method == SeedMethod::volume_thinning) {
+    places = detail::thin_tiles(image, map.tiles, after(options.progress, 0.1, 1.0));
+    if (!options.keep_constant_tiles) std::erase_if(places, [&](detail::Place place) { return map.constant(place); });
+  } else {
+    places = finder.find();
+  }
+  return to_seed_set<T>(map, options, std::move(places));
+}
+
+template <Value T, int N>
+std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options) {
+  const auto map = detail::map_ranges(image, options.threads, after(options.progress, 0.0, 0.1));
+  SeedSetStats stats;
+  SeedFinder<detail::KeyOf<T>> finder(map, options, stats);
+  return detail::pack_components(finder.make_small_graph(), after(options.progress, 0.5, 1.0));
+}
+
+#define TEGL_INSTANTIATE_ONE(T, N)                                                             \
+  template SeedSet find_seeds<T, N>(const Image<T, N>&, const SeedSetOptions&, SeedSetStats*); \
+  template std::uint64_t seed_lower_bound<T, N>(const Image<T, N>&, const SeedSetOptions&);
+#include "active_tiles_instantiate.hpp"
+
+}  // namespace tegl
