@@ -17,7 +17,8 @@ namespace tegl {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kMethodNames = {"full-scan", "interval-tree", "span-space", "min-max-tree"};
+constexpr std::array<std::string_view, 5> kMethodNames = {"full-scan", "interval-tree", "span-space", "min-max-tree",
+                                                          "seed-set"};
 
 /// Many numbers are put in order by a bit each, few by comparisons.
 void put_in_order(std::vector<TileNumber>& tiles, TileNumber end) {

@@ -129,6 +129,9 @@ std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, Act
     case ActiveMethod::min_max_tree:
       result = detail::build_min_max_tree(task);
       break;
+    case ActiveMethod::seed_set:
+      result = detail::build_seed_index(task);
+      break;
   }
   task.tell(1);
   return result;
@@ -158,6 +161,9 @@ std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<
       break;
     case ActiveMethod::min_max_tree:
       result = detail::read_min_max_tree(reader, task);
+      break;
+    case ActiveMethod::seed_set:
+      result = detail::read_seed_index(reader, task);
       break;
   }
   reader.finish();

@@ -51,4 +51,9 @@ ActiveTilesPtr<N> build_min_max_tree(const IndexTask<T, N>& task);
 template <Value T, int N>
 ActiveTilesPtr<N> read_min_max_tree(IndexReader& from, const IndexTask<T, N>& task);
 
+template <Value T, int N>
+ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task);
+template <Value T, int N>
+ActiveTilesPtr<N> read_seed_index(IndexReader& from, const IndexTask<T, N>& task);
+
 }  // namespace tegl::detail

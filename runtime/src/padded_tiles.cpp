@@ -51,6 +51,26 @@ std::vector<int> default_order(int dim) {
   return order;
 }
 
+std::vector<Step> neighbour_steps(int dim, Neighbourhood neighbourhood) {
+  const int most = neighbourhood == Neighbourhood::faces             ? 1
+                   : neighbourhood == Neighbourhood::faces_and_edges ? std::max(1, dim - 1)
+                                                                     : dim;
+  std::size_t count = 1;
+  for (int a = 0; a < dim; ++a) count *= 3;
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < count; ++i) {
+    Step step{};
+    int moved = 0;
+    std::size_t rest = i;
+    for (int a = 0; a < dim; ++a, rest /= 3) {
+      step[a] = static_cast<std::int8_t>(static_cast<int>(rest % 3) - 1);
+      moved += step[a] != 0 ? 1 : 0;
+    }
+    if (moved > 0 && moved <= most) steps.push_back(step);
+  }
+  return steps;
+}
+
 PaddedTiles::PaddedTiles(std::span<const std::size_t> tiles) : dim_(static_cast<int>(tiles.size())) {
   constexpr std::size_t kMost = std::numeric_limits<Place>::max();
   std::size_t padded = 1;
@@ -111,22 +131,11 @@ std::vector<std::ptrdiff_t> PaddedTiles::neighbours(Neighbourhood neighbourhood)
 }
 
 std::vector<std::ptrdiff_t> PaddedTiles::neighbours(Neighbourhood neighbourhood, std::span<const int> order) const {
-  const int most = neighbourhood == Neighbourhood::faces             ? 1
-                   : neighbourhood == Neighbourhood::faces_and_edges ? std::max(1, dim_ - 1)
-                                                                     : dim_;
   std::vector<std::ptrdiff_t> result;
-  std::size_t count = 1;
-  for (int a = 0; a < dim_; ++a) count *= 3;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (const Step& step : neighbour_steps(dim_, neighbourhood)) {
     std::ptrdiff_t distance = 0;
-    int moved = 0;
-    std::size_t rest = i;
-    for (int k = 0; k < dim_; ++k, rest /= 3) {
-      const std::ptrdiff_t move = static_cast<std::ptrdiff_t>(rest % 3) - 1;
-      distance += move * steps_[order[k]];
-      moved += move != 0 ? 1 : 0;
-    }
-    if (moved > 0 && moved <= most) result.push_back(distance);
+    for (int k = 0; k < dim_; ++k) distance += step[k] * steps_[order[k]];
+    result.push_back(distance);
   }
   return result;
 }

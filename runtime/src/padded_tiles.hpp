@@ -32,6 +32,11 @@ T value_of(KeyOf<T> key) noexcept;
 using Place = std::uint32_t;
 inline constexpr int kMostAxes = 5;
 
+/// A step from a tile to a neighbour: -1, 0 or 1 along every axis.
+using Step = std::array<std::int8_t, kMostAxes>;
+/// Those of a neighbourhood in `dim` dimensions, in the order in which a scan meets them, the first axis fastest.
+std::vector<Step> neighbour_steps(int dim, Neighbourhood neighbourhood);
+
 /// Tiles at places: axis 0 fastest, one more along every axis than there are, and a margin before and behind.
 class PaddedTiles {
  public:
@@ -97,6 +102,7 @@ struct RangeMap {
   [[nodiscard]] bool same(Place a, Place b) const noexcept {
     return least[a] == least[b] && greatest[a] == greatest[b];
   }
+  [[nodiscard]] Key width(Place tile) const noexcept { return static_cast<Key>(greatest[tile] - least[tile]); }
   /// Whether a's range lies in b's, and is not b's.
   [[nodiscard]] bool inside(Place a, Place b) const noexcept {
     return least[b] <= least[a] && greatest[a] <= greatest[b] && !same(a, b);

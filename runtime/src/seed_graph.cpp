@@ -154,18 +154,18 @@ class GraphMaker {
     });
   }
 
-  /// Groups hang on the first neighbour that the scan meets whose range has theirs inside.
+  /// Groups hang on the widest neighbour, of the tile met first that has any, whose range has theirs inside.
   void hang() {
     map_.tiles.scan(options_.order, [&](Place tile) {
       if (map_.constant(tile)) return;
       const Place root = trees_.find(tile);
       if (!map_.same(root, tile)) return;  // its group hangs already
+      Place widest = tile;
       for (const std::ptrdiff_t distance : neighbours_) {
         const auto other = static_cast<Place>(tile + distance);
-        if (!map_.inside(tile, other)) continue;
-        trees_.hang(root, trees_.find(other));
-        return;
+        if (map_.inside(tile, other) && map_.width(other) > map_.width(widest)) widest = other;
       }
+      if (widest != tile) trees_.hang(root, trees_.find(widest));
     });
   }
 
@@ -269,8 +269,9 @@ void merge_links(std::vector<SeedLink>& links) {
 }
 
 void contract(SeedGraph& graph) {
-  for (bool changed = true; changed;) {
-    changed = false;
+  // The last few are not worth another round.
+  for (std::size_t hung = graph.roots.size(); hung * 64 > graph.roots.size();) {
+    hung = 0;
     DisjointSets sets(graph.roots.size());
     const auto covers = [&](const SeedLink& link, std::uint32_t tree) {
       return link.first <= graph.first[tree] && graph.end[tree] <= link.end;
@@ -282,11 +283,11 @@ void contract(SeedGraph& graph) {
         const std::uint32_t root = sets.find(on);
         if (root == tree) continue;
         sets.hang(tree, root);
-        changed = true;
+        ++hung;
         break;
       }
     }
-    if (!changed) return;
+    if (hung == 0) return;
     std::vector<std::uint32_t> number(graph.roots.size());
     std::uint32_t kept = 0;
     for (std::uint32_t tree = 0; tree < graph.roots.size(); ++tree) {

@@ -65,7 +65,7 @@ SeedGraph make_seed_graph(const RangeMap<Key>& map, const SeedGraphOptions& opti
 /// Puts links in order, and makes one of those that overlap or touch.
 void merge_links(std::vector<SeedLink>& links);
 
-/// Trees of which one link covers all levels hang on its other end, and so on until there are none: as above, no
+/// Trees of which one link covers all levels hang on its other end, and so on until hardly any do: as above, no
 /// smallest seed set gets larger.
 void contract(SeedGraph& graph);
 

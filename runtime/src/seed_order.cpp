@@ -46,7 +46,7 @@ class Climb {
         if (is_covered(map_, neighbours_, done_, next))
           finish(next);
         else
-          wide_.push({static_cast<Key>(map_.greatest[next] - map_.least[next]), next});
+          wide_.push({map_.width(next), next});
       }
       if (wide_.empty()) return;
       const Place next = wide_.top().place;

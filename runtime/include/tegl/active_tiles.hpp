@@ -91,6 +91,7 @@ enum class ActiveMethod : std::uint8_t {
   interval_tree,  ///< Cignoni et al. 1997: O(log n + k) for k active tiles
   span_space,     ///< buckets of tiles by their greatest value, sorted by their least; Livnat et al. 1996, Shen et al.
   min_max_tree,   ///< a pyramid over bricks of tiles; Wilhelms, Van Gelder 1992
+  seed_set,       ///< a few tiles, from which the others are reached (tegl/seed_set.hpp); looks at values around them
 };
 /// "full-scan", "interval-tree", ...
 std::string_view active_method_name(ActiveMethod method) noexcept;
