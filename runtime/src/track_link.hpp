@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What lies around a vertex of a swept complex: its star, and its link below and above it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "track_sweep.hpp"
+#include "workers.hpp"
+
+namespace tegl::detail {
+
+/// Disjoint sets of 0 … n-1 with path halving; the smaller number leads.
+class JoinedNumbers {
+ public:
+  void reset(std::size_t n) {
+    parents_.resize(n);
+    std::iota(parents_.begin(), parents_.end(), Index{0});
+  }
+  Index add() {
+    parents_.push_back(static_cast<Index>(parents_.size()));
+    return parents_.back();
+  }
+  Index find(Index i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  /// The leader of the joined set.
+  Index join(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    if (b < a) std::swap(a, b);
+    parents_[b] = a;
+    return a;
+  }
+
+ private:
+  std::vector<Index> parents_;
+};
+
+/// A list of faces by their vertices, to count each once.
+template <int N>
+class Faces {
+ public:
+  void clear() { keys_.clear(); }
+
+  /// Adds those faces of a simplex (vertices[0 … count - 1]) that `wanted(mask)` wants, bit i for vertex i.
+  template <class Wanted>
+  void add(const std::array<Index, N>& vertices, int count, const Wanted& wanted) {
+    for (unsigned mask = 1; mask < (1u << count); ++mask) {
+      if (!wanted(mask)) continue;
+      Key key;
+      key.fill(kNone);
+      int size = 0;
+      for (int i = 0; i < count; ++i)
+        if (((mask >> i) & 1u) != 0) key[size++] = vertices[i];
+      std::sort(key.begin(), key.begin() + size);
+      keys_.push_back(key);
+    }
+  }
+
+  /// The number of vertices, less that of edges, plus that of triangles …
+  [[nodiscard]] std::int64_t euler() {
+    std::sort(keys_.begin(), keys_.end());
+    const auto end = std::unique(keys_.begin(), keys_.end());
+    std::int64_t sum = 0;
+    for (auto key = keys_.begin(); key != end; ++key) {
+      const auto dim = std::find(key->begin(), key->end(), kNone) - key->begin() - 1;
+      sum += dim % 2 == 0 ? 1 : -1;
+    }
+    return sum;
+  }
+
+ private:
+  using Key = std::array<Index, N>;
+  std::vector<Key> keys_;
+};
+
+/// A simplicial complex in the order of its last coordinate.
+template <int N, class Real>
+class SweptComplex {
+ public:
+  using Simplex = std::array<Index, N>;
+
+  SweptComplex(const Contour<N, Real>& contour, unsigned threads) : contour_(contour) {
+    rank_vertices();
+    gather_stars();
+    find_border(threads);
+  }
+
+  [[nodiscard]] const Contour<N, Real>& contour() const { return contour_; }
+  [[nodiscard]] const Simplex& simplex(Index s) const { return contour_.simplices[s]; }
+  [[nodiscard]] double time(Index v) const { return static_cast<double>(contour_.vertices[v][N - 1]); }
+  /// Vertices by time, then number; and the place of each in it.
+  [[nodiscard]] std::span<const Index> order() const { return order_; }
+  [[nodiscard]] Index rank(Index v) const { return rank_[v]; }
+  /// Simplices around a vertex but those that repeat a vertex, ascending.
+  [[nodiscard]] std::span<const Index> star(Index v) const {
+    return {stars_.data() + first_[v], first_[v + std::size_t{1}] - first_[v]};
+  }
+  /// Bit i: the facet without vertex i is in no other simplex.
+  [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
+
+  static bool repeats_vertex(const Simplex& simplex) {
+    for (int i = 0; i < N; ++i)
+      for (int j = i + 1; j < N; ++j)
+        if (simplex[i] == simplex[j]) return true;
+    return false;
+  }
+
+ private:
+  void rank_vertices() {
+    const std::size_t count = contour_.vertices.size();
+    order_.resize(count);
+    rank_.resize(count);
+    std::iota(order_.begin(), order_.end(), Index{0});
+    std::sort(order_.begin(), order_.end(), [&](Index a, Index b) {
+      const Real ta = contour_.vertices[a][N - 1];
+      const Real tb = contour_.vertices[b][N - 1];
+      return ta != tb ? ta < tb : a < b;
+    });
+    for (std::size_t i = 0; i < count; ++i) rank_[order_[i]] = static_cast<Index>(i);
+  }
+
+  void gather_stars() {
+    first_.assign(contour_.vertices.size() + 2, 0);  // counted two places up, so that filling leaves it right
+    for (const Simplex& simplex : contour_.simplices)
+      if (!repeats_vertex(simplex))
+        for (const Index v : simplex) ++first_[v + std::size_t{2}];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    stars_.resize(first_.back());
+    for (std::size_t s = 0; s < contour_.simplices.size(); ++s)
+      if (!repeats_vertex(simplex(static_cast<Index>(s))))
+        for (const Index v : contour_.simplices[s]) stars_[first_[v + std::size_t{1}]++] = static_cast<Index>(s);
+    first_.pop_back();
+  }
+
+  /// A facet in a simplex, without its vertex of the least number, at which it is looked for.
+  struct Facet {
+    std::array<Index, N - 2> others;
+    Index simplex;
+    int omitted;
+    bool operator<(const Facet& other) const { return others < other.others; }
+  };
+
+  void find_border(unsigned threads) {
+    border_.assign(contour_.simplices.size(), 0);
+    Workers<std::vector<Facet>> workers(threads, [] { return std::vector<Facet>(); });
+    workers.for_range(contour_.vertices.size(), 4096,
+                      [&](std::size_t from, std::size_t to, std::vector<Facet>& facets) {
+                        for (std::size_t v = from; v < to; ++v) find_border_at(static_cast<Index>(v), facets);
+                      });
+  }
+
+  void find_border_at(Index v, std::vector<Facet>& facets) {
+    facets.clear();
+    for (const Index s : star(v))
+      for (int omitted = 0; omitted < N; ++omitted) {
+        const Simplex& all = simplex(s);
+        Facet facet{{}, s, omitted};
+        bool is_least = all[omitted] != v;
+        for (int i = 0, k = 0; i < N && is_least; ++i) {
+          if (i == omitted || all[i] == v) continue;
+          is_least = all[i] > v;
+          facet.others[k++] = all[i];
+        }
+        if (!is_least) continue;
+        std::sort(facet.others.begin(), facet.others.end());
+        facets.push_back(facet);
+      }
+    std::sort(facets.begin(), facets.end());
+    for (std::size_t i = 0, j = 0; i < facets.size(); i = j) {
+      while (j < facets.size() && facets[j].others == facets[i].others) ++j;
+      // Another thread may find another facet of the same simplex.
+      if (j - i == 1)
+        std::atomic_ref(border_[facets[i].simplex]).fetch_or(static_cast<std::uint8_t>(1u << facets[i].omitted));
+    }
+  }
+
+  const Contour<N, Real>& contour_;
+  Buffer<Index> order_;
+  Buffer<Index> rank_;
+  std::vector<std::size_t> first_;
+  Buffer<Index> stars_;
+  std::vector<std::uint8_t> border_;
+};
+
+/// The star of one vertex at a time.
+template <int N, class Real>
+class VertexStar {
+ public:
+  explicit VertexStar(const SweptComplex<N, Real>& complex)
+      : complex_(complex), met_(complex.order().size(), kNone), number_(complex.order().size()) {}
+
+  void load(Index v) {
+    v_ = v;
+    link_.clear();
+    cells_ = complex_.star(v);
+    for (const Index s : cells_)
+      for (const Index u : complex_.simplex(s)) {
+        if (u == v || met_[u] == v) continue;
+        met_[u] = v;
+        number_[u] = static_cast<Index>(link_.size());
+        link_.push_back(u);
+      }
+    sets_.reset(link_.size());
+    for (const Index s : cells_) join_sides(complex_.simplex(s));
+    parts_ = {0, 0};
+    for (const Index u : link_)
+      if (sets_.find(number_[u]) == number_[u]) ++parts_[is_above(u) ? 1 : 0];
+  }
+
+  [[nodiscard]] std::span<const Index> cells() const { return cells_; }
+  /// In how many pieces the link below, and above, the vertex is.
+  [[nodiscard]] Index parts_below() const { return parts_[0]; }
+  [[nodiscard]] Index parts_above() const { return parts_[1]; }
+
+  /// The piece of the link that a cell has below, or above, the vertex: some number below `link_size`; kNone if it has
+  /// none there.
+  [[nodiscard]] Index part(Index s, bool above) {
+    for (const Index u : complex_.simplex(s))
+      if (u != v_ && is_above(u) == above) return sets_.find(number_[u]);
+    return kNone;
+  }
+  [[nodiscard]] std::size_t link_size() const { return link_.size(); }
+
+  [[nodiscard]] std::int64_t euler(bool above) {
+    faces_.clear();
+    for (const Index s : cells_) {
+      std::array<Index, N> side{};
+      int count = 0;
+      for (const Index u : complex_.simplex(s))
+        if (u != v_ && is_above(u) == above) side[count++] = u;
+      faces_.add(side, count, [](unsigned) { return true; });
+    }
+    return faces_.euler();
+  }
+
+  [[nodiscard]] bool at_border() const {
+    for (const Index s : cells_) {
+      const unsigned open = complex_.border(s);
+      for (int i = 0; open != 0 && i < N; ++i)
+        if (((open >> i) & 1u) != 0 && complex_.simplex(s)[i] != v_) return true;
+    }
+    return false;
+  }
+
+  /// Whether a facet at the vertex lies at its very time.
+  [[nodiscard]] bool has_flat_facet() const {
+    for (const Index s : cells_) {
+      int level = 0;
+      for (const Index u : complex_.simplex(s)) level += complex_.time(u) == complex_.time(v_) ? 1 : 0;
+      if (level >= N - 1) return true;
+    }
+    return false;
+  }
+
+ private:
+  [[nodiscard]] bool is_above(Index u) const { return complex_.rank(u) > complex_.rank(v_); }
+
+  /// The vertices of a cell on one side are connected.
+  void join_sides(const std::array<Index, N>& simplex) {
+    std::array<Index, 2> last{kNone, kNone};
+    for (const Index u : simplex) {
+      if (u == v_) continue;
+      Index& side = last[is_above(u) ? 1 : 0];
+      if (side != kNone) sets_.join(number_[side], number_[u]);
+      side = u;
+    }
+  }
+
+  const SweptComplex<N, Real>& complex_;
+  Index v_ = kNone;
+  std::span<const Index> cells_;
+  std::vector<Index> met_;  ///< the last vertex in whose link each vertex was met
+  std::vector<Index> number_;
+  std::vector<Index> link_;
+  JoinedNumbers sets_;
+  std::array<Index, 2> parts_{};
+  Faces<N> faces_;
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The parts of a cut, summed up simplex by simplex: size, enclosed content, centroid and box.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Dense>
+
+#include "tegl/track.hpp"
+
+namespace tegl::detail {
+
+/// What one simplex, or many, contribute to a sample.
+struct PartSums {
+  bool open = false;
+  double measure = 0;
+  double content = 0;
+  std::array<double, 3> moment{};
+  std::array<double, 3> lower{kFar, kFar, kFar};
+  std::array<double, 3> upper{-kFar, -kFar, -kFar};
+
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  /// `dim` components of places are used; `origin` is the place that the sums were taken from.
+  [[nodiscard]] TrackSample to_sample(double time, int dim, const std::array<double, 3>& origin) const {
+    TrackSample sample;
+    sample.time = time;
+    sample.measure = measure;
+    if (!open) sample.content = content;
+    for (int a = 0; a < dim; ++a) {
+      // What is cut to no size at all has its centre in the middle of its box.
+      const double middle = measure > 0 ? moment[a] / measure : 0.5 * (lower[a] + upper[a]);
+      sample.centroid[a] = origin[a] + middle;
+      sample.lower[a] = origin[a] + lower[a];
+      sample.upper[a] = origin[a] + upper[a];
+    }
+    return sample;
+  }
+};
+
+/// A simplex cut at a time that lies above its first `low` vertices (sorted by time) and not above the others.
+template <int N>
+class CutCell {
+ public:
+  static constexpr int D = N - 1;  ///< dimension of the space that the cut lies in
+  using Place = Eigen::Matrix<double, D, 1>;
+
+  /// `corners`: the vertices sorted by time, seen from the origin; the signed frame is that of the simplex's own order.
+  CutCell(const std::array<Eigen::Matrix<double, N, 1>, N>& corners, int low, double time) {
+    const auto point = [&](int a, int b) {
+      const double share = (time - corners[a][D]) / (corners[b][D] - corners[a][D]);
+      points_[count_++] = (corners[a] + share * (corners[b] - corners[a])).template head<D>();
+    };
+    for (int a = 0; a < low; ++a)
+      for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // a quadrilateral's way round
+  }
+
+  /// `outward`: a vector that points to the low side within the cut; of any length.
+  void add_to(PartSums& sums, const Place& outward) const {
+    const auto [size, centre] = size_and_centre();
+    sums.measure += size;
+    for (int a = 0; a < D; ++a) {
+      sums.moment[a] += size * centre[a];
+      for (int i = 0; i < count_; ++i) {
+        sums.lower[a] = std::min(sums.lower[a], points_[i][a]);
+        sums.upper[a] = std::max(sums.upper[a], points_[i][a]);
+      }
+    }
+    const double length = outward.norm();
+    if (length > 0) sums.content += size * outward.dot(points_[0]) / (length * D);
+  }
+
+ private:
+  [[nodiscard]] std::pair<double, Place> size_and_centre() const {
+    if constexpr (D == 1) return {1.0, points_[0]};
+    if constexpr (D == 2) return {(points_[1] - points_[0]).norm(), 0.5 * (points_[0] + points_[1])};
+    if constexpr (D == 3) {
+      double size = 0;
+      Place moment = Place::Zero();
+      for (int i = 2; i < count_; ++i) {
+        const double area = 0.5 * (points_[i - 1] - points_[0]).cross(points_[i] - points_[0]).norm();
+        size += area;
+        moment += area / 3.0 * (points_[0] + points_[i - 1] + points_[i]);
+      }
+      return {size, size > 0 ? Place(moment / size) : points_[0]};
+    }
+  }
+
+  std::array<Place, 4> points_;
+  int count_ = 0;
+};
+
+/// The part within a cut of the normal of a simplex (rows: vertices in the simplex's own order), by cofactors: points
+/// to the side that the simplex is positive towards.
+template <int N>
+Eigen::Matrix<double, N - 1, 1> normal_in_cut(const std::array<Eigen::Matrix<double, N, 1>, N>& corners) {
+  Eigen::Matrix<double, N, N - 1> edges;
+  for (int j = 1; j < N; ++j) edges.col(j - 1) = corners[j] - corners[0];
+  Eigen::Matrix<double, N - 1, 1> normal;
+  for (int a = 0; a < N - 1; ++a) {
+    Eigen::Matrix<double, N - 1, N - 1> minor;
+    for (int row = 0, to = 0; row < N; ++row)
+      if (row != a) minor.row(to++) = edges.row(row);
+    normal[a] = ((a + N - 1) % 2 == 0 ? 1.0 : -1.0) * minor.determinant();
+  }
+  return normal;
+}
+
+}  // namespace tegl::detail
