@@ -25,6 +25,11 @@ class DisjointSets {
     parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), Index{0});
   }
+  /// One number more, in a set of its own.
+  Index add() {
+    parent_.push_back(static_cast<Index>(parent_.size()));
+    return parent_.back();
+  }
   Index find(Index i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "measure_pieces.hpp"
 #include "track_graph.hpp"
 #include "track_sweep.hpp"
 
@@ -39,10 +40,7 @@ void require_sound(const TrackOptions& options) {
 
 template <int N, class Real>
 void require_sound(const Contour<N, Real>& contour) {
-  for (const auto& simplex : contour.simplices)
-    for (const Index v : simplex)
-      if (v >= contour.vertices.size())
-        refuse(fmt::format("vertex number {}; expected less than {}", v, contour.vertices.size()));
+  detail::require_vertices(contour);
   for (std::size_t v = 0; v < contour.vertices.size(); ++v)
     for (const Real x : contour.vertices[v])
       if (!std::isfinite(x)) refuse(fmt::format("a coordinate of vertex {} is {}; expected a finite one", v, x));

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "track_link.hpp"
+#include "disjoint_sets.hpp"
 
 namespace tegl::detail {
 
@@ -36,7 +36,7 @@ void SweptGraph::contract(double tolerance) {
   std::vector<Index> times(nodes_.size());
   for (Index i = 1; i < nodes_.size(); ++i)
     times[i] = times[i - 1] + (nodes_[i].event.time - nodes_[i - 1].event.time > tolerance ? 1 : 0);
-  JoinedNumbers sets;  // the first node of a set is its earliest, and leads it
+  DisjointSets sets;  // the first node of a set is its earliest, and leads it
   sets.reset(nodes_.size());
   for (const SweepArc& arc : arcs_)
     if (times[arc.from] == times[arc.to]) sets.join(arc.from, arc.to);

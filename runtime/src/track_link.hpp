@@ -12,38 +12,13 @@
 #include <utility>
 #include <vector>
 
+#include "disjoint_sets.hpp"
+#include "measure_pieces.hpp"
+#include "stars.hpp"
 #include "track_sweep.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
-
-/// Disjoint sets of 0 … n-1 with path halving; the smaller number leads.
-class JoinedNumbers {
- public:
-  void reset(std::size_t n) {
-    parents_.resize(n);
-    std::iota(parents_.begin(), parents_.end(), Index{0});
-  }
-  Index add() {
-    parents_.push_back(static_cast<Index>(parents_.size()));
-    return parents_.back();
-  }
-  Index find(Index i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  /// The leader of the joined set.
-  Index join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (b < a) std::swap(a, b);
-    parents_[b] = a;
-    return a;
-  }
-
- private:
-  std::vector<Index> parents_;
-};
 
 /// A list of faces by their vertices, to count each once.
 template <int N>
@@ -89,9 +64,9 @@ class SweptComplex {
  public:
   using Simplex = std::array<Index, N>;
 
-  SweptComplex(const Contour<N, Real>& contour, unsigned threads) : contour_(contour) {
+  SweptComplex(const Contour<N, Real>& contour, unsigned threads)
+      : contour_(contour), stars_(make_stars<N>(rows_of(contour), contour.vertices.size())) {
     rank_vertices();
-    gather_stars();
     find_border(threads);
   }
 
@@ -102,18 +77,9 @@ class SweptComplex {
   [[nodiscard]] std::span<const Index> order() const { return order_; }
   [[nodiscard]] Index rank(Index v) const { return rank_[v]; }
   /// Simplices around a vertex but those that repeat a vertex, ascending.
-  [[nodiscard]] std::span<const Index> star(Index v) const {
-    return {stars_.data() + first_[v], first_[v + std::size_t{1}] - first_[v]};
-  }
+  [[nodiscard]] std::span<const Index> star(Index v) const { return stars_.of(v); }
   /// Bit i: the facet without vertex i is in no other simplex.
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
-
-  static bool repeats_vertex(const Simplex& simplex) {
-    for (int i = 0; i < N; ++i)
-      for (int j = i + 1; j < N; ++j)
-        if (simplex[i] == simplex[j]) return true;
-    return false;
-  }
 
  private:
   void rank_vertices() {
@@ -127,19 +93,6 @@ class SweptComplex {
       return ta != tb ? ta < tb : a < b;
     });
     for (std::size_t i = 0; i < count; ++i) rank_[order_[i]] = static_cast<Index>(i);
-  }
-
-  void gather_stars() {
-    first_.assign(contour_.vertices.size() + 2, 0);  // counted two places up, so that filling leaves it right
-    for (const Simplex& simplex : contour_.simplices)
-      if (!repeats_vertex(simplex))
-        for (const Index v : simplex) ++first_[v + std::size_t{2}];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    stars_.resize(first_.back());
-    for (std::size_t s = 0; s < contour_.simplices.size(); ++s)
-      if (!repeats_vertex(simplex(static_cast<Index>(s))))
-        for (const Index v : contour_.simplices[s]) stars_[first_[v + std::size_t{1}]++] = static_cast<Index>(s);
-    first_.pop_back();
   }
 
   /// A facet in a simplex, without its vertex of the least number, at which it is looked for.
@@ -185,10 +138,9 @@ class SweptComplex {
   }
 
   const Contour<N, Real>& contour_;
+  Stars stars_;
   Buffer<Index> order_;
   Buffer<Index> rank_;
-  std::vector<std::size_t> first_;
-  Buffer<Index> stars_;
   std::vector<std::uint8_t> border_;
 };
 
@@ -282,7 +234,7 @@ class VertexStar {
   std::vector<Index> met_;  ///< the last vertex in whose link each vertex was met
   std::vector<Index> number_;
   std::vector<Index> link_;
-  JoinedNumbers sets_;
+  DisjointSets sets_;
   std::array<Index, 2> parts_{};
   Faces<N> faces_;
 };

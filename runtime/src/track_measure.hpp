@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Dense>
 
+#include "simplex_geometry.hpp"
 #include "tegl/track.hpp"
 
 namespace tegl::detail {
@@ -48,19 +50,22 @@ class CutCell {
  public:
   static constexpr int D = N - 1;  ///< dimension of the space that the cut lies in
   using Place = Eigen::Matrix<double, D, 1>;
+  using Corner = PointOf<N>;
 
-  /// `corners`: the vertices sorted by time, seen from the origin; the signed frame is that of the simplex's own order.
-  CutCell(const std::array<Eigen::Matrix<double, N, 1>, N>& corners, int low, double time) {
+  /// `corners`: the vertices sorted by time, seen from the origin.
+  CutCell(const std::array<Corner, N>& corners, int low, double time) {
     const auto point = [&](int a, int b) {
       const double share = (time - corners[a][D]) / (corners[b][D] - corners[a][D]);
-      points_[count_++] = (corners[a] + share * (corners[b] - corners[a])).template head<D>();
+      for (int i = 0; i < D; ++i) points_[count_][i] = corners[a][i] + share * (corners[b][i] - corners[a][i]);
+      ++count_;
     };
     for (int a = 0; a < low; ++a)
       for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // a quadrilateral's way round
   }
 
-  /// `outward`: a vector that points to the low side within the cut; of any length.
-  void add_to(PartSums& sums, const Place& outward) const {
+  /// `normal`: of the simplex, to the low side; of any length.
+  void add_to(PartSums& sums, const Corner& normal) const {
+    const Eigen::Map<const Place> outward(normal.data());  // within the cut
     const auto [size, centre] = size_and_centre();
     sums.measure += size;
     for (int a = 0; a < D; ++a) {
@@ -93,21 +98,5 @@ class CutCell {
   std::array<Place, 4> points_;
   int count_ = 0;
 };
-
-/// The part within a cut of the normal of a simplex (rows: vertices in the simplex's own order), by cofactors: points
-/// to the side that the simplex is positive towards.
-template <int N>
-Eigen::Matrix<double, N - 1, 1> normal_in_cut(const std::array<Eigen::Matrix<double, N, 1>, N>& corners) {
-  Eigen::Matrix<double, N, N - 1> edges;
-  for (int j = 1; j < N; ++j) edges.col(j - 1) = corners[j] - corners[0];
-  Eigen::Matrix<double, N - 1, 1> normal;
-  for (int a = 0; a < N - 1; ++a) {
-    Eigen::Matrix<double, N - 1, N - 1> minor;
-    for (int row = 0, to = 0; row < N; ++row)
-      if (row != a) minor.row(to++) = edges.row(row);
-    normal[a] = ((a + N - 1) % 2 == 0 ? 1.0 : -1.0) * minor.determinant();
-  }
-  return normal;
-}
 
 }  // namespace tegl::detail

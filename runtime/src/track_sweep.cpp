@@ -146,8 +146,9 @@ class Sweeper {
       sum.arc = components_[set].arc;
       sum.size += components_[set].size;
       sum.euler += components_[set].euler;
-      joined = sets_.join(joined, set);
+      sets_.join(joined, set);
     }
+    joined = sets_.find(joined);
     components_[joined] = sum;
     return joined;
   }
@@ -323,7 +324,7 @@ class Sweeper {
     const auto first_cut = [&](Index s) {
       const auto [low, high] = span(s);
       const auto at = std::upper_bound(options_.times.begin(), options_.times.end(), low);
-      const bool is_cut = at != options_.times.end() && *at <= high && !complex_.repeats_vertex(complex_.simplex(s));
+      const bool is_cut = at != options_.times.end() && *at <= high && !is_collapsed<N>(complex_.simplex(s).data());
       return is_cut ? static_cast<std::size_t>(at - options_.times.begin()) : options_.times.size();
     };
     starts_.assign(options_.times.size() + 3, 0);
@@ -366,21 +367,19 @@ class Sweeper {
   }
 
   void add_cut(Index s, double time, PartSums& sums) const {
-    const auto& simplex = complex_.simplex(s);
-    std::array<Eigen::Matrix<double, N, 1>, N> corners;
-    for (int i = 0; i < N; ++i)
-      for (int a = 0; a < N; ++a)
-        corners[i][a] =
-            static_cast<double>(complex_.contour().vertices[simplex[i]][a]) - (a < N - 1 ? origin_[a] : 0.0);
-    Eigen::Matrix<double, N - 1, 1> outward = normal_in_cut<N>(corners);
-    if (complex_.contour().direction == GradientDirection::ascent) outward = -outward;
+    std::array<PointOf<N>, N> corners = corners_of(complex_.contour(), s);
+    for (auto& corner : corners)
+      for (int a = 0; a < N - 1; ++a) corner[a] -= origin_[a];
+    PointOf<N> normal = normal_vector_of<N>(corners);
+    if (complex_.contour().direction == GradientDirection::ascent)
+      for (double& x : normal) x = -x;
     unsigned below = 0;
     for (int i = 0; i < N; ++i) below |= corners[i][N - 1] < time ? 1u << i : 0u;
     for (int i = 0; i < N; ++i)
       if (((complex_.border(s) >> i) & 1u) != 0 && (below & ~(1u << i)) != 0 && (~below & kAll & ~(1u << i)) != 0)
         sums.open = true;
     std::stable_partition(corners.begin(), corners.end(), [&](const auto& corner) { return corner[N - 1] < time; });
-    CutCell<N>(corners, std::popcount(below), time).add_to(sums, outward);
+    CutCell<N>(corners, std::popcount(below), time).add_to(sums, normal);
   }
 
   static constexpr unsigned kAll = (1u << N) - 1;
@@ -389,7 +388,7 @@ class Sweeper {
   SweptComplex<N, Real> complex_;
   VertexStar<N, Real> star_;
   SweepResult result_;
-  JoinedNumbers sets_;
+  DisjointSets sets_;
   std::vector<Component> components_;  ///< of each set, valid at its leader
   std::vector<Index> labels_;          ///< #S: a member of the set of the simplex's cell; kNone before it has one
   std::vector<Index> incoming_;
@@ -397,7 +396,7 @@ class Sweeper {
   std::uint64_t died_ = 0;
 
   std::vector<Front> fronts_;
-  JoinedNumbers groups_;             ///< of fronts
+  DisjointSets groups_;              ///< of fronts
   std::vector<std::uint32_t> seen_;  ///< #S: first_seen_ + the front that has the cell
   std::uint32_t first_seen_ = 1;
   std::vector<Index> front_of_part_;
