@@ -111,6 +111,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_index_command(program));
   commands.push_back(tegl::cli::make_components_command(program));
   commands.push_back(tegl::cli::make_measure_command(program));
+  commands.push_back(tegl::cli::make_track_command(program));
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

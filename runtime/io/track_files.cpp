@@ -22,6 +22,8 @@ Json coordinates(const TrackGraph& graph, const std::array<double, 3>& place) {
   return std::vector<double>(place.begin(), place.begin() + (graph.space_dim - 1));
 }
 
+Index number_of(const TrackGraph& graph, const TrackSegment& segment) { return graph.tracks[segment.track].number; }
+
 Json axes_json(const TrackGraph& graph) {
   Json axes = Json::array();
   for (int a = 0; a < graph.space_dim; ++a)
@@ -56,7 +58,7 @@ Json segment_json(const TrackGraph& graph, std::size_t number) {
   Json samples = Json::array();
   for (const TrackSample& sample : segment.samples) samples.push_back(sample_json(graph, sample));
   return {{"segment", number},
-          {"track", segment.track},
+          {"track", number_of(graph, segment)},
           {"from", segment.from},
           {"to", segment.to},
           {"start", segment.start},
@@ -110,9 +112,9 @@ std::string track_json(const TrackGraph& graph) {
   for (const char* const list : {"events", "segments", "tracks", "handles"}) json[list] = Json::array();
   for (std::size_t e = 0; e < graph.events.size(); ++e) json["events"].push_back(event_json(graph, e));
   for (std::size_t s = 0; s < graph.segments.size(); ++s) json["segments"].push_back(segment_json(graph, s));
-  for (std::size_t t = 0; t < graph.tracks.size(); ++t) {
-    const Track& track = graph.tracks[t];
-    json["tracks"].push_back({{"track", t}, {"start", track.start}, {"end", track.end}, {"segments", track.segments}});
+  for (const Track& track : graph.tracks) {
+    json["tracks"].push_back(
+        {{"track", track.number}, {"start", track.start}, {"end", track.end}, {"segments", track.segments}});
   }
   for (const TrackHandle& handle : graph.handles) json["handles"].push_back(handle_json(graph, handle));
   // Names of axes come from files and may be no UTF-8.
@@ -130,8 +132,8 @@ std::string track_dot(const TrackGraph& graph) {
   }
   for (std::size_t s = 0; s < graph.segments.size(); ++s) {
     const TrackSegment& segment = graph.segments[s];
-    text += fmt::format("  e{} -> e{} [label = \"{}\", color = \"{}\"];\n", segment.from, segment.to, segment.track,
-                        track_colour(segment.track));
+    text += fmt::format("  e{} -> e{} [label = \"{}\", color = \"{}\"];\n", segment.from, segment.to,
+                        number_of(graph, segment), track_colour(number_of(graph, segment)));
   }
   return text + "}\n";
 }
@@ -151,8 +153,8 @@ std::string track_segments_csv(const TrackGraph& graph) {
   std::string text = "segment,track,from,to,start,end,size_at_start,size_at_end,euler_at_start,euler_at_end,samples\n";
   for (std::size_t s = 0; s < graph.segments.size(); ++s) {
     const TrackSegment& segment = graph.segments[s];
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", s, segment.track, segment.from, segment.to, segment.start,
-                        segment.end, segment.size_at_start, segment.size_at_end, segment.euler_at_start,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", s, number_of(graph, segment), segment.from, segment.to,
+                        segment.start, segment.end, segment.size_at_start, segment.size_at_end, segment.euler_at_start,
                         segment.euler_at_end, segment.samples.size());
   }
   return text;
@@ -164,8 +166,8 @@ std::string track_samples_csv(const TrackGraph& graph) {
   for (std::size_t s = 0; s < graph.segments.size(); ++s)
     for (const TrackSample& sample : graph.segments[s].samples) {
       const std::string content = std::isnan(sample.content) ? "" : fmt::format("{}", sample.content);
-      text += fmt::format("{},{},{},{},{}{}{}{}\n", s, graph.segments[s].track, sample.time, sample.measure, content,
-                          axis_fields(graph, sample.centroid), axis_fields(graph, sample.lower),
+      text += fmt::format("{},{},{},{},{}{}{}{}\n", s, number_of(graph, graph.segments[s]), sample.time, sample.measure,
+                          content, axis_fields(graph, sample.centroid), axis_fields(graph, sample.lower),
                           axis_fields(graph, sample.upper));
     }
   return text;

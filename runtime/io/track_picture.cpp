@@ -26,11 +26,13 @@ constexpr const char* kStyle =
     ".title { font-size: 15px; fill: #222 }\n"
     ".grid { stroke: #888; stroke-opacity: 0.25 }\n"
     ".link { stroke: #777; stroke-width: 1.5; fill: none }\n"
+    ".mark { stroke: #333; fill: none }\n"
     ".full { fill: #333; stroke: #333; stroke-width: 1.3 }\n"
     ".open { fill: #fff; stroke: #333; stroke-width: 1.3 }\n"
     "@media (prefers-color-scheme: dark) {\n"
     "text { fill: #bbb } .title { fill: #ddd } .link { stroke: #999 }\n"
-    ".full { fill: #ddd; stroke: #ddd } .open { fill: #111; stroke: #ddd }\n"
+    ".mark { stroke: #333; fill: none }\n"
+    ".mark { stroke: #ddd } .full { fill: #ddd; stroke: #ddd } .open { fill: #111; stroke: #ddd }\n"
     "}\n"
     "</style>\n";
 
@@ -166,7 +168,7 @@ std::string mark(TrackEventKind kind, double x, double y) {
 }
 
 std::string handle_mark(double x, double y) {
-  return fmt::format("<path class=\"link\" d=\"M{:.2f} {:.2f}l6 6m0-6l-6 6\"/>", x - 3, y - 3);
+  return fmt::format("<path class=\"mark\" d=\"M{:.2f} {:.2f}l6 6m0-6l-6 6\"/>", x - 3, y - 3);
 }
 
 /// A round distance between ticks: at most `count` of them over the range.
@@ -254,11 +256,11 @@ class Drawing {
 
   void draw_track(Index t) {
     const Track& track = graph_.tracks[t];
-    text_ += fmt::format("<g fill=\"{}\"><title>track {}: {:.6g} to {:.6g}</title>\n", kColours[t % kColours.size()], t,
-                         track.start, track.end);
+    text_ += fmt::format("<g fill=\"{}\"><title>track {}: {:.6g} to {:.6g}</title>\n",
+                         kColours[track.number % kColours.size()], track.number, track.start, track.end);
     for (const Index s : track.segments) draw_segment(graph_.segments[s], y(t));
     text_ += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"end\">{}</text></g>\n", x(track.start) - 8,
-                         y(t) + 4, t);
+                         y(t) + 4, track.number);
   }
 
   /// A band around the row: up along the samples and back.

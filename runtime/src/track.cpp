@@ -60,7 +60,7 @@ class Builder {
   TrackGraph build() {
     describe();
     graph_.contract(tolerance_);
-    if (options_.min_lifetime > 0) graph_.prune(options_.min_lifetime);
+    graph_.prune(std::max(options_.min_lifetime, tolerance_));
     add_events();
     add_segments();
     for (TrackEvent& event : result_.events) finish(event);
@@ -133,16 +133,20 @@ class Builder {
   }
 
   void finish(TrackEvent& event) const {
-    const bool flat =
-        graph_.nodes()[node_of_event_[static_cast<std::size_t>(&event - result_.events.data())]].event.flat;
-    const auto one_sided = [&](double limit, TrackEventKind at_limit, TrackEventKind at_border, TrackEventKind inside) {
+    const auto number = static_cast<std::size_t>(&event - result_.events.data());
+    const detail::Flatness flatness = graph_.nodes()[node_of_event_[number]].event.flatness;
+    const auto one_sided = [&](double limit, bool given, TrackEventKind at_limit, TrackEventKind at_border,
+                               TrackEventKind inside) {
+      const bool flat = flatness == detail::Flatness::border || (given && flatness == detail::Flatness::simplex);
       if (flat && std::abs(event.time - limit) <= tolerance_) return at_limit;
       return event.at_border ? at_border : inside;
     };
     if (event.in.empty())
-      event.kind = one_sided(result_.first, TrackEventKind::begin, TrackEventKind::enter, TrackEventKind::birth);
+      event.kind = one_sided(result_.first, options_.first.has_value(), TrackEventKind::begin, TrackEventKind::enter,
+                             TrackEventKind::birth);
     else if (event.out.empty())
-      event.kind = one_sided(result_.last, TrackEventKind::end, TrackEventKind::leave, TrackEventKind::death);
+      event.kind = one_sided(result_.last, options_.last.has_value(), TrackEventKind::end, TrackEventKind::leave,
+                             TrackEventKind::death);
     else if (event.out.size() == 1)
       event.kind = TrackEventKind::merge;
     else
@@ -164,8 +168,9 @@ class Builder {
       }
       for (const Index s : event.out) {
         if (s == heir) continue;
-        result_.tracks.emplace_back().start = event.time;
-        extend(static_cast<Index>(result_.tracks.size() - 1), s);
+        const auto number = static_cast<Index>(result_.tracks.size());
+        result_.tracks.push_back({number, {}, event.time, event.time});
+        extend(number, s);
       }
     }
   }
@@ -208,7 +213,7 @@ class Builder {
   std::vector<detail::SweepSample> samples_;
   std::vector<Index> simplex_arcs_;
   SweptGraph graph_;
-  double tolerance_ = 0;  ///< times that differ by no more are one
+  double tolerance_ = 0;  ///< what is apart by less may be so by rounding
   std::vector<Index> event_of_node_;
   std::vector<Index> node_of_event_;
   std::vector<Index> segment_of_arc_;

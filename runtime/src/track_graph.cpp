@@ -32,34 +32,50 @@ void SweptGraph::list_arcs() {
 double SweptGraph::length(Index a) const { return nodes_[arcs_[a].to].event.time - nodes_[arcs_[a].from].event.time; }
 
 void SweptGraph::contract(double tolerance) {
-  // Nodes come by time. Those that are apart by the tolerance at most, one after the other, are of one time.
-  std::vector<Index> times(nodes_.size());
+  // Nodes come by time. Those that are apart by the tolerance at most from the first of them are of one time.
+  std::vector<Index> first(nodes_.size());
   for (Index i = 1; i < nodes_.size(); ++i)
-    times[i] = times[i - 1] + (nodes_[i].event.time - nodes_[i - 1].event.time > tolerance ? 1 : 0);
+    first[i] = nodes_[i].event.time - nodes_[first[i - 1]].event.time > tolerance ? i : first[i - 1];
+  absorb_handles(first, tolerance);
   DisjointSets sets;  // the first node of a set is its earliest, and leads it
   sets.reset(nodes_.size());
   for (const SweepArc& arc : arcs_)
-    if (times[arc.from] == times[arc.to]) sets.join(arc.from, arc.to);
+    if (first[arc.from] == first[arc.to]) sets.join(arc.from, arc.to);
   for (Index i = 0; i < nodes_.size(); ++i) {
     const SweepNode& from = nodes_[i].event;
     SweepNode& to = nodes_[sets.find(i)].event;
     if (sets.find(i) == i) continue;
     to.euler_change += from.euler_change;
     to.at_border = to.at_border || from.at_border;
-    to.flat = to.flat || from.flat;
+    to.flatness = std::max(to.flatness, from.flatness);
   }
   for (Index a = 0; a < arcs_.size(); ++a) {
     arcs_[a].from = sets.find(arcs_[a].from);
     arcs_[a].to = sets.find(arcs_[a].to);
     if (arcs_[a].from == arcs_[a].to) states_[a] = {Kind::in_node, arcs_[a].from};
   }
-  std::erase_if(handles_, [&](const SweepHandle& handle) {
-    if (is_left(handle.arc)) return false;
-    nodes_[states_[handle.arc].of].event.euler_change += handle.euler_change;
-    return true;
-  });
   list_arcs();
   for (Index i = 0; i < nodes_.size(); ++i) splice(i);
+}
+
+void SweptGraph::absorb_handles(const std::vector<Index>& first, double tolerance) {
+  std::erase_if(handles_, [&](const SweepHandle& handle) {
+    SweepArc& arc = arcs_[handle.arc];
+    const auto is_at = [&](Index node) {
+      const double start = nodes_[first[node]].event.time;
+      return handle.time >= start && handle.time - start <= tolerance;
+    };
+    // An arc's own numbers are those beyond all vertices of its ends' very times.
+    if (is_at(arc.from)) {
+      nodes_[arc.from].event.euler_change += handle.euler_change;
+      if (handle.time > nodes_[arc.from].event.time) arc.euler_at_start += handle.euler_change;
+      return true;
+    }
+    if (!is_at(arc.to)) return false;
+    nodes_[arc.to].event.euler_change += handle.euler_change;
+    if (handle.time < nodes_[arc.to].event.time) arc.euler_at_end -= handle.euler_change;
+    return true;
+  });
 }
 
 void SweptGraph::remove(Index a) {

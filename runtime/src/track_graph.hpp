@@ -21,7 +21,7 @@ class SweptGraph {
 
   SweptGraph(std::vector<SweepNode> nodes, std::vector<SweepArc> arcs, std::vector<SweepHandle> handles);
 
-  /// Joins the ends of all arcs that last `tolerance` at most.
+  /// Joins the ends of all arcs that last no time, where times that are apart by the tolerance may be one.
   void contract(double tolerance);
   /// Takes out the shortest branch until none that may be taken out is shorter than `lifetime`.
   void prune(double lifetime);
@@ -43,6 +43,8 @@ class SweptGraph {
   };
 
   [[nodiscard]] double length(Index a) const;
+  /// What happens at the time of an event on one of its arcs is a part of it. `first`: per node, the first of its time.
+  void absorb_handles(const std::vector<Index>& first, double tolerance);
   void remove(Index a);
   /// Makes one arc of two that a node merely connects; the arc that grew, or kNone.
   Index splice(Index node);

@@ -204,14 +204,18 @@ class VertexStar {
     return false;
   }
 
-  /// Whether a facet at the vertex lies at its very time.
-  [[nodiscard]] bool has_flat_facet() const {
+  [[nodiscard]] Flatness flatness() const {
+    Flatness result = Flatness::none;
     for (const Index s : cells_) {
-      int level = 0;
-      for (const Index u : complex_.simplex(s)) level += complex_.time(u) == complex_.time(v_) ? 1 : 0;
-      if (level >= N - 1) return true;
+      unsigned level = 0;
+      for (int i = 0; i < N; ++i) level |= complex_.time(complex_.simplex(s)[i]) == complex_.time(v_) ? 1u << i : 0u;
+      constexpr unsigned kAll = (1u << N) - 1;
+      if (level == kAll) result = std::max(result, Flatness::simplex);
+      for (int i = 0; i < N; ++i)
+        if (((complex_.border(s) >> i) & 1u) != 0 && (level | (1u << i)) == kAll && complex_.simplex(s)[i] != v_)
+          result = Flatness::border;
     }
-    return false;
+    return result;
   }
 
  private:

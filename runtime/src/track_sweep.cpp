@@ -38,6 +38,10 @@ struct Component {
   Index arc = kNone;
   std::uint64_t size = 0;  ///< cells
   std::int64_t euler = 0;
+  // As it was before the vertices of the time at hand, if it has met any of them:
+  std::uint64_t time = 0;  ///< the number of that time
+  std::uint64_t size_before = 0;
+  std::int64_t euler_before = 0;
 };
 
 template <int N, class Real>
@@ -49,17 +53,20 @@ class Sweeper {
     labels_.assign(count, kNone);
     seen_.assign(count, 0);
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
-    if (!options.times.empty()) plan_samples();
+    if (!options.times.empty() && count > 0) plan_samples();
   }
 
   SweepResult run() {
     const std::span<const Index> order = complex_.order();
     for (std::size_t i = 0; i < order.size(); ++i) {
       const double time = complex_.time(order[i]);
-      while (next_time_ < options_.times.size() && options_.times[next_time_] <= time) take_sample();
+      while (!starts_.empty() && next_time_ < options_.times.size() && options_.times[next_time_] <= time)
+        take_sample();
+      if (i == 0 || time != complex_.time(order[i - 1])) settle_starts();
       if (i % 16384 == 0) report(static_cast<double>(i) / static_cast<double>(order.size()));
       visit(order[i]);
     }
+    settle_starts();
     report(1);
     return std::move(result_);
   }
@@ -103,6 +110,11 @@ class Sweeper {
   /// The cells above the vertex belong to the set.
   void pass(Index set, std::int64_t euler_change) {
     Component& component = components_[set];
+    if (component.time != time_) {
+      component.time = time_;
+      component.size_before = component.size;
+      component.euler_before = component.euler;
+    }
     component.size = component.size + born_ - died_;
     component.euler += euler_change;
     for (const Index s : star_.cells()) {
@@ -126,12 +138,13 @@ class Sweeper {
       return;
     }
     const auto node = static_cast<Index>(result_.nodes.size());
-    result_.nodes.push_back({v, complex_.time(v), euler_change, star_.at_border(), star_.has_flat_facet()});
+    result_.nodes.push_back({v, complex_.time(v), euler_change, star_.at_border(), star_.flatness()});
     for (const Component& component : before) {
       SweepArc& arc = result_.arcs[component.arc];
       arc.to = node;
-      arc.size_at_end = component.size;
-      arc.euler_at_end = component.euler;
+      const bool met = component.time == time_;
+      arc.size_at_end = met ? component.size_before : component.size;
+      arc.euler_at_end = met ? component.euler_before : component.euler;
     }
     for (const Index part : outgoing) start_arc(node, part);
     relabel_new_cells(v);
@@ -140,6 +153,7 @@ class Sweeper {
   /// One set of all, or a new one of none.
   Index join(const std::vector<Index>& sets) {
     if (sets.empty()) return new_set({});
+    if (sets.size() == 1) return sets.front();
     Component sum;
     Index joined = sets.front();
     for (const Index set : sets) {
@@ -161,7 +175,20 @@ class Sweeper {
   void start_arc(Index node, Index set) {
     Component& component = components_[set];
     component.arc = static_cast<Index>(result_.arcs.size());
-    result_.arcs.push_back({node, kNone, component.size, 0, component.euler, 0});
+    result_.arcs.push_back({node, kNone, 0, 0, 0, 0});
+    started_.push_back(set);
+  }
+
+  /// Takes down the arcs that have started, once all vertices of a time have been visited.
+  void settle_starts() {
+    for (const Index set : started_) {
+      const Component& component = components_[sets_.find(set)];
+      SweepArc& arc = result_.arcs[component.arc];
+      arc.size_at_start = component.size;
+      arc.euler_at_start = component.euler;
+    }
+    started_.clear();
+    ++time_;
   }
 
   /// The cells that begin at a node are in the arcs that begin there.
@@ -392,7 +419,9 @@ class Sweeper {
   std::vector<Component> components_;  ///< of each set, valid at its leader
   std::vector<Index> labels_;          ///< #S: a member of the set of the simplex's cell; kNone before it has one
   std::vector<Index> incoming_;
-  std::uint64_t born_ = 0;  ///< cells that begin, and end, at the vertex
+  std::vector<Index> started_;  ///< sets whose arcs started at the time at hand
+  std::uint64_t time_ = 0;      ///< how many different times there were
+  std::uint64_t born_ = 0;      ///< cells that begin, and end, at the vertex
   std::uint64_t died_ = 0;
 
   std::vector<Front> fronts_;

@@ -13,19 +13,23 @@ namespace tegl::detail {
 
 inline constexpr Index kNone = ~Index{0};
 
+/// What lies at the very time of a vertex, of what is around it: a simplex, or more than that a facet in the border.
+enum class Flatness : std::uint8_t { none, simplex, border };
+
 /// A vertex where components start, end, merge or split.
 struct SweepNode {
   Index vertex = 0;
   double time = 0;
   std::int64_t euler_change = 0;
   bool at_border = false;
-  bool flat = false;  ///< whether a facet of one of its simplices lies at this very time
+  Flatness flatness = Flatness::none;
 };
 
 /// A component between two nodes.
 struct SweepArc {
   Index from = kNone;
   Index to = kNone;
+  // Just after all vertices of the time of `from`, and just before those of the time of `to`.
   std::uint64_t size_at_start = 0;
   std::uint64_t size_at_end = 0;
   std::int64_t euler_at_start = 0;

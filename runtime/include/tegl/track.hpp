@@ -83,6 +83,7 @@ struct TrackSegment {
 
 /// A part that goes on, as the largest one, through merges and splits.
 struct Track {
+  Index number = 0;             ///< in the graph as it was found; `select_tracks` leaves it as it is
   std::vector<Index> segments;  ///< one after the other
   double start = 0;
   double end = 0;
@@ -108,20 +109,21 @@ struct TrackGraph {
 
 struct TrackOptions {
   /// Parts that live shorter than this, from birth to merge, from split to death, from birth to death or from a split
-  /// to the merge of the same two, are left out. 0: all are shown but those that last no time at all.
+  /// to the merge of the same two, are left out. 0: all are shown but those that last no longer than rounding may let
+  /// them (4 units in the last place of the largest time).
   double min_lifetime = 0;
   /// When to measure the parts, ascending.
-  std::vector<double> times;
+  std::vector<double> times = {};
   /// When the data begin and end; by default the least and the greatest last coordinate of the contour.
-  std::optional<double> first;
-  std::optional<double> last;
+  std::optional<double> first = {};
+  std::optional<double> last = {};
   /// Whether to list the changes of shape between events too.
   bool handles = true;
   /// Whether to fill TrackGraph::simplex_segments.
   bool label_simplices = false;
   /// How many threads work where several can; 0: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
-  Progress progress;
+  Progress progress = {};
 };
 
 /// `count` times at even distances in the middle of as many parts of [first, last].
@@ -137,8 +139,9 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 /// several parts before and after it. It is shown at its lowest vertex. Vertices of the contour's border are no
 /// different; the graph is that of the contour as it is, whether it is a manifold or not.
 ///
-/// `begin` and `end` are births at `first` and deaths at `last` where a face of the contour lies flat in that time; a
-/// part that touches that time in a point alone is born or dies there.
+/// `begin` and `end` are births at `first` and deaths at `last` where the contour's border lies flat in that time, or,
+/// if the option says when the data begin and end, where a simplex does (as in the caps of a closed contour); a part
+/// that touches that time in a point alone is born or dies there.
 ///
 /// A track goes on from the largest part before an event to the largest after it, by size_at_end and size_at_start.
 ///
@@ -160,9 +163,9 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 template <int N, class Real>
 TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
 
-/// The graph with these tracks alone, `keep[track]`, in the same order with new numbers; events keep those of their
-/// segments that are left, their kind and their change, and are dropped when none is left. Errors: InvalidArgument (the
-/// length of `keep`).
+/// The graph with these tracks alone, `keep[track]`, in the same order; `Track::number` tells which they were. Events
+/// keep those of their segments that are left, their kind and their change, and are dropped when none is left. Errors:
+/// InvalidArgument (the length of `keep`).
 TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep);
 
 }  // namespace tegl

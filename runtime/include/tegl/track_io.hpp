@@ -24,7 +24,7 @@ std::string track_segments_csv(const TrackGraph& graph);
 std::string track_samples_csv(const TrackGraph& graph);
 
 struct TrackPicture {
-  std::string title;             ///< may be empty
+  std::string title = {};        ///< may be empty
   double width = 960;            ///< in pixels
   std::size_t most_tracks = 60;  ///< those that live longest are shown; of equal ones the first
 };
