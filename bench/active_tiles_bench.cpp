@@ -5,6 +5,7 @@
 //
 //   active_tiles_bench [--queries N] [--csv FILE] IMAGE...
 //
+// An image "balls:N" is made: N^3 samples of float with three balls, empty elsewhere.
 // One thread; times are those of the processor. Times of queries and contours are the least of a few runs. `--csv`
 // keeps every single query.
 #include <fmt/core.h>
@@ -143,6 +144,26 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
   }
 }
 
+/// N^3 samples, most of them far from any contour: the case for an index.
+OwnedImage<float, 3> few_balls(std::size_t n) {
+  OwnedImage<float, 3> image{Grid<3>::unit({n, n, n}), std::vector<float>(n * n * n)};
+  const auto radius = static_cast<double>(n) / 12;
+  std::size_t i = 0;
+  for (std::size_t z = 0; z < n; ++z)
+    for (std::size_t y = 0; y < n; ++y)
+      for (std::size_t x = 0; x < n; ++x, ++i) {
+        double value = 0;
+        for (const double share : {0.2, 0.45, 0.8}) {
+          const double at = share * static_cast<double>(n);
+          const double distance =
+              std::hypot(static_cast<double>(x) - at, static_cast<double>(y) - 0.9 * at, static_cast<double>(z) - at);
+          value = std::max(value, radius - distance);
+        }
+        image.values[i] = static_cast<float>(value);
+      }
+  return image;
+}
+
 int run(int argc, char** argv) {
   int queries = 256;
   std::FILE* csv = nullptr;
@@ -158,11 +179,15 @@ int run(int argc, char** argv) {
       files.push_back(argument);
   }
   if (files.empty()) {
-    fmt::print(stderr, "usage: active_tiles_bench [--queries N] [--csv FILE] IMAGE...\n");
+    fmt::print(stderr, "usage: active_tiles_bench [--queries N] [--csv FILE] IMAGE|balls:N ...\n");
     return 2;
   }
   if (csv != nullptr) fmt::print(csv, "image,method,isovalue,active_tiles,find_seconds,extract_seconds\n");
   for (const std::string& file : files) {
+    if (file.rfind("balls:", 0) == 0) {
+      measure(file, few_balls(std::stoul(file.substr(6))), queries, csv);
+      continue;
+    }
     const ReadImageResult read = read_image(file);
     const std::string name = std::filesystem::path(file).filename().string();
     std::visit(
