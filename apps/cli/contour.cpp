@@ -3,11 +3,13 @@
 // tegl contour: the contour of an image, in the dimension that the file holds.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
 #include "commands.hpp"
 #include "extraction.hpp"
+#include "facets.hpp"
 #include "numbers.hpp"
 #include "output.hpp"
 #include "progress.hpp"
@@ -25,6 +27,8 @@ constexpr const char* kExamples =
     "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --close -o warm_water.vtkhdf\n"
     "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
+    "  tegl contour head.nii.gz --iso 60 --triangulation halving-chord -o head.ply\n"
+    "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
 
@@ -35,8 +39,11 @@ class ContourCommand final : public Command {
                 "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped)") {
     options_.add_to(app(), true);
     app()
-        .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
+        .add_option("-o,--output", output_,
+                    "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too); with --facets .vtu or, in 2D and "
+                    "3D, .vtkhdf")
         ->required();
+    app().add_flag("--facets", facets_, "the contour without triangulation: segments, polygons or polyhedra");
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
     app().add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote");
     streaming_.add_to(app());
@@ -47,8 +54,10 @@ class ContourCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     const double isovalue = options_.isovalue();
-    ExtractOptions options = options_.library_options();
+    const bool streams_it = streaming_.wanted();
+    ExtractOptions options = options_.library_options(!streams_it || facets_);
     require_input(file());
+    if (facets_) return run_facets(streams, {isovalue, options, options_.single_precision(), no_check_});
     require_output(output_, file());
     if (!index_.empty()) {
       require_input(index_);
@@ -61,7 +70,7 @@ class ContourCommand final : public Command {
     result.input = file();
     result.output = output_;
     result.isovalue = isovalue;
-    if (streaming_.wanted())
+    if (streams_it)
       stream(options, bar, result);
     else
       contour(options, bar, result);
@@ -80,12 +89,23 @@ class ContourCommand final : public Command {
     require_contour(input, *result.isovalue);
     result.seconds.read = watch.lap();
 
-    options.progress = bar.stage("contour");
     ExtractStats& stats = result.stats.emplace();
     result.mesh = index_.empty()
                       ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
                                           [](const auto& contour) { return to_mesh(contour); })
                       : extract_by_index(input.image, options, bar, result);
+    if (const auto method = options_.polygon_triangulation()) {
+      result.mesh = triangulated_polygons(
+          input.image, {*result.isovalue, options, options_.single_precision(), no_check_}, *method, bar, stats);
+      return finish(input, stats, bar, result);
+    }
+    options.progress = bar.stage("contour");
+    result.mesh = extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
+                                    [](const auto& contour) { return to_mesh(contour); });
+    finish(input, stats, bar, result);
+  }
+
+  void finish(ReadImageResult& input, const ExtractStats& stats, ProgressBar& bar, ContourResult& result) const {
     result.seconds.add(stats);
     if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
     input.image = AnyImage();  // its memory is of more use to the check
@@ -106,6 +126,29 @@ class ContourCommand final : public Command {
       return to_mesh(extract<double>(view, *result.isovalue, options, *active, &*result.stats));
     };
     return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+  ExitCode run_facets(const Streams& streams, const FacetsWork& work) const {
+    const auto given = options_.given();
+    if (streaming_.wanted() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--facets with {}; expected one of the two: facets are in memory and not triangulated",
+                              streaming_.wanted() ? "--stream or --raw" : "--triangulation"));
+    require_facets_output(output_, file());
+    ProgressBar bar(streams.err, wants_progress());
+    Stopwatch watch;
+    const ReadImageResult input = read(bar.stage("read"));
+    FacetsResult result;
+    result.input = file();
+    result.variable = input.info.variable;
+    result.output = output_;
+    result.image_dim = image_dim(input.image);
+    result.isovalue = work.isovalue;
+    require_output_holds_facets(output_, result.image_dim);
+    require_contour(input, work.isovalue);
+    result.seconds.read = watch.lap();
+    write_image_facets(input.image, work, bar, result);
+    bar.clear();
+    if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
+    return result.exit_code();
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
@@ -128,6 +171,7 @@ class ContourCommand final : public Command {
   StreamingOptions streaming_;
   std::string output_;
   std::string index_;
+  bool facets_ = false;
   bool no_check_ = false;
 };
 

@@ -14,8 +14,10 @@ namespace tegl::cli {
 void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
   options_ = {
       app.add_option("--iso", iso_, "the isovalue: samples at or above it are inside")->type_name("NUMBER"),
-      app.add_option("--triangulation", triangulation_, "compact: few simplices; barycentric: even ones")
-          ->check(CLI::IsMember({"compact", "barycentric"}))
+      app.add_option("--triangulation", triangulation_,
+                     "compact: few simplices; barycentric: even ones; of the polygons of 3D images: fan, zigzag, "
+                     "halving-chord, halving-kink")
+          ->check(CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"}))
           ->capture_default_str(),
       app.add_option("--ambiguity", ambiguity_,
                      "samples inside that meet across a diagonal: low parts, high joins them")
@@ -54,7 +56,20 @@ double ExtractionOptions::isovalue() const {
   return parse_finite("--iso", iso_);
 }
 
-ExtractOptions ExtractionOptions::library_options() const {
+std::optional<PolygonTriangulation> ExtractionOptions::polygon_triangulation() const {
+  if (triangulation_ == "fan") return PolygonTriangulation::fan;
+  if (triangulation_ == "zigzag") return PolygonTriangulation::zigzag;
+  if (triangulation_ == "halving-chord") return PolygonTriangulation::halving_chord;
+  if (triangulation_ == "halving-kink") return PolygonTriangulation::halving_kink;
+  return std::nullopt;
+}
+
+ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
+  if (polygon_triangulation() && !knows_polygons)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--triangulation {} is for the polygons of 3D images, in memory, by 'tegl contour'; "
+                            "expected compact or barycentric",
+                            triangulation_));
   ExtractOptions options;
   options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
   options.ambiguity = ambiguity_ == "low" ? Ambiguity::low : Ambiguity::high;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "result.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
+#include "tegl/polygons.hpp"
 
 namespace tegl::cli {
 
@@ -30,8 +32,11 @@ class ExtractionOptions {
   [[nodiscard]] unsigned threads() const { return threads_; }
   /// True for --precision float.
   [[nodiscard]] bool single_precision() const { return precision_ == "float"; }
-  /// The library's options, without progress. Throws InvalidArgument for an epsilon outside of [0, 0.5).
-  [[nodiscard]] ExtractOptions library_options() const;
+  /// The triangulation of polygons that --triangulation names; none for those of `extract`.
+  [[nodiscard]] std::optional<PolygonTriangulation> polygon_triangulation() const;
+  /// The library's options, without progress. Throws InvalidArgument for an epsilon outside of [0, 0.5), and for a
+  /// triangulation of polygons unless the caller sees to those itself.
+  [[nodiscard]] ExtractOptions library_options(bool knows_polygons = false) const;
 
  private:
   std::vector<CLI::Option*> options_;

@@ -80,9 +80,9 @@ WrittenFiles::~WrittenFiles() {
   for (const fs::path& path : paths_) fs::remove(path, ignored);
 }
 
-std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progress& progress) {
+std::uint64_t write_file(const fs::path& output, const std::function<void()>& write) {
   try {
-    write_mesh(mesh, output, progress);
+    write();
   } catch (const Error& error) {
     // Whatever is wrong here is wrong with the output: scripts tell the two files apart by the exit code.
     if (error.code() == ErrorCode::Cancelled) throw;
@@ -93,6 +93,10 @@ std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progr
   std::error_code error;
   const std::uintmax_t size = fs::file_size(output, error);
   return error ? 0 : size;
+}
+
+std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progress& progress) {
+  return write_file(output, [&] { write_mesh(mesh, output, progress); });
 }
 
 }  // namespace tegl::cli

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,10 @@ void require_output_holds(const std::filesystem::path& output, int simplex_dim);
 
 /// Throws WriteFailed unless `output` can be expected to be written as a text file, of any extension.
 void require_text_output(const std::filesystem::path& output, const std::filesystem::path& input);
+
+/// Calls `write`, which writes the file, and returns its size in bytes. Errors: WriteFailed, whatever is wrong;
+/// Cancelled.
+std::uint64_t write_file(const std::filesystem::path& output, const std::function<void()>& write);
 
 /// Writes the mesh and returns the file's size in bytes. Errors: WriteFailed, Cancelled.
 std::uint64_t write_output(const Mesh& mesh, const std::filesystem::path& output, const Progress& progress);

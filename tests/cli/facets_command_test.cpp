@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// `tegl contour --facets` and `--triangulation fan|zigzag|halving-chord|halving-kink`.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::HasSubstr;
+
+class FacetsCommand : public ProgramTest {
+ protected:
+  /// Runs `tegl contour` with these arguments and --json, and expects success.
+  static nlohmann::json contour(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "contour");
+    arguments.push_back("--json");
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.json();
+  }
+  void expect_failure(int exit, std::vector<std::string> arguments, const std::vector<std::string>& words) const {
+    const auto before = files();
+    arguments.insert(arguments.begin(), "contour");
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, exit) << run.out << run.err;
+    for (const std::string& word : words) EXPECT_THAT(run.err, HasSubstr(word));
+    EXPECT_EQ(files(), before);
+  }
+};
+
+TEST_F(FacetsCommand, WritesFacetsWithTheTopologyOfTheContour) {
+  const std::vector<std::string> images = {write("flat.nrrd", nrrd_bytes(noise({20, 21}, 1))),
+                                           write("solid.nrrd", nrrd_bytes(noise({9, 10, 11}, 2))),
+                                           write("moving.nrrd", nrrd_bytes(noise({5, 6, 7, 5}, 3)))};
+  for (const std::string& image : images)
+    for (const bool close : {false, true}) {
+      std::vector<std::string> more = {"--iso", "128"};
+      if (close) more.push_back("--close");
+      std::vector<std::string> facets = {image, "--facets", "-o", path("out.vtu")};
+      std::vector<std::string> simplices = {image, "-o", path("out.vtkhdf")};
+      facets.insert(facets.end(), more.begin(), more.end());
+      simplices.insert(simplices.end(), more.begin(), more.end());
+      const nlohmann::json report = contour(facets), expected = contour(simplices);
+      for (const char* key : {"euler", "components", "image_dim", "tiles", "active_tiles"})
+        EXPECT_EQ(report[key], expected[key]) << image << " " << key;
+      for (const char* key : {"nonmanifold_facets", "orientation_conflicts", "open_boundaries"})
+        EXPECT_EQ(report[key], 0) << image << " " << key;
+      EXPECT_EQ(report["boundary_facets"] == 0, close);
+      EXPECT_EQ(report["facets"].size(), report["image_dim"]);
+      EXPECT_GT(std::filesystem::file_size(path("out.vtu")), 1000u);
+    }
+}
+
+TEST_F(FacetsCommand, SaysWhatItFoundAndCanLeaveOutTheCheck) {
+  const std::string image = write("ball.nrrd", nrrd_bytes(ball({12, 12, 12}, 4.3)));
+  const RunResult run = run_tegl({"contour", image, "--iso", "0", "--facets", "-o", path("out.VTU")});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  for (const char* words : {"polygons", "Euler        2", "none: closed", "meet two by two"})
+    EXPECT_THAT(run.out, HasSubstr(words));
+  EXPECT_EQ(contour({image, "--iso", "0", "--facets", "--no-check", "-o", path("out.vtkhdf")})["euler"], nullptr);
+  const RunResult quiet = run_tegl({"contour", image, "--iso", "0", "--facets", "-q", "-o", path("q.vtu")});
+  EXPECT_EQ(quiet.out + quiet.err, "");
+}
+
+TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
+  const std::string solid = write("ball.nrrd", nrrd_bytes(ball({9, 9, 9}, 3.3)));
+  const std::string moving = write("balls.nrrd", nrrd_bytes(merging_balls(9, 3)));
+  expect_failure(2, {solid, "--iso", "0", "--facets", "--triangulation", "fan", "-o", path("o.vtu")},
+                 {"--facets", "--triangulation"});
+  expect_failure(2, {solid, "--iso", "0", "--facets", "--stream", "-o", path("o.vtkhdf")}, {"--facets", "--stream"});
+  expect_failure(6, {solid, "--iso", "0", "--facets", "-o", path("o.ply")}, {".ply", "expected .vtu"});
+  expect_failure(6, {solid, "--iso", "0", "-o", path("o.vtu")}, {".vtu"});
+  expect_failure(6, {moving, "--iso", "0", "--facets", "-o", path("o.vtkhdf")}, {".vtkhdf", "polyhedra", ".vtu"});
+  expect_failure(6, {solid, "--iso", "0", "--facets", "-o", path("no/o.vtu")}, {"no", "exist"});
+  expect_failure(5, {solid, "--iso", "99", "--facets", "-o", path("o.vtu")}, {"99"});
+  expect_failure(2, {moving, "--iso", "0", "--triangulation", "zigzag", "-o", path("o.vtkhdf")}, {"4D", "compact"});
+  expect_failure(2, {solid, "--iso", "0", "--triangulation", "fan", "--stream", "-o", path("o.vtkhdf")},
+                 {"fan", "compact"});
+}
+
+TEST_F(FacetsCommand, TriangulatesPolygonsEachInItsOwnWay) {
+  const std::string image = write("noise.nrrd", nrrd_bytes(noise({14, 15, 16}, 4)));
+  std::vector<Buffer<Index>> different;
+  const nlohmann::json compact = contour({image, "--iso", "128", "-o", path("compact.ply")});
+  for (const char* method : {"fan", "zigzag", "halving-chord", "halving-kink"}) {
+    const nlohmann::json report =
+        contour({image, "--iso", "128", "--triangulation", method, "--normals", "-o", path("out.ply")});
+    for (const char* key : {"vertices", "simplices", "euler", "components", "boundary_simplices", "active_tiles"})
+      EXPECT_EQ(report[key], compact[key]) << method << " " << key;
+    EXPECT_EQ(report["nonmanifold_simplices"], 0);
+    EXPECT_EQ(report["bad_links"], 0);
+    EXPECT_EQ(report["orientation_conflicts"], 0);
+    const Mesh mesh = read_mesh(path("out.ply"));
+    EXPECT_EQ(mesh.normals.size(), mesh.coordinates.size());
+    for (const auto& other : different) EXPECT_NE(mesh.simplices, other) << method;
+    different.push_back(mesh.simplices);
+  }
+}
+
+TEST_F(FacetsCommand, SliceSaysThatItKnowsNoPolygons) {
+  const std::string moving = write("balls.nrrd", nrrd_bytes(merging_balls(9, 3)));
+  const RunResult run =
+      run_tegl({"slice", moving, "--iso", "0", "--at", "t=0.5", "--triangulation", "fan", "-o", path("o.ply")});
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("expected compact or barycentric"));
+}
+
+}  // namespace
+}  // namespace tegl::test
