@@ -76,6 +76,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
       if (i % kBlock == 0) tick(progress, static_cast<double>(done + sink.bytes()) / static_cast<double>(all), path);
       array->put(sink, i);
     }
+    sink.flush();
     done += bytes;
   }
   file.write("\n</AppendedData>\n</VTKFile>\n");

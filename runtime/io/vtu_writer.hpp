@@ -15,19 +15,28 @@
 
 namespace tegl::io_detail {
 
-/// Bytes on their way into a file.
+/// Values on their way into a file.
 class ByteSink {
  public:
-  explicit ByteSink(OutputFile& file) : file_(file) {}
+  explicit ByteSink(OutputFile& file) : file_(file) { buffer_.reserve(kBlock); }
   template <class T>
   void put(T value) {
-    file_.write(&value, sizeof value);
+    if (buffer_.size() + sizeof value > kBlock) flush();
+    const auto* const bytes = reinterpret_cast<const char*>(&value);
+    buffer_.insert(buffer_.end(), bytes, bytes + sizeof value);
     bytes_ += sizeof value;
+  }
+  void flush() {
+    file_.write(buffer_.data(), buffer_.size());
+    buffer_.clear();
   }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
 
  private:
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;
+
   OutputFile& file_;
+  std::vector<char> buffer_;
   std::uint64_t bytes_ = 0;
 };
 

@@ -42,6 +42,18 @@ void for_bits(const Word* bits, std::size_t words, const Visit& visit) {
       visit(w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
 }
 
+/// A kind of faces, with what is known of it beforehand.
+struct KnownKind : FaceKind {
+  /// One of a face's own faces, or of an outward one the face itself.
+  struct Sub {
+    const FaceNumbers* numbers = nullptr;
+    std::size_t rows = 0, ahead = 0;
+  };
+  FaceCorners corners;
+  FaceNumbers* numbers = nullptr;
+  std::array<Sub, 2 * FacetTables::kMaxDim> subs;  ///< by FacetEntry::face
+};
+
 template <int N, class Real>
 class FacetExtraction {
  public:
@@ -55,9 +67,10 @@ class FacetExtraction {
         placement_(grid),
         workers_(options.threads, [] { return FacetScratch(); }) {
     if (options.normals) placement_.want_normals(source, grid, options.direction);
-    for (unsigned axes = 1; axes <= kAll; ++axes) kinds_.push_back({axes, false});
+    faces_.resize(2u << N);
+    for (unsigned axes = 1; axes <= kAll; ++axes) add_kind({axes, false});
     if (options.close)
-      for (unsigned axes = 0; axes < kAll; ++axes) kinds_.push_back({axes, true});
+      for (unsigned axes = 0; axes < kAll; ++axes) add_kind({axes, true});
     facets_.sizes = grid.sizes();
     facets_.direction = options.direction;
     for (int a = 0; a < N; ++a) {
@@ -68,8 +81,7 @@ class FacetExtraction {
 
   FacetHierarchy<N, Real> run() {
     classify();
-    faces_.resize(2u << N);
-    for (const FaceKind& kind : kinds_) find_faces(kind);
+    find_faces();
     count_facets();
     number_facets();
     for (unsigned dim = 1; dim <= N; ++dim) write_facets(dim);
@@ -90,14 +102,29 @@ class FacetExtraction {
   using Level = typename FacetHierarchy<N, Real>::Level;
   using Vertex = std::array<Real, N>;
 
+  void add_kind(const FaceKind& kind) {
+    KnownKind& known = kinds_.emplace_back();
+    static_cast<FaceKind&>(known) = kind;
+    known.corners = rows_.corners_of(kind);
+    known.numbers = &faces(kind);
+    known.numbers->reset(rows_.rows(), rows_.words());
+    for (unsigned j = 0; j < kind.grid_dim(); ++j)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const unsigned axis = kind.axis(j);
+        known.subs[2 * j + side] = {&faces({kind.axes & ~(1u << axis), kind.outward}),
+                                    axis == 0 ? 0 : side * rows_.stride(axis), axis == 0 ? side : 0};
+      }
+    if (kind.outward) known.subs[2 * kind.grid_dim()] = {&faces({kind.axes, false}), 0, 0};
+  }
   FaceNumbers& faces(const FaceKind& kind) noexcept { return faces_[kind.axes | (kind.outward ? kAll + 1 : 0)]; }
   /// Nobody asks for the numbers of facets that bound no others.
   static bool is_top(const FaceKind& kind) noexcept { return kind.dim() == N; }
 
-  /// work(row, scratch) for all rows, `share` of the `shares` of a pass.
+  /// work(row, scratch) for all rows: a pass.
   template <class Work>
-  void for_rows(const Work& work, unsigned share = 0, unsigned shares = 1) {
-    if (share == 0) reporter_.begin_batch(pass_, pass_ + 1, shares), ++pass_;
+  void for_rows(const Work& work) {
+    reporter_.begin_batch(pass_, pass_ + 1, 1);
+    ++pass_;
     reporter_.begin_pass(rows_.rows());
     workers_.for_range(rows_.rows(), kGrain, [&](std::size_t from, std::size_t to, FacetScratch& scratch) {
       for (std::size_t next; from < to && !reporter_.stopped(); from = next) {
@@ -105,6 +132,13 @@ class FacetExtraction {
         for (std::size_t row = from; row < next; ++row) work(row, scratch);
         reporter_.add(next - from);
       }
+    });
+  }
+  /// The same for rows with facets.
+  template <class Work>
+  void for_busy_rows(const Work& work) {
+    for_rows([&](std::size_t row, FacetScratch& scratch) {
+      if (busy_[row] != 0) work(row, scratch);
     });
   }
 
@@ -122,24 +156,28 @@ class FacetExtraction {
   }
 
   /// Bits, and of tesseracts the signatures.
-  void find_faces(const FaceKind& kind) {
-    FaceNumbers& here = faces(kind);
-    here.reset(rows_.rows(), rows_.words());
-    if (kind.dim() == FacetTables::kMaxDim) met_.resize(1u << (1u << FacetTables::kMaxDim));
-    const auto at = static_cast<unsigned>(&kind - kinds_.data());
-    for_rows(
-        [&](std::size_t row, FacetScratch&) {
-          const auto index = rows_.index_of(row);
-          if (!rows_.has_faces(index, kind.axes)) return;
-          Word* const bits = here.bits.data() + row * rows_.words();
-          for (std::size_t w = 0; w < rows_.words(); ++w) bits[w] = rows_.critical(kind, row, index, w);
-          if (kind.dim() == FacetTables::kMaxDim)
-            for_bits(bits, rows_.words(), [&](std::size_t i) {
-              std::atomic_ref(met_[rows_.signature(kind, row, i)]).store(1, std::memory_order_relaxed);
-            });
-        },
-        at, static_cast<unsigned>(kinds_.size()));
-    if (!is_top(kind)) here.rank();
+  void find_faces() {
+    busy_.assign(rows_.rows(), 0);
+    if (N == FacetTables::kMaxDim) met_.resize(1u << (1u << FacetTables::kMaxDim));
+    for_rows([&](std::size_t row, FacetScratch&) {
+      const auto index = rows_.index_of(row);
+      Word any = 0;
+      for (const KnownKind& kind : kinds_) {
+        if (!rows_.has_faces(index, kind.axes)) continue;
+        Word* const bits = kind.numbers->bits.data() + row * rows_.words();
+        Word any_of_kind = 0;
+        for (std::size_t w = 0; w < rows_.words(); ++w)
+          any_of_kind |= bits[w] = rows_.critical(kind, kind.corners, row, index, w);
+        any |= any_of_kind;
+        if (kind.dim() != FacetTables::kMaxDim || any_of_kind == 0) continue;
+        for_bits(bits, rows_.words(), [&](std::size_t i) {
+          std::atomic_ref(met_[rows_.signature(kind.corners, row, i)]).store(1, std::memory_order_relaxed);
+        });
+      }
+      busy_[row] = any != 0 ? 1 : 0;
+    });
+    for (const KnownKind& kind : kinds_)
+      if (!is_top(kind)) kind.numbers->rank();
   }
 
   /// By row.
@@ -148,12 +186,12 @@ class FacetExtraction {
     for (std::size_t s = 0; s < met_.size(); ++s)
       if (met_[s] != 0) signatures.push_back(static_cast<std::uint16_t>(s));
     if (N == FacetTables::kMaxDim) tables_.add_tesseracts(signatures);
-    for_rows([&](std::size_t row, FacetScratch&) {
-      for (const FaceKind& kind : kinds_) {
-        FaceNumbers& here = faces(kind);
+    for_busy_rows([&](std::size_t row, FacetScratch&) {
+      for (const KnownKind& kind : kinds_) {
+        FaceNumbers& here = *kind.numbers;
         std::uint64_t count = 0, entries = 0;
         for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
-          const unsigned signature = kind.dim() == 1 ? 1 : rows_.signature(kind, row, i);
+          const unsigned signature = kind.dim() == 1 ? 1 : rows_.signature(kind.corners, row, i);
           count += tables_.count(kind.dim(), signature);
           entries += tables_.entry_count(kind.dim(), signature);
         });
@@ -171,9 +209,10 @@ class FacetExtraction {
       for (std::size_t first = 0; first < rows_.rows(); first += layer_rows)
         for (const unsigned across : {0u, 1u})
           for (std::size_t row = first; row < first + layer_rows; ++row)
-            for (const FaceKind& kind : kinds_) {
+            for (const KnownKind& kind : kinds_) {
+              if (busy_[row] == 0) break;
               if (kind.outward != outward || (kind.axes >> (N - 1) & 1u) != across) continue;
-              FaceNumbers& here = faces(kind);
+              FaceNumbers& here = *kind.numbers;
               const std::size_t k = kind.dim() - 1;
               facets[k] += std::exchange(here.first_facet[row], facets[k]);
               entries[k] += std::exchange(here.first_entry[row], entries[k]);
@@ -198,21 +237,21 @@ class FacetExtraction {
 
   /// Of all kinds that are faces of this dimension; after those of the dimension before.
   void write_facets(unsigned dim) {
-    for_rows([&](std::size_t row, FacetScratch&) {
-      for (const FaceKind& kind : kinds_)
+    for_busy_rows([&](std::size_t row, FacetScratch&) {
+      for (const KnownKind& kind : kinds_)
         if (kind.dim() == dim) write_row(kind, row);
     });
   }
 
-  void write_row(const FaceKind& kind, std::size_t row) {
-    FaceNumbers& here = faces(kind);
+  void write_row(const KnownKind& kind, std::size_t row) {
+    FaceNumbers& here = *kind.numbers;
     const unsigned k = kind.dim() - 1;
     Level& level = facets_.levels[k];
     auto facet = static_cast<Index>(here.first_facet[row]);
     auto entry = static_cast<Index>(here.first_entry[row]);
     Index* first = is_top(kind) ? nullptr : here.first_of_row(row);
     for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
-      const unsigned signature = rows_.signature(kind, row, i);
+      const unsigned signature = rows_.signature(kind.corners, row, i);
       if (first != nullptr) *first++ = facet;
       const unsigned count = tables_.count(kind.dim(), signature);
       const bool turn = is_top(kind) && flip_ != is_mirrored(kind, row, i);
@@ -224,7 +263,8 @@ class FacetExtraction {
         const auto entries = tables_.entries(kind.dim(), signature, number);
         for (std::size_t e = 0; e < entries.size(); ++e, ++entry) {
           const FacetEntry& bound = entries[turn ? entries.size() - 1 - e : e];
-          level.down[entry] = number_of(kind, row, i, bound);
+          const KnownKind::Sub& sub = kind.subs[bound.face];
+          level.down[entry] = sub.numbers->first(row + sub.rows, i + sub.ahead) + bound.number;
           level.down_signs[entry] = turn ? static_cast<std::int8_t>(-bound.sign) : bound.sign;
         }
       }
@@ -239,22 +279,11 @@ class FacetExtraction {
     return ((N - 1 - across) % 2 != 0) != is_lower;
   }
 
-  /// The number of a facet in the boundary of one in this face.
-  [[nodiscard]] Index number_of(const FaceKind& kind, std::size_t row, std::size_t i,
-                                const FacetEntry& bound) noexcept {
-    const unsigned j = bound.face / 2u, side = bound.face % 2u;
-    if (j == kind.grid_dim()) return faces({kind.axes, false}).first(row, i) + bound.number;
-    const unsigned axis = kind.axis(j);
-    const FaceKind sub{kind.axes & ~(1u << axis), kind.outward};
-    return faces(sub).first(row + (axis == 0 ? 0 : side * rows_.stride(axis)), i + (axis == 0 ? side : 0)) +
-           bound.number;
-  }
-
   void write_points() {
     facets_.vertices.resize(facets_.count(0));
     if (options_.normals) facets_.normals.resize(facets_.count(0));
-    for_rows([&](std::size_t row, FacetScratch& scratch) {
-      for (const FaceKind& kind : kinds_) {
+    for_busy_rows([&](std::size_t row, FacetScratch& scratch) {
+      for (const KnownKind& kind : kinds_) {
         if (kind.dim() != 1) continue;
         if (kind.outward)
           write_corners(kind, row);
@@ -265,8 +294,8 @@ class FacetExtraction {
   }
 
   /// The samples of a row that are corners of caps.
-  void write_corners(const FaceKind& kind, std::size_t row) {
-    const FaceNumbers& here = faces(kind);
+  void write_corners(const KnownKind& kind, std::size_t row) {
+    const FaceNumbers& here = *kind.numbers;
     auto index = rows_.index_of(row);
     auto vertex = static_cast<std::size_t>(here.first_facet[row]);
     for_bits(here.bits.data() + row * rows_.words(), rows_.words(), [&](std::size_t i) {
@@ -281,8 +310,8 @@ class FacetExtraction {
   }
 
   /// The points on the edges of a row along one axis.
-  void write_edges(const FaceKind& kind, std::size_t row, FacetScratch& scratch) {
-    FaceNumbers& here = faces(kind);
+  void write_edges(const KnownKind& kind, std::size_t row, FacetScratch& scratch) {
+    FaceNumbers& here = *kind.numbers;
     const Word* const bits = here.bits.data() + row * rows_.words();
     std::size_t count = 0;
     for (std::size_t w = 0; w < rows_.words(); ++w) count += static_cast<std::size_t>(std::popcount(bits[w]));
@@ -329,8 +358,9 @@ class FacetExtraction {
   FacetTables tables_;
   Placement<N, Real> placement_;
   Workers<FacetScratch> workers_;
-  std::vector<FaceKind> kinds_;
+  std::vector<KnownKind> kinds_;
   std::vector<FaceNumbers> faces_;  ///< by axes, those of outward ones after the others
+  std::vector<std::uint8_t> busy_;  ///< by row: whether any face in it has facets
   std::vector<std::uint8_t> met_;   ///< by signature of a tesseract
   FacetHierarchy<N, Real> facets_;
 };

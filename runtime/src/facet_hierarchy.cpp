@@ -46,8 +46,11 @@ std::vector<Index> FacetHierarchy<N, Real>::points_of(int k, std::size_t f) cons
     for (std::size_t i = 0; i < below.size(); ++i) result.push_back(down(1, below[i])[signs[i] > 0 ? 0 : 1]);
     return result;
   }
-  for (const Index g : below)
-    for (const Index point : points_of(k - 1, g)) result.push_back(point);
+  for (const Index polygon : below)
+    for (const Index segment : down(2, polygon)) {
+      const auto ends = down(1, segment);
+      result.insert(result.end(), ends.begin(), ends.end());
+    }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

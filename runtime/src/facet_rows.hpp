@@ -37,6 +37,13 @@ struct FaceKind {
   }
 };
 
+/// Where the corners of a kind of faces are, from the face's first sample on, in words and samples.
+struct FaceCorners {
+  unsigned count = 0;
+  std::array<std::size_t, 16> words{};
+  std::array<std::uint8_t, 16> ahead{};
+};
+
 /// Samples in rows, and how rows lie.
 template <int N>
 class GridRows {
@@ -86,18 +93,28 @@ class GridRows {
   }
   [[nodiscard]] bool any_missing() const noexcept { return !tiles_.empty(); }
 
+  [[nodiscard]] FaceCorners corners_of(const FaceKind& kind) const noexcept {
+    FaceCorners corners{1u << kind.grid_dim(), {}, {}};
+    for (unsigned c = 0; c < corners.count; ++c) {
+      const unsigned axes = kind.spread(c);
+      corners.words[c] = shift(axes) * pitch();
+      corners.ahead[c] = axes & 1u;
+    }
+    return corners;
+  }
   /// The faces of a kind from word w of a row on that have high corners and low ones, and belong to a tile without
   /// missing corners.
-  [[nodiscard]] Word critical(const FaceKind& kind, std::size_t row, const Index& index, std::size_t w) const noexcept {
+  [[nodiscard]] Word critical(const FaceKind& kind, const FaceCorners& corners, std::size_t row, const Index& index,
+                              std::size_t w) const noexcept {
     Word any = 0, all = ~Word{0};
-    const unsigned corners = 1u << kind.grid_dim();
-    for (unsigned c = 0; c < corners; ++c) {
-      const unsigned axes = kind.spread(c);
-      const Word word = ahead(high(row + shift(axes)) + w, axes & 1u);
+    const Word* const at = high(row) + w;
+    for (unsigned c = 0; c < corners.count; ++c) {
+      const Word word = ahead(at + corners.words[c], corners.ahead[c]);
       any |= word;
       all &= word;
     }
     Word result = (kind.outward ? any : any & ~all) & mask(w, (kind.axes & 1u) != 0);
+    if (result == 0) return 0;
     if (kind.outward) result &= border(kind, index, w);
     if (any_missing() && result != 0) result &= in_valid_tiles(kind, index, row, w);
     return result;
@@ -109,13 +126,12 @@ class GridRows {
     return (axes & 1u) == 0 || sizes_[0] > 1;
   }
   /// The high corners of a face. Of outward ones the low half.
-  [[nodiscard]] unsigned signature(const FaceKind& kind, std::size_t row, std::size_t i) const noexcept {
+  [[nodiscard]] unsigned signature(const FaceCorners& corners, std::size_t row, std::size_t i) const noexcept {
     unsigned result = 0;
-    const unsigned corners = 1u << kind.grid_dim();
-    for (unsigned c = 0; c < corners; ++c) {
-      const unsigned axes = kind.spread(c);
-      const std::size_t at = i + (axes & 1u);
-      result |= static_cast<unsigned>(high(row + shift(axes))[at / kWordBits] >> (at % kWordBits) & 1u) << c;
+    const Word* const at = high(row);
+    for (unsigned c = 0; c < corners.count; ++c) {
+      const std::size_t sample = i + corners.ahead[c];
+      result |= static_cast<unsigned>(at[corners.words[c] + sample / kWordBits] >> (sample % kWordBits) & 1u) << c;
     }
     return result;
   }
