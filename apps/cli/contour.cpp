@@ -55,7 +55,9 @@ class ContourCommand final : public Command {
   ExitCode run(const Streams& streams) override {
     const double isovalue = options_.isovalue();
     const bool streams_it = streaming_.wanted();
-    ExtractOptions options = options_.library_options(!streams_it || facets_);
+    if (!index_.empty() && facets_)
+      throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
+    ExtractOptions options = options_.library_options((!streams_it && index_.empty()) || facets_);
     require_input(file());
     if (facets_) return run_facets(streams, {isovalue, options, options_.single_precision(), no_check_});
     require_output(output_, file());
@@ -90,18 +92,16 @@ class ContourCommand final : public Command {
     result.seconds.read = watch.lap();
 
     ExtractStats& stats = result.stats.emplace();
-    result.mesh = index_.empty()
-                      ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
-                                          [](const auto& contour) { return to_mesh(contour); })
-                      : extract_by_index(input.image, options, bar, result);
     if (const auto method = options_.polygon_triangulation()) {
       result.mesh = triangulated_polygons(
           input.image, {*result.isovalue, options, options_.single_precision(), no_check_}, *method, bar, stats);
       return finish(input, stats, bar, result);
     }
     options.progress = bar.stage("contour");
-    result.mesh = extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
-                                    [](const auto& contour) { return to_mesh(contour); });
+    result.mesh = index_.empty()
+                      ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
+                                          [](const auto& contour) { return to_mesh(contour); })
+                      : extract_by_index(input.image, options, bar, result);
     finish(input, stats, bar, result);
   }
 
@@ -126,6 +126,8 @@ class ContourCommand final : public Command {
       return to_mesh(extract<double>(view, *result.isovalue, options, *active, &*result.stats));
     };
     return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+  }
+
   ExitCode run_facets(const Streams& streams, const FacetsWork& work) const {
     const auto given = options_.given();
     if (streaming_.wanted() || std::find(given.begin(), given.end(), "--triangulation") != given.end())

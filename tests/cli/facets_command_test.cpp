@@ -74,6 +74,8 @@ TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
   expect_failure(2, {solid, "--iso", "0", "--facets", "--triangulation", "fan", "-o", path("o.vtu")},
                  {"--facets", "--triangulation"});
   expect_failure(2, {solid, "--iso", "0", "--facets", "--stream", "-o", path("o.vtkhdf")}, {"--facets", "--stream"});
+  expect_failure(2, {solid, "--iso", "0", "--facets", "--index", solid, "-o", path("o.vtu")}, {"--facets", "--index"});
+  expect_failure(2, {solid, "--iso", "0", "--triangulation", "fan", "--index", solid, "-o", path("o.ply")}, {"fan"});
   expect_failure(6, {solid, "--iso", "0", "--facets", "-o", path("o.ply")}, {".ply", "expected .vtu"});
   expect_failure(6, {solid, "--iso", "0", "-o", path("o.vtu")}, {".vtu"});
   expect_failure(6, {moving, "--iso", "0", "--facets", "-o", path("o.vtkhdf")}, {".vtkhdf", "polyhedra", ".vtu"});
