@@ -228,6 +228,32 @@ TEST(ContoursFromPolygons, AreManifoldsForAllPairsOfCubes) {
   }
 }
 
+TEST(ContoursFromPolygons, AreFansAndZigzagsWhateverChordsAreForbidden) {
+  // Of a fan, all triangles have a point in common; of a zigzag no point is in more than three of them.
+  const auto image = all_pairs(0);
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high}) {
+    ExtractOptions options;
+    options.ambiguity = ambiguity;
+    const auto facets = extract_facets<float>(image.view(), 0.0, options);
+    const auto fans = triangulate(facets, PolygonTriangulation::fan);
+    const auto zigzags = triangulate(facets, PolygonTriangulation::zigzag);
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < facets.count(2); ++f) {
+      const std::size_t triangles = facets.down(2, f).size() - 2;
+      std::map<Index, std::size_t> of_fan, of_zigzag;
+      for (std::size_t s = first; s < first + triangles; ++s)
+        for (std::size_t j = 0; j < 3; ++j) {
+          ++of_fan[fans.simplices[s][j]];
+          ++of_zigzag[zigzags.simplices[s][j]];
+        }
+      const auto by_count = [](const auto& a, const auto& b) { return a.second < b.second; };
+      EXPECT_EQ(std::max_element(of_fan.begin(), of_fan.end(), by_count)->second, triangles);
+      EXPECT_LE(std::max_element(of_zigzag.begin(), of_zigzag.end(), by_count)->second, 3u);
+      first += triangles;
+    }
+  }
+}
+
 TEST(ContoursFromPolygons, OfNoiseAreManifoldsWithMissingValuesAndWithout) {
   for (const double missing : {0.0, 0.05}) {
     const auto image = noise_with_missing<float, 3>(Grid<3>::unit({22, 23, 24}), 6, missing);
