@@ -223,7 +223,7 @@ class Drawing {
     return std::max(1.0, largest_ > 0 ? 0.42 * row_height_ * std::sqrt(measure / largest_) : 1.5);
   }
   [[nodiscard]] std::string time_name() const {
-    const auto last = static_cast<std::size_t>(graph_.space_dim - 1);
+    const auto last = static_cast<std::size_t>(std::max(graph_.space_dim - 1, 0));
     const std::string name = graph_.axis_names[last].empty() ? "t" : graph_.axis_names[last];
     return escaped(graph_.axis_units[last].empty() ? name : fmt::format("{} ({})", name, graph_.axis_units[last]));
   }
@@ -258,16 +258,17 @@ class Drawing {
     const Track& track = graph_.tracks[t];
     text_ += fmt::format("<g fill=\"{}\"><title>track {}: {:.6g} to {:.6g}</title>\n",
                          kColours[track.number % kColours.size()], track.number, track.start, track.end);
-    for (const Index s : track.segments) draw_segment(graph_.segments[s], y(t));
+    double measure = 0;  // of a segment without samples: as the one before it
+    for (const Index s : track.segments) measure = draw_segment(graph_.segments[s], y(t), measure);
     text_ += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"end\">{}</text></g>\n", x(track.start) - 8,
                          y(t) + 4, track.number);
   }
 
-  /// A band around the row: up along the samples and back.
-  void draw_segment(const TrackSegment& segment, double middle) {
+  /// A band around the row: up along the samples and back. Returns the measure at its end.
+  double draw_segment(const TrackSegment& segment, double middle, double before) {
     std::vector<std::pair<double, double>> outline;
-    const double first = segment.samples.empty() ? 0 : segment.samples.front().measure;
-    const double last = segment.samples.empty() ? 0 : segment.samples.back().measure;
+    const double first = segment.samples.empty() ? before : segment.samples.front().measure;
+    const double last = segment.samples.empty() ? before : segment.samples.back().measure;
     outline.emplace_back(x(segment.start), half_thickness(first));
     for (const TrackSample& sample : segment.samples)
       outline.emplace_back(x(sample.time), half_thickness(sample.measure));
@@ -278,6 +279,7 @@ class Drawing {
     std::reverse(outline.begin(), outline.end());
     for (const auto& [at, half] : outline) path += fmt::format("L{:.2f} {:.2f}", at, middle + half);
     text_ += fmt::format("<path d=\"{}z\"/>\n", path);
+    return last;
   }
 
   /// The rows of an event's segments, from the highest to the lowest.

@@ -400,6 +400,7 @@ class Sweeper {
     PointOf<N> normal = normal_vector_of<N>(corners);
     if (complex_.contour().direction == GradientDirection::ascent)
       for (double& x : normal) x = -x;
+    if constexpr (N == 2) sums.open = true;  // a point encloses nothing
     unsigned below = 0;
     for (int i = 0; i < N; ++i) below |= corners[i][N - 1] < time ? 1u << i : 0u;
     for (int i = 0; i < N; ++i)

@@ -59,8 +59,8 @@ struct TrackHandle {
 struct TrackSample {
   double time = 0;
   double measure = 0;  ///< area; N = 3: length; N = 2: number of points
-  /// Volume (N = 3: area; N = 2: length) between the part and the high side, negative around a cavity; NaN where the
-  /// part is open, as where it ends at the image's border.
+  /// Volume (N = 3: area) that the part encloses, negative around a cavity; NaN where the part is open, as where it
+  /// ends at the image's border, and for N = 2.
   double content = std::numeric_limits<double>::quiet_NaN();
   std::array<double, 3> centroid{};  ///< of the surface, by area
   std::array<double, 3> lower{};     ///< the corners of the box around it
@@ -155,7 +155,7 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 /// so thread-safe.
 /// Cost: O(#V log #V + #S) and, for each vertex above which a part may fall apart, a search from all sides of it
 /// at once that ends when all but the largest piece are known or found to be connected; then the cuts at `times`.
-/// Memory: 28 bytes a simplex and 24 a vertex (N = 4).
+/// Memory: 25 bytes a simplex, 4 more with `times`, and 24 a vertex (N = 4).
 ///
 /// Based on: G. Reeb, Sur les points singuliers d'une forme de Pfaff complètement intégrable, 1946; S. Parsa, A
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (the sweep over cuts whose components are

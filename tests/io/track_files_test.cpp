@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Graphs of the parts of real data, held against cuts of the contour; and what of them is written.
+#include <gmock/gmock.h>
+
+#include "io_support.hpp"
+#include "tegl/check.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/track_io.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::HasSubstr;
+
+Contour<4, double> contour_of(const std::string& path, const std::string& variable, double isovalue) {
+  const ReadImageResult input = read_image(path, {.variable = variable, .progress = {}});
+  const auto& images = std::get<AnyImageN<4>>(input.image);
+  return std::visit([&](const auto& owned) { return extract<double>(owned.view(), isovalue); }, images);
+}
+
+/// Parts, and their Euler characteristics, at some times are those of the cuts.
+void expect_right(const Contour<4, double>& contour, double first, double last) {
+  TrackOptions options;
+  options.times = even_times(first, last, 5);
+  const TrackGraph graph = track(contour, options);
+  EXPECT_GT(graph.events.size(), 20u);
+  for (const double time : options.times) {
+    std::uint64_t parts = 0;
+    std::int64_t euler = 0;
+    double area = 0;
+    for (const TrackSegment& segment : graph.segments)
+      for (const TrackSample& sample : segment.samples)
+        if (sample.time == time) {
+          ++parts;
+          euler += segment.euler_at_start;
+          area += sample.measure;
+        }
+    for (const TrackHandle& handle : graph.handles) {
+      const TrackSegment& segment = graph.segments[handle.segment];
+      if (segment.start < time && handle.time < time && time < segment.end) euler += handle.euler_change;
+    }
+    const Contour<3, double> cut = slice(contour, time);
+    const MeshReport report = check(cut);
+    EXPECT_EQ(parts, report.components) << "at " << time;
+    EXPECT_EQ(euler, report.euler) << "at " << time;
+    EXPECT_GT(area, 0.0);
+  }
+}
+
+TEST(TrackFiles, TheOceansPartsAreThoseOfItsCuts) {
+  expect_right(contour_of(std::string(TEGL_SOURCE_DIR) + "/examples/data/ocean_temperature.nc", "temperature", 20), 1,
+               12);
+}
+
+TEST(TrackFiles, ViscousFingersPartsAreThoseOfTheirCuts) {
+  const std::string path = std::string(TEGL_SHARED_DATA_DIR) + "/fourd/viscous_fingers_64x64x64x24_float.nhdr";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  expect_right(contour_of(path, "", 30), 0, 23);
+}
+
+/// A line that rises and forks, with names that markup and JSON have to hide.
+TrackGraph fork() {
+  Contour<2, double> contour;
+  contour.vertices = {{0, 0}, {0, 1}, {-1, 2}, {1, 3}};
+  contour.simplices = {{0, 1}, {1, 2}, {1, 3}};
+  contour.axis_names = {"x \"<&", "t<&"};
+  contour.axis_units = {"", "\xb5s"};
+  TrackOptions options;
+  options.times = {0.5, 2.5};
+  return track(contour, options);
+}
+
+TEST(TrackFiles, TextsHideWhatWouldBeMarkup) {
+  const std::string svg = track_svg(fork(), {.title = "a < b & c"});
+  EXPECT_THAT(svg, HasSubstr("a &lt; b &amp; c"));
+  EXPECT_THAT(svg, HasSubstr("t&lt;&amp; (?s)"));
+  EXPECT_EQ(svg.find('\xb5'), std::string::npos);
+  EXPECT_THAT(track_json(fork()), HasSubstr(R"("name": "x \"<&")"));
+}
+
+TEST(TrackFiles, TablesAndGraphsHaveEverything) {
+  EXPECT_EQ(track_segments_csv(fork()),
+            "segment,track,from,to,start,end,size_at_start,size_at_end,euler_at_start,euler_at_end,samples\n"
+            "0,0,0,1,0,1,1,1,1,1,1\n"
+            "1,0,1,3,1,3,1,1,1,1,1\n"
+            "2,1,1,2,1,2,1,1,1,1,0\n");
+  EXPECT_THAT(track_samples_csv(fork()), HasSubstr("\n0,0,0.5,1,,0,0,0\n"));
+  EXPECT_THAT(track_events_csv(fork()), HasSubstr("\n1,split,1,0,1,0,0,1 2,1\n"));
+  const std::string dot = track_dot(fork());
+  for (const char* const arrow : {"e0 -> e1", "e1 -> e3", "e1 -> e2"}) EXPECT_THAT(dot, HasSubstr(arrow));
+}
+
+TEST(TrackFiles, ThePictureShowsTheLongestTracks) {
+  EXPECT_THAT(track_svg(fork()), HasSubstr("2 tracks"));
+  EXPECT_THAT(track_svg(fork(), {.most_tracks = 1}), HasSubstr("the 1 longest of 2 tracks"));
+  EXPECT_THAT(track_svg(TrackGraph{}), HasSubstr("0 tracks"));
+}
+
+TEST(TrackFiles, RefusesOtherExtensions) {
+  try {
+    write_track(fork(), "graph.png");
+    FAIL() << "expected UnsupportedFormat";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::UnsupportedFormat);
+    EXPECT_THAT(error.what(), HasSubstr("expected .json"));
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
