@@ -90,6 +90,7 @@ class GridRows {
         for (unsigned c = 0; c <= kAll; ++c) any |= ahead(missing_.data() + (row + shift(c)) * pitch() + w, c & 1u);
         tiles_[row * pitch() + w] = ~any & mask(w, true);
       }
+    find_near_missing();
   }
   [[nodiscard]] bool any_missing() const noexcept { return !tiles_.empty(); }
 
@@ -135,9 +136,9 @@ class GridRows {
     }
     return result;
   }
-  /// Whether all tiles around a face are there, without missing corners.
+  /// Whether all tiles around a face, of those that the image has, are without missing corners.
   [[nodiscard]] bool is_surrounded(unsigned axes, std::size_t row, std::size_t i) const noexcept {
-    if (!any_missing()) return true;
+    if (!any_missing() || (near_missing_[row * pitch() + i / kWordBits] >> (i % kWordBits) & 1u) == 0) return true;
     const Index index = index_of(row);
     const unsigned across = kAll & ~axes;
     for (unsigned back = across;; back = (back - 1) & across) {
@@ -147,6 +148,21 @@ class GridRows {
   }
 
  private:
+  /// The samples that are corners of tiles with missing corners.
+  void find_near_missing() {
+    near_missing_.assign(rows_ * pitch(), 0);
+    for (std::size_t row = 0; row < rows_; ++row) {
+      if (!has_faces(index_of(row), kAll)) continue;
+      Word before = 0;  // the last tile of the word before
+      for (std::size_t w = 0; w <= words_; ++w) {
+        const Word bad = w < words_ ? ~tiles_[row * pitch() + w] & mask(w, true) : 0;
+        const Word corners = bad | bad << 1 | before;
+        before = bad >> (kWordBits - 1);
+        for (unsigned c = 0; c <= kAll && corners != 0; c += 2)
+          near_missing_[(row + shift(c)) * pitch() + w] |= corners;
+      }
+    }
+  }
   static Word ahead(const Word* at, unsigned shift) noexcept {
     return shift == 0 ? at[0] : at[0] >> 1 | at[1] << (kWordBits - 1);
   }
@@ -195,7 +211,8 @@ class GridRows {
   std::size_t words_;
   std::vector<Word> high_;
   std::vector<Word> missing_;
-  std::vector<Word> tiles_;  ///< without missing corners; none: all are
+  std::vector<Word> tiles_;         ///< without missing corners; none: all are
+  std::vector<Word> near_missing_;  ///< samples that are corners of tiles with missing corners
 };
 
 /// The faces of one kind that have facets, and where those of each begin.

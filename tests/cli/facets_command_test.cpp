@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <tuple>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -103,6 +104,34 @@ TEST_F(FacetsCommand, TriangulatesPolygonsEachInItsOwnWay) {
     for (const auto& other : different) EXPECT_NE(mesh.simplices, other) << method;
     different.push_back(mesh.simplices);
   }
+}
+
+TEST_F(FacetsCommand, OfRealDataHaveTheTopologyOfTheContour) {
+  const std::filesystem::path shared = TEGL_SHARED_DATA_DIR;
+  // image, isovalue, whether it is 3D
+  const std::vector<std::tuple<std::filesystem::path, std::string, bool>> images = {
+      {std::filesystem::path(TEGL_SOURCE_DIR) / "examples/data/ocean_temperature.nc", "20", false},
+      {shared / "classic/fuel_64x64x64_uint8.nhdr", "100", true},
+      {shared / "classic/silicium_98x34x34_uint8.nhdr", "120", true},
+      {shared / "classic/neghip_64x64x64_uint8.nhdr", "60", true}};
+  int found = 0;
+  for (const auto& [image, iso, is_solid] : images) {
+    if (!std::filesystem::exists(image)) continue;
+    ++found;
+    SCOPED_TRACE(image.string());
+    const nlohmann::json expected = contour({image, "--iso", iso, "-o", path("out.vtkhdf")});
+    const nlohmann::json report = contour({image, "--iso", iso, "--facets", "-o", path("out.vtu")});
+    for (const char* key : {"euler", "components", "active_tiles"}) EXPECT_EQ(report[key], expected[key]) << key;
+    for (const char* method : {"fan", "zigzag", "halving-chord", "halving-kink"}) {
+      if (!is_solid) continue;
+      const nlohmann::json surface = contour({image, "--iso", iso, "--triangulation", method, "-o", path("out.ply")});
+      for (const char* key : {"euler", "components", "boundary_simplices", "simplices"})
+        EXPECT_EQ(surface[key], expected[key]) << method << " " << key;
+      EXPECT_EQ(surface["bad_links"], 0);
+      EXPECT_EQ(surface["nonmanifold_simplices"], 0);
+    }
+  }
+  EXPECT_GE(found, 1);
 }
 
 TEST_F(FacetsCommand, SliceSaysThatItKnowsNoPolygons) {
