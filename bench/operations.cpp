@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// operations [--threads T] [--repetitions R] FILE ISO [FILE ISO ...]: what each operation on a 4D contour costs: the
+// least time of R (5) repetitions, the least processor time of all threads together (which other work on the machine
+// hardly changes), and the most memory that it had beside what was there before (image, contour, and what it works on).
+// A Markdown table for each file; docs/operations.md has the figures.
+//
+// A new operation is a line in `operations_on`, or in a function that it calls.
+#include <malloc.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "memory.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/elements.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/facet_hierarchy.hpp"
+#include "tegl/io.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/sample.hpp"
+#include "tegl/scrubber.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl::bench {
+namespace {
+
+/// An operation: does its work and says in a few words what came out.
+struct Operation {
+  std::string name;
+  std::function<std::string()> work;
+};
+
+/// What the operations of a file work on.
+template <Value T>
+struct Subject {
+  Image<T, 4> image;
+  double isovalue;
+  unsigned threads;
+  Contour<4, double> contour;
+  double first;  ///< time of the contour
+  double last;
+  std::unique_ptr<Scrubber<4, double>> scrubber;  ///< made by the operation that builds it
+  ComponentLabels labels;                         ///< likewise
+
+  [[nodiscard]] WorkOptions work_options() const { return {threads, {}}; }
+  [[nodiscard]] double time(double share) const { return first + share * (last - first); }
+  /// Times spread evenly, of which none is a sample's.
+  [[nodiscard]] std::vector<double> times(std::size_t count) const {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < count; ++i)
+      result.push_back(time((static_cast<double>(i) + 0.4142) / static_cast<double>(count)));
+    return result;
+  }
+};
+
+std::string counted(std::size_t count, const char* what) { return fmt::format("{} {}", count, what); }
+
+template <Value T>
+void add_cuts(Subject<T>& subject, std::vector<Operation>& list) {
+  list.push_back({"`slice` at one time",
+                  [&] { return counted(slice(subject.contour, subject.time(0.314)).simplices.size(), "triangles"); }});
+  list.push_back({"`slice` along x", [&] {
+                    double x = 0;
+                    for (const auto& vertex : subject.contour.vertices) x += vertex[0];
+                    x /= static_cast<double>(subject.contour.vertices.size());
+                    const auto cut = slice(subject.contour, Hyperplane<4>::across(0, x));
+                    return counted(cut.simplices.size(), "triangles");
+                  }});
+  list.push_back({"`slice_stack`, 100 times", [&] {
+                    const std::vector<double> times = subject.times(100);
+                    const auto cuts =
+                        slice_stack<4, double>(subject.contour, Eigen::Vector4d::Unit(3), times, subject.threads);
+                    std::size_t triangles = 0;
+                    for (const auto& cut : cuts) triangles += cut.simplices.size();
+                    return counted(triangles, "triangles");
+                  }});
+  list.push_back({"`Scrubber`: build", [&] {
+                    subject.scrubber.reset();
+                    subject.scrubber = std::make_unique<Scrubber<4, double>>(subject.contour, Eigen::Vector4d::Unit(3),
+                                                                             ScrubberOptions{subject.threads, {}});
+                    return fmt::format("{:.1f} MB kept", static_cast<double>(subject.scrubber->memory()) * 1e-6);
+                  }});
+  list.push_back({"`Scrubber`: a cut",
+                  [&] { return counted(subject.scrubber->cut(subject.time(0.314)).simplices.size(), "triangles"); }});
+}
+
+template <Value T>
+void add_parts(Subject<T>& subject, std::vector<Operation>& list) {
+  list.push_back({"`label_components`", [&] {
+                    subject.labels = label_components(subject.contour, subject.work_options());
+                    return counted(subject.labels.count, "components");
+                  }});
+  list.push_back({"`components`", [&] {
+                    const auto found = components(subject.contour, subject.labels, subject.work_options());
+                    std::uint64_t largest = 0;
+                    for (const auto& component : found) largest = std::max(largest, component.simplices);
+                    return fmt::format("the largest has {} tetrahedra", largest);
+                  }});
+  list.push_back({"`split_components`",
+                  [&] { return counted(split_components(subject.contour, subject.labels).size(), "contours"); }});
+  list.push_back(
+      {"`measure`", [&] { return fmt::format("size {:.6g}", measure(subject.contour, subject.work_options()).size); }});
+  list.push_back({"`measure_cuts`, 1000 times", [&] {
+                    const auto cuts = measure_cuts(subject.contour, subject.times(1000), subject.work_options());
+                    return fmt::format("areas {:.6g} ... {:.6g}", cuts.front().size, cuts.back().size);
+                  }});
+}
+
+template <Value T>
+void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
+  list.push_back({"`sample` (the image itself)",
+                  [&] { return counted(sample(subject.image, subject.contour, "value").values.size(), "values"); }});
+  list.push_back({"`elements`", [&] {
+                    const auto all = elements(subject.contour, subject.work_options());
+                    return fmt::format("{} elements, not closed by {:.2g}", all.normals.size(),
+                                       sum_of(all).closure_error());
+                  }});
+  list.push_back({"`elements_by_cell`", [&] {
+                    const auto all = elements_by_cell(subject.contour, subject.image.grid(), subject.work_options());
+                    return counted(all.normals.size(), "elements");
+                  }});
+  list.push_back({"`extract_facets`", [&] {
+                    ExtractOptions options;
+                    options.threads = subject.threads;
+                    const auto facets = extract_facets<double>(subject.image, subject.isovalue, options);
+                    return counted(facets.vertices.size(), "0-facets");
+                  }});
+}
+
+template <Value T>
+std::vector<Operation> operations_on(Subject<T>& subject) {
+  std::vector<Operation> list;
+  ExtractOptions options;
+  options.threads = subject.threads;
+  list.push_back({"`extract`", [&, options] {
+                    return counted(extract<double>(subject.image, subject.isovalue, options).simplices.size(),
+                                   "tetrahedra");
+                  }});
+  options.normals = true;
+  list.push_back({"`extract` with gradient normals", [&, options] {
+                    return counted(extract<double>(subject.image, subject.isovalue, options).normals.size(), "normals");
+                  }});
+  list.push_back({"`check`", [&] {
+                    const MeshReport report = check(subject.contour);
+                    return fmt::format("{} bad links, Euler characteristic {}", report.bad_links, report.euler);
+                  }});
+  add_cuts(subject, list);
+  add_parts(subject, list);
+  add_fields(subject, list);
+  return list;
+}
+
+std::string milliseconds(double seconds) {
+  return seconds < 0.01 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.0f} ms", seconds * 1e3);
+}
+
+/// Runs the operations and prints their table.
+template <Value T>
+void run(Subject<T>& subject, int repetitions) {
+  fmt::print("| operation | time | processor time | memory | result |\n|---|---|---|---|---|\n");
+  for (const Operation& operation : operations_on(subject)) {
+    double least = 0;
+    double least_cpu = 0;
+    double most_memory = 0;
+    std::string result;
+    for (int r = 0; r < repetitions; ++r) {
+      malloc_trim(0);  // so that what was freed before does not count as there
+      reset_peak_memory();
+      const std::uint64_t before = memory_bytes("VmRSS");
+      const std::clock_t cpu_start = std::clock();
+      const auto start = std::chrono::steady_clock::now();
+      result = operation.work();
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+      const double cpu = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+      const std::uint64_t peak = memory_bytes("VmHWM");
+      least = r == 0 ? seconds.count() : std::min(least, seconds.count());
+      least_cpu = r == 0 ? cpu : std::min(least_cpu, cpu);
+      most_memory = std::max(most_memory, static_cast<double>(peak > before ? peak - before : 0));
+    }
+    fmt::print("| {} | {} | {} | {:.1f} MB | {} |\n", operation.name, milliseconds(least), milliseconds(least_cpu),
+               most_memory * 1e-6, result);
+    std::fflush(stdout);
+  }
+}
+
+template <Value T>
+void run_file(const Image<T, 4>& image, double isovalue, unsigned threads, int repetitions) {
+  ExtractOptions options;
+  options.threads = threads;
+  Subject<T> subject{image, isovalue, threads, extract<double>(image, isovalue, options), 0, 0, nullptr, {}};
+  if (subject.contour.vertices.empty()) throw Error(ErrorCode::EmptyResult, "the contour is empty");
+  const auto [least, most] = std::minmax_element(subject.contour.vertices.begin(), subject.contour.vertices.end(),
+                                                 [](const auto& a, const auto& b) { return a[3] < b[3]; });
+  subject.first = (*least)[3];
+  subject.last = (*most)[3];
+  fmt::print("{} tetrahedra, {} vertices; the contour takes {:.1f} MB\n\n", subject.contour.simplices.size(),
+             subject.contour.vertices.size(),
+             static_cast<double>(subject.contour.simplices.size() * sizeof(subject.contour.simplices[0]) +
+                                 subject.contour.vertices.size() * sizeof(subject.contour.vertices[0])) *
+                 1e-6);
+  run(subject, repetitions);
+}
+
+int run_all(std::vector<std::string> arguments) {
+  unsigned threads = 0;
+  int repetitions = 5;
+  std::vector<std::string> rest;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i] == "--threads" && i + 1 < arguments.size())
+      threads = static_cast<unsigned>(std::stoul(arguments[++i]));
+    else if (arguments[i] == "--repetitions" && i + 1 < arguments.size())
+      repetitions = std::stoi(arguments[++i]);
+    else
+      rest.push_back(arguments[i]);
+  }
+  if (rest.empty() || rest.size() % 2 != 0 || repetitions < 1) {
+    fmt::print(stderr, "operations [--threads T] [--repetitions R] FILE ISO [FILE ISO ...]\n");
+    return 2;
+  }
+  for (std::size_t i = 0; i < rest.size(); i += 2) {
+    const ReadImageResult input = read_image(rest[i]);
+    const double isovalue = std::stod(rest[i + 1]);
+    fmt::print("\n### {} at {}\n\n", std::filesystem::path(rest[i]).filename().string(), rest[i + 1]);
+    const auto of_image = [&]<Value T, int N>(const OwnedImage<T, N>& image) {
+      if constexpr (N == 4)
+        run_file(image.view(), isovalue, threads, repetitions);
+      else
+        throw Error(ErrorCode::UnsupportedData, fmt::format("{}: a {}D image; expected a 4D one", rest[i], N));
+    };
+    std::visit([&](const auto& typed) { std::visit(of_image, typed); }, input.image);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace tegl::bench
+
+int main(int argc, char** argv) {
+  try {
+    return tegl::bench::run_all({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "operations: {}\n", error.what());
+    return 1;
+  }
+}
