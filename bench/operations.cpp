@@ -32,6 +32,7 @@
 #include "tegl/sample.hpp"
 #include "tegl/scrubber.hpp"
 #include "tegl/slice.hpp"
+#include "tegl/track.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -119,6 +120,22 @@ void add_parts(Subject<T>& subject, std::vector<Operation>& list) {
 }
 
 template <Value T>
+void add_tracks(Subject<T>& subject, std::vector<Operation>& list) {
+  list.push_back({"`track`", [&] {
+                    TrackOptions options;
+                    options.threads = subject.threads;
+                    const TrackGraph graph = track(subject.contour, options);
+                    return fmt::format("{} events, {} tracks", graph.events.size(), graph.tracks.size());
+                  }});
+  list.push_back({"`track`, measured 100 times", [&] {
+                    TrackOptions options;
+                    options.threads = subject.threads;
+                    options.times = subject.times(100);
+                    return counted(track(subject.contour, options).segments.size(), "segments");
+                  }});
+}
+
+template <Value T>
 void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`sample` (the image itself)",
                   [&] { return counted(sample(subject.image, subject.contour, "value").values.size(), "values"); }});
@@ -158,6 +175,7 @@ std::vector<Operation> operations_on(Subject<T>& subject) {
                   }});
   add_cuts(subject, list);
   add_parts(subject, list);
+  add_tracks(subject, list);
   add_fields(subject, list);
   return list;
 }
