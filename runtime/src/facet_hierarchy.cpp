@@ -46,11 +46,11 @@ std::vector<Index> FacetHierarchy<N, Real>::points_of(int k, std::size_t f) cons
     for (std::size_t i = 0; i < below.size(); ++i) result.push_back(down(1, below[i])[signs[i] > 0 ? 0 : 1]);
     return result;
   }
-  for (const Index polygon : below)
-    for (const Index segment : down(2, polygon)) {
-      const auto ends = down(1, segment);
-      result.insert(result.end(), ends.begin(), ends.end());
-    }
+  for (const Index polygon : below) {
+    const auto segments = down(2, polygon);
+    const auto directions = down_signs(2, polygon);
+    for (std::size_t i = 0; i < segments.size(); ++i) result.push_back(down(1, segments[i])[directions[i] > 0 ? 0 : 1]);
+  }
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
