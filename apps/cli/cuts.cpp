@@ -2,31 +2,197 @@
 #include "cuts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <string_view>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "numbers.hpp"
 
 namespace tegl::cli {
 
+namespace {
+
+/// The parts of a text between separators.
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t at = text.find(separator); at != std::string_view::npos; at = text.find(separator)) {
+    parts.push_back(text.substr(0, at));
+    text.remove_prefix(at + 1);
+  }
+  parts.push_back(text);
+  return parts;
+}
+
+/// "NAME=VALUES", in two.
+std::pair<std::string, std::string_view> halves(std::string_view option, const std::string& argument,
+                                                std::string_view expected) {
+  const std::size_t equals = argument.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected {}", option, argument, expected));
+  return {argument.substr(0, equals), std::string_view(argument).substr(equals + 1)};
+}
+
+/// "1,2.5" and "FIRST:LAST:COUNT": each number, and how it is spelled.
+std::vector<std::pair<double, std::string>> numbers_of(const std::string& option, std::string_view values) {
+  std::vector<std::pair<double, std::string>> result;
+  for (const std::string_view text : split(values, ',')) {
+    const auto ends = split(text, ':');
+    if (ends.size() == 1) {
+      result.emplace_back(parse_finite(option, text), std::string(text));
+      continue;
+    }
+    constexpr double kMost = 100000;
+    const double count = ends.size() == 3 ? parse_finite(option, ends[2]) : 0.0;
+    if (!(count >= 2 && count <= kMost) || count != std::floor(count))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("{} has '{}'; expected FIRST:LAST:COUNT with a COUNT of 2 or more, as in 0:10:21", option, text));
+    const double first = parse_finite(option, ends[0]);
+    const double last = parse_finite(option, ends[1]);
+    for (double i = 0; i < count; ++i) {
+      // Exact at both ends.
+      const double value = first * ((count - 1 - i) / (count - 1)) + last * (i / (count - 1));
+      result.emplace_back(value, number(value));
+    }
+  }
+  return result;
+}
+
+/// "x + 2 t", of a normal.
+std::string formula(const std::vector<double>& normal, const CutSpace& space) {
+  std::string text;
+  for (std::size_t a = 0; a < normal.size(); ++a) {
+    if (normal[a] == 0.0) continue;
+    const double size = std::abs(normal[a]);
+    text += text.empty() ? (normal[a] < 0 ? "-" : "") : (normal[a] < 0 ? " - " : " + ");
+    text += size == 1.0 ? space.axes[a].name : fmt::format("{} {}", number(size), space.axes[a].name);
+  }
+  return text;
+}
+
+/// The axis by its own name, or by its customary letter if no other has that name.
+std::size_t axis_called(const std::string& name, const CutSpace& space) {
+  constexpr std::string_view kLetters = "xyzt";
+  for (std::size_t a = 0; a < space.axes.size(); ++a)
+    if (equal_ignoring_case(name, space.axes[a].name)) return a;
+  for (std::size_t a = 0; a < space.axes.size(); ++a)
+    if (name == kLetters.substr(a, 1)) return a;
+  return space.axes.size();
+}
+
+std::string axis_names(const CutSpace& space) {
+  std::vector<std::string> names;
+  for (const CutAxis& axis : space.axes) names.push_back(axis.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
 std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   std::vector<Cut> cuts;
   for (const std::string& argument : at) {
-    const std::size_t equals = argument.find('=');
-    if (equals == std::string::npos || equals == 0) {
+    const auto [axis, values] = halves("--at", argument, "an axis and a number, as in t=7.3");
+    for (const auto& [value, text] : numbers_of(fmt::format("--at {}", argument), values))
+      cuts.push_back({axis, value, text, {}, {}, {}});
+  }
+  return cuts;
+}
+
+std::vector<Cut> parse_planes(const std::vector<std::string>& planes) {
+  std::vector<Cut> cuts;
+  for (const std::string& argument : planes) {
+    const auto [numbers, values] = halves("--plane", argument, "a normal and an offset, as in 1,0,0,0.5=3");
+    std::vector<double> normal;
+    for (const std::string_view text : split(numbers, ','))
+      normal.push_back(parse_finite(fmt::format("--plane {}", argument), text));
+    if (std::all_of(normal.begin(), normal.end(), [](double x) { return x == 0.0; }))
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--at is '{}'; expected an axis and a number, as in t=7.3", argument));
+                  fmt::format("--plane is '{}'; expected a normal that is not 0", argument));
+    for (const auto& [value, text] : numbers_of(fmt::format("--plane {}", argument), values))
+      cuts.push_back({numbers, value, text, normal, {}, {}});
+  }
+  return cuts;
+}
+
+CutSpace space_of(const AnyImage& image) {
+  const auto of_owned = [](const auto& owned) {
+    constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
+    CutSpace space{{}, "image"};
+    for (int a = 0; a < kDim; ++a) {
+      CutAxis& world = space.axes.emplace_back();
+      world = {axis_label(owned.grid.axes[a].name, static_cast<std::size_t>(a)), owned.grid.offset(a),
+               owned.grid.offset(a)};
+      for (int b = 0; b < kDim; ++b) {
+        const Axis& axis = owned.grid.axes[b];
+        const auto [low, high] =
+            std::minmax({owned.grid.linear(a, b) * axis[0], owned.grid.linear(a, b) * axis[axis.size() - 1]});
+        world.first += low;
+        world.last += high;
+      }
     }
-    std::string_view values = std::string_view(argument).substr(equals + 1);
-    while (true) {
-      const std::size_t comma = values.find(',');
-      const std::string_view text = values.substr(0, comma);
-      cuts.push_back(
-          {argument.substr(0, equals), parse_finite(fmt::format("--at {}", argument), text), std::string(text)});
-      if (comma == std::string_view::npos) break;
-      values.remove_prefix(comma + 1);
+    return space;
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+CutSpace space_of(const Mesh& mesh) {
+  CutSpace space{{}, "saved contour"};
+  const auto n = static_cast<std::size_t>(mesh.space_dim);
+  for (std::size_t a = 0; a < n; ++a) {
+    CutAxis& axis = space.axes.emplace_back();
+    axis = {axis_label(a < mesh.axis_names.size() ? mesh.axis_names[a] : "", a),
+            std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (std::size_t i = a; i < mesh.coordinates.size(); i += n) {
+      axis.first = std::min(axis.first, mesh.coordinates[i]);
+      axis.last = std::max(axis.last, mesh.coordinates[i]);
     }
+  }
+  return space;
+}
+
+std::vector<double> parse_scale(const std::vector<std::string>& scale, const CutSpace& space) {
+  std::vector<double> factors(space.axes.size(), 1.0);
+  for (const std::string& argument : scale)
+    for (const std::string_view part : split(argument, ',')) {
+      const std::string text(part);
+      const auto [name, value] = halves("--scale", text, "an axis and a factor, as in t=10");
+      const std::size_t axis = axis_called(name, space);
+      if (axis == space.axes.size())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--scale {} names no axis; expected one of {}", text, axis_names(space)));
+      factors[axis] = parse_finite(fmt::format("--scale {}", text), value);
+      if (!(factors[axis] > 0.0))
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--scale {}; expected a factor above 0", text));
+    }
+  return factors;
+}
+
+std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
+  for (Cut& cut : cuts) {
+    if (!cut.normal.empty()) {
+      if (cut.normal.size() != space.axes.size())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--plane {}={} has a normal of {} numbers; expected {}, one for each of {}", cut.axis,
+                                cut.text, cut.normal.size(), space.axes.size(), axis_names(space)));
+      cut.axis = formula(cut.normal, space);
+      continue;
+    }
+    const std::size_t a = axis_called(cut.axis, space);
+    if (a == space.axes.size())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--at {}={} names no axis; expected one of {}", cut.axis, cut.text, axis_names(space)));
+    const CutAxis& axis = space.axes[a];
+    cut.across = static_cast<int>(a);
+    cut.axis = axis.name;
+    cut.normal.assign(space.axes.size(), 0.0);
+    cut.normal[a] = 1.0;
+    if (cut.value >= axis.first && cut.value <= axis.last) continue;
+    throw Error(ErrorCode::EmptyResult,
+                fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {}", axis.name, cut.text,
+                            space.of, number(axis.first), axis.name, number(axis.last)));
   }
   return cuts;
 }
@@ -35,15 +201,20 @@ std::vector<std::string> cut_outputs(const std::string& pattern, const std::vect
   std::vector<std::string> outputs;
   for (const Cut& cut : cuts) {
     std::string output = pattern;
-    for (const std::string& placeholder : {std::string("{t}"), "{" + cut.axis + "}"}) {
+    const auto replace = [&](const std::string& placeholder, const std::string& text) {
       for (auto at = output.find(placeholder); at != std::string::npos; at = output.find(placeholder, at)) {
-        output.replace(at, placeholder.size(), cut.text);
-        at += cut.text.size();
+        output.replace(at, placeholder.size(), text);
+        at += text.size();
       }
-    }
+    };
+    for (const std::string& placeholder : {std::string("{t}"), std::string("{at}"), "{" + cut.axis + "}"})
+      replace(placeholder, cut.text);
+    replace("{axis}", cut.axis);
     if (std::find(outputs.begin(), outputs.end(), output) != outputs.end()) {
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--output is '{}' for two cuts; expected {{t}} in it, and each cut once", output));
+                  fmt::format("--output is '{}' for two cuts; expected {{t}} in it (and {{axis}} if there are several "
+                              "axes), and each cut once",
+                              output));
     }
     outputs.push_back(output);
   }

@@ -1,21 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The values of --at, and the output that belongs to each.
+// The values of --at and --plane, the space that they are asked of, and the output that belongs to each.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "result.hpp"
+#include "tegl/io.hpp"
 
 namespace tegl::cli {
 
-/// The cuts that the values of --at ask for: "t=7.3", "time=1,2.5". Throws InvalidArgument, quoting the value,
-/// for anything else.
+/// The cuts that the values of --at ask for: "t=7.3", "time=1,2.5", "z=0:10:21" for 21 from 0 to 10. Throws
+/// InvalidArgument, quoting the value, for anything else.
 std::vector<Cut> parse_cuts(const std::vector<std::string>& at);
 
-/// The output of each cut: `pattern` with "{t}", or the axis as it was typed in braces, replaced by the number
-/// as it was typed. Throws InvalidArgument if two cuts had the same file.
+/// The cuts that the values of --plane ask for: "1,0,0,0.5=3", a normal and what follows "=" in --at.
+std::vector<Cut> parse_planes(const std::vector<std::string>& planes);
+
+/// A coordinate of the space that is cut, and its range in what lies there.
+struct CutAxis {
+  std::string name;
+  double first = 0;
+  double last = 0;
+};
+
+/// What is cut.
+struct CutSpace {
+  std::vector<CutAxis> axes;
+  const char* of = "";  ///< what the ranges are those of, for messages
+};
+CutSpace space_of(const AnyImage& image);
+CutSpace space_of(const Mesh& mesh);
+
+/// The factors that the values of --scale ask for, one for each axis: "t=10", "x=2,y=3". Throws InvalidArgument.
+std::vector<double> parse_scale(const std::vector<std::string>& scale, const CutSpace& space);
+
+/// The cuts with the axes' own names and, in all cases, normals. Throws InvalidArgument for axes and normals that the
+/// space has not, EmptyResult outside of an axis's range.
+std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space);
+
+/// The output of each cut: `pattern` with "{t}" or "{at}", or the axis as it was typed in braces, replaced by the
+/// number as it was typed, and "{axis}" by that axis. Throws InvalidArgument if two cuts had the same file.
 std::vector<std::string> cut_outputs(const std::string& pattern, const std::vector<Cut>& cuts);
 
 }  // namespace tegl::cli

@@ -128,7 +128,13 @@ Json to_json(const ContourResult& result) {
   json["image_dim"] = result.image_dim;
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
   json["at"] = nullptr;
-  if (result.cut) json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
+  if (result.cut) {
+    json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
+    if (result.cut->frame) {
+      json["at"]["normal"] = result.cut->normal;
+      json["at"]["frame"] = {{"origin", result.cut->frame->origin}, {"axes", result.cut->frame->axes}};
+    }
+  }
   add_check_keys(json, result.size(), result.report);
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
   json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "console.hpp"
 #include "exit_codes.hpp"
@@ -51,11 +52,20 @@ std::string counted_simplices(int dim, std::uint64_t count);
 /// Checks a mesh (tegl/check.hpp).
 MeshReport check_mesh(const Mesh& mesh);
 
-/// Where a cut was made: the last axis, and the value as a number and as it was typed.
+/// A hyperplane's coordinates, as `frame_of` has them.
+struct CutFrame {
+  std::vector<double> origin;
+  std::vector<std::vector<double>> axes;
+};
+
+/// Where a cut was made: an axis, or a formula of several, and the value as a number and as it was typed.
 struct Cut {
   std::string axis;
   double value = 0;
   std::string text;
+  std::vector<double> normal;     ///< of the hyperplane <normal, x> = value
+  std::optional<int> across;      ///< the axis, if it is one
+  std::optional<CutFrame> frame;  ///< of others, where it is known
 };
 
 /// Wall-clock seconds of each stage; what did not happen took 0.

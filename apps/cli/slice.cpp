@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl slice: what the contour of a 4D image, or a saved 4D contour, looks like at one time or several.
+// tegl slice: what the contour of a 4D image, or a saved 4D contour, looks like at one time or several, or along any
+// hyperplane.
 #include "tegl/slice.hpp"
 
 #include <fmt/format.h>
@@ -28,75 +29,19 @@ constexpr const char* kExamples =
     "  tegl slice heart.nii.gz --iso 400 --at t=7.3 -o heart.ply\n"
     "  tegl contour ocean.nc --iso 20 -o ocean.vtkhdf\n"
     "  tegl slice ocean.vtkhdf --at t=0.5,3.25,7.3 -o 'ocean_{t}.ply'\n"
-    "Of an image, the steps beside each cut alone are contoured; a saved contour is cut as it is.\n"
-    "Times are those of the file's last axis, in its own unit; any real number in its range will do.";
-
-/// The axis that is cut, its range, and the image's dimension.
-struct CutAxis {
-  std::string name;
-  double first = 0;
-  double last = 0;
-  int image_dim = 0;
-  const char* of = "";  ///< whose range it is, for messages
-};
+    "  tegl slice ocean.vtkhdf --at t=0:11:45 -o 'film_{t}.glb'      (45 times from 0 to 11)\n"
+    "  tegl slice ocean.vtkhdf --at x=-30 -o meridian.vtkhdf         (a surface in y, z and t)\n"
+    "  tegl slice ocean.vtkhdf --plane 1,0,0,5=-20 --scale t=10 -o moving.vtkhdf   (where x + 5 t = -20)\n"
+    "An axis goes by the file's name for it or by x, y, z, t; numbers are in its own unit, whole or not. Across an "
+    "axis\n"
+    "the cut has the other axes as its coordinates; else orthonormal ones, which --json reports as 'frame'.\n"
+    "Of an image, the layers beside each cut alone are contoured (of --plane, all of it); a saved contour is cut as "
+    "it\n"
+    "is, all cuts of one direction in one pass.";
 
 void require_cuttable(int dim, std::string_view what) {
   if (dim == 3 || dim == 4) return;
   throw Error(ErrorCode::UnsupportedData, fmt::format("holds a {}D {}; expected a 4D one (or a 3D one)", dim, what));
-}
-
-/// World coordinates of the last axis, where the world map leaves it to itself (else the library refuses).
-CutAxis cut_axis(const AnyImage& image) {
-  const auto of_owned = [](const auto& owned) {
-    constexpr int kLast = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>) - 1;
-    const Axis& axis = owned.grid.axes[kLast];
-    const auto world = [&](double at) { return owned.grid.linear(kLast, kLast) * at + owned.grid.offset(kLast); };
-    const auto [first, last] = std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
-    return CutAxis{axis_label(axis.name, kLast), first, last, kLast + 1, "image"};
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
-}
-
-CutAxis cut_axis(const Mesh& mesh) {
-  const auto last_axis = static_cast<std::size_t>(mesh.space_dim - 1);
-  CutAxis result{axis_label(last_axis < mesh.axis_names.size() ? mesh.axis_names[last_axis] : "", last_axis),
-                 std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), mesh.space_dim,
-                 "saved contour"};
-  for (std::size_t i = last_axis; i < mesh.coordinates.size(); i += last_axis + 1) {
-    result.first = std::min(result.first, mesh.coordinates[i]);
-    result.last = std::max(result.last, mesh.coordinates[i]);
-  }
-  return result;
-}
-
-/// The cuts with the axis's own name. Throws InvalidArgument for another axis, EmptyResult outside of its range.
-std::vector<Cut> resolve(std::vector<Cut> cuts, const CutAxis& axis) {
-  for (Cut& cut : cuts) {
-    const bool named = equal_ignoring_case(cut.axis, axis.name) || (axis.image_dim == 4 && cut.axis == "t");
-    if (!named) {
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--at {}={} names no axis that can be cut; expected the last axis, {}={}", cut.axis,
-                              cut.text, axis.name, cut.text));
-    }
-    cut.axis = axis.name;
-    if (cut.value >= axis.first && cut.value <= axis.last) continue;
-    throw Error(ErrorCode::EmptyResult,
-                fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {}", axis.name, cut.text,
-                            axis.of, number(axis.first), axis.name, number(axis.last)));
-  }
-  return cuts;
-}
-
-template <class Real>
-Mesh slice_mesh(const AnyImage& image, double isovalue, double at, const ExtractOptions& options, ExtractStats& stats) {
-  const auto of_owned = [&](const auto& owned) -> Mesh {
-    if constexpr (std::tuple_size_v<decltype(owned.grid.axes)> >= 3) {
-      return to_mesh(slice_image<Real>(owned.view(), isovalue, at, options, &stats));
-    } else {
-      throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // require_cuttable was first
-    }
-  };
-  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
 void require_cut(const ContourResult& result) {
@@ -105,40 +50,107 @@ void require_cut(const ContourResult& result) {
               fmt::format("the cut at {} = {} is empty; expected a contour there", result.cut->axis, result.cut->text));
 }
 
-/// The cuts of a saved contour, one after the other.
+/// The hyperplane of a cut where axis a is stretched by factors[a].
 template <int N>
-std::vector<ContourResult> cut_all(const Mesh& mesh, const std::vector<Cut>& cuts, double read_seconds,
-                                   ProgressBar& bar) {
-  const Contour<N, double> contour = to_contour<N>(mesh);
-  std::vector<ContourResult> results;
-  for (const Cut& cut : cuts) {
-    const Progress cutting = bar.stage("slice");
-    ContourResult& result = results.emplace_back();
-    result.image_dim = N;
-    result.cut = cut;
+Hyperplane<N> hyperplane_of(const Cut& cut, const std::vector<double>& factors) {
+  Hyperplane<N> hyperplane;
+  for (int a = 0; a < N; ++a)
+    hyperplane.normal[a] = cut.normal[static_cast<std::size_t>(a)] / factors[static_cast<std::size_t>(a)];
+  hyperplane.offset = cut.value;
+  return hyperplane;
+}
+
+/// The frame of a hyperplane, for reports; none across an axis, where the coordinates say it all.
+template <int N>
+std::optional<CutFrame> frame_for_report(const Cut& cut, const std::vector<double>& factors) {
+  if (cut.across) return std::nullopt;
+  const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(cut, factors));
+  CutFrame result{{frame.origin.begin(), frame.origin.end()}, {}};
+  for (int i = 0; i < N - 1; ++i) result.axes.emplace_back(frame.axes.col(i).begin(), frame.axes.col(i).end());
+  return result;
+}
+
+template <int N, class Real>
+void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
+  const Eigen::Map<const Eigen::Matrix<double, N, 1>> by_axis(factors.data());
+  if ((by_axis.array() != 1.0).any()) scale_axes<N, Real>(contour, by_axis);
+}
+
+/// Cuts of a contour whose axes are to be stretched first: those of one direction after the other in one pass.
+template <int N, class Real>
+void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, unsigned threads,
+                    std::vector<ContourResult>& results, ProgressBar& bar) {
+  stretch(contour, factors);
+  for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
+    const Hyperplane<N> hyperplane = hyperplane_of<N>(*results[first].cut, factors);
+    std::vector<double> offsets;
+    for (end = first; end < results.size() && results[end].cut->normal == results[first].cut->normal; ++end)
+      offsets.push_back(results[end].cut->value);
     Stopwatch watch;
-    result.mesh = to_mesh(slice(contour, cut.value));
-    result.seconds.slice = watch.lap();
-    result.seconds.read = read_seconds;
-    require_cut(result);
-    cutting(1);
+    auto cuts = slice_stack(contour, hyperplane.normal, offsets, threads, bar.stage("slice"));
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      ContourResult& result = results[first + i];
+      result.image_dim = N;
+      result.mesh = to_mesh(std::exchange(cuts[i], {}));
+      result.cut->frame = frame_for_report<N>(*result.cut, factors);
+      require_cut(result);
+    }
+    // What one of them took of the pass is anyone's guess: an equal part.
+    const double seconds = watch.lap() / static_cast<double>(offsets.size());
+    for (std::size_t i = first; i < end; ++i) results[i].seconds.slice = seconds;
   }
-  return results;
+}
+
+/// Whether the layers beside a cut across an axis can be contoured alone.
+bool is_apart(const AnyImage& image, int axis) {
+  const auto of_owned = [&](const auto& owned) {
+    bool apart = true;
+    for (int a = 0; a < owned.grid.linear.rows(); ++a)
+      apart = apart && (a == axis || (owned.grid.linear(axis, a) == 0.0 && owned.grid.linear(a, axis) == 0.0));
+    return apart;
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+template <class Real>
+Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
+                const ExtractOptions& options, ExtractStats& stats) {
+  const auto of_owned = [&](const auto& owned) -> Mesh {
+    if constexpr (std::tuple_size_v<decltype(owned.grid.axes)> >= 3) {
+      auto contour = slice_image_across<Real>(owned.view(), isovalue, *cut.across, cut.value, options, &stats);
+      std::vector<double> others = factors;
+      others.erase(others.begin() + *cut.across);
+      stretch(contour, others);
+      return to_mesh(contour);
+    } else {
+      throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // require_cuttable was first
+    }
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
 class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
-      : Command(program, "slice", "A cut of a 4D contour at a time, whole or not",
-                "a 4D image, or a 4D contour that 'tegl contour' saved (.vtkhdf)") {
+      : Command(program, "slice", "A cut of a 4D contour at a time, or by any other hyperplane",
+                "a 4D image, or a 4D contour that 'tegl contour' saved (.vtkhdf); or a 3D one") {
     app()
-        .add_option("--at", at_, "where to cut: t=7.3, or the last axis by its own name; t=1,2.5 for several")
-        ->required()
+        .add_option("--at", at_, "where to cut an axis: t=7.3, x=2; t=1,2.5 for several; t=0:10:21 for 21 from 0 to 10")
         ->allow_extra_args(false)
-        ->type_name("AXIS=NUMBER");
+        ->type_name("AXIS=NUMBERS");
+    app()
+        .add_option("--plane", planes_,
+                    "cuts by the hyperplane with this normal: 1,0,0,5=2 is where x + 5 t = 2; several as with --at")
+        ->allow_extra_args(false)
+        ->type_name("A,B,..=NUMBERS");
+    app()
+        .add_option("--scale", scale_, "stretches axes, so that lengths along all of them compare: t=10,z=2")
+        ->allow_extra_args(false)
+        ->type_name("AXIS=FACTOR");
     options_.add_to(app(), false);
     app()
-        .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb or .vtkhdf; {t} in it stands for the time")
+        .add_option("-o,--output", output_,
+                    "the result: .ply, .gltf, .glb or .vtkhdf; {t} in it stands for the number, {axis} for its axis")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
     add_variable();
@@ -148,6 +160,10 @@ class SliceCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     std::vector<Cut> cuts = parse_cuts(at_);
+    for (Cut& cut : parse_planes(planes_)) cuts.push_back(std::move(cut));
+    if (cuts.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  "neither --at nor --plane is given; expected a place to cut, as in --at t=7.3");
     const std::vector<std::string> outputs = cut_outputs(output_, cuts);
     require_input(file());
     for (const std::string& output : outputs) require_output(output, file());
@@ -180,46 +196,98 @@ class SliceCommand final : public Command {
     return list;
   }
 
+  /// A result for each cut, with what is known before it is made.
+  static std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) {
+    std::vector<ContourResult> results;
+    for (Cut& cut : resolve(std::move(cuts), space)) results.emplace_back().cut = std::move(cut);
+    return results;
+  }
+
   std::vector<ContourResult> cut_image(std::vector<Cut> cuts, ProgressBar& bar) {
     const double isovalue = options_.isovalue();
-    ExtractOptions options = options_.library_options();
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
     require_cuttable(image_dim(input.image), "image");
     require_contour(input, isovalue);
-    cuts = resolve(std::move(cuts), cut_axis(input.image));
+    const CutSpace space = space_of(input.image);
+    const std::vector<double> factors = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(std::move(cuts), space);
     const double read_seconds = watch.lap();
-    std::vector<ContourResult> results;
-    for (const Cut& cut : cuts) {
-      options.progress = bar.stage("slice");
-      ContourResult& result = results.emplace_back();
+    std::vector<ContourResult> of_whole;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      ContourResult& result = results[i];
       result.variable = input.info.variable;
       result.isovalue = isovalue;
       result.image_dim = image_dim(input.image);
-      result.cut = cut;
-      ExtractStats& stats = result.stats.emplace();
-      watch.lap();
-      result.mesh = options_.single_precision() ? slice_mesh<float>(input.image, isovalue, cut.value, options, stats)
-                                                : slice_mesh<double>(input.image, isovalue, cut.value, options, stats);
-      const double seconds = watch.lap();
-      require_cut(result);
-      result.seconds.add(stats);
-      // The slab's extraction is a part of it; what is left is the cut proper.
-      result.seconds.slice = std::max(0.0, seconds - result.seconds.total());
       result.seconds.read = read_seconds;
+      if (result.cut->across && is_apart(input.image, *result.cut->across)) {
+        cut_slab(input.image, factors, result, bar);
+        continue;
+      }
+      of_whole.push_back(result);
+      places.push_back(i);
     }
+    if (!of_whole.empty()) cut_whole(input.image, factors, of_whole, bar);
+    for (std::size_t i = 0; i < places.size(); ++i) results[places[i]] = std::move(of_whole[i]);
     return results;
   }
 
+  /// A cut whose layers alone are contoured.
+  void cut_slab(const AnyImage& image, const std::vector<double>& factors, ContourResult& result,
+                ProgressBar& bar) const {
+    ExtractOptions options = options_.library_options();
+    options.progress = bar.stage("slice");
+    ExtractStats& stats = result.stats.emplace();
+    Stopwatch watch;
+    result.mesh = options_.single_precision()
+                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors, options, stats)
+                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors, options, stats);
+    const double seconds = watch.lap();
+    require_cut(result);
+    result.seconds.add(stats);
+    // The slab's extraction is a part of it; what is left is the cut proper.
+    result.seconds.slice = std::max(0.0, seconds - (result.seconds.total() - result.seconds.read));
+  }
+
+  /// Cuts of the contour of the whole image.
+  void cut_whole(const AnyImage& image, const std::vector<double>& factors, std::vector<ContourResult>& results,
+                 ProgressBar& bar) const {
+    ExtractOptions options = options_.library_options();
+    options.progress = bar.stage("contour");
+    ExtractStats stats;
+    struct Nothing {};
+    (void)extract_any<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), stats,
+                               [&]<int N, class Real>(Contour<N, Real>&& contour) {
+                                 if constexpr (N == 3 || N == 4)
+                                   cut_contour_of(std::move(contour), factors, options_.threads(), results, bar);
+                                 return Nothing();
+                               });
+    for (ContourResult& result : results) {
+      result.stats = stats;
+      result.seconds.add(stats);
+    }
+  }
+
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {
-    refuse_image_options(file(), options_.given(), variable(), "--at and --output alone");
+    std::vector<std::string> given = options_.given();
+    std::erase(given, "--threads");
+    refuse_image_options(file(), given, variable(), "--at, --plane, --scale, --threads and --output alone");
     const Progress reading = bar.stage("read");
     Stopwatch watch;
     const Mesh mesh = read_mesh(file());
     require_cuttable(mesh.space_dim, "contour");
-    cuts = resolve(std::move(cuts), cut_axis(mesh));
+    const CutSpace space = space_of(mesh);
+    const std::vector<double> factors = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(std::move(cuts), space);
     const double read_seconds = watch.lap();
-    return mesh.space_dim == 4 ? cut_all<4>(mesh, cuts, read_seconds, bar) : cut_all<3>(mesh, cuts, read_seconds, bar);
+    for (ContourResult& result : results) result.seconds.read = read_seconds;
+    reading(1);
+    if (mesh.space_dim == 4)
+      cut_contour_of(to_contour<4>(mesh), factors, options_.threads(), results, bar);
+    else
+      cut_contour_of(to_contour<3>(mesh), factors, options_.threads(), results, bar);
+    return results;
   }
 
   /// All or nothing: what was written is removed if one of the files cannot be.
@@ -233,7 +301,7 @@ class SliceCommand final : public Command {
   }
 
   ExtractionOptions options_;
-  std::vector<std::string> at_;
+  std::vector<std::string> at_, planes_, scale_;
   std::string output_;
   bool no_check_ = false;
 };

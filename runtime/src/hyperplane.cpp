@@ -35,7 +35,7 @@ HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
     Eigen::Matrix<double, N, 1> axis = -(nearer[i] / (1.0 + nearer[k])) * nearer;
     axis[k] -= nearer[i] / (1.0 + nearer[k]);
     axis[i] += 1.0;
-    frame.axes.col(column++) = axis;
+    frame.axes.col(column++) = axis.array() + 0.0;  // no -0, which reads badly
   }
   // A rotation keeps the sign of det[e_0 … without e_k … e_{N-1}, e_k], which N - 1 - k exchanges bring to 1.
   frame.is_right_handed = ((N - 1 - k) % 2 == 0) == (frame.up[k] > 0.0);

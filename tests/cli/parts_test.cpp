@@ -79,11 +79,22 @@ TEST(Cuts, AreReadFromSeveralValuesAndLists) {
 }
 
 TEST(Cuts, OtherTextIsRefusedAndQuoted) {
-  for (const char* text : {"7.3", "t", "t=", "=7", "t=a", "t=1,", "t=nan", "t=1,,2"}) {
+  for (const char* text :
+       {"7.3", "t", "t=", "=7", "t=a", "t=1,", "t=nan", "t=1,,2", "t=0:1", "t=0:1:1", "t=0:1:2.5", "t=0:1:2:3"}) {
     const Error error = error_of([&] { (void)parse_cuts({text}); });
     EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
     EXPECT_THAT(error.what(), HasSubstr(text));
   }
+}
+
+TEST(Cuts, ARangeHasItsEndsAndCount) {
+  const std::vector<Cut> cuts = parse_cuts({"t=0.1:0.7:4,5"});
+  ASSERT_EQ(cuts.size(), 5u);
+  EXPECT_EQ(cuts[0].value, 0.1);
+  EXPECT_NEAR(cuts[1].value, 0.3, 1e-15);
+  EXPECT_EQ(cuts[3].value, 0.7);
+  EXPECT_EQ(cuts[3].text, "0.7");
+  EXPECT_EQ(cuts[4].value, 5.0);
 }
 
 TEST(Cuts, HaveAnOutputEach) {

@@ -121,9 +121,9 @@ TEST_F(Slice, TakesTheAxisByItsOwnName) {
     EXPECT_EQ(run.json()["at"]["axis"], "MONTH");
     EXPECT_EQ(run.json()["euler"], 4);
   }
-  const RunResult other = run_tegl({"slice", path("balls.nc"), "--at", "LAT=3", "--iso", "0", "-o", path("no.ply")});
+  const RunResult other = run_tegl({"slice", path("balls.nc"), "--at", "HEIGHT=3", "--iso", "0", "-o", path("no.ply")});
   EXPECT_EQ(other.exit, 2);
-  EXPECT_THAT(other.err, HasSubstr("LAT"));
+  EXPECT_THAT(other.err, HasSubstr("HEIGHT"));
   EXPECT_THAT(other.err, HasSubstr("MONTH"));
 }
 
@@ -161,6 +161,101 @@ TEST_F(Slice, OfASavedContourTakesNoOptionsOfTheExtraction) {
     EXPECT_THAT(run.err, HasSubstr(more.front()));
   }
   EXPECT_THAT(files(), testing::Not(Contains("out.ply")));
+}
+
+TEST_F(Slice, AcrossAnyAxisIsASurfaceInTheOthers) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  for (const std::string& input : {file(), path("all.vtkhdf")}) {
+    std::vector<std::string> arguments = {"slice", input, "--at", "x=5.3", "-o", path("x.vtkhdf"), "--json"};
+    if (input == file()) arguments.insert(arguments.end(), {"--iso", "0"});
+    const RunResult run = run_tegl(arguments);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_EQ(run.json()["at"]["axis"], "x");
+    EXPECT_EQ(run.json()["dim"], 2);
+    EXPECT_EQ(run.json()["bad_links"], 0);
+    const Mesh mesh = read_mesh(path("x.vtkhdf"));
+    EXPECT_THAT(mesh.axis_names, ElementsAre("y", "z", "t"));
+    EXPECT_THAT(mesh.axis_units, ElementsAre("mm", "mm", "s"));
+    double last = 0;
+    for (std::size_t i = 2; i < mesh.coordinates.size(); i += 3) last = std::max(last, mesh.coordinates[i]);
+    EXPECT_EQ(last, 8.0);  // the last time
+  }
+}
+
+TEST_F(Slice, ByAPlaneReportsItsFrame) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  const RunResult saved =
+      run_tegl({"slice", path("all.vtkhdf"), "--plane", "1,0,0,2=14,15.5", "-o", path("saved_{t}.ply"), "--json"});
+  ASSERT_EQ(saved.exit, 0) << saved.err;
+  ASSERT_EQ(saved.json().size(), 2u);
+  EXPECT_EQ(saved.json()[0]["at"]["axis"], "x + 2 t");
+  EXPECT_EQ(saved.json()[1]["at"]["value"], 15.5);
+  EXPECT_EQ(saved.json()[0]["bad_links"], 0);
+  const auto frame = saved.json()[0]["at"]["frame"];
+  ASSERT_EQ(frame["axes"].size(), 3u);
+  const Mesh mesh = read_mesh(path("saved_14.ply"));
+  for (std::size_t v = 0; v < mesh.coordinates.size() / 3; ++v) {  // x + 2 t = 14 at every vertex
+    double sum = 0;
+    for (const std::size_t a : {0u, 3u}) {
+      double x = frame["origin"][a];
+      for (std::size_t i = 0; i < 3; ++i) x += frame["axes"][i][a].get<double>() * mesh.coordinates[3 * v + i];
+      sum += a == 0 ? x : 2 * x;
+    }
+    ASSERT_NEAR(sum, 14.0, 1e-12);
+  }
+  const RunResult direct =
+      run_tegl({"slice", file(), "--iso", "0", "--plane=1,0,0,2=14", "-o", path("direct.ply"), "--json"});
+  ASSERT_EQ(direct.exit, 0) << direct.err;
+  EXPECT_EQ(read_mesh(path("direct.ply")).coordinates, mesh.coordinates);
+  EXPECT_GT(direct.json()["active_tiles"], 0);
+}
+
+TEST_F(Slice, ScaleStretchesWhatIsCutAndNotThePlane) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  const auto coordinates = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"slice", path("all.vtkhdf"), "-o", path("out.ply"), "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return read_mesh(path("out.ply")).coordinates;
+  };
+  const auto plain = coordinates({"--at", "x=5.25"});
+  const auto stretched = coordinates({"--at", "x=5.25", "--scale", "t=4,x=2"});
+  ASSERT_EQ(plain.size(), stretched.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(stretched[i], i % 3 == 2 ? 4 * plain[i] : plain[i]);
+  // The plane x + t = 9 holds as many vertices whatever the scale.
+  EXPECT_EQ(coordinates({"--plane", "1,0,0,1=9"}).size(),
+            coordinates({"--plane", "1,0,0,1=9", "--scale", "t=4"}).size());
+  for (const char* scale : {"t=0", "t=-1", "q=2", "t", "t=a"})
+    EXPECT_EQ(run_tegl({"slice", path("all.vtkhdf"), "--at", "t=1", "--scale", scale, "-o", path("out.ply")}).exit, 2)
+        << scale;
+}
+
+TEST_F(Slice, AStackIsEachOfItsCuts) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  const RunResult run =
+      run_tegl({"slice", path("all.vtkhdf"), "--at", "t=0:8:5", "-o", path("stack_{t}.ply"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  ASSERT_EQ(run.json().size(), 5u);
+  for (const char* t : {"0", "2", "4", "6", "8"}) {
+    ASSERT_EQ(run_tegl({"slice", path("all.vtkhdf"), "--at", std::string("t=") + t, "-o", path("one.ply"), "-q"}).exit,
+              0);
+    const Mesh one = read_mesh(path("one.ply"));
+    const Mesh of_stack = read_mesh(path(std::string("stack_") + t + ".ply"));
+    EXPECT_EQ(one.coordinates, of_stack.coordinates);
+    EXPECT_EQ(one.simplices, of_stack.simplices);
+  }
+}
+
+TEST_F(Slice, NeedsAPlaceToCut) {
+  const RunResult run = run_tegl({"slice", file(), "--iso", "0", "-o", path("out.ply")});
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--at"));
+  for (const char* plane : {"1,2=3", "0,0,0,0=1", "1,0,0,a=1", "=1", "1,0,0,1"}) {
+    const RunResult bad = run_tegl({"slice", file(), "--iso", "0", "--plane", plane, "-o", path("out.ply")});
+    EXPECT_EQ(bad.exit, 2) << plane;
+    EXPECT_THAT(bad.err, HasSubstr("--plane"));
+  }
 }
 
 TEST_F(Slice, OfAnImageNeedsAnIsovalue) {
