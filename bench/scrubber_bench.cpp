@@ -67,7 +67,7 @@ std::pair<double, double> medians(std::size_t steps, int cuts, const Cut& cut) {
 void measure(std::size_t samples, std::size_t steps, int cuts) {
   const Contour<4, float> contour = drifting_gyroid(samples, steps);
   std::vector<double> builds;
-  ScrubberOptions options;
+  WorkOptions options;
   options.threads = 1;
   for (int i = 0; i < 3; ++i)
     builds.push_back(seconds_of([&] { Scrubber<4, float>(contour, Eigen::Vector4d::UnitW(), options); }));

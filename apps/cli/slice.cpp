@@ -87,7 +87,7 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
     for (end = first; end < results.size() && results[end].cut->normal == results[first].cut->normal; ++end)
       offsets.push_back(results[end].cut->value);
     Stopwatch watch;
-    auto cuts = slice_stack(contour, hyperplane.normal, offsets, threads, bar.stage("slice"));
+    auto cuts = slice_stack(contour, hyperplane.normal, offsets, {threads, bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       ContourResult& result = results[first + i];
       result.image_dim = N;

@@ -51,7 +51,7 @@ void report(const Progress& progress, double fraction) {
 }  // namespace
 
 template <int N, class Real>
-Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal, const ScrubberOptions& options)
+Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal, const WorkOptions& options)
     : contour_(&contour), normal_(normal) {
   const detail::Section<N> section(normal);
   report(options.progress, 0.0);

@@ -67,6 +67,8 @@ class Section {
 
   /// Whether the cut's i-th coordinate is one of the contour's: that of the i-th axis of those that are not dropped.
   [[nodiscard]] bool keeps_axis(int i) const { return normal_[i < dropped_axis() ? i : i + 1] == 0.0; }
+  /// Whether the normal is a multiple of an axis, which is then the one that is dropped.
+  [[nodiscard]] bool is_across_axis() const noexcept { return is_across_axis_; }
   [[nodiscard]] int dropped_axis() const noexcept { return frame_.dropped; }
   [[nodiscard]] bool is_right_handed() const noexcept { return frame_.is_right_handed; }
 

@@ -84,22 +84,21 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>&
 template <int N, class Real>
 std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
                                               const Eigen::Matrix<double, N, 1>& normal,
-                                              std::span<const double> offsets, unsigned threads,
-                                              const Progress& progress) {
+                                              std::span<const double> offsets, const WorkOptions& options) {
   const Section<N> section(normal);
   std::vector<double> levels;
   for (const double offset : offsets) levels.push_back(section.template level<Real>(offset));
   std::vector<double> sorted = levels;
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  report(progress, 0.0);
+  report(options.progress, 0.0);
   const auto touching = touching_levels(contour, section, sorted);
   std::vector<Contour<N - 1, Real>> cuts(levels.size());
   struct Nothing {};
-  detail::Workers<Nothing> workers(threads, [] { return Nothing(); });
+  detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
   // As many at a time as there are threads: between these the caller's progress is told.
   for (std::size_t first = 0; first < cuts.size(); first += workers.count()) {
-    report(progress, (1.0 + static_cast<double>(first)) / (1.0 + static_cast<double>(cuts.size())));
+    report(options.progress, (1.0 + static_cast<double>(first)) / (1.0 + static_cast<double>(cuts.size())));
     const std::size_t count = std::min(workers.count(), cuts.size() - first);
     workers.for_range(count, 1, [&](std::size_t from, std::size_t to, Nothing&) {
       for (std::size_t i = first + from; i < first + to; ++i) {
@@ -108,7 +107,7 @@ std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
       }
     });
   }
-  report(progress, 1.0);
+  report(options.progress, 1.0);
   return cuts;
 }
 
@@ -116,7 +115,7 @@ std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
   template Contour<N - 1, Real> slice(const Contour<N, Real>&, double);                                               \
   template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&);                                 \
   template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, const Eigen::Matrix<double, N, 1>&, \
-                                                         std::span<const double>, unsigned, const Progress&);
+                                                         std::span<const double>, const WorkOptions&);
 TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)

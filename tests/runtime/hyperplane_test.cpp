@@ -344,7 +344,7 @@ TEST(SliceStack, IsEachSingleCutBitByBit) {
     std::vector<double> offsets = {3.0, 0.0, 2.5, 3.0, -100.0, 5.0, 100.0};
     for (int i = 0; i < 60; ++i) offsets.push_back(20.0 * test::unit_random(bits) - 3.0);
     for (const unsigned threads : {1u, 3u, 0u}) {
-      const auto cuts = slice_stack(whole, normal, offsets, threads);
+      const auto cuts = slice_stack(whole, normal, offsets, {threads, {}});
       ASSERT_EQ(cuts.size(), offsets.size());
       for (std::size_t i = 0; i < offsets.size(); ++i)
         ASSERT_TRUE(same_bytes(cuts[i], slice(whole, Hyperplane<4>{normal, offsets[i]}))) << offsets[i];
@@ -358,14 +358,14 @@ TEST(SliceStack, TellsItsProgressAndStops) {
   const auto whole = extract(image.view(), 0.5);
   const std::vector<double> offsets = {0.5, 1.5, 2.5};
   double last = -1.0;
-  (void)slice_stack(whole, Vector<3>(0, 0, 1), offsets, 1, [&](double fraction) {
-    EXPECT_GE(fraction, last);
-    last = fraction;
-    return true;
-  });
+  (void)slice_stack(whole, Vector<3>(0, 0, 1), offsets, {1, [&](double fraction) {
+                                                           EXPECT_GE(fraction, last);
+                                                           last = fraction;
+                                                           return true;
+                                                         }});
   EXPECT_EQ(last, 1.0);
   try {
-    (void)slice_stack(whole, Vector<3>(0, 0, 1), offsets, 1, [](double fraction) { return fraction < 0.5; });
+    (void)slice_stack(whole, Vector<3>(0, 0, 1), offsets, {1, [](double fraction) { return fraction < 0.5; }});
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);

@@ -112,9 +112,9 @@ TEST(Scrubber, FindsTheSimplicesThatTouch) {
 TEST(Scrubber, IsTheSameForAnyNumberOfThreads) {
   const auto image = test::noise<float, 4>(8, 10);
   const auto contour = extract(image.view(), 0.5);
-  ScrubberOptions one;
+  WorkOptions one;
   one.threads = 1;
-  ScrubberOptions four;
+  WorkOptions four;
   four.threads = 4;
   const Scrubber<4, float> first(contour, Vector<4>::Unit(3), one);
   const Scrubber<4, float> second(contour, Vector<4>::Unit(3), four);
@@ -151,7 +151,7 @@ TEST(Scrubber, RefusesWhatIsNotFiniteAndStopsWhenAsked) {
   expect_error(ErrorCode::InvalidArgument, "expected a finite coordinate", [&] { (void)scrubber.cut(nan); });
   expect_error(ErrorCode::InvalidArgument, "normal of a hyperplane",
                [&] { const Scrubber<3, double> none(contour, Vector<3>::Zero()); });
-  ScrubberOptions options;
+  WorkOptions options;
   options.progress = [](double) { return false; };
   expect_error(ErrorCode::Cancelled, "cancelled",
                [&] { const Scrubber<3, double> none(contour, Vector<3>::Unit(2), options); });

@@ -14,11 +14,6 @@
 
 namespace tegl {
 
-struct ScrubberOptions {
-  unsigned threads = 0;  ///< that build it; 0: all that the machine has
-  Progress progress;
-};
-
 /// Cuts of an N-dimensional contour (N = 3, 4) by parallel hyperplanes, those of constant time if nothing else is said.
 ///
 /// Each cut is what `slice` makes, bit by bit, in time that depends on the cut's size and not on the contour's: an
@@ -39,8 +34,8 @@ class Scrubber {
   /// `normal`: of the hyperplanes. Throws InvalidArgument if it is 0 or not finite, or a coordinate of the contour is
   /// not finite; Cancelled.
   explicit Scrubber(const Contour<N, Real>& contour, const Vector& normal = Vector::Unit(N - 1),
-                    const ScrubberOptions& options = {});
-  explicit Scrubber(Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const ScrubberOptions& = {}) = delete;
+                    const WorkOptions& options = {});
+  explicit Scrubber(Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const WorkOptions& = {}) = delete;
 
   /// slice(contour, Hyperplane<N>{normal, offset}). O(c + log s) for c simplices that touch the hyperplane, of which
   /// there are few more than the cut has; where vertices lie on it, O(c log c).

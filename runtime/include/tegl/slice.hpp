@@ -48,14 +48,13 @@ template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
 
 /// The cuts by parallel hyperplanes <normal, x> = offsets[i], all found in one pass over the contour: each the same,
-/// bit by bit, as `slice` gives it. The offsets may come in any order. `threads`: how many make cuts at a time; 0 for
-/// all that the machine has. Errors: those of `slice`; Cancelled. O(#S log k + #V) plus the cuts' own cost; 8 #V bytes,
+/// bit by bit, as `slice` gives it. The offsets may come in any order; as many cuts are made at a time as
+/// there are threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) plus the cuts' own cost; 8 #V bytes,
 /// and memory for all cuts.
 template <int N, class Real>
 std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
                                               const Eigen::Matrix<double, N, 1>& normal,
-                                              std::span<const double> offsets, unsigned threads = 0,
-                                              const Progress& progress = {});
+                                              std::span<const double> offsets, const WorkOptions& options = {});
 
 /// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
 /// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
