@@ -5,6 +5,7 @@
 // it changes continuously. Here two balls fly towards each other: when exactly do they meet?
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>
+#include <tegl/scrubber.hpp>
 #include <tegl/slice.hpp>
 
 #include <algorithm>
@@ -50,10 +51,11 @@ int main() {
   // [/readme]
 
   // Bisection for the moment at which two components become one.
+  const tegl::Scrubber<4, float> scrubber(contour);  // for many cuts: an index of the tetrahedra by time
   double apart = 0.0, joined = 11.0;
   while (joined - apart > 1e-6) {
     const double middle = (apart + joined) / 2.0;
-    (tegl::check(tegl::slice(contour, middle)).components == 2 ? apart : joined) = middle;
+    (tegl::check(scrubber.cut(middle)).components == 2 ? apart : joined) = middle;
   }
   // They touch at x = 20, when 10.875 + t/2 + 6 = 20: at t = 6.25, a quarter of the way between two steps.
   std::printf("they meet at t = %.6f\n", joined);

@@ -39,8 +39,8 @@ PLY_TYPES = {"char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": 
              "float32": "f4", "double": "f8", "float64": "f8"}
 
 
-def read_ply(path):
-    """Vertices (#V x 3) and triangles (#F x 3) of a binary little-endian PLY file of triangles."""
+def read_ply_tables(path):
+    """The elements of a binary little-endian PLY file of triangles, by name, as tables with a column per property."""
     data = pathlib.Path(path).read_bytes()
     head, mark, body = data.partition(b"end_header\n")
     lines = [line.split() for line in head.decode("ascii").splitlines()]
@@ -60,6 +60,12 @@ def read_ply(path):
         offset += tables[name].nbytes
     if np.any(tables["face"]["count"] != 3):
         sys.exit(f"render_cuts: {path}: expected triangles only")
+    return tables
+
+
+def read_ply(path):
+    """Vertices (#V x 3) and triangles (#F x 3) of a binary little-endian PLY file of triangles."""
+    tables = read_ply_tables(path)
     vertices = np.stack([tables["vertex"][c].astype(float) for c in "xyz"], axis=1)
     return vertices, tables["face"]["list"].astype(np.int64)
 

@@ -62,6 +62,7 @@ std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_contour_command(CLI::App& program);
 std::unique_ptr<Command> make_slice_command(CLI::App& program);
 std::unique_ptr<Command> make_check_command(CLI::App& program);
+std::unique_ptr<Command> make_project_command(CLI::App& program);
 std::unique_ptr<Command> make_index_command(CLI::App& program);
 std::unique_ptr<Command> make_components_command(CLI::App& program);
 std::unique_ptr<Command> make_measure_command(CLI::App& program);

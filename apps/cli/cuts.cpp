@@ -101,16 +101,20 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   return cuts;
 }
 
+std::vector<double> parse_normal(const std::string& option, std::string_view text) {
+  std::vector<double> normal;
+  for (const std::string_view part : split(text, ',')) normal.push_back(parse_finite(option, part));
+  if (std::all_of(normal.begin(), normal.end(), [](double x) { return x == 0.0; }))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} is '{}'; expected numbers that are not all 0", option, text));
+  return normal;
+}
+
 std::vector<Cut> parse_planes(const std::vector<std::string>& planes) {
   std::vector<Cut> cuts;
   for (const std::string& argument : planes) {
     const auto [numbers, values] = halves("--plane", argument, "a normal and an offset, as in 1,0,0,0.5=3");
-    std::vector<double> normal;
-    for (const std::string_view text : split(numbers, ','))
-      normal.push_back(parse_finite(fmt::format("--plane {}", argument), text));
-    if (std::all_of(normal.begin(), normal.end(), [](double x) { return x == 0.0; }))
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--plane is '{}'; expected a normal that is not 0", argument));
+    const std::vector<double> normal = parse_normal(fmt::format("--plane {}", argument), numbers);
     for (const auto& [value, text] : numbers_of(fmt::format("--plane {}", argument), values))
       cuts.push_back({numbers, value, text, normal, {}, {}});
   }

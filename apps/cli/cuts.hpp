@@ -19,6 +19,9 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at);
 /// The cuts that the values of --plane ask for: "1,0,0,0.5=3", a normal and what follows "=" in --at.
 std::vector<Cut> parse_planes(const std::vector<std::string>& planes);
 
+/// A normal or direction, "1,0,0,0.5". Throws InvalidArgument, naming the option, unless it is numbers and not 0.
+std::vector<double> parse_normal(const std::string& option, std::string_view text);
+
 /// A coordinate of the space that is cut, and its range in what lies there.
 struct CutAxis {
   std::string name;

@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_contour_command(program));
   commands.push_back(tegl::cli::make_slice_command(program));
   commands.push_back(tegl::cli::make_check_command(program));
+  commands.push_back(tegl::cli::make_project_command(program));
   commands.push_back(tegl::cli::make_index_command(program));
   commands.push_back(tegl::cli::make_components_command(program));
   commands.push_back(tegl::cli::make_measure_command(program));

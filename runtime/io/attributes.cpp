@@ -3,6 +3,9 @@
 // Checks and file names of attributes.
 #include "attributes.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common.hpp"
 
 namespace tegl::io_detail {
@@ -20,6 +23,13 @@ void check_attributes(std::span<const Attribute> attributes, std::size_t rows, s
            attribute.width < 1 ? "a width of 1 or more"
                                : std::to_string(rows * static_cast<std::size_t>(attribute.width)));
   }
+}
+
+bool is_color_of_bytes(const Attribute& attribute) {
+  return attribute.name == kColorName && attribute.width == 3 &&
+         std::all_of(attribute.values.begin(), attribute.values.end(), [](double value) {
+           return value >= 0.0 && value <= 1.0 && std::round(255.0 * value) / 255.0 == value;
+         });
 }
 
 std::string FileNames::make(const std::string& wished) {

@@ -24,6 +24,11 @@ inline std::size_t row_count(const Attribute& attribute) {
   return attribute.values.size() / static_cast<std::size_t>(attribute.width);
 }
 
+/// The name of an attribute of three numbers between 0 and 1, red, green and blue (sRGB), that viewers show.
+inline constexpr std::string_view kColorName = "color";
+/// Whether that is one, and of bytes, 255 for 1.
+bool is_color_of_bytes(const Attribute& attribute);
+
 /// Names that are different from each other and from what was reserved.
 class FileNames {
  public:

@@ -69,6 +69,20 @@ struct GltfAttribute {
   std::vector<float> values;
 };
 
+bool is_color(const Attribute& attribute) {
+  return attribute.name == kColorName && attribute.width == 3 &&
+         std::all_of(attribute.values.begin(), attribute.values.end(),
+                     [](double value) { return value >= 0.0 && value <= 1.0; });
+}
+
+/// Colours of vertices are linear in glTF (section 3.7.2.1): the numbers are decoded as IEC 61966-2-1 has it.
+std::vector<float> linear(const Attribute& attribute) {
+  std::vector<float> result;
+  for (const double value : attribute.values)
+    result.push_back(static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4)));
+  return result;
+}
+
 /// Of up to four numbers; names start with an underscore (section 3.7.2.1) and are spelled with plain capitals.
 std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesystem::path& path) {
   std::vector<GltfAttribute> result;
@@ -79,6 +93,7 @@ std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesyst
     std::string word = as_word(attribute.name);
     for (char& c : word)
       if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    if (is_color(attribute)) result.push_back({"COLOR_0", &attribute, linear(attribute)});
     GltfAttribute& added = result.emplace_back(GltfAttribute{names.make("_" + word), &attribute, {}});
     added.values.reserve(attribute.values.size());
     for (const double value : attribute.values) {
@@ -162,6 +177,7 @@ Json document(const Content& content, std::size_t buffer_bytes) {
     json["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", kVertexBuffer}});
     offset += bytes;
+    if (!added.semantic.starts_with('_')) continue;  // COLOR_0 is there a second time, by its name
     Json& texts = json["meshes"][0]["extras"]["tegl"]["attributes"];
     texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
   }

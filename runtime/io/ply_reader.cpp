@@ -91,6 +91,8 @@ class AttributeColumns {
       while (width < text.width && p + width < element.properties.size() && is_free(p + width)) ++width;
       columns_.push_back(p);
       attributes_.push_back({names.make(text.name), text.unit, static_cast<int>(width), {}});
+      const bool is_color = text.name == kColorName && width == 3 && element.properties[p].type == Scalar::Uint8;
+      units_.push_back(is_color ? 255.0 : 1.0);
       attributes_.back().values.reserve(static_cast<std::size_t>(element.count) * width);
       p += width - 1;
     }
@@ -98,7 +100,7 @@ class AttributeColumns {
   void add(const Item& item) {
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const auto first = item.scalars.begin() + static_cast<std::ptrdiff_t>(columns_[i]);
-      attributes_[i].values.insert(attributes_[i].values.end(), first, first + attributes_[i].width);
+      for (int c = 0; c < attributes_[i].width; ++c) attributes_[i].values.push_back(first[c] / units_[i]);
     }
   }
   std::vector<Attribute> take() { return std::move(attributes_); }
@@ -106,6 +108,7 @@ class AttributeColumns {
  private:
   std::vector<std::size_t> columns_;  ///< the first of each
   std::vector<Attribute> attributes_;
+  std::vector<double> units_;  ///< what the file has for 1
 };
 
 class PlyReader {

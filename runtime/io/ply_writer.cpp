@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // PLY, binary little-endian, with coordinates, normals and attributes as double: lossless. Segments become an `edge`
-// element. Attributes become properties after the usual ones, with comments that say their names and units.
+// element. Attributes become properties after the usual ones, with comments that say their names and units. Colours of
+// whole 255ths become bytes.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "attributes.hpp"
 #include "common.hpp"
@@ -31,13 +33,18 @@ std::string one_line(std::string text) {
 struct Properties {
   const Attribute* attribute;
   std::vector<std::string> names;
+  bool are_bytes = false;  ///< red, green and blue, as viewers show them
 };
 
 /// Properties have names of one word; comments say what the attribute's name and unit are.
 std::vector<Properties> properties_of(const std::vector<Attribute>& attributes, FileNames names) {
   std::vector<Properties> result;
   for (const Attribute& attribute : attributes) {
-    Properties& properties = result.emplace_back(Properties{&attribute, {}});
+    Properties& properties = result.emplace_back(Properties{&attribute, {}, is_color_of_bytes(attribute)});
+    if (properties.are_bytes) {
+      for (const char* const name : {"red", "green", "blue"}) properties.names.push_back(names.make(name));
+      continue;
+    }
     for (int i = 0; i < attribute.width; ++i)
       properties.names.push_back(
           names.make(as_word(attribute.name) + (attribute.width > 1 ? "_" + std::to_string(i) : "")));
@@ -99,7 +106,8 @@ class PlyWriter {
   static std::string declarations(const std::vector<Properties>& all) {
     std::string text;
     for (const Properties& properties : all)
-      for (const std::string& name : properties.names) text += fmt::format("property double {}\n", name);
+      for (const std::string& name : properties.names)
+        text += fmt::format("property {} {}\n", properties.are_bytes ? "uchar" : "double", name);
     return text;
   }
 
@@ -123,7 +131,13 @@ class PlyWriter {
   void put_attributes(const std::vector<Properties>& all, std::size_t row) {
     for (const Properties& properties : all) {
       const auto width = static_cast<std::size_t>(properties.attribute->width);
-      put(properties.attribute->values.data() + row * width, width);
+      const double* const values = properties.attribute->values.data() + row * width;
+      if (!properties.are_bytes) {
+        put(values, width);
+        continue;
+      }
+      for (std::size_t i = 0; i < width; ++i)
+        block_.push_back(static_cast<unsigned char>(std::lround(255.0 * values[i])));
     }
   }
 

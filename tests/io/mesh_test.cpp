@@ -107,6 +107,29 @@ TEST(Mesh, AttributesOfUpToFourNumbersPerVertexGoIntoGltf) {
     }
 }
 
+TEST(Mesh, ColorsAreThoseThatViewersShow) {
+  TempDir dir;
+  Mesh mesh = random_mesh(2, 3, 4, 2, 1);
+  mesh.vertex_attributes = {{"color", "", 3, {1, 0, 0, 0, 128 / 255.0, 0, 0, 0, 1, 0.2, 0.4, 0.6}}};
+  write_mesh(mesh, dir / "a.ply");
+  EXPECT_THAT(read_file(dir / "a.ply"),
+              testing::HasSubstr("property uchar red\nproperty uchar green\nproperty uchar blue\n"));
+  expect_same(read_mesh(dir / "a.ply"), mesh);
+  write_mesh(mesh, dir / "a.gltf");
+  const auto json = nlohmann::json::parse(read_file(dir / "a.gltf"));
+  EXPECT_TRUE(json["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
+  expect_same(read_mesh(dir / "a.gltf"), as_floats(mesh));
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile((dir / "a.gltf").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  ASSERT_NE(scene->mMeshes[0]->mColors[0], nullptr);
+  // Others are kept, as numbers alone.
+  mesh.vertex_attributes[0].values[1] = 0.123;
+  expect_same((write_mesh(mesh, dir / "b.ply"), read_mesh(dir / "b.ply")), mesh);
+  mesh.vertex_attributes[0].values[1] = -7;
+  expect_same((write_mesh(mesh, dir / "b.glb"), read_mesh(dir / "b.glb")), as_floats(mesh));
+}
+
 TEST(Mesh, AttributesMayHaveNamesThatFormatsUseThemselves) {
   Mesh mesh = random_mesh(2, 3, 3, 2, 1, true);
   for (const char* name :

@@ -14,6 +14,7 @@
 #include "invariants.hpp"
 #include "simplicial_contour.hpp"
 #include "tegl/io.hpp"
+#include "tegl/scrubber.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl {
@@ -89,6 +90,40 @@ TEST_P(SliceOfFile, IsAManifoldAtAnyTime) {
       if (GetParam().closes) {
         EXPECT_TRUE(test::is_closed_oriented_manifold(cut)) << index;
       }
+    }
+  });
+}
+
+TEST_P(SliceOfFile, IsAManifoldAlongAnyHyperplane) {
+  with_image([this](const auto& image) {
+    ExtractOptions options;
+    options.close = true;
+    const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile), options);
+    std::mt19937_64 bits(2);
+    for (int i = 0; i < 20; ++i) {
+      Hyperplane<4> hyperplane;
+      for (double& x : hyperplane.normal) x = 2.0 * test::unit_random(bits) - 1.0;
+      if (i < 4) hyperplane.normal = Eigen::Vector4d::Unit(i);
+      const auto& through = whole.vertices[test::random_below(bits, whole.vertices.size())];
+      hyperplane.offset = 0.0;
+      for (int a = 0; a < 4; ++a) hyperplane.offset += hyperplane.normal[a] * through[a];
+      const MeshReport cut = check(slice(whole, hyperplane));
+      EXPECT_TRUE(test::is_oriented_manifold(cut)) << i;
+      if (GetParam().closes) {
+        EXPECT_TRUE(test::is_closed_oriented_manifold(cut)) << i;
+      }
+    }
+  });
+}
+
+TEST_P(SliceOfFile, ByAScrubberIsTheSame) {
+  with_image([this](const auto& image) {
+    const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile));
+    const Scrubber<4, double> scrubber(whole);
+    for (double index = 0.0; index <= static_cast<double>(image.size(3) - 1); index += 0.25) {
+      const auto expected = slice(whole, time_of(image, index));
+      const auto cut = scrubber.cut(time_of(image, index));
+      EXPECT_TRUE(cut.vertices == expected.vertices && cut.simplices == expected.simplices) << index;
     }
   });
 }
