@@ -81,8 +81,8 @@ void add_cuts(Subject<T>& subject, std::vector<Operation>& list) {
                   }});
   list.push_back({"`slice_stack`, 100 times", [&] {
                     const std::vector<double> times = subject.times(100);
-                    const auto cuts =
-                        slice_stack<4, double>(subject.contour, Eigen::Vector4d::Unit(3), times, subject.threads);
+                    const auto cuts = slice_stack<4, double>(subject.contour, Eigen::Vector4d::Unit(3), times,
+                                                             subject.work_options());
                     std::size_t triangles = 0;
                     for (const auto& cut : cuts) triangles += cut.simplices.size();
                     return counted(triangles, "triangles");
@@ -90,7 +90,7 @@ void add_cuts(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`Scrubber`: build", [&] {
                     subject.scrubber.reset();
                     subject.scrubber = std::make_unique<Scrubber<4, double>>(subject.contour, Eigen::Vector4d::Unit(3),
-                                                                             ScrubberOptions{subject.threads, {}});
+                                                                             subject.work_options());
                     return fmt::format("{:.1f} MB kept", static_cast<double>(subject.scrubber->memory()) * 1e-6);
                   }});
   list.push_back({"`Scrubber`: a cut",

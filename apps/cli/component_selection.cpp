@@ -141,7 +141,9 @@ class Parser {
       fail(
           "expected 'contains NUMBER', 'meets LOW..HIGH' or 'within LOW..HIGH' after the axis, or a quantity of it: "
           ".min, .max, .span or .centroid");
-    const auto [low, high] = a_range();
+    const std::pair<double, double> range = a_range();
+    const double low = range.first;
+    const double high = range.second;
     if (meets) return [=](const ComponentFacts& f) { return f.lowest[axis] <= high && f.highest[axis] >= low; };
     return [=](const ComponentFacts& f) { return f.lowest[axis] >= low && f.highest[axis] <= high; };
   }
