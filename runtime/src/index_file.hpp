@@ -4,6 +4,7 @@
 // are in the machine's byte order, which the head tells.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,10 @@ std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed
 template <Value T>
 std::string_view value_type_name() noexcept;
 
+/// Arrays go in pieces, each hashed from the hash before: a file that is cut short does not make room for all that it
+/// promises.
+inline constexpr std::size_t kPieceElements = std::size_t{1} << 22;
+
 /// Writes an index, piece by piece.
 class IndexWriter {
  public:
@@ -39,7 +44,8 @@ class IndexWriter {
   void array(const std::vector<V>& values) {
     static_assert(std::is_arithmetic_v<V>);
     value<std::uint64_t>(values.size());
-    bytes(values.data(), values.size() * sizeof(V));
+    for (std::size_t first = 0; first < values.size(); first += kPieceElements)
+      bytes(values.data() + first, std::min(values.size() - first, kPieceElements) * sizeof(V));
   }
   void text(std::string_view text);
   /// The checksum; last.
@@ -71,11 +77,9 @@ class IndexReader {
     const auto count = value<std::uint64_t>(what);
     if (count > most) too_many(what, count, most);
     std::vector<V> values;
-    // A file that is cut short does not make room for all that it promises.
-    constexpr std::size_t kAtOnce = std::size_t{1} << 22;
     while (values.size() < count) {
       const std::size_t first = values.size();
-      values.resize(first + std::min<std::uint64_t>(count - first, kAtOnce));
+      values.resize(first + std::min<std::uint64_t>(count - first, kPieceElements));
       bytes(values.data() + first, (values.size() - first) * sizeof(V), what);
     }
     return values;

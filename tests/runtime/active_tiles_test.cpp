@@ -252,6 +252,16 @@ TEST_P(ActiveTilesFile, OfAnotherImageIsRefused) {
   EXPECT_EQ(error_of_loading(content_, flat.view()).first, ErrorCode::InvalidArgument);
 }
 
+TEST(ActiveTiles, OfManyTilesComeBackFromAFile) {
+  const auto image = noise<std::uint8_t, 2>({2400, 2000}, 18);  // arrays of more than one piece
+  for (const ActiveMethod method : {ActiveMethod::interval_tree, ActiveMethod::span_space}) {
+    const auto index = build_active_tiles(image.view(), method);
+    MemoryFile file;
+    index->save(file);
+    EXPECT_EQ(load_active_tiles(file, image.view())->find(3), index->find(3));
+  }
+}
+
 TEST_P(ActiveTilesFile, CutShortAnywhereIsRefused) {
   for (std::size_t size = 0; size < content_.size(); size += 1 + content_.size() / 300) {
     const std::vector<unsigned char> cut(content_.begin(), content_.begin() + static_cast<std::ptrdiff_t>(size));
