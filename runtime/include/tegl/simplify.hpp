@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The same contour with fewer simplices, and how far it is from what it was.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "tegl/contour.hpp"
+#include "tegl/error.hpp"
+#include "tegl/grid.hpp"
+#include "tegl/hyperplane.hpp"
+
+namespace tegl {
+
+/// What is removed, and in which order. All but `fast` contract edges, and never change what kind of manifold it is.
+enum class SimplifyMethod {
+  /// Edges, ordered by the sum of squared distances of the place that both ends move to from the hyperplanes of all
+  /// simplices that were there; that place has the least such sum. The best contour for its size.
+  quadric,
+  /// Facets (simplices), ordered by their estimated curvature: each is drawn together to one point in its middle. (1994
+  /// thesis, sections 8.3.8 to 8.3.13; the curvature of a vertex after G. Turk, Re-tiling polygonal surfaces, 1992.)
+  facets,
+  /// Vertices, ordered by their distance from the hyperplane of their neighbourhood; the hole is filled from a
+  /// neighbour.
+  /// The vertices that are left are vertices of the original. (1994 thesis, section 8.3.14, after W. Schroeder, J.
+  /// Zarge
+  /// and W. Lorensen, Decimation of triangle meshes, 1992.)
+  vertices,
+  /// Triangles alone, by the library meshoptimizer, where tegl was built with it: several times as fast. May leave a
+  /// manifold or may not: its result is checked.
+  fast,
+};
+
+/// What may happen to the border of an open contour.
+enum class SimplifyBorder {
+  fixed,   ///< nothing: it keeps all its simplices
+  within,  ///< its vertices may be removed, or move along it. Corners of the planes below are kept.
+};
+
+/// The 2 N hyperplanes that the border of an image lies in: what keeps caps (ExtractOptions::close) in it, also where
+/// the grid has a world map.
+template <int N>
+std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
+
+/// At least one of `count`, `ratio` and `max_error` has to be given; with several, the first that is reached ends it.
+template <int N>
+struct SimplifyOptions {
+  SimplifyMethod method = SimplifyMethod::quadric;
+  std::optional<std::uint64_t> count;  ///< as few simplices as this
+  std::optional<double> ratio;         ///< of the simplices that there are, in [0, 1]
+  /// The largest distance between any point of one of the two contours and the other one. The result keeps it by its
+  /// bound: where the bound is too large for a part of the contour, that part is simplified anew with more care.
+  std::optional<double> max_error;
+  /// facets: no facet of more curvature (1 / radius) than this is removed.
+  double max_curvature = std::numeric_limits<double>::infinity();
+  SimplifyBorder border = SimplifyBorder::fixed;
+  /// Vertices that lie in one of these hyperplanes stay in it, and those in several stay in all. Up to 31. To these are
+  /// added the sides of the contour's bounding box that whole simplices, or parts of the border, lie in.
+  std::vector<Hyperplane<N>> planes;
+  /// Distances and curvatures are those after coordinates were multiplied by these: what makes axes of different units
+  /// comparable (a month and a degree).
+  std::array<double, N> scale = all_one();
+  /// Whether the result gets its error bounds: the vertex attribute "error". Is done anyway if max_error is given.
+  bool measure = true;
+  /// fast: hand out what is no manifold, too.
+  bool allow_nonmanifold = false;
+  unsigned threads = 0;  ///< for the bounds; 0: all that the machine has. The result is the same, byte by byte.
+  Progress progress;
+
+ private:
+  static constexpr std::array<double, N> all_one() {
+    std::array<double, N> result{};
+    result.fill(1.0);
+    return result;
+  }
+};
+
+/// What a simplification did.
+struct SimplifyStats {
+  std::uint64_t simplices_before = 0;
+  std::uint64_t simplices_after = 0;
+  std::uint64_t vertices_before = 0;
+  std::uint64_t vertices_after = 0;
+  /// No point of the original is farther than this from the result, and none of the result from the original; in units
+  /// of `scale`. None if not measured.
+  std::optional<double> error_of_original;
+  std::optional<double> error_of_result;
+  unsigned rounds = 0;  ///< how often it was simplified, to keep max_error
+  double simplify_seconds = 0;
+  double measure_seconds = 0;
+
+  /// The larger of the two: a bound of the Hausdorff distance.
+  [[nodiscard]] std::optional<double> error() const {
+    if (!error_of_original || !error_of_result) return std::nullopt;
+    return *error_of_original > *error_of_result ? *error_of_original : *error_of_result;
+  }
+};
+
+/// Fewer simplices, the same topology: components, Euler characteristic, orientation and border are those of the
+/// contour. An edge is contracted only if the link condition holds (Dey, Edelsbrunner, Guha, Nekhayev 1999), no normal
+/// turns by 78 degrees or more, and no simplex becomes flat, or worse than the worst around it. Sheets that are nearer
+/// to each other than the error may come to intersect. N = 2, 3, 4; Real: float or double.
+///
+/// Normals and vertex attributes are interpolated where vertices move; simplex attributes are those of the simplices
+/// that are left. The attribute "error" of a vertex: every point of the original that was matched with a simplex is
+/// within the largest "error" of that simplex's vertices, and every point of the simplex is so near to the original. If
+/// the contour has such an attribute, from an earlier simplification, its largest value is added.
+///
+/// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
+/// stays. It is the same for any number of threads. Errors: InvalidArgument (options; no manifold: a face in three
+/// simplices, a repeated vertex; `fast` for other than triangles, or without meshoptimizer), UnsupportedData (the
+/// result of `fast` is no manifold), Cancelled. Time: O(S log S), about 5 microseconds for each triangle and 20 for
+/// each tetrahedron, and as much again for the error. Memory: about 300 bytes for each vertex and 100 for each simplex.
+template <int N, class Real>
+Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
+                          SimplifyStats* stats = nullptr);
+
+/// Whether SimplifyMethod::fast is there.
+bool has_fast_simplify() noexcept;
+
+}  // namespace tegl

@@ -1,0 +1,472 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far every point of one contour is from another, simplex by simplex: parts are cut off along the faces of what
+// they lie over, until nothing is left.
+#include "tegl/deviation.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "box_tree.hpp"
+#include "simplex_shapes.hpp"
+#include "workers.hpp"
+
+namespace tegl {
+namespace detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A part may be farther from what it lies over than its corners and middle are from the nearest simplices, by this
+/// factor, or by this share of the longest edge.
+constexpr double kSlack = 1.5;
+constexpr double kEdgeShare = 0.02;
+/// If that is too little, by this factor more.
+constexpr double kWider = 3.0;
+/// More simplices at hand than these: a part is halved first.
+constexpr std::size_t kMostNear = 40;
+constexpr int kMostHalvings = 24;
+/// How often what nothing covers is halved, to measure it more closely.
+constexpr int kUncoveredHalvings = 10;
+/// Of the content of a simplex: rounding of the sum of its parts.
+constexpr double kCoverPrecision = 1e-7;
+/// No use in cutting on when what is left is in so many parts.
+constexpr std::size_t kMostParts = 200;
+/// Of the longest edge: nearer to a plane is on it.
+constexpr double kOnPlane = 1e-10;
+
+void raise(double& value, double candidate) {
+  std::atomic_ref<double> shared(value);
+  double old = shared.load(std::memory_order_relaxed);
+  while (candidate > old && !shared.compare_exchange_weak(old, candidate, std::memory_order_relaxed)) {
+  }
+}
+
+/// Coordinates along a hyperplane, of D = N - 1 dimensions, and the height above it.
+template <int N>
+struct Frame {
+  static constexpr int D = N - 1;
+  std::array<PointN<N>, D> basis;
+  PointN<N> normal;
+  PointN<N> origin;
+
+  /// `unit_normal` becomes the last of an orthonormal basis by the reflection that carries an axis to it.
+  Frame(const PointN<N>& unit_normal, const PointN<N>& at) : normal(unit_normal), origin(at) {
+    int longest = 0;
+    for (int a = 1; a < N; ++a)
+      if (std::abs(normal[a]) > std::abs(normal[longest])) longest = a;
+    PointN<N> mirror = normal;
+    mirror[longest] += normal[longest] > 0.0 ? 1.0 : -1.0;
+    const double square = dot(mirror, mirror);
+    for (int a = 0, k = 0; a < N; ++a) {
+      if (a == longest) continue;
+      for (int b = 0; b < N; ++b) basis[k][b] = (a == b ? 1.0 : 0.0) - 2.0 * mirror[a] * mirror[b] / square;
+      ++k;
+    }
+  }
+  [[nodiscard]] PointN<D> along(const PointN<N>& p) const {
+    const PointN<N> way = minus(p, origin);
+    PointN<D> result;
+    for (int k = 0; k < D; ++k) result[k] = dot(way, basis[k]);
+    return result;
+  }
+  [[nodiscard]] PointN<N> in_space(const PointN<D>& x) const {
+    PointN<N> result = origin;
+    for (int k = 0; k < D; ++k)
+      for (int a = 0; a < N; ++a) result[a] += x[k] * basis[k][a];
+    return result;
+  }
+};
+
+/// What lies above and below a simplex, seen in a frame: N half-spaces, and the height over the frame as a linear
+/// function.
+template <int N>
+struct Prism {
+  static constexpr int D = N - 1;
+  std::array<PointN<D>, N> normals;
+  std::array<double, N> offsets;
+  PointN<D> slope;
+  double height_at_origin = 0;
+
+  [[nodiscard]] double inside(int side, const PointN<D>& x) const { return dot(normals[side], x) - offsets[side]; }
+  [[nodiscard]] double height(const PointN<D>& x) const { return height_at_origin + dot(slope, x); }
+
+  /// False if the simplex does not face the same way as the frame.
+  bool set(const Frame<N>& frame, const CornersN<N>& corners, const PointN<N>& normal) {
+    const double up = dot(normal, frame.normal);
+    if (!(up > 1e-9 * norm(normal))) return false;
+    std::array<PointN<D>, N> flat;
+    for (int i = 0; i < N; ++i) flat[i] = frame.along(corners[i]);
+    for (int omitted = 0; omitted < N; ++omitted) {
+      std::array<PointN<D>, D> face;
+      for (int i = 0, k = 0; i < N; ++i)
+        if (i != omitted) face[k++] = flat[i];
+      PointN<D> m = normal_of<D>(face);
+      double length = norm(m);
+      if (!(length > 0.0)) return false;
+      if (dot(m, minus(flat[omitted], face[0])) < 0.0) length = -length;
+      for (double& x : m) x /= length;
+      normals[omitted] = m;
+      offsets[omitted] = dot(m, face[0]);
+    }
+    height_at_origin = dot(normal, minus(corners[0], frame.origin)) / up;
+    for (int k = 0; k < D; ++k) slope[k] = -dot(normal, frame.basis[k]) / up;
+    return true;
+  }
+};
+
+/// The simplices of a contour, scaled.
+template <int N>
+struct Pieces {
+  std::span<const std::array<Index, N>> simplices;
+  std::vector<PointN<N>> points;
+  std::vector<CornersN<N>> corners;
+  std::vector<double> edges;  ///< the longest of each
+  std::vector<PointN<N>> normals;
+
+  template <class Real>
+  Pieces(const Contour<N, Real>& contour, const std::array<double, N>& scale) : simplices(contour.simplices) {
+    points.reserve(contour.vertices.size());
+    for (const auto& vertex : contour.vertices) {
+      PointN<N> point;
+      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]) * scale[a];
+      points.push_back(point);
+    }
+    corners.reserve(contour.simplices.size());
+    normals.reserve(contour.simplices.size());
+    edges.reserve(contour.simplices.size());
+    for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
+      CornersN<N> at;
+      for (int i = 0; i < N; ++i) {
+        const Index v = contour.simplices[s][i];
+        if (v >= contour.vertices.size())
+          throw Error(ErrorCode::InvalidArgument,
+                      fmt::format("simplex {} has the vertex {}; expected one of {}", s, v, contour.vertices.size()));
+        at[i] = points[v];
+      }
+      corners.push_back(at);
+      normals.push_back(normal_of<N>(at));
+      edges.push_back(longest_edge<N>(at));
+    }
+  }
+};
+
+template <int N>
+class Matcher {
+ public:
+  static constexpr int D = N - 1;
+  using Part = std::array<PointN<D>, N>;
+
+  /// `of_vertices`: how far each vertex of `from` is from the nearest of `to`.
+  Matcher(const Pieces<N>& from, const Pieces<N>& to, const BoxTree<N>& tree, const std::vector<double>& of_vertices,
+          std::vector<double>& of_to)
+      : from_(from), to_(to), tree_(tree), of_vertices_(of_vertices), of_to_(of_to) {}
+
+  /// Bounds of simplex s; `least` is raised to a distance that is reached.
+  double bound(Index s, double& least) {
+    const CornersN<N>& corners = from_.corners[s];
+    double nearest = 0.0;
+    for (const Index v : from_.simplices[s]) nearest = std::max(nearest, of_vertices_[v]);
+    least = std::max(least, nearest);
+    bound_ = 0.0;
+    const double edge = from_.edges[s];
+    const double length = norm(from_.normals[s]);
+    if (shape_of_simplex<N>(corners, length) <= 1e-9) {
+      measure_uncovered(corners, 0);
+      return bound_;
+    }
+    PointN<N> unit = from_.normals[s];
+    for (double& x : unit) x /= length;
+    const Frame<N> frame(unit, corners[0]);
+    Part whole;
+    for (int i = 0; i < N; ++i) whole[i] = frame.along(corners[i]);
+    const double reach = reach_of(corners, edge, nearest);
+    for (const double wider : {1.0, kWider})
+      if (match_at_once(frame, s, whole, edge, wider * reach)) return bound_;
+    match(frame, whole, kOnPlane * edge, 0);
+    return bound_;
+  }
+
+ private:
+  static CornersN<N> in_space(const Frame<N>& frame, const Part& part) {
+    CornersN<N> result;
+    for (int i = 0; i < N; ++i) result[i] = frame.in_space(part[i]);
+    return result;
+  }
+
+  /// How far from a part its match may be, if its corners are no farther from the nearest than that.
+  [[nodiscard]] double reach_of(const CornersN<N>& part, double edge, double nearest) const {
+    PointN<N> middle{};
+    for (const PointN<N>& corner : part)
+      for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
+    return kSlack * std::max(nearest, tree_.nearest(middle).distance) + kEdgeShare * edge;
+  }
+
+  /// The two halves of a simplex, across its longest edge.
+  template <class Corners>
+  static std::array<Corners, 2> halves(const Corners& part) {
+    int first = 0, second = 1;
+    double longest = -1.0;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < i; ++j) {
+        const auto edge = minus(part[i], part[j]);
+        if (dot(edge, edge) > longest) {
+          longest = dot(edge, edge);
+          first = j;
+          second = i;
+        }
+      }
+    std::array<Corners, 2> result = {part, part};
+    result[0][second] = result[1][first] = between(part[first], part[second], 0.5);
+    return result;
+  }
+
+  /// The usual case: what simplex s has in common with each near it makes up the whole of it, no more and no less.
+  /// (Gaps and double covers of exactly the same size would pass for that; nothing but a constructed example has them.)
+  bool match_at_once(const Frame<N>& frame, Index s, const Part& whole, double edge, double reach) {
+    const CornersN<N>& corners = from_.corners[s];
+    const double on_plane = kOnPlane * edge;
+    Box<N> box;
+    for (const PointN<N>& corner : corners) box.add(corner);
+    Prism<N> own;
+    if (!own.set(frame, corners, from_.normals[s])) return false;
+    double covered = 0.0, farthest = 0.0;
+    matches_.clear();
+    tree_.visit_near(box, reach, [&](Index t) {
+      Prism<N> prism;
+      if (!prism.set(frame, to_.corners[t], to_.normals[t])) return;
+      inside_.clear();
+      outside_.clear();
+      Part other;
+      for (int i = 0; i < N; ++i) other[i] = frame.along(to_.corners[t][i]);
+      if (is_beside(prism, whole, on_plane) || is_beside(own, other, on_plane)) return;
+      // The smaller of the two is cut by the sides of the larger.
+      if (to_.edges[t] < edge)
+        split(own, other, 0, on_plane);
+      else
+        split(prism, whole, 0, on_plane);
+      if (inside_.empty()) return;
+      double height = 0.0, content = 0.0;
+      for (const Part& piece : inside_) {
+        content += content_of(piece);
+        for (const PointN<D>& x : piece) height = std::max(height, std::abs(prism.height(x)));
+      }
+      if (height > reach) return;
+      covered += content;
+      farthest = std::max(farthest, height);
+      matches_.push_back({height, t});
+    });
+    const double all = content_of(whole);
+    if (!(std::abs(covered - all) <= kCoverPrecision * all)) return false;
+    bound_ = std::max(bound_, farthest);
+    for (const auto& [height, t] : matches_) raise(of_to_[t], height);
+    return true;
+  }
+
+  /// Length, area or volume, times (N-1)!.
+  static double content_of(const Part& part) {
+    if constexpr (D == 1) {
+      return std::abs(part[1][0] - part[0][0]);
+    } else {
+      std::array<PointN<D>, D> face;
+      std::copy(part.begin() + 1, part.end(), face.begin());
+      return std::abs(dot(normal_of<D>(face), minus(part[0], part[1])));
+    }
+  }
+
+  void match(const Frame<N>& frame, const Part& part, double on_plane, int depth) {
+    const CornersN<N> corners = in_space(frame, part);
+    const double edge = longest_edge<N>(corners);
+    double nearest = 0.0;
+    for (const PointN<N>& corner : corners) nearest = std::max(nearest, tree_.nearest(corner).distance);
+    const double reach = reach_of(corners, edge, nearest);
+    Box<N> box;
+    for (const PointN<N>& corner : corners) box.add(corner);
+    std::vector<Index> near;
+    tree_.visit_near(box, reach, [&](Index t) { near.push_back(t); });
+    // Halving helps as long as it is the part, not the reach, that has so many near it.
+    if (near.size() > kMostNear && edge > 2.0 * reach && depth < kMostHalvings) {
+      for (const Part& half : halves(part)) match(frame, half, on_plane, depth + 1);
+      return;
+    }
+    std::vector<Part> left{part};
+    for (const Index t : near) {
+      cover(frame, t, reach, on_plane, left);
+      if (left.empty()) return;
+      if (left.size() > kMostParts) break;
+    }
+    for (const Part& rest : left) measure_uncovered(in_space(frame, rest), 0);
+  }
+
+  /// Takes off the parts what lies over simplex t, no farther than `reach`.
+  void cover(const Frame<N>& frame, Index t, double reach, double on_plane, std::vector<Part>& left) {
+    Prism<N> prism;
+    if (!prism.set(frame, to_.corners[t], to_.normals[t])) return;
+    std::vector<Part> still;
+    double farthest = 0.0;
+    bool any = false;
+    for (const Part& part : left) {
+      inside_.clear();
+      outside_.clear();
+      split(prism, part, 0, on_plane);
+      double height = 0.0;
+      for (const Part& piece : inside_)
+        for (const PointN<D>& x : piece) height = std::max(height, std::abs(prism.height(x)));
+      if (inside_.empty() || height > reach) {
+        still.push_back(part);
+        continue;
+      }
+      any = true;
+      farthest = std::max(farthest, height);
+      still.insert(still.end(), outside_.begin(), outside_.end());
+    }
+    if (!any) return;
+    left.swap(still);
+    bound_ = std::max(bound_, farthest);
+    raise(of_to_[t], farthest);
+  }
+
+  /// Whether all of a part is beyond one side of a prism.
+  static bool is_beside(const Prism<N>& prism, const Part& part, double on_plane) {
+    for (int side = 0; side < N; ++side)
+      if (std::all_of(part.begin(), part.end(), [&](const PointN<D>& x) { return prism.inside(side, x) <= on_plane; }))
+        return true;
+    return false;
+  }
+
+  /// Parts a simplex at the sides of a prism, from the given side on.
+  void split(const Prism<N>& prism, const Part& part, int side, double on_plane) {
+    for (; side < N; ++side) {
+      int highest = 0, lowest = 0;
+      std::array<double, N> at;
+      for (int i = 0; i < N; ++i) {
+        at[i] = prism.inside(side, part[i]);
+        if (at[i] > at[highest]) highest = i;
+        if (at[i] < at[lowest]) lowest = i;
+      }
+      if (at[lowest] >= -on_plane) continue;
+      if (at[highest] <= on_plane) {
+        outside_.push_back(part);
+        return;
+      }
+      const PointN<D> crossing = between(part[highest], part[lowest], at[highest] / (at[highest] - at[lowest]));
+      for (const int gone : {lowest, highest}) {
+        Part half = part;
+        half[gone] = crossing;
+        split(prism, half, side, on_plane);
+      }
+      return;
+    }
+    inside_.push_back(part);
+  }
+
+  /// The distance from one simplex is convex, so its largest value is at a corner; and no distance grows faster than
+  /// the way does. Either bound will do; what is too loose for both is halved.
+  void measure_uncovered(const CornersN<N>& part, int depth) {
+    constexpr int kPoints = N + 1;
+    std::array<PointN<N>, kPoints> points;
+    points[N] = {};
+    for (int i = 0; i < N; ++i) {
+      points[i] = part[i];
+      for (int a = 0; a < N; ++a) points[N][a] += part[i][a] / N;
+    }
+    double nearest = 0.0, radius = 0.0, at_middle = 0.0;
+    std::array<Index, kPoints> candidates;
+    for (int i = 0; i < kPoints; ++i) {
+      const auto [distance, simplex] = tree_.nearest(points[i]);
+      candidates[i] = simplex;
+      at_middle = distance;  // that of the last one is left
+      nearest = std::max(nearest, distance);
+      radius = std::max(radius, norm(minus(points[i], points[N])));
+    }
+    double best = at_middle + radius;
+    for (const Index t : candidates) {
+      double farthest = 0.0;
+      for (const PointN<N>& corner : part)
+        farthest = std::max(farthest, distance_to_simplex<N>(corner, to_.corners[t], N));
+      best = std::min(best, farthest);
+    }
+    if (best > kSlack * nearest && best > bound_ && depth < kUncoveredHalvings) {
+      for (const CornersN<N>& half : halves(part)) measure_uncovered(half, depth + 1);
+      return;
+    }
+    bound_ = std::max(bound_, best);
+    for (const Index t : candidates) raise(of_to_[t], best);
+  }
+
+  const Pieces<N>& from_;
+  const Pieces<N>& to_;
+  const BoxTree<N>& tree_;
+  const std::vector<double>& of_vertices_;
+  std::vector<double>& of_to_;
+  double bound_ = 0.0;
+  std::vector<Part> inside_, outside_;
+  std::vector<std::pair<double, Index>> matches_;
+};
+
+template <int N>
+void require_scale(const std::array<double, N>& scale) {
+  for (const double s : scale)
+    if (!(s > 0.0 && std::isfinite(s)))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("a scale is {}; expected a positive number", s));
+}
+
+}  // namespace
+}  // namespace detail
+
+template <int N, class Real>
+Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, const DeviationOptions<N>& options) {
+  using namespace detail;
+  require_scale<N>(options.scale);
+  Deviation result;
+  result.of_from.assign(from.simplices.size(), 0.0);
+  result.of_to.assign(to.simplices.size(), 0.0);
+  if (from.simplices.empty()) return result;
+  if (to.simplices.empty()) {
+    result.bound = result.least = kInfinity;
+    result.of_from.assign(from.simplices.size(), kInfinity);
+    return result;
+  }
+  const Pieces<N> from_pieces(from, options.scale), to_pieces(to, options.scale);
+  const BoxTree<N> tree(to_pieces.corners);
+  constexpr std::size_t kGrain = 256;
+  std::atomic<std::size_t> done = 0;
+  std::atomic<bool> stopped = false;
+  const std::thread::id caller = std::this_thread::get_id();
+  Workers<int> workers(options.threads, [] { return 0; });
+  std::vector<double> of_vertices(from.vertices.size());
+  workers.for_range(of_vertices.size(), kGrain, [&](std::size_t first, std::size_t end, int&) {
+    for (std::size_t v = first; v < end; ++v) of_vertices[v] = tree.nearest(from_pieces.points[v]).distance;
+  });
+  workers.for_range(from.simplices.size(), kGrain, [&](std::size_t first, std::size_t end, int&) {
+    Matcher<N> matcher(from_pieces, to_pieces, tree, of_vertices, result.of_to);
+    double least = 0.0;
+    for (std::size_t s = first; s < end && !stopped.load(std::memory_order_relaxed); ++s) {
+      result.of_from[s] = matcher.bound(static_cast<Index>(s), least);
+      if (s % kGrain != 0 || !options.progress || std::this_thread::get_id() != caller) continue;
+      const std::size_t so_far = done.load(std::memory_order_relaxed) + (s - first);
+      if (!options.progress(static_cast<double>(so_far) / static_cast<double>(from.simplices.size())))
+        stopped.store(true, std::memory_order_relaxed);
+    }
+    done.fetch_add(end - first, std::memory_order_relaxed);
+    raise(result.least, least);
+  });
+  if (stopped) throw Error(ErrorCode::Cancelled, "measuring the distance of two contours cancelled");
+  result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
+  return result;
+}
+
+template Deviation deviation(const Contour<2, float>&, const Contour<2, float>&, const DeviationOptions<2>&);
+template Deviation deviation(const Contour<2, double>&, const Contour<2, double>&, const DeviationOptions<2>&);
+template Deviation deviation(const Contour<3, float>&, const Contour<3, float>&, const DeviationOptions<3>&);
+template Deviation deviation(const Contour<3, double>&, const Contour<3, double>&, const DeviationOptions<3>&);
+template Deviation deviation(const Contour<4, float>&, const Contour<4, float>&, const DeviationOptions<4>&);
+template Deviation deviation(const Contour<4, double>&, const Contour<4, double>&, const DeviationOptions<4>&);
+
+}  // namespace tegl

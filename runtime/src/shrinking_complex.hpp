@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A manifold of (N-1)-simplices whose edges can be contracted, one after the other, as long as it stays the same
+// manifold.
+//
+// Based on: T. Dey, H. Edelsbrunner, S. Guha and D. Nekhayev, Topology preserving edge contraction, 1999: contracting
+// an edge uv changes nothing if the links of u and v have nothing in common but the link of uv. For a complex with a
+// border this holds of the complex with a cone from one more vertex over its border, so that vertex is in the links
+// here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+class ShrinkingComplex {
+ public:
+  using Simplex = std::array<Index, N>;
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+  /// The two ends of an edge, and the simplices at one of them, at the other, and at both.
+  struct Edge {
+    Index u = 0;
+    Index v = 0;
+    std::vector<Index> only_u;
+    std::vector<Index> only_v;
+    std::vector<Index> both;
+  };
+
+  /// Errors: InvalidArgument for a simplex that repeats a vertex or has a number beyond `vertex_count`, and for a face
+  /// of more than two simplices.
+  ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count);
+
+  [[nodiscard]] std::size_t alive() const noexcept { return alive_; }
+  [[nodiscard]] std::size_t simplex_count() const noexcept { return simplices_.size(); }
+  [[nodiscard]] bool is_alive(Index s) const { return simplices_[s][0] != kNone; }
+  [[nodiscard]] const Simplex& simplex(Index s) const { return simplices_[s]; }
+  [[nodiscard]] bool on_border(Index v) const { return border_vertex_[v]; }
+  /// Bit i: the face opposite to corner i is in no other simplex.
+  [[nodiscard]] unsigned border_faces(Index s) const { return border_faces_[s]; }
+
+  /// The simplices at a vertex, in an order that depends on what was contracted before alone.
+  void star(Index v, std::vector<Index>& result);
+  /// The vertices that share an edge with v, each once.
+  void neighbours(Index v, std::vector<Index>& result);
+
+  /// Fills `edge`. u and v have to differ.
+  void load(Index u, Index v, Edge& edge);
+  /// Whether contracting the edge leaves the manifold as it is.
+  bool is_contractible(const Edge& edge);
+  /// Moves v to u. The edge has to be contractible.
+  void contract(const Edge& edge);
+
+ private:
+  /// A face of a link, as many vertices as it has, ascending.
+  using Face = std::array<Index, N - 1>;
+
+  void find_border();
+  /// The link of `v` without what contains `other`, with the cone over the border.
+  void gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces);
+  void gather_edge_link(const Edge& edge);
+  void mark(std::span<const Face> faces, std::vector<std::uint32_t>& marks, int vertices);
+  bool share_only_the_edges_link();
+  bool share_a_link_edge(bool beside_edges_link);
+  bool share_a_link_triangle() const;
+  /// The simplex of `star` other than `s` that has all its vertices but one: there the face becomes border.
+  void open_face(std::span<const Index> star, Index s, Index without);
+
+  std::vector<Simplex> simplices_;
+  std::vector<std::uint8_t> border_faces_;
+  std::vector<bool> border_vertex_;
+  std::vector<Index> first_;  ///< of each vertex: a corner, N * simplex + position
+  std::vector<Index> next_;   ///< of each corner: the next of the same vertex
+  std::size_t alive_ = 0;
+
+  // Scratch; marks hold the round in which they were set.
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> in_u_, in_v_, in_edge_;
+  std::vector<Face> link_u_, link_v_, link_edge_;
+  std::vector<std::uint64_t> edges_u_, edges_v_, edges_both_;
+};
+
+extern template class ShrinkingComplex<2>;
+extern template class ShrinkingComplex<3>;
+extern template class ShrinkingComplex<4>;
+
+}  // namespace tegl::detail

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Points, and simplices of dimension N - 1 in N-space: normals, shapes, distances. Templates on the dimension, nothing
+// else: N = 1 to 4.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace tegl::detail {
+
+template <int N>
+using PointN = std::array<double, N>;
+
+/// N corners: an (N-1)-simplex in N-space.
+template <int N>
+using CornersN = std::array<PointN<N>, N>;
+
+template <std::size_t N>
+std::array<double, N> minus(const std::array<double, N>& a, const std::array<double, N>& b) {
+  std::array<double, N> result;
+  for (std::size_t i = 0; i < N; ++i) result[i] = a[i] - b[i];
+  return result;
+}
+
+template <std::size_t N>
+double dot(const std::array<double, N>& a, const std::array<double, N>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < N; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+template <std::size_t N>
+double norm(const std::array<double, N>& a) {
+  return std::sqrt(dot(a, a));
+}
+
+/// a + t (b - a): a coordinate in which both agree is kept to the bit.
+template <std::size_t N>
+std::array<double, N> between(const std::array<double, N>& a, const std::array<double, N>& b, double t) {
+  std::array<double, N> result;
+  for (std::size_t i = 0; i < N; ++i) result[i] = a[i] + t * (b[i] - a[i]);
+  return result;
+}
+
+/// The vector at right angles to an (N-1)-simplex whose length is (N-1)! times its measure. Its side is the same for
+/// all even permutations of the corners.
+template <int N>
+PointN<N> normal_of(const CornersN<N>& corners) {
+  std::array<PointN<N>, N> e;
+  for (int i = 1; i < N; ++i) e[i] = minus(corners[i], corners[0]);
+  if constexpr (N == 1) {
+    return {1.0};
+  } else if constexpr (N == 2) {
+    return {e[1][1], -e[1][0]};
+  } else if constexpr (N == 3) {
+    return {e[1][1] * e[2][2] - e[1][2] * e[2][1], e[1][2] * e[2][0] - e[1][0] * e[2][2],
+            e[1][0] * e[2][1] - e[1][1] * e[2][0]};
+  } else {
+    static_assert(N == 4);
+    // The minors of the last two edges, each used twice.
+    const auto minor = [&](int a, int b) { return e[2][a] * e[3][b] - e[2][b] * e[3][a]; };
+    const double xy = minor(0, 1), xz = minor(0, 2), xt = minor(0, 3);
+    const double yz = minor(1, 2), yt = minor(1, 3), zt = minor(2, 3);
+    const PointN<4>& f = e[1];
+    return {f[1] * zt - f[2] * yt + f[3] * yz, -(f[0] * zt - f[2] * xt + f[3] * xz), f[0] * yt - f[1] * xt + f[3] * xy,
+            -(f[0] * yz - f[1] * xz + f[2] * xy)};
+  }
+}
+
+template <int N>
+double longest_edge(const CornersN<N>& corners) {
+  double square = 0.0;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < i; ++j) {
+      const PointN<N> edge = minus(corners[i], corners[j]);
+      square = std::max(square, dot(edge, edge));
+    }
+  return std::sqrt(square);
+}
+
+/// The measure over that of a cube with the longest edge, times (N-1)!: 0 for flat simplices, about 1 for good ones,
+/// whatever the size.
+template <int N>
+double shape_of_simplex(const CornersN<N>& corners, double normal_length) {
+  const double edge = longest_edge<N>(corners);
+  if (edge <= 0.0) return 0.0;
+  double cube = 1.0;
+  for (int i = 1; i < N; ++i) cube *= edge;
+  return normal_length / cube;
+}
+
+/// The distance of a point from the convex hull of `count` points (count <= N).
+///
+/// If the foot on the affine hull has a negative barycentric coordinate, the nearest point lies on a face opposite to a
+/// corner with such a one; so faces are tried, down to points. Flat simplices are the union of their faces.
+template <int N>
+double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count) {
+  if (count == 1) return norm(minus(p, corners[0]));
+  // Coordinates in an orthonormal basis of the edges, from which barycentric ones follow by back substitution.
+  std::array<PointN<N>, N> basis;
+  std::array<std::array<double, N>, N> upper{};
+  std::array<double, N> at{};
+  PointN<N> rest = minus(p, corners[0]);
+  bool flat = false;
+  for (int i = 1; i < count; ++i) {
+    PointN<N> edge = minus(corners[i], corners[0]);
+    const double length = norm(edge);
+    for (int j = 1; j < i; ++j) {
+      upper[j][i] = dot(edge, basis[j]);
+      for (int a = 0; a < N; ++a) edge[a] -= upper[j][i] * basis[j][a];
+    }
+    upper[i][i] = norm(edge);
+    if (upper[i][i] <= 1e-12 * length || length <= 0.0) {
+      flat = true;
+      break;
+    }
+    for (int a = 0; a < N; ++a) basis[i][a] = edge[a] / upper[i][i];
+    at[i] = dot(rest, basis[i]);
+    for (int a = 0; a < N; ++a) rest[a] -= at[i] * basis[i][a];
+  }
+  std::array<double, N> weight{};
+  if (!flat) {
+    weight[0] = 1.0;
+    for (int i = count - 1; i > 0; --i) {
+      double sum = at[i];
+      for (int j = i + 1; j < count; ++j) sum -= upper[i][j] * weight[j];
+      weight[i] = sum / upper[i][i];
+      weight[0] -= weight[i];
+    }
+    if (std::all_of(weight.begin(), weight.begin() + count, [](double w) { return w >= 0.0; })) return norm(rest);
+  }
+  double best = std::numeric_limits<double>::infinity();
+  for (int omitted = 0; omitted < count; ++omitted) {
+    if (!flat && weight[omitted] >= 0.0) continue;
+    std::array<PointN<N>, N> face;
+    for (int i = 0, k = 0; i < count; ++i)
+      if (i != omitted) face[k++] = corners[i];
+    best = std::min(best, distance_to_simplex<N>(p, face, count - 1));
+  }
+  return best;
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Simplification from the options to the result: what is bound to hyperplanes, rounds until the error bound holds, and
+// what vertices and simplices carry along.
+#include "tegl/simplify.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include "shrinker.hpp"
+#include "simplify_fast.hpp"
+#include "simplify_orders.hpp"
+#include "tegl/check.hpp"
+#include "tegl/deviation.hpp"
+
+namespace tegl {
+namespace detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kErrorName = "error";
+constexpr std::size_t kMostPlanes = 20;
+/// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
+constexpr unsigned kGentleRounds = 6;
+constexpr unsigned kMostRounds = 12;
+/// Of the size of the contour: what rounding may add to an error.
+constexpr double kRounding = 1e-12;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The part of the progress from `from` to `to`.
+Progress part_of(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
+}
+
+/// What is left of a contour, before it is one again.
+template <int N>
+struct Remains {
+  std::vector<std::array<Index, N>> simplices;  ///< numbers of the original's vertices
+  std::vector<std::size_t> sources;             ///< #S: the original's simplex; empty if there is no such thing
+};
+
+template <int N, class Real>
+class Simplifier {
+ public:
+  Simplifier(const Contour<N, Real>& contour, const SimplifyOptions<N>& options)
+      : contour_(contour), options_(options) {
+    require_options();
+    for (int a = 0; a < N; ++a) {
+      double low = kInfinity, high = -kInfinity;
+      for (const auto& vertex : contour.vertices) {
+        low = std::min(low, static_cast<double>(vertex[a]));
+        high = std::max(high, static_cast<double>(vertex[a]));
+      }
+      box_[a] = {low, high};
+      if (low <= high) size_ = std::max({size_, (high - low) * options.scale[a], kEpsilon * std::abs(high)});
+    }
+    const auto before = static_cast<double>(contour.simplices.size());
+    if (options.ratio) count_ = static_cast<std::size_t>(std::llround(*options.ratio * before));
+    if (options.count) count_ = std::max<std::size_t>(count_, *options.count);
+    gather_carried();
+  }
+
+  Contour<N, Real> run() {
+    stats_.simplices_before = contour_.simplices.size();
+    stats_.vertices_before = contour_.vertices.size();
+    Contour<N, Real> result = contour_.simplices.empty() ? contour_ : until_error_holds();
+    stats_.simplices_after = result.simplices.size();
+    stats_.vertices_after = result.vertices.size();
+    return result;
+  }
+  [[nodiscard]] const SimplifyStats& stats() const noexcept { return stats_; }
+
+ private:
+  static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+  void require_options() const {
+    const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
+    if (!options_.count && !options_.ratio && !options_.max_error)
+      fail("no goal; expected a count of simplices, a ratio or a largest error");
+    if (options_.ratio && !(*options_.ratio >= 0.0 && *options_.ratio <= 1.0))
+      fail(fmt::format("the ratio is {}; expected 0 <= ratio <= 1", *options_.ratio));
+    if (options_.max_error && !(*options_.max_error >= 0.0))
+      fail(fmt::format("the largest error is {}; expected 0 or more", *options_.max_error));
+    if (!(options_.max_curvature >= 0.0))
+      fail(fmt::format("the largest curvature is {}; expected 0 or more", options_.max_curvature));
+    if (options_.planes.size() > kMostPlanes)
+      fail(fmt::format("{} hyperplanes; expected at most {}", options_.planes.size(), kMostPlanes));
+    for (const double scale : options_.scale)
+      if (!(scale > 0.0 && std::isfinite(scale))) fail(fmt::format("a scale is {}; expected a positive number", scale));
+    if (options_.method == SimplifyMethod::fast && N != 3)
+      fail(fmt::format("the fast method is for triangles; expected another one for simplices in {} dimensions", N));
+    for (const Attribute& attribute : contour_.vertex_attributes)
+      require_rows(attribute, contour_.vertices.size(), "vertices");
+    for (const Attribute& attribute : contour_.simplex_attributes)
+      require_rows(attribute, contour_.simplices.size(), "simplices");
+    if (!contour_.normals.empty() && contour_.normals.size() != contour_.vertices.size())
+      fail(fmt::format("{} normals; expected {}, as many as vertices", contour_.normals.size(),
+                       contour_.vertices.size()));
+  }
+
+  static void require_rows(const Attribute& attribute, std::size_t rows, const char* of) {
+    if (attribute.width > 0 && attribute.values.size() == rows * static_cast<std::size_t>(attribute.width)) return;
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the attribute '{}' has {} numbers of width {}; expected {} {} times that width",
+                            attribute.name, attribute.values.size(), attribute.width, rows, of));
+  }
+
+  /// Normals and attributes of each vertex, side by side. An error from before is no attribute but a debt.
+  void gather_carried() {
+    if (!contour_.normals.empty()) carried_width_ = N;
+    for (const Attribute& attribute : contour_.vertex_attributes) {
+      if (attribute.name == kErrorName) {
+        for (const double error : attribute.values) earlier_error_ = std::max(earlier_error_, error);
+        continue;
+      }
+      carried_attributes_.push_back(&attribute);
+      carried_width_ += static_cast<std::size_t>(attribute.width);
+    }
+    carried_.reserve(contour_.vertices.size() * carried_width_);
+    for (std::size_t v = 0; v < contour_.vertices.size(); ++v) {
+      if (!contour_.normals.empty())
+        for (const Real x : contour_.normals[v]) carried_.push_back(static_cast<double>(x));
+      for (const Attribute* attribute : carried_attributes_) {
+        const auto width = static_cast<std::size_t>(attribute->width);
+        carried_.insert(carried_.end(), attribute->values.begin() + static_cast<std::ptrdiff_t>(v * width),
+                        attribute->values.begin() + static_cast<std::ptrdiff_t>((v + 1) * width));
+      }
+    }
+  }
+
+  Contour<N, Real> until_error_holds() {
+    const double allowed = options_.max_error ? *options_.max_error + kRounding * size_ : kInfinity;
+    std::vector<double> tolerance(contour_.vertices.size(), allowed);
+    const bool measured = options_.measure || options_.max_error;
+    double from = 0.0;
+    while (stats_.rounds < kMostRounds) {
+      // Nobody knows how many rounds there will be: each takes half of what is left.
+      const double to = options_.max_error ? from + 0.5 * (1.0 - from) : 1.0;
+      const double middle = measured ? 0.5 * (from + to) : to;
+      ++stats_.rounds;
+      survivors_.clear();
+      const Progress shrinking = part_of(options_.progress, from, middle);
+      Contour<N, Real> result =
+          options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
+      if (!measured) return result;
+      const std::vector<double> errors = measure(result, middle, to);
+      if (*stats_.error() <= allowed) {
+        add_errors(result, errors);
+        return result;
+      }
+      tighten(tolerance, result, errors, allowed);
+      from = to;
+    }
+    // Nothing was near enough: what is sure to be is the contour itself.
+    Contour<N, Real> result = contour_;
+    stats_.error_of_original = stats_.error_of_result = earlier_error_;
+    std::erase_if(result.vertex_attributes, [](const Attribute& attribute) { return attribute.name == kErrorName; });
+    add_errors(result, std::vector<double>(result.simplices.size(), 0.0));
+    return result;
+  }
+
+  /// One round of a method that contracts edges.
+  Contour<N, Real> shrink(const std::vector<double>& tolerance, const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    ShrinkStart<N> what;
+    what.simplices = contour_.simplices;
+    what.points.reserve(contour_.vertices.size());
+    for (const auto& vertex : contour_.vertices) {
+      PointN<N> point;
+      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]);
+      what.points.push_back(point);
+    }
+    what.tolerance = tolerance;
+    what.scale = options_.scale;
+    what.carried_width = carried_width_;
+    what.carried = carried_;
+    what.border_fixed = options_.border == SimplifyBorder::fixed;
+    what.single_precision = std::is_same_v<Real, float>;
+    Shrinker<N> shrinker(std::move(what));
+    bind_to_planes(shrinker);
+
+    ShrinkGoal goal{count_, options_.max_curvature, &progress};
+    if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
+    if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
+    if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
+
+    survivors_.resize(contour_.vertices.size());
+    for (std::size_t v = 0; v < survivors_.size(); ++v) survivors_[v] = shrinker.survivor(static_cast<Index>(v));
+    Remains<N> remains;
+    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
+      if (!shrinker.complex().is_alive(s)) continue;
+      remains.simplices.push_back(shrinker.complex().simplex(s));
+      remains.sources.push_back(s);
+    }
+    Contour<N, Real> result = to_contour(remains, &shrinker);
+    stats_.simplify_seconds += seconds_since(start);
+    return result;
+  }
+
+  Contour<N, Real> shrink_fast(const std::vector<double>& tolerance, const Progress& progress) {
+    Remains<N> remains;
+    if constexpr (N == 3) {
+      const auto start = std::chrono::steady_clock::now();
+      if (progress && !progress(0.0)) throw Error(ErrorCode::Cancelled, "simplification cancelled before it began");
+      std::vector<PointN<3>> points;
+      points.reserve(contour_.vertices.size());
+      for (const auto& vertex : contour_.vertices) {
+        PointN<3> point;
+        for (int a = 0; a < 3; ++a) point[a] = static_cast<double>(vertex[a]) * options_.scale[a];
+        points.push_back(point);
+      }
+      const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
+      remains.simplices =
+          simplify_fast(contour_.simplices, points, count_, tightest, options_.border == SimplifyBorder::fixed);
+      stats_.simplify_seconds += seconds_since(start);
+    }
+    Contour<N, Real> result = to_contour(remains, nullptr);
+    if (!options_.allow_nonmanifold) require_manifold(result);
+    return result;
+  }
+
+  static void require_manifold(const Contour<N, Real>& result) {
+    const MeshReport report = check(result);
+    if (report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts == 0) return;
+    throw Error(
+        ErrorCode::UnsupportedData,
+        fmt::format("meshoptimizer's result is no oriented manifold ({} faces in more than two triangles, {} bad "
+                    "links, {} orientation conflicts); expected one: allow it, or take another method",
+                    report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts));
+  }
+
+  // ---- hyperplanes ----
+
+  void bind_to_planes(Shrinker<N>& shrinker) const {
+    unsigned number = 0;
+    for (int a = 0; a < N; ++a)
+      for (const double side : {box_[a].first, box_[a].second}) {
+        if (has_part_in_side(shrinker, a, side))
+          for (Index v = 0; v < shrinker.points().size(); ++v)
+            if (shrinker.points()[v][a] == side) shrinker.bind(v, number);
+        ++number;
+      }
+    const double precision = std::is_same_v<Real, float> ? 1e-6 : 1e-12;
+    for (const Hyperplane<N>& plane : options_.planes) {
+      for (Index v = 0; v < shrinker.points().size(); ++v) {
+        double sum = -plane.offset, size = std::abs(plane.offset);
+        for (int a = 0; a < N; ++a) {
+          sum += plane.normal[a] * shrinker.points()[v][a];
+          size += std::abs(plane.normal[a] * shrinker.points()[v][a]);
+        }
+        if (std::abs(sum) <= precision * size) shrinker.bind(v, number);
+      }
+      ++number;
+    }
+  }
+
+  /// Whether a whole simplex, or a whole face of the border, lies in a side of the bounding box.
+  static bool has_part_in_side(Shrinker<N>& shrinker, int axis, double side) {
+    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
+      int outside = 0, last_outside = 0;
+      for (int i = 0; i < N; ++i)
+        if (shrinker.points()[shrinker.complex().simplex(s)[i]][axis] != side) {
+          ++outside;
+          last_outside = i;
+        }
+      if (outside == 0) return true;
+      if (outside == 1 && (shrinker.complex().border_faces(s) >> last_outside & 1u) != 0) return true;
+    }
+    return false;
+  }
+
+  // ---- errors ----
+
+  /// The bound of each simplex of the result, both ways.
+  std::vector<double> measure(const Contour<N, Real>& result, double from, double to) {
+    const auto start = std::chrono::steady_clock::now();
+    DeviationOptions<N> options;
+    options.scale = options_.scale;
+    options.threads = options_.threads;
+    options.progress = part_of(options_.progress, from, 0.5 * (from + to));
+    Deviation of_original = deviation(contour_, result, options);
+    options.progress = part_of(options_.progress, 0.5 * (from + to), to);
+    const Deviation of_result = deviation(result, contour_, options);
+    std::vector<double> errors = std::move(of_original.of_to);
+    for (std::size_t s = 0; s < errors.size(); ++s) errors[s] = std::max(errors[s], of_result.of_from[s]);
+    stats_.error_of_original = of_original.bound + earlier_error_;
+    stats_.error_of_result = of_result.bound + earlier_error_;
+    stats_.measure_seconds += seconds_since(start);
+    return errors;
+  }
+
+  /// Less tolerance for all that became part of a simplex with too large an error.
+  void tighten(std::vector<double>& tolerance, const Contour<N, Real>& result, const std::vector<double>& errors,
+               double allowed) const {
+    const bool gently = stats_.rounds <= kGentleRounds;
+    if (survivors_.empty()) {
+      const double factor = std::clamp(0.8 * allowed / *stats_.error(), 0.1, 0.8);
+      for (double& t : tolerance) t = gently || stats_.rounds + 2 < kMostRounds ? factor * t : 0.0;
+      return;
+    }
+    std::vector<double> factors(contour_.vertices.size(), 1.0);
+    for (std::size_t s = 0; s < errors.size(); ++s) {
+      if (errors[s] + earlier_error_ <= allowed) continue;
+      const double factor = gently ? std::clamp(0.8 * allowed / errors[s], 0.1, 0.8) : 0.0;
+      for (const Index v : result.simplices[s]) factors[kept_[v]] = std::min(factors[kept_[v]], factor);
+    }
+    for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[survivors_[v]];
+  }
+
+  /// The attribute: for each vertex the largest bound of its simplices.
+  void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
+    Attribute attribute;
+    attribute.name = kErrorName;
+    const auto& units = result.axis_units;
+    if (std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units[0]; }))
+      attribute.unit = units[0];
+    attribute.values.assign(result.vertices.size(), earlier_error_);
+    for (std::size_t s = 0; s < errors.size(); ++s)
+      for (const Index v : result.simplices[s])
+        attribute.values[v] = std::max(attribute.values[v], errors[s] + earlier_error_);
+    result.vertex_attributes.push_back(std::move(attribute));
+  }
+
+  // ---- the result ----
+
+  /// Vertices that are used, in their order, and what goes with them. `shrinker`: where they are now; null: where they
+  /// were.
+  Contour<N, Real> to_contour(const Remains<N>& remains, const Shrinker<N>* shrinker) {
+    Contour<N, Real> result;
+    result.axis_names = contour_.axis_names;
+    result.axis_units = contour_.axis_units;
+    result.direction = contour_.direction;
+    std::vector<Index> number(contour_.vertices.size(), 0);
+    for (const auto& simplex : remains.simplices)
+      for (const Index v : simplex) number[v] = 1;
+    kept_.clear();
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] == 0) continue;
+      number[v] = static_cast<Index>(kept_.size());
+      kept_.push_back(static_cast<Index>(v));
+    }
+    result.simplices.reserve(remains.simplices.size());
+    for (auto simplex : remains.simplices) {
+      for (Index& v : simplex) v = number[v];
+      result.simplices.push_back(simplex);
+    }
+    result.vertices.reserve(kept_.size());
+    for (const Index v : kept_) {
+      auto vertex = contour_.vertices[v];
+      if (shrinker != nullptr)
+        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(shrinker->points()[v][a]);
+      result.vertices.push_back(vertex);
+    }
+    carry_along(result, shrinker);
+    if (!remains.sources.empty()) carry_simplex_attributes(result, remains.sources);
+    return result;
+  }
+
+  void carry_along(Contour<N, Real>& result, const Shrinker<N>* shrinker) const {
+    for (const Attribute* attribute : carried_attributes_) {
+      result.vertex_attributes.push_back({attribute->name, attribute->unit, attribute->width, {}});
+      result.vertex_attributes.back().values.reserve(kept_.size() * static_cast<std::size_t>(attribute->width));
+    }
+    for (const Index v : kept_) {
+      std::span<const double> values =
+          shrinker != nullptr ? shrinker->carried(v) : std::span(carried_).subspan(v * carried_width_, carried_width_);
+      if (!contour_.normals.empty()) {
+        const bool same = shrinker == nullptr || shrinker->version(v) == 0;
+        result.normals.push_back(same ? contour_.normals[v] : unit_normal(values.first(N)));
+        values = values.subspan(N);
+      }
+      for (std::size_t i = 0; i < carried_attributes_.size(); ++i) {
+        const auto width = static_cast<std::size_t>(carried_attributes_[i]->width);
+        auto& target = result.vertex_attributes[i].values;
+        target.insert(target.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width));
+        values = values.subspan(width);
+      }
+    }
+  }
+
+  static std::array<Real, N> unit_normal(std::span<const double> sum) {
+    PointN<N> normal;
+    std::copy(sum.begin(), sum.end(), normal.begin());
+    const double length = norm(normal);
+    std::array<Real, N> result{};
+    if (length > 0.0)
+      for (int a = 0; a < N; ++a) result[a] = static_cast<Real>(normal[a] / length);
+    return result;
+  }
+
+  void carry_simplex_attributes(Contour<N, Real>& result, const std::vector<std::size_t>& sources) const {
+    for (const Attribute& attribute : contour_.simplex_attributes) {
+      Attribute& left = result.simplex_attributes.emplace_back();
+      left.name = attribute.name;
+      left.unit = attribute.unit;
+      left.width = attribute.width;
+      const auto width = static_cast<std::ptrdiff_t>(attribute.width);
+      left.values.reserve(sources.size() * static_cast<std::size_t>(attribute.width));
+      for (const std::size_t s : sources) {
+        const auto first = attribute.values.begin() + static_cast<std::ptrdiff_t>(s) * width;
+        left.values.insert(left.values.end(), first, first + width);
+      }
+    }
+  }
+
+  const Contour<N, Real>& contour_;
+  const SimplifyOptions<N>& options_;
+  std::array<std::pair<double, double>, N> box_;
+  double size_ = 0.0;
+  std::size_t count_ = 0;
+  std::size_t carried_width_ = 0;
+  std::vector<double> carried_;
+  std::vector<const Attribute*> carried_attributes_;
+  double earlier_error_ = 0.0;
+  std::vector<Index> survivors_;  ///< of the round: what each vertex became part of; empty if that is not known
+  std::vector<Index> kept_;       ///< of the round: the original numbers of the result's vertices
+  SimplifyStats stats_;
+};
+
+}  // namespace
+}  // namespace detail
+
+template <int N>
+std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
+  // Points of the border across axis a: origin + what the other columns of the map span.
+  const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
+  std::vector<Hyperplane<N>> result;
+  for (int a = 0; a < N; ++a)
+    for (const std::size_t i : {std::size_t{0}, grid.axes[a].size() - 1}) {
+      Hyperplane<N> plane;
+      plane.normal = inverse.row(a).transpose();
+      plane.offset = grid.axes[a][i];
+      for (int b = 0; b < N; ++b) plane.offset += inverse(a, b) * grid.offset(b);
+      result.push_back(plane);
+    }
+  return result;
+}
+
+template <int N, class Real>
+Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options, SimplifyStats* stats) {
+  detail::Simplifier<N, Real> simplifier(contour, options);
+  Contour<N, Real> result = simplifier.run();
+  if (stats != nullptr) *stats = simplifier.stats();
+  return result;
+}
+
+template std::vector<Hyperplane<2>> border_planes(const Grid<2>&);
+template std::vector<Hyperplane<3>> border_planes(const Grid<3>&);
+template std::vector<Hyperplane<4>> border_planes(const Grid<4>&);
+template Contour<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&, SimplifyStats*);
+template Contour<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&, SimplifyStats*);
+template Contour<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&, SimplifyStats*);
+template Contour<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&, SimplifyStats*);
+template Contour<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&, SimplifyStats*);
+template Contour<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&, SimplifyStats*);
+
+}  // namespace tegl
