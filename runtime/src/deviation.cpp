@@ -29,11 +29,19 @@ constexpr double kSlack = 1.5;
 constexpr double kEdgeShare = 0.02;
 /// If that is too little, by this factor more.
 constexpr double kWider = 3.0;
-/// More simplices at hand than these: a part is halved first.
+/// More simplices at hand than these: a part is halved first; in 4D, where halving is of little help, left.
 constexpr std::size_t kMostNear = 40;
-constexpr int kMostHalvings = 24;
+constexpr int kMostHalvings = 12;
 /// How often what nothing covers is halved, to measure it more closely.
-constexpr int kUncoveredHalvings = 10;
+template <int N>
+constexpr int kUncoveredHalvings = N == 4 ? 5 : 10;
+/// How much more than the distance of one of its points the bound of a part may be.
+constexpr double kLooseness = 1.25;
+/// Simplices that are flatter have no normal to speak of.
+constexpr double kFlat = 1e-9;
+/// Of the longest edge: at this distance and more, it is bounded well enough without any matching.
+template <int N>
+constexpr double kFarAway = N == 4 ? 0.25 : 0.7;
 /// Of the content of a simplex: rounding of the sum of its parts.
 constexpr double kCoverPrecision = 1e-7;
 /// No use in cutting on when what is left is in so many parts.
@@ -177,7 +185,8 @@ class Matcher {
     bound_ = 0.0;
     const double edge = from_.edges[s];
     const double length = norm(from_.normals[s]);
-    if (shape_of_simplex<N>(corners, length) <= 1e-9) {
+    // What is flat has no normal; what is far away needs none.
+    if (shape_of_simplex<N>(corners, length) <= kFlat || nearest > kFarAway<N> * edge) {
       measure_uncovered(corners, 0);
       return bound_;
     }
@@ -290,8 +299,8 @@ class Matcher {
     for (const PointN<N>& corner : corners) box.add(corner);
     std::vector<Index> near;
     tree_.visit_near(box, reach, [&](Index t) { near.push_back(t); });
-    // Halving helps as long as it is the part, not the reach, that has so many near it.
-    if (near.size() > kMostNear && edge > 2.0 * reach && depth < kMostHalvings) {
+    if (near.size() > kMostNear) {
+      if (N == 4 || edge < 2.0 * reach || depth >= kMostHalvings) return measure_uncovered(corners, 0);
       for (const Part& half : halves(part)) match(frame, half, on_plane, depth + 1);
       return;
     }
@@ -392,7 +401,7 @@ class Matcher {
         farthest = std::max(farthest, distance_to_simplex<N>(corner, to_.corners[t], N));
       best = std::min(best, farthest);
     }
-    if (best > kSlack * nearest && best > bound_ && depth < kUncoveredHalvings) {
+    if (best > kLooseness * nearest && best > bound_ && depth < kUncoveredHalvings<N>) {
       for (const CornersN<N>& half : halves(part)) measure_uncovered(half, depth + 1);
       return;
     }
