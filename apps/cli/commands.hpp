@@ -67,5 +67,6 @@ std::unique_ptr<Command> make_index_command(CLI::App& program);
 std::unique_ptr<Command> make_components_command(CLI::App& program);
 std::unique_ptr<Command> make_measure_command(CLI::App& program);
 std::unique_ptr<Command> make_track_command(CLI::App& program);
+std::unique_ptr<Command> make_simplify_command(CLI::App& program);
 
 }  // namespace tegl::cli

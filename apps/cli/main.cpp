@@ -113,6 +113,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_components_command(program));
   commands.push_back(tegl::cli::make_measure_command(program));
   commands.push_back(tegl::cli::make_track_command(program));
+  commands.push_back(tegl::cli::make_simplify_command(program));
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
