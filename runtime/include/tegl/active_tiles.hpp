@@ -200,8 +200,8 @@ struct ActiveTilesOptions {
   Progress progress;
 };
 
-/// Builds an index. About linear in the number of tiles, in time and in memory while it is built. Images of up to
-/// 2^32 tiles take half the memory of larger ones. Errors: Cancelled.
+/// Builds an index. About linear in the number of tiles, in time and in memory while it is built. Errors: Cancelled;
+/// TooLarge for an interval tree or a span space of an image of more than 2^32 tiles.
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
                                                    const ActiveTilesOptions& options = {});
