@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const bool kAllIsovalues = std::getenv("TEGL_ALL_ISOVALUES") != nullptr;
+const bool kAllIsovalues = wants_all_isovalues();
 
 struct File {
   std::string path;
@@ -41,7 +41,7 @@ template <Value T, int N>
 std::vector<double> isovalues_of(const OwnedImage<T, N>& image, std::size_t most) {
   std::vector<double> values = distinct_values(image);
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (sizeof(T) > 1) most = std::min<std::size_t>(most, 1000);
+  if (sizeof(T) > 1 && kAllIsovalues) most = 500;  // and as many between them
   const std::size_t step = kAllIsovalues && sizeof(T) == 1 ? 1 : (values.size() + most - 1) / most;
   std::vector<double> isovalues;
   for (std::size_t i = 0; i < values.size(); i += step) {

@@ -71,19 +71,19 @@ TYPED_TEST_SUITE(ActiveTilesOf, ValueTypes);
 
 TYPED_TEST(ActiveTilesOf, NoiseIn2dAreThoseOfTheDefinition) {
   const auto image = noise<TypeParam, 2>({70, 23}, 1);
-  expect_right(image, critical_isovalues(image, 700));
+  expect_right(image, critical_isovalues(image, 300));
 }
 TYPED_TEST(ActiveTilesOf, NoiseIn3dAreThoseOfTheDefinition) {
   const auto image = noise<TypeParam, 3>({19, 9, 7}, 2);
-  expect_right(image, critical_isovalues(image, 600));
+  expect_right(image, critical_isovalues(image, 300));
 }
 TYPED_TEST(ActiveTilesOf, NoiseIn4dAreThoseOfTheDefinition) {
   const auto image = noise<TypeParam, 4>({11, 4, 3, 5}, 3);
-  expect_right(image, critical_isovalues(image, 600));
+  expect_right(image, critical_isovalues(image, 300));
 }
 TYPED_TEST(ActiveTilesOf, NoiseIn5dAreThoseOfTheDefinition) {
   const auto image = noise<TypeParam, 5>({10, 3, 4, 2, 3}, 4);
-  expect_right(image, critical_isovalues(image, 400));
+  expect_right(image, critical_isovalues(image, 200));
 }
 TYPED_TEST(ActiveTilesOf, FewValuesAreThoseOfTheDefinition) {
   const auto image = coarse_noise<TypeParam, 3>(Grid<3>::unit({30, 12, 9}), 5, 6);
@@ -91,7 +91,7 @@ TYPED_TEST(ActiveTilesOf, FewValuesAreThoseOfTheDefinition) {
 }
 TYPED_TEST(ActiveTilesOf, SmoothFieldAreThoseOfTheDefinition) {
   const auto image = sample_field<TypeParam>(centred_grid<3>(22, 1.5), Gyroid<3>{}, 30.0, 40.0);
-  expect_right(image, critical_isovalues(image, 400));
+  expect_right(image, critical_isovalues(image, 200));
 }
 
 TEST(ActiveTiles, LongRowsAndManyBucketsAreThoseOfTheDefinition) {
@@ -101,11 +101,11 @@ TEST(ActiveTiles, LongRowsAndManyBucketsAreThoseOfTheDefinition) {
 
 TEST(ActiveTiles, NextToMissingValuesAreThoseOfTheDefinition) {
   const auto plane = noise_with_missing<float, 2>(Grid<2>::unit({67, 20}), 7, 0.1);
-  expect_right(plane, critical_isovalues(plane, 600));
+  expect_right(plane, critical_isovalues(plane, 300));
   const auto volume = noise_with_missing<double, 3>(Grid<3>::unit({17, 9, 8}), 8, 0.1);
-  expect_right(volume, critical_isovalues(volume, 600));
+  expect_right(volume, critical_isovalues(volume, 300));
   const auto series = noise_with_missing<float, 4>(Grid<4>::unit({9, 5, 4, 4}), 9, 0.05);
-  expect_right(series, critical_isovalues(series, 600));
+  expect_right(series, critical_isovalues(series, 300));
   EXPECT_TRUE(build_active_tiles(series.view(), ActiveMethod::interval_tree)->image().any_missing);
 }
 

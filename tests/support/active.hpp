@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -58,12 +59,16 @@ std::vector<double> distinct_values(const OwnedImage<T, N>& image) {
   return values;
 }
 
-/// Isovalues at which the active tiles may differ, and just above and below each of them; at most about `most`.
+/// Whether tests are to take all isovalues there are, however long that takes: TEGL_ALL_ISOVALUES in the environment.
+inline bool wants_all_isovalues() { return std::getenv("TEGL_ALL_ISOVALUES") != nullptr; }
+
+/// Isovalues at which the active tiles may differ, and just above and below each of them; at most about `most` unless
+/// all are wanted.
 template <Value T, int N>
 std::vector<double> critical_isovalues(const OwnedImage<T, N>& image, std::size_t most) {
   const std::vector<double> values = distinct_values(image);
   std::vector<double> result;
-  const std::size_t step = values.size() * 3 / most + 1;
+  const std::size_t step = wants_all_isovalues() ? 1 : values.size() * 3 / most + 1;
   for (std::size_t i = 0; i < values.size(); i += step) {
     if (!std::isfinite(values[i])) continue;
     result.push_back(std::nextafter(values[i], -std::numeric_limits<double>::max()));
