@@ -34,7 +34,7 @@ constexpr std::size_t kMostNear = 40;
 constexpr int kMostHalvings = 12;
 /// How often what nothing covers is halved, to measure it more closely.
 template <int N>
-constexpr int kUncoveredHalvings = N == 4 ? 5 : 10;
+constexpr int kUncoveredHalvings = N == 4 ? 2 : 10;
 /// How much more than the distance of one of its points the bound of a part may be.
 constexpr double kLooseness = 1.25;
 /// Simplices that are flatter have no normal to speak of.
