@@ -113,8 +113,9 @@ struct SimplifyStats {
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
 /// stays. It is the same for any number of threads. Errors: InvalidArgument (options; no manifold: a face in three
 /// simplices, a repeated vertex; `fast` for other than triangles, or without meshoptimizer), UnsupportedData (the
-/// result of `fast` is no manifold), Cancelled. Time: O(S log S), about 5 microseconds for each triangle and 20 for
-/// each tetrahedron, and as much again for the error. Memory: about 300 bytes for each vertex and 100 for each simplex.
+/// result of `fast` is no manifold), Cancelled. Time: O(S log S), about 5 microseconds for each triangle and 10 for
+/// each tetrahedron (facets, vertices: up to five times that); the error as long for triangles, ten times as long for
+/// tetrahedra. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
                           SimplifyStats* stats = nullptr);
