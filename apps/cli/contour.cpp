@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "commands.hpp"
 #include "extraction.hpp"
@@ -16,6 +19,7 @@
 #include "result.hpp"
 #include "streaming.hpp"
 #include "tegl/active_tiles_io.hpp"
+#include "tegl/pick.hpp"
 
 namespace tegl::cli {
 
@@ -25,6 +29,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  tegl contour head.nii.gz --iso 60 -o head.ply\n"
     "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
+    "  tegl contour head.nii.gz --iso 60 --pick 12.5,-40,8 -o bone.ply\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --close -o warm_water.vtkhdf\n"
     "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
     "  tegl contour head.nii.gz --iso 60 --triangulation halving-chord -o head.ply\n"
@@ -46,6 +51,10 @@ class ContourCommand final : public Command {
     app().add_flag("--facets", facets_, "the contour without triangulation: segments, polygons or polyhedra");
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
     app().add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote");
+    app().add_option(
+        "--pick", pick_,
+        "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
+        "the image's axes");
     streaming_.add_to(app());
     add_variable();
     add_quiet();
@@ -57,7 +66,8 @@ class ContourCommand final : public Command {
     const bool streams_it = streaming_.wanted();
     if (!index_.empty() && facets_)
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
-    ExtractOptions options = options_.library_options((!streams_it && index_.empty()) || facets_);
+    const std::vector<double> point = picked_point();
+    ExtractOptions options = options_.library_options((!streams_it && index_.empty() && point.empty()) || facets_);
     require_input(file());
     if (facets_) return run_facets(streams, {isovalue, options, options_.single_precision(), no_check_});
     require_output(output_, file());
@@ -69,6 +79,7 @@ class ContourCommand final : public Command {
 
     ProgressBar bar(streams.err, wants_progress());
     ContourResult result;
+    if (!point.empty()) result.picked = Picked{point, {}, 0, 0, 0};
     result.input = file();
     result.output = output_;
     result.isovalue = isovalue;
@@ -91,6 +102,11 @@ class ContourCommand final : public Command {
     require_contour(input, *result.isovalue);
     result.seconds.read = watch.lap();
 
+    if (result.picked) {
+      options.progress = bar.stage("contour");
+      pick(input.image, options, result);
+      return finish(input, {}, bar, result);
+    }
     ExtractStats& stats = result.stats.emplace();
     if (const auto method = options_.polygon_triangulation()) {
       result.mesh = triangulated_polygons(
@@ -111,6 +127,47 @@ class ContourCommand final : public Command {
     input.image = AnyImage();  // its memory is of more use to the check
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);
+  }
+
+  /// --pick as numbers; none without.
+  [[nodiscard]] std::vector<double> picked_point() {
+    std::vector<double> point;
+    if (app().count("--pick") == 0) return point;
+    if (streaming_.wanted() || !index_.empty() || facets_)
+      throw Error(ErrorCode::InvalidArgument,
+                  "--pick finds tiles from its point, in memory; expected no --index, --facets, --stream or --raw");
+    for (std::size_t at = 0; at <= pick_.size();) {
+      const std::size_t comma = std::min(pick_.find(',', at), pick_.size());
+      point.push_back(parse_finite("--pick", std::string_view(pick_).substr(at, comma - at)));
+      at = comma + 1;
+    }
+    return point;
+  }
+
+  /// The component nearest to the point of --pick.
+  void pick(const AnyImage& image, const ExtractOptions& options, ContourResult& result) const {
+    Stopwatch watch;
+    Picked& picked = *result.picked;
+    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+      if (picked.point.size() != N)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--pick {} has {} numbers; expected {}, one for each axis",
+                                                            pick_, picked.point.size(), N));
+      std::array<double, N> point;
+      std::copy_n(picked.point.begin(), N, point.begin());
+      PickReport<N> report;
+      const auto keep = [&](const auto& contour) {
+        picked.tile.assign(report.at.begin(), report.at.end());
+        picked.distance = report.distance;
+        picked.tiles = report.tiles;
+        picked.components = report.components;
+        return to_mesh(contour);
+      };
+      return options_.single_precision()
+                 ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options, &report))
+                 : keep(extract_component<double>(owned.view(), *result.isovalue, point, options, &report));
+    };
+    result.mesh = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+    result.seconds.generate += watch.lap();
   }
 
   /// The contour by --index, whose reading counts as such.
@@ -174,6 +231,7 @@ class ContourCommand final : public Command {
   std::string output_;
   std::string index_;
   bool facets_ = false;
+  std::string pick_;
   bool no_check_ = false;
 };
 

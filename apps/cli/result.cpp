@@ -2,6 +2,7 @@
 #include "result.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <utility>
@@ -135,6 +136,13 @@ Json to_json(const ContourResult& result) {
       json["at"]["frame"] = {{"origin", result.cut->frame->origin}, {"axes", result.cut->frame->axes}};
     }
   }
+  json["pick"] = nullptr;
+  if (result.picked)
+    json["pick"] = {{"point", result.picked->point},
+                    {"tile", result.picked->tile},
+                    {"distance", result.picked->distance},
+                    {"tiles", result.picked->tiles},
+                    {"components", result.picked->components}};
   add_check_keys(json, result.size(), result.report);
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
   json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);
@@ -151,6 +159,14 @@ std::string to_text(const Console& console, const ContourResult& result) {
   std::string text = fmt::format("{}\n", console.bold(what));
   text += report_line("input",
                       result.variable.empty() ? result.input : fmt::format("{} ({})", result.input, result.variable));
+  if (result.picked) {
+    const Picked& picked = *result.picked;
+    text += report_line("picked",
+                        fmt::format("({}): tile ({}), {}", fmt::join(picked.point, ", "), fmt::join(picked.tile, ", "),
+                                    picked.distance == 0 ? "which it is in" : number(picked.distance) + " steps away"));
+    text += report_line("", fmt::format("1 of {} in {}", counted(picked.components, "component", "components"),
+                                        counted(picked.tiles, "tile", "tiles")));
+  }
   if (result.stats) {
     text += report_line(
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));

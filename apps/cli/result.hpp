@@ -68,6 +68,15 @@ struct Cut {
   std::optional<CutFrame> frame;  ///< of others, where it is known
 };
 
+/// What --pick found.
+struct Picked {
+  std::vector<double> point;
+  std::vector<std::size_t> tile;  ///< index of the nearest active tile
+  double distance = 0;            ///< to it, in steps of the grid
+  std::uint64_t tiles = 0;        ///< reached from it
+  std::uint64_t components = 0;   ///< in those
+};
+
 /// Wall-clock seconds of each stage; what did not happen took 0.
 struct StageSeconds {
   double read = 0;
@@ -92,7 +101,8 @@ struct ContourResult {
   int image_dim = 0;
   std::optional<double> isovalue;  ///< none for cuts of a saved contour
   std::optional<Cut> cut;
-  std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour
+  std::optional<Picked> picked;
+  std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour, and for picks
   std::optional<MeshReport> report;   ///< none with --no-check
   Mesh mesh;
   std::optional<MeshSize> streamed;  ///< for what went to the file without being in memory

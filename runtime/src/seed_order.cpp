@@ -101,6 +101,7 @@ void scan_with_progress(const PaddedTiles& tiles, const std::vector<int>& order,
       report_progress(progress, static_cast<double>(met) / static_cast<double>(tiles.room()));
     visit(tile);
   });
+  report_progress(progress, 1.0);
 }
 
 }  // namespace

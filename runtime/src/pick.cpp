@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From a point to the nearest active tile, from there through all faces that the contour passes, and from the contour
+// in those tiles to one component. Tiles beside the component are never entered by the contour's neighbours alone: what
+// is reached is made of whole components.
+#include "tegl/pick.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "extract_kernel.hpp"
+#include "locate.hpp"
+#include "tegl/components.hpp"
+#include "tile_flood.hpp"
+
+namespace tegl {
+
+namespace {
+
+constexpr double kNearestShare = 0.1;  ///< of the progress, for the search of the nearest tile
+
+/// A point in steps of the grid.
+template <int N>
+std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
+  std::array<double, N> at;
+  for (int a = 0; a < N; ++a) at[a] = static_cast<double>(place.base[a]) + place.share[a];
+  return at;
+}
+
+/// Looks around a point, shell by shell.
+template <Value T, int N>
+class NearestTile {
+ public:
+  NearestTile(const detail::TileFlood<T, N>& flood, const std::array<double, N>& at) : flood_(flood), at_(at) {
+    for (int a = 0; a < N; ++a)
+      centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid().size(a)) - 1);
+  }
+
+  /// Tells the progress; finds nothing if no tile is active.
+  bool find(PickReport<N>& report, const Progress& progress) {
+    std::ptrdiff_t most = 0;
+    for (int a = 0; a < N; ++a)
+      most = std::max({most, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
+    for (radius_ = 0; radius_ <= most; ++radius_) {
+      // A tile of this shell is that far away at least.
+      const double least = static_cast<double>(std::max<std::ptrdiff_t>(0, radius_ - 1));
+      if (report.found && least * least > square_) break;
+      detail::report_progress(progress, kNearestShare * static_cast<double>(radius_) / static_cast<double>(most + 1));
+      std::array<std::ptrdiff_t, N> index = centre_;
+      look(N - 1, false, index, report);
+    }
+    report.distance = std::sqrt(square_);
+    return report.found;
+  }
+
+ private:
+  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return flood_.grid(); }
+
+  /// All tiles of the shell with these indices along the axes above `axis`; `on_shell`: those are on it already.
+  void look(int axis, bool on_shell, std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
+    if (axis < 0) return weigh(index, report);
+    const bool ends_alone = axis == 0 && !on_shell && radius_ > 0;
+    for (std::ptrdiff_t d = -radius_; d <= radius_; d += ends_alone ? 2 * radius_ : 1) {
+      index[axis] = centre_[axis] + d;
+      if (index[axis] < 0 || index[axis] >= static_cast<std::ptrdiff_t>(grid().size(axis))) continue;
+      look(axis - 1, on_shell || d == -radius_ || d == radius_, index, report);
+    }
+  }
+
+  void weigh(const std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
+    double square = 0;
+    std::array<std::size_t, N> at;
+    for (int a = 0; a < N; ++a) {
+      const auto low = static_cast<double>(index[a]);
+      const double off = std::max({0.0, low - at_[a], at_[a] - low - 1.0});
+      square += off * off;
+      at[a] = static_cast<std::size_t>(index[a]);
+    }
+    const TileNumber tile = grid().number(at);
+    if (report.found && (square > square_ || (square == square_ && tile > report.tile))) return;
+    if (!flood_.is_active(flood_.signature(tile))) return;
+    report.found = true;
+    report.tile = tile;
+    report.at = at;
+    square_ = square;
+  }
+
+  const detail::TileFlood<T, N>& flood_;
+  std::array<double, N> at_;
+  std::array<std::ptrdiff_t, N> centre_;
+  std::ptrdiff_t radius_ = 0;
+  double square_ = 0;
+};
+
+/// The label of the component with the vertex nearest to a point.
+template <int N, class Real>
+Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                        const detail::GridLocator<N>& locator, const std::type_identity_t<std::array<double, N>>& at,
+                        const std::vector<bool>& allowed) {
+  Index nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) continue;
+    std::array<double, N> world;
+    for (int a = 0; a < N; ++a) world[a] = static_cast<double>(contour.vertices[v][a]);
+    detail::CellPlace<N> place;
+    if (!locator.find(world, place)) continue;
+    const auto here = in_steps(place);
+    double square = 0;
+    for (int a = 0; a < N; ++a) square += (here[a] - at[a]) * (here[a] - at[a]);
+    if (square < least) {
+      least = square;
+      nearest = labels.vertices[v];
+    }
+  }
+  return nearest;
+}
+
+/// The components with a simplex whose middle lies in one of these tiles.
+template <int N, class Real>
+std::vector<bool> components_in(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                const detail::GridLocator<N>& locator, const TileGrid<N>& grid,
+                                const std::vector<TileNumber>& tiles) {
+  std::vector<bool> result(labels.count);
+  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
+    if (result[labels.simplices[s]]) continue;
+    std::array<double, N> middle{};
+    for (const Index v : contour.simplices[s])
+      for (int a = 0; a < N; ++a) middle[a] += static_cast<double>(contour.vertices[v][a]) / N;
+    detail::CellPlace<N> place;
+    if (locator.find(middle, place) && std::binary_search(tiles.begin(), tiles.end(), grid.number(place.base)))
+      result[labels.simplices[s]] = true;
+  }
+  return result;
+}
+
+template <int N>
+std::array<double, N> place_in_grid(const detail::GridLocator<N>& locator, const Grid<N>& grid,
+                                    const std::type_identity_t<std::array<double, N>>& point) {
+  detail::CellPlace<N> place;
+  if (locator.find(point, place)) return in_steps(place);
+  std::array<double, N> first, last;
+  for (int a = 0; a < N; ++a) {
+    first[a] = grid.axes[a][0];
+    last[a] = grid.axes[a][grid.axes[a].size() - 1];
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("the point ({}) is not in the image; expected one from ({}) to ({}){}",
+                          fmt::join(point, ", "), fmt::join(first, ", "), fmt::join(last, ", "),
+                          grid.has_world_map() ? ", mapped to the world as the image is" : ""));
+}
+
+}  // namespace
+
+template <class Real, Value T, int N>
+Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
+                                   const std::type_identity_t<std::array<double, N>>& point,
+                                   const ExtractOptions& options, PickReport<N>* report) {
+  detail::check_arguments(isovalue, options);
+  const detail::GridLocator<N> locator(image.grid());
+  const std::array<double, N> at = place_in_grid(locator, image.grid(), point);
+  PickReport<N> own;
+  PickReport<N>& found = report != nullptr ? *report : own;
+  found = {};
+  const detail::TileFlood<T, N> flood(image, isovalue);
+  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress))
+    return extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, options);  // names, units, no tiles
+  std::vector<TileNumber> tiles =
+      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads, {});
+  std::sort(tiles.begin(), tiles.end());
+  found.tiles = tiles.size();
+  ExtractOptions rest = options;
+  if (options.progress)
+    rest.progress = [&options](double fraction) {
+      return options.progress(kNearestShare + (1 - kNearestShare) * fraction);
+    };
+  const bool in_tiles = N <= 4 && !options.close;
+  Contour<N, Real> contour;
+  if constexpr (N <= 4)
+    if (in_tiles) contour = extract<Real>(image, isovalue, rest, *choose_tiles(image, tiles));
+  if (!in_tiles) contour = extract<Real>(image, isovalue, rest);
+  const ComponentLabels labels = label_components(contour, {options.threads, {}});
+  const std::vector<bool> allowed =
+      in_tiles ? std::vector<bool>(labels.count, true) : components_in(contour, labels, locator, flood.grid(), tiles);
+  found.components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
+  if (labels.count == 0) return contour;
+  std::vector<bool> keep(labels.count);
+  keep[nearest_component(contour, labels, locator, at, allowed)] = true;
+  return select_components(contour, labels, keep);
+}
+
+#define TEGL_INSTANTIATE_REAL(T, N, Real)                                                                           \
+  template Contour<N, Real> extract_component<Real, T, N>(const Image<T, N>&, double, const std::array<double, N>&, \
+                                                          const ExtractOptions&, PickReport<N>*);
+#define TEGL_INSTANTIATE_ONE(T, N)   \
+  TEGL_INSTANTIATE_REAL(T, N, float) \
+  TEGL_INSTANTIATE_REAL(T, N, double)
+#include "active_tiles_instantiate.hpp"
+
+}  // namespace tegl

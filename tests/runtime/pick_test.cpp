@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A component that is picked is one of the whole contour's, byte by byte, and the one that the rule says.
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "active.hpp"
+#include "fields.hpp"
+#include "invariants.hpp"
+#include "tegl/components.hpp"
+#include "tegl/pick.hpp"
+
+namespace tegl::test {
+namespace {
+
+template <int N, class Real>
+bool same(const Contour<N, Real>& a, const Contour<N, Real>& b) {
+  return a.vertices == b.vertices && a.simplices == b.simplices && a.normals == b.normals &&
+         a.axis_names == b.axis_names && a.axis_units == b.axis_units && a.direction == b.direction;
+}
+
+/// The nearest active tile, by looking at all.
+template <int N>
+TileNumber nearest_by_trial(const TileGrid<N>& grid, const std::vector<TileNumber>& active, const Point<N>& at) {
+  TileNumber nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TileNumber tile : active) {
+    double square = 0;
+    for (int a = 0; a < N; ++a) {
+      const auto low = static_cast<double>(grid.index(tile)[a]);
+      const double off = std::max({0.0, low - at[a], at[a] - low - 1.0});
+      square += off * off;
+    }
+    if (square < least) {
+      least = square;
+      nearest = tile;
+    }
+  }
+  return nearest;
+}
+
+/// For grids of step 1 from the origin.
+template <Value T, int N>
+void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions options, int picks) {
+  const auto whole = extract<double>(image.view(), isovalue, options);
+  const auto labels = label_components(whole);
+  const auto parts = split_components(whole, labels);
+  const TileGrid<N> grid(image.view().grid().sizes());
+  const auto active = PlainRanges<N>(image.view()).active(isovalue);
+  std::mt19937_64 random(5);
+  for (int i = 0; i < picks; ++i) {
+    Point<N> at;
+    for (int a = 0; a < N; ++a)
+      at[a] = static_cast<double>(random() >> 11) * 0x1p-53 * static_cast<double>(grid.size(a));
+    PickReport<N> report;
+    options.threads = 1 + static_cast<unsigned>(i % 4);
+    const auto picked = extract_component<double>(image.view(), isovalue, at, options, &report);
+    ASSERT_TRUE(report.found);
+    EXPECT_EQ(report.tile, nearest_by_trial<N>(grid, active, at));
+    EXPECT_EQ(grid.number(report.at), report.tile);
+    std::size_t which = parts.size();
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      if (same(parts[k], picked)) which = k;
+    ASSERT_LT(which, parts.size()) << "pick " << i << ": not a component of the whole";
+    expect_oriented_manifold(picked);
+  }
+}
+
+TEST(Pick, OfNoiseIsAComponentOfTheWhole) {
+  expect_picks(noise<float, 2>({30, 25}, 1), 0.5, {}, 40);
+  expect_picks(noise<std::uint8_t, 2>({30, 25}, 1), 200.0, {}, 40);
+  expect_picks(noise<double, 3>({12, 11, 10}, 2), 0.9, {}, 40);
+  expect_picks(coarse_noise<std::uint8_t, 3>(Grid<3>::unit({12, 11, 10}), 3, 5), 4.0, {}, 40);
+  expect_picks(noise<float, 4>({7, 6, 5, 6}, 4), 0.95, {}, 12);
+}
+
+TEST(Pick, WithAnyOptionsIsAComponentOfTheWhole) {
+  ExtractOptions options;
+  options.ambiguity = Ambiguity::high;
+  options.normals = true;
+  options.direction = GradientDirection::ascent;
+  expect_picks(noise<float, 3>({12, 11, 10}, 5), 0.1, options, 20);
+  options.triangulation = Triangulation::barycentric;
+  options.epsilon = 0.01;
+  expect_picks(noise<float, 3>({12, 11, 10}, 6), 0.9, options, 20);
+  options.close = true;
+  expect_picks(noise<float, 3>({12, 11, 10}, 7), 0.9, options, 20);
+  expect_picks(noise<float, 2>({20, 19}, 8), 0.8, options, 20);
+}
+
+TEST(Pick, NextToMissingValuesIsAComponentOfTheWhole) {
+  expect_picks(noise_with_missing<float, 2>(Grid<2>::unit({30, 25}), 9, 0.05), 0.8, {}, 30);
+  expect_picks(noise_with_missing<float, 3>(Grid<3>::unit({12, 11, 10}), 10, 0.02), 0.92, {}, 30);
+}
+
+TEST(Pick, In5dIsAComponentOfTheWhole) { expect_picks(noise<float, 5>({5, 4, 3, 4, 3}, 11), 0.995, {}, 3); }
+
+TEST(Pick, OfTwoBallsIsTheNearer) {
+  const Ball<3> small{{-2.0, 0.0, 0.0}, 0.8};
+  const Ball<3> large{{1.5, 0.0, 0.0}, 1.5};
+  const auto image =
+      sample_field<float>(centred_grid<3>(60, 3.5), [&](const Point<3>& x) { return std::max(small(x), large(x)); });
+  PickReport<3> report;
+  const auto picked = extract_component<double>(image.view(), 0.0, {-2.0, 0.1, 0.0}, {}, &report);
+  EXPECT_EQ(expect_closed_manifold(picked).components, 1u);
+  for (const auto& vertex : picked.vertices) EXPECT_LT(vertex[0], -1.0);
+  EXPECT_EQ(report.components, 1u);
+  EXPECT_LT(report.tiles * 3, PlainRanges<3>(image.view()).active(0.0).size());
+  const auto other = extract_component<float>(image.view(), 0.0, {3.5, 3.5, 3.5});
+  EXPECT_EQ(expect_closed_manifold(other).components, 1u);
+  for (const auto& vertex : other.vertices) EXPECT_GT(vertex[0], -0.5f);
+}
+
+TEST(Pick, SeesThePointInTheWorld) {
+  const Ball<2> left{{-2.0, 0.0}, 0.8};
+  const Ball<2> right{{2.0, 0.0}, 0.8};
+  auto image =
+      sample_field<double>(centred_grid<2>(60, 3.5), [&](const Point<2>& x) { return std::max(left(x), right(x)); });
+  image.grid.linear << 0, -2, 2, 0;
+  image.grid.offset << 100, 0;
+  const auto picked = extract_component<double>(image.view(), 0.0, {100.0, 4.2});
+  ASSERT_FALSE(picked.vertices.empty());
+  for (const auto& vertex : picked.vertices) EXPECT_GT(vertex[1], 0.0);
+}
+
+TEST(Pick, OutsideOfTheImageIsAnError) {
+  const auto image = noise<float, 2>({9, 8}, 12);
+  for (const Point<2>& at : {Point<2>{-1.0, 2.0}, Point<2>{2.0, 7.5}, Point<2>{std::nan(""), 1.0}}) {
+    try {
+      extract_component<double>(image.view(), 0.5, at);
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+      EXPECT_NE(std::string(error.what()).find("(0, 0) to (8, 7)"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Pick, WithoutAContourIsEmpty) {
+  const auto image = noise<float, 3>({9, 8, 7}, 13);
+  PickReport<3> report;
+  EXPECT_TRUE(extract_component<double>(image.view(), 2.0, {1.0, 1.0, 1.0}, {}, &report).simplices.empty());
+  EXPECT_FALSE(report.found);
+}
+
+}  // namespace
+}  // namespace tegl::test
