@@ -31,7 +31,7 @@ class Index : public ProgramTest {
 
 TEST_F(Index, OfEveryMethodGivesTheSameContour) {
   ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "--close", "-o", path("plain.vtkhdf"), "-q"}).exit, 0);
-  for (const char* method : {"full-scan", "interval-tree", "span-space", "min-max-tree"}) {
+  for (const char* method : {"full-scan", "interval-tree", "span-space", "min-max-tree", "seed-set"}) {
     const RunResult built =
         run_tegl({"index", file(), "--method", method, "-o", path("a.tindex"), "--threads", "2", "--json"});
     ASSERT_EQ(built.exit, 0) << built.err;
