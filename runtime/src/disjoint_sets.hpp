@@ -21,6 +21,8 @@ namespace tegl::detail {
 /// Sets of 0 ... n-1, for one thread.
 class DisjointSets {
  public:
+  DisjointSets() = default;
+  explicit DisjointSets(std::size_t n) { reset(n); }
   void reset(std::size_t n) {
     parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), Index{0});
@@ -43,6 +45,9 @@ class DisjointSets {
     parent_[b] = a;
     return true;
   }
+  /// As `join`, where it is known who is to lead instead of the smallest: `leader` and `other` lead their sets.
+  void hang(Index other, Index leader) noexcept { parent_[other] = leader; }
+  [[nodiscard]] std::size_t size() const noexcept { return parent_.size(); }
 
  private:
   std::vector<Index> parent_;

@@ -46,7 +46,7 @@ class Whole2 {
     std::vector<std::uint32_t> kept;
     std::size_t link = 0;
     for (std::uint32_t root = 0; root < graph_.roots.size(); ++root) {
-      if (root % 4096 == 0) report_progress(progress, static_cast<double>(root) / static_cast<double>(sets_.count()));
+      if (root % 4096 == 0) report_progress(progress, static_cast<double>(root) / static_cast<double>(sets_.size()));
       ask(root);
       std::vector<SeedLink> around;
       for (; link < graph_.links.size() && graph_.links[link].a == root; ++link)

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
 namespace tegl::detail {
@@ -238,10 +237,6 @@ class GraphMaker {
 };
 
 }  // namespace
-
-DisjointSets::DisjointSets(std::size_t count) : parent_(count) {
-  std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-}
 
 void report_progress(const Progress& progress, double fraction) {
   if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "seeds: cancelled by the progress callback");

@@ -12,25 +12,10 @@
 #include <span>
 #include <vector>
 
+#include "disjoint_sets.hpp"
 #include "padded_tiles.hpp"
 
 namespace tegl::detail {
-
-/// Disjoint sets with paths halved on the way.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count);
-  [[nodiscard]] std::uint32_t find(std::uint32_t i) noexcept {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// `root` is a root, and hangs on `on` from now on.
-  void hang(std::uint32_t root, std::uint32_t on) noexcept { parent_[root] = on; }
-  [[nodiscard]] std::size_t count() const noexcept { return parent_.size(); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Two trees have neighbouring tiles that are both active at levels first ... end - 1.
 struct SeedLink {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Seed sets of the images that the literature measures them on: their sizes, those of the thesis of 2005 beside them,
-// and that propagation from them finds what there is at every isovalue. Where the folder with the files is there.
+// and that propagation from them finds what there is, at every isovalue with TEGL_ALL_ISOVALUES in the environment,
+// else at some. Where the folder with the files is there.
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -83,14 +87,18 @@ TEST_P(SeedSetOfFile, OfHydrogenIsNoLargerThanTheThesisHas) {
   EXPECT_LE(seeds(SeedMethod::volume_thinning, Neighbourhood::all).tiles.size(), 943u);
 }
 
-TEST_P(SeedSetOfFile, ReachesAllActiveTilesAtEveryIsovalue) {
+TEST_P(SeedSetOfFile, ReachesAllActiveTiles) {
   if (!GetParam().every_isovalue) GTEST_SKIP() << "large";
   const PlainRanges<3> ranges(image().view());
   const TileGrid<3> grid(image().view().grid().sizes());
+  std::vector<double> isovalues;
+  const std::vector<double> values = distinct_values(image());
+  const std::size_t step = std::getenv("TEGL_ALL_ISOVALUES") != nullptr ? 1 : 7;
+  for (std::size_t i = 0; i < values.size(); i += step) isovalues.push_back(values[i]);
   for (std::size_t i = 0; i < kNeighbourhoods.size(); ++i) {
     const SeedSet set = seeds(SeedMethod::cover, kNeighbourhoods[i]);
     std::vector<double> seen(grid.count(), -1);
-    for (const double isovalue : distinct_values(image())) {
+    for (const double isovalue : isovalues) {
       const auto active = [&](TileNumber tile) {
         return ranges.least[tile] < isovalue && isovalue <= ranges.greatest[tile];
       };
