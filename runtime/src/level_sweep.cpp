@@ -136,6 +136,8 @@ class LevelSweep {
       else if (from < end && first < to)
         rest.push_back(i);
     }
+    // Ends that are joined here are so for all levels of the node.
+    std::erase_if(rest, [&](std::uint32_t i) { return find(graph_.links[i].a) == find(graph_.links[i].b); });
     for (const std::uint32_t tree : picks_of_node_[node]) mark_picked(tree);
     if (end - first == 1) {
       visit(first);

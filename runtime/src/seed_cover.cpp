@@ -118,13 +118,22 @@ class Whole2 {
 }  // namespace
 
 SeedCover cover_components(const SeedGraph& graph, const Progress& progress) {
-  auto up = sweep_levels(graph, {.direction = SweepDirection::up, .progress = part_of(progress, 0.0, 0.25)});
-  auto down = sweep_levels(graph, {.direction = SweepDirection::down, .progress = part_of(progress, 0.25, 0.5)});
+  const auto sweep = [&](SweepDirection direction, SweepPick pick, double done) {
+    return sweep_levels(graph, {.direction = direction, .pick = pick, .progress = part_of(progress, done, done + 0.2)});
+  };
   SeedCover cover;
-  cover.trees = spare(graph, std::move(up.picked), SweepDirection::up);
-  auto other = spare(graph, std::move(down.picked), SweepDirection::down);
-  if (other.size() < cover.trees.size()) cover.trees = std::move(other);
-  cover.bound = pack_components(graph, part_of(progress, 0.8, 1.0));
+  // Where cover and bound meet nothing is left to be gained, and that is often so at once.
+  auto up = sweep(SweepDirection::up, SweepPick::farthest, 0.0);
+  cover.trees = std::move(up.picked);
+  cover.bound = sweep(SweepDirection::down, SweepPick::all, 0.2).times;
+  if (cover.trees.size() == cover.bound) return cover;
+  cover.bound = std::max(cover.bound, sweep(SweepDirection::up, SweepPick::all, 0.4).times);
+  if (cover.trees.size() == cover.bound) return cover;
+  auto other = sweep(SweepDirection::down, SweepPick::farthest, 0.6).picked;
+  const bool fewer = other.size() < cover.trees.size();
+  if (fewer) cover.trees.swap(other);
+  if (cover.trees.size() == cover.bound) return cover;
+  cover.trees = spare(graph, std::move(cover.trees), fewer ? SweepDirection::down : SweepDirection::up);
   return cover;
 }
 
