@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -15,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "batches.hpp"
+#include "disjoint_sets.hpp"
 #include "exact_sum.hpp"
 #include "locate.hpp"
 #include "simplex_geometry.hpp"
@@ -119,16 +119,16 @@ class PieceFinder {
 
   /// Reorders the simplices piece by piece, each in order and the pieces by their first, and returns where pieces end.
   const std::vector<std::size_t>& part(std::span<Placed> simplices) {
-    parents_.resize(simplices.size());
-    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+    sets_.reset(simplices.size());
     corners_.clear();
     for (std::size_t i = 0; i < simplices.size(); ++i)
-      for (const Index v : contour_.simplices[simplices[i].simplex]) corners_.emplace_back(v, i);
+      for (const Index v : contour_.simplices[simplices[i].simplex]) corners_.emplace_back(v, static_cast<Index>(i));
     std::sort(corners_.begin(), corners_.end());
     for (std::size_t i = 1; i < corners_.size(); ++i)
-      if (corners_[i].first == corners_[i - 1].first) join(corners_[i].second, corners_[i - 1].second);
+      if (corners_[i].first == corners_[i - 1].first) sets_.join(corners_[i].second, corners_[i - 1].second);
     order_.clear();
-    for (std::size_t i = 0; i < simplices.size(); ++i) order_.emplace_back(root(i), simplices[i]);
+    for (std::size_t i = 0; i < simplices.size(); ++i)
+      order_.emplace_back(sets_.find(static_cast<Index>(i)), simplices[i]);
     std::stable_sort(order_.begin(), order_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     ends_.clear();
     for (std::size_t i = 0; i < order_.size(); ++i) {
@@ -139,20 +139,10 @@ class PieceFinder {
   }
 
  private:
-  std::size_t root(std::size_t i) noexcept {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  /// The first simplex of a piece is its root.
-  void join(std::size_t a, std::size_t b) noexcept {
-    const auto [first, second] = std::minmax({root(a), root(b)});
-    parents_[second] = first;
-  }
-
   const Contour<N, Real>& contour_;
-  std::vector<std::size_t> parents_;
-  std::vector<std::pair<Index, std::size_t>> corners_;
-  std::vector<std::pair<std::size_t, Placed>> order_;
+  detail::DisjointSets sets_;  ///< of simplices: the first of a piece leads it
+  std::vector<std::pair<Index, Index>> corners_;
+  std::vector<std::pair<Index, Placed>> order_;
   std::vector<std::size_t> ends_;
 };
 

@@ -98,7 +98,7 @@ class Extraction {
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_((ahead_ ? 2 : 1) * batch_ + 2),
         slabs_((ahead_ ? 2 : 1) * batch_ + 1) {
-    if (options.normals) placement_.want_normals(source, grid, options.direction);
+    if (options.normals) placement_.want_normals(source, grid, options);
     if (options.close)
       caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
                     plan.closed_axes);

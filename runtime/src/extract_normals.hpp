@@ -15,7 +15,7 @@
 
 #include "edge_normals.hpp"
 #include "extract_source.hpp"
-#include "tegl/contour.hpp"
+#include "tegl/extract.hpp"
 
 namespace tegl::detail {
 
@@ -39,8 +39,9 @@ class NormalWriter {
   using Vertex = std::array<Real, N>;
 
   /// The source must outlive it.
-  NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction)
+  NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction, GradientKind kind)
       : source_(source),
+        kind_(kind),
         steps_(steps_of(source, grid)),
         sizes_(grid.sizes()),
         mapped_(grid.has_world_map()),
@@ -63,6 +64,10 @@ class NormalWriter {
   template <class StartOf>
   void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
              Vertex* out, const StartOf& start_of) const noexcept {
+    if (kind_ != GradientKind::differences) {
+      for (std::size_t i = 0; i < edges.count; ++i) out[i] = on_edge(start_of(i), axis, alphas[i]);
+      return;
+    }
     if constexpr (std::is_same_v<Real, float>)
       if (in_float_) return edges_by(start, axis, edges, alphas, scratch.floats, out, start_of);
     edges_by(start, axis, edges, alphas, scratch.doubles, out, start_of);
@@ -78,7 +83,7 @@ class NormalWriter {
       if (weight == 0.0) continue;
       Index index = base;
       for (int a = 0; a < N; ++a) index[a] += Frame::spread(corner) >> a & 1u;
-      const auto gradient = source_.gradient(index, steps_);
+      const auto gradient = gradient_at(index);
       for (int a = 0; a < N; ++a) sum[a] += weight * gradient[a];
     }
     return normal(sum);
@@ -147,11 +152,15 @@ class NormalWriter {
     }
   }
 
+  [[nodiscard]] std::array<double, N> gradient_at(const Index& index) const noexcept {
+    return kind_ == GradientKind::sobel ? source_.sobel(index, steps_) : source_.gradient(index, steps_);
+  }
+
   /// One normal, whatever the values.
   [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha) const noexcept {
-    std::array<double, N> gradient = source_.gradient(index, steps_);
+    std::array<double, N> gradient = gradient_at(index);
     ++index[axis];
-    const std::array<double, N> there = source_.gradient(index, steps_);
+    const std::array<double, N> there = gradient_at(index);
     // Not by their difference, which may be too large for a number.
     for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
     return normal(gradient);
@@ -201,6 +210,7 @@ class NormalWriter {
   }
 
   const SampleSource<N>& source_;
+  GradientKind kind_;
   std::array<AxisSteps, N> steps_;
   Index sizes_;
   bool mapped_;

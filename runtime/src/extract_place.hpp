@@ -14,6 +14,7 @@
 #include "extract_layers.hpp"
 #include "extract_normals.hpp"
 #include "extract_points.hpp"
+#include "tegl/extract.hpp"
 #include "tegl/grid.hpp"
 
 namespace tegl::detail {
@@ -42,8 +43,8 @@ class Placement {
 
   /// Null: none are wanted.
   [[nodiscard]] const NormalWriter<N, Real>* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
-  void want_normals(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction) {
-    normals_.emplace(source, grid, direction);
+  void want_normals(const SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
+    normals_.emplace(source, grid, options.direction, options.gradient);
   }
 
   [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "corners.hpp"
+#include "sobel.hpp"
 #include "tegl/image.hpp"
 
 namespace tegl::detail {
@@ -143,6 +144,32 @@ std::array<double, N> RowSource<T, N>::gradient(const Index& index,
     result[a] = derivative(backward, here, forward, steps[a].at(index[a]));
   }
   return result;
+}
+
+template <Value T, int N>
+std::array<double, N> RowSource<T, N>::sobel(const Index& index, const std::array<AxisSteps, N>& steps) const noexcept {
+  std::array<StepWeights, N> weights;
+  std::array<std::array<bool, 3>, N> exists;
+  for (int a = 0; a < N; ++a) {
+    weights[a] = steps[a].at(index[a]);
+    exists[a] = {steps[a].has_backward(index[a]), true, steps[a].has_forward(index[a])};
+  }
+  Neighbourhood<N> values;
+  for (std::size_t row_number = 0; row_number < values.size() / 3; ++row_number) {
+    Index at = index;
+    bool inside = true;
+    std::size_t rest = row_number;
+    for (int a = 1; a < N; ++a, rest /= 3) {
+      inside = inside && exists[a][rest % 3];
+      at[a] += rest % 3 - 1;  // modulo 2^64
+    }
+    const T* const samples = inside ? row(at) + static_cast<std::ptrdiff_t>(index[0]) * strides_[0] : nullptr;
+    for (std::size_t i = 0; i < 3; ++i)
+      values[3 * row_number + i] =
+          inside && exists[0][i] ? static_cast<double>(samples[(static_cast<std::ptrdiff_t>(i) - 1) * strides_[0]])
+                                 : std::numeric_limits<double>::quiet_NaN();
+  }
+  return sobel_gradient<N>(values, weights);
 }
 
 #define TEGL_INSTANTIATE(T)       \

@@ -87,9 +87,12 @@ class SampleSource {
                                      float* out) const noexcept = 0;
   virtual std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
                                      double* out) const noexcept = 0;
-  /// The gradient at a sample.
+  /// The gradient at a sample, by differences to its neighbours along the axes.
   [[nodiscard]] virtual std::array<double, N> gradient(const Index& index,
                                                        const std::array<AxisSteps, N>& steps) const noexcept = 0;
+  /// The same by the Sobel kernel.
+  [[nodiscard]] virtual std::array<double, N> sobel(const Index& index,
+                                                    const std::array<AxisSteps, N>& steps) const noexcept = 0;
 };
 
 /// Samples in rows, wherever the layers are.
@@ -116,6 +119,8 @@ class RowSource : public SampleSource<N> {
                              double* out) const noexcept final;
   [[nodiscard]] std::array<double, N> gradient(const Index& index,
                                                const std::array<AxisSteps, N>& steps) const noexcept final;
+  [[nodiscard]] std::array<double, N> sobel(const Index& index,
+                                            const std::array<AxisSteps, N>& steps) const noexcept final;
 
  protected:
   /// `strides`: of the axes but the last; rows have `row_size` samples.

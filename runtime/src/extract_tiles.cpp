@@ -135,7 +135,7 @@ class TileExtraction {
         workers_(options.threads, [] { return Nothing{}; }),
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
                tile_bytes, workers_.count()) {
-    if (options.normals) placement_.want_normals(source, grid, options.direction);
+    if (options.normals) placement_.want_normals(source, grid, options);
   }
 
   ContourSize run(ExtractStats& stats) {

@@ -66,7 +66,7 @@ class FacetExtraction {
         tables_(options.ambiguity),
         placement_(grid),
         workers_(options.threads, [] { return FacetScratch(); }) {
-    if (options.normals) placement_.want_normals(source, grid, options.direction);
+    if (options.normals) placement_.want_normals(source, grid, options);
     faces_.resize(2u << N);
     for (unsigned axes = 1; axes <= kAll; ++axes) add_kind({axes, false});
     if (options.close)

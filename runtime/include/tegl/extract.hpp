@@ -19,6 +19,11 @@ enum class Triangulation { compact, barycentric };
 /// across a diagonal are kept apart; high: they are joined.
 enum class Ambiguity { low, high };
 
+/// How the gradient at a sample is made, which normals follow. differences: the mean of the difference quotients
+/// forward and backward; sobel: the mean of those of all lines of samples beside it, itself among them, weighted by
+/// their nearness (docs/normals.md): noise is damped, at ten times the cost.
+enum class GradientKind { differences, sobel };
+
 struct ExtractOptions {
   Triangulation triangulation = Triangulation::compact;
   Ambiguity ambiguity = Ambiguity::low;
@@ -35,6 +40,7 @@ struct ExtractOptions {
   /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
   /// along edges). Normals of a vertex are as exact as its type allows.
   bool normals = false;
+  GradientKind gradient = GradientKind::differences;  ///< what normals are made of
   /// How many threads work; 0, or more than there are: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
   /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
