@@ -61,6 +61,7 @@ class Command {
 std::unique_ptr<Command> make_info_command(CLI::App& program);
 std::unique_ptr<Command> make_contour_command(CLI::App& program);
 std::unique_ptr<Command> make_slice_command(CLI::App& program);
+std::unique_ptr<Command> make_elements_command(CLI::App& program);
 std::unique_ptr<Command> make_check_command(CLI::App& program);
 std::unique_ptr<Command> make_project_command(CLI::App& program);
 std::unique_ptr<Command> make_index_command(CLI::App& program);

@@ -8,8 +8,11 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "attributes.hpp"
 #include "commands.hpp"
 #include "extraction.hpp"
 #include "facets.hpp"
@@ -55,6 +58,7 @@ class ContourCommand final : public Command {
         "--pick", pick_,
         "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
         "the image's axes");
+    attributes_.add_to(app());
     streaming_.add_to(app());
     add_variable();
     add_quiet();
@@ -76,6 +80,7 @@ class ContourCommand final : public Command {
       if (streaming_.wanted())
         throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream and no --raw");
     }
+    attributes_.require_inputs();
 
     ProgressBar bar(streams.err, wants_progress());
     ContourResult result;
@@ -104,20 +109,23 @@ class ContourCommand final : public Command {
 
     if (result.picked) {
       options.progress = bar.stage("contour");
-      pick(input.image, options, result);
+      pick(input.image, options, bar, result);
       return finish(input, {}, bar, result);
     }
     ExtractStats& stats = result.stats.emplace();
     if (const auto method = options_.polygon_triangulation()) {
-      result.mesh = triangulated_polygons(
+      auto polygons = triangulated_polygons(
           input.image, {*result.isovalue, options, options_.single_precision(), no_check_}, *method, bar, stats);
+      result.mesh =
+          std::visit([&](auto& contour) { return with_additions(std::move(contour), options.threads, bar); }, polygons);
       return finish(input, stats, bar, result);
     }
     options.progress = bar.stage("contour");
-    result.mesh = index_.empty()
-                      ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
-                                          [](const auto& contour) { return to_mesh(contour); })
-                      : extract_by_index(input.image, options, bar, result);
+    result.mesh =
+        index_.empty()
+            ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
+                                [&](auto contour) { return with_additions(std::move(contour), options.threads, bar); })
+            : extract_by_index(input.image, options, bar, result);
     finish(input, stats, bar, result);
   }
 
@@ -145,7 +153,7 @@ class ContourCommand final : public Command {
   }
 
   /// The component nearest to the point of --pick.
-  void pick(const AnyImage& image, const ExtractOptions& options, ContourResult& result) const {
+  void pick(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     Stopwatch watch;
     Picked& picked = *result.picked;
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
@@ -155,12 +163,12 @@ class ContourCommand final : public Command {
       std::array<double, N> point;
       std::copy_n(picked.point.begin(), N, point.begin());
       PickReport<N> report;
-      const auto keep = [&](const auto& contour) {
+      const auto keep = [&](auto contour) {
         picked.tile.assign(report.at.begin(), report.at.end());
         picked.distance = report.distance;
         picked.tiles = report.tiles;
         picked.components = report.components;
-        return to_mesh(contour);
+        return with_additions(std::move(contour), options.threads, bar);
       };
       return options_.single_precision()
                  ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options, &report))
@@ -168,6 +176,14 @@ class ContourCommand final : public Command {
     };
     result.mesh = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
     result.seconds.generate += watch.lap();
+  }
+
+  /// The contour with what --normals and --attribute add to it.
+  template <class AnyContour>
+  Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
+    options_.add_shape_normals(contour);
+    attributes_.sample_to(contour, threads, bar);
+    return to_mesh(contour);
   }
 
   /// The contour by --index, whose reading counts as such.
@@ -179,8 +195,10 @@ class ContourCommand final : public Command {
       result.seconds.read += watch.lap();
       options.progress = bar.stage("contour");
       if (options_.single_precision())
-        return to_mesh(extract<float>(view, *result.isovalue, options, *active, &*result.stats));
-      return to_mesh(extract<double>(view, *result.isovalue, options, *active, &*result.stats));
+        return with_additions(extract<float>(view, *result.isovalue, options, *active, &*result.stats), options.threads,
+                              bar);
+      return with_additions(extract<double>(view, *result.isovalue, options, *active, &*result.stats), options.threads,
+                            bar);
     };
     return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
   }
@@ -191,6 +209,11 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}; expected one of the two: facets are in memory and not triangulated",
                               streaming_.wanted() ? "--stream or --raw" : "--triangulation"));
+    if (options_.wants_shape_normals() || attributes_.wanted())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--facets with {}, which is for simplices; expected {}",
+                              attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
+                              attributes_.wanted() ? "none" : "--normals gradient or sobel"));
     require_facets_output(output_, file());
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
@@ -212,6 +235,11 @@ class ContourCommand final : public Command {
 
   void stream(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     require_output_grows();
+    if (options_.wants_shape_normals() || attributes_.wanted())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
+                              attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
+                              attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
     OpenLayersResult input = streaming_.open(file(), variable());
     result.variable = input.info.variable;
     options.progress = bar.stage("stream");
@@ -227,6 +255,7 @@ class ContourCommand final : public Command {
   }
 
   ExtractionOptions options_;
+  AttributeOptions attributes_;
   StreamingOptions streaming_;
   std::string output_;
   std::string index_;

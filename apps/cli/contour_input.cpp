@@ -32,6 +32,8 @@ Contour<N, double> widened(Contour<N, Real> contour) {
     result.axis_names = std::move(contour.axis_names);
     result.axis_units = std::move(contour.axis_units);
     result.direction = contour.direction;
+    result.vertex_attributes = std::move(contour.vertex_attributes);
+    result.simplex_attributes = std::move(contour.simplex_attributes);
     return result;
   }
 }
@@ -137,8 +139,10 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.seconds.read = watch.lap();
   options.progress = bar.stage("contour");
   result.contour = extract_any<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
-                                           result.stats.emplace(),
-                                           [](auto&& contour) { return AnyContour(widened(std::move(contour))); });
+                                           result.stats.emplace(), [&](auto contour) {
+                                             options_.add_shape_normals(contour);
+                                             return AnyContour(widened(std::move(contour)));
+                                           });
   if (result.size().simplices == 0) fail_without_contour(*result.isovalue);
   result.seconds.add(*result.stats);
   if (keep_image) result.image = std::move(input);

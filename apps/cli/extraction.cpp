@@ -8,6 +8,7 @@
 #include "numbers.hpp"
 #include "output.hpp"
 #include "statistics.hpp"
+#include "tegl/normals.hpp"
 
 namespace tegl::cli {
 
@@ -24,7 +25,11 @@ void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
           ->check(CLI::IsMember({"low", "high"}))
           ->capture_default_str(),
       app.add_flag("--close", close_, "close the contour at the image's border"),
-      app.add_flag("--normals", normals_, "normals at the vertices, along the image's gradient"),
+      app.add_flag(
+             "--normals{gradient}", normals_,
+             "normals: along the image's gradient (gradient, or sobel for noisy images), of the contour's shape at "
+             "its vertices (geometric) or its simplices (flat); gradient if nothing follows")
+          ->check(CLI::IsMember({"gradient", "sobel", "geometric", "flat"})),
       app.add_option("--gradient-direction", direction_, "the contour faces lower (descent) or higher values (ascent)")
           ->check(CLI::IsMember({"descent", "ascent"}))
           ->capture_default_str(),
@@ -75,7 +80,8 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   options.ambiguity = ambiguity_ == "low" ? Ambiguity::low : Ambiguity::high;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
-  options.normals = normals_;
+  options.normals = normals_ == "gradient" || normals_ == "sobel";
+  options.gradient = normals_ == "sobel" ? GradientKind::sobel : GradientKind::differences;
   options.threads = threads_;
   options.epsilon = parse_finite("--epsilon", epsilon_);
   if (options.epsilon < 0 || options.epsilon >= 0.5) {
@@ -83,6 +89,23 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   }
   return options;
 }
+
+template <int N, class Real>
+void ExtractionOptions::add_shape_normals(Contour<N, Real>& contour) const {
+  if (normals_ == "geometric") contour.normals = geometric_normals(contour, NormalWeights::angle, {threads_});
+  if (normals_ != "flat") return;
+  Attribute attribute{"normal", "", N, {}};
+  for (const auto& normal : flat_normals(contour, {threads_}))
+    attribute.values.insert(attribute.values.end(), normal.begin(), normal.end());
+  contour.simplex_attributes.push_back(std::move(attribute));
+}
+
+template void ExtractionOptions::add_shape_normals(Contour<2, float>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<2, double>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<3, float>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<3, double>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<4, float>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<4, double>&) const;
 
 int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
 

@@ -37,6 +37,11 @@ class ExtractionOptions {
   /// The library's options, without progress. Throws InvalidArgument for an epsilon outside of [0, 0.5), and for a
   /// triangulation of polygons unless the caller sees to those itself.
   [[nodiscard]] ExtractOptions library_options(bool knows_polygons = false) const;
+  /// Whether --normals asks for some that follow the contour's own shape.
+  [[nodiscard]] bool wants_shape_normals() const { return normals_ == "geometric" || normals_ == "flat"; }
+  /// Gives them to the contour: `geometric` as its normals, `flat` as the attribute "normal" of its simplices.
+  template <int N, class Real>
+  void add_shape_normals(Contour<N, Real>& contour) const;
 
  private:
   std::vector<CLI::Option*> options_;
@@ -47,7 +52,7 @@ class ExtractionOptions {
   std::string epsilon_ = "0";
   std::string precision_ = "double";
   bool close_ = false;
-  bool normals_ = false;
+  std::string normals_;
   unsigned threads_ = 0;
 };
 

@@ -166,8 +166,10 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
 }
 
-Mesh triangulated_polygons(const AnyImage& image, const FacetsWork& work, PolygonTriangulation method, ProgressBar& bar,
-                           ExtractStats& stats) {
+std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
+                                                                          PolygonTriangulation method, ProgressBar& bar,
+                                                                          ExtractStats& stats) {
+  using Triangles = std::variant<Contour<3, float>, Contour<3, double>>;
   const auto* const typed = std::get_if<AnyImageN<3>>(&image);
   if (typed == nullptr)
     throw Error(ErrorCode::InvalidArgument,
@@ -179,10 +181,10 @@ Mesh triangulated_polygons(const AnyImage& image, const FacetsWork& work, Polygo
   Stopwatch watch;
   return std::visit(
       [&](const auto& owned) {
-        return use_facets<Mesh>(owned, work, options, [&](const auto& facets) {
-          const auto contour = triangulate(facets, method, {work.options.threads, bar.stage("triangles")});
+        return use_facets<Triangles>(owned, work, options, [&](const auto& facets) -> Triangles {
+          auto contour = triangulate(facets, method, {work.options.threads, bar.stage("triangles")});
           stats = stats_of(facets, watch.lap());
-          return to_mesh(contour);
+          return contour;
         });
       },
       *typed);

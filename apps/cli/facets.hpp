@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <variant>
 
 #include "progress.hpp"
 #include "result.hpp"
@@ -54,7 +55,8 @@ struct FacetsWork {
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result);
 
 /// The contour of a 3D image from its polygons. Throws InvalidArgument for an image of other dimensions.
-Mesh triangulated_polygons(const AnyImage& image, const FacetsWork& work, PolygonTriangulation method, ProgressBar& bar,
-                           ExtractStats& stats);
+std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
+                                                                          PolygonTriangulation method, ProgressBar& bar,
+                                                                          ExtractStats& stats);
 
 }  // namespace tegl::cli

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <exception>
 #include <new>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -94,6 +95,22 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
 }
 
+/// The arguments, last first, as CLI11 takes them. What --normals may be followed by is joined to it: an option whose
+/// value may be left out would take the next argument, whatever it is, for one.
+std::vector<std::string> joined_arguments(int argc, char** argv) {
+  constexpr std::array<std::string_view, 4> kNormals = {"gradient", "sobel", "geometric", "flat"};
+  std::vector<std::string> arguments;
+  for (const std::string_view argument : std::vector<std::string_view>(argv + std::min(1, argc), argv + argc)) {
+    const bool is_kind = std::find(kNormals.begin(), kNormals.end(), argument) != kNormals.end();
+    if (is_kind && !arguments.empty() && arguments.back() == "--normals")
+      arguments.back().append("=").append(argument);
+    else
+      arguments.emplace_back(argument);
+  }
+  std::reverse(arguments.begin(), arguments.end());
+  return arguments;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -107,6 +124,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_info_command(program));
   commands.push_back(tegl::cli::make_contour_command(program));
   commands.push_back(tegl::cli::make_slice_command(program));
+  commands.push_back(tegl::cli::make_elements_command(program));
   commands.push_back(tegl::cli::make_check_command(program));
   commands.push_back(tegl::cli::make_project_command(program));
   commands.push_back(tegl::cli::make_index_command(program));
@@ -115,7 +133,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_track_command(program));
   commands.push_back(tegl::cli::make_simplify_command(program));
   try {
-    program.parse(argc, argv);
+    program.parse(joined_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {
     // Nothing was parsed, yet whoever asks for JSON wants errors in JSON too.
     const bool json = std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });

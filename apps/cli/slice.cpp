@@ -78,7 +78,7 @@ void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
 
 /// Cuts of a contour whose axes are to be stretched first: those of one direction after the other in one pass.
 template <int N, class Real>
-void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, unsigned threads,
+void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
                     std::vector<ContourResult>& results, ProgressBar& bar) {
   stretch(contour, factors);
   for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
@@ -87,11 +87,13 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
     for (end = first; end < results.size() && results[end].cut->normal == results[first].cut->normal; ++end)
       offsets.push_back(results[end].cut->value);
     Stopwatch watch;
-    auto cuts = slice_stack(contour, hyperplane.normal, offsets, {threads, bar.stage("slice")});
+    auto cuts = slice_stack(contour, hyperplane.normal, offsets, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       ContourResult& result = results[first + i];
       result.image_dim = N;
-      result.mesh = to_mesh(std::exchange(cuts[i], {}));
+      auto cut = std::exchange(cuts[i], {});
+      own.add_shape_normals(cut);
+      result.mesh = to_mesh(cut);
       result.cut->frame = frame_for_report<N>(*result.cut, factors);
       require_cut(result);
     }
@@ -114,13 +116,14 @@ bool is_apart(const AnyImage& image, int axis) {
 
 template <class Real>
 Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
-                const ExtractOptions& options, ExtractStats& stats) {
+                const ExtractionOptions& own, const ExtractOptions& options, ExtractStats& stats) {
   const auto of_owned = [&](const auto& owned) -> Mesh {
     if constexpr (std::tuple_size_v<decltype(owned.grid.axes)> >= 3) {
       auto contour = slice_image_across<Real>(owned.view(), isovalue, *cut.across, cut.value, options, &stats);
       std::vector<double> others = factors;
       others.erase(others.begin() + *cut.across);
       stretch(contour, others);
+      own.add_shape_normals(contour);
       return to_mesh(contour);
     } else {
       throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // require_cuttable was first
@@ -241,8 +244,8 @@ class SliceCommand final : public Command {
     ExtractStats& stats = result.stats.emplace();
     Stopwatch watch;
     result.mesh = options_.single_precision()
-                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors, options, stats)
-                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors, options, stats);
+                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors, options_, options, stats)
+                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors, options_, options, stats);
     const double seconds = watch.lap();
     require_cut(result);
     result.seconds.add(stats);
@@ -260,7 +263,7 @@ class SliceCommand final : public Command {
     (void)extract_any<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), stats,
                                [&]<int N, class Real>(Contour<N, Real>&& contour) {
                                  if constexpr (N == 3 || N == 4)
-                                   cut_contour_of(std::move(contour), factors, options_.threads(), results, bar);
+                                   cut_contour_of(std::move(contour), factors, options_, results, bar);
                                  return Nothing();
                                });
     for (ContourResult& result : results) {
@@ -284,9 +287,9 @@ class SliceCommand final : public Command {
     for (ContourResult& result : results) result.seconds.read = read_seconds;
     reading(1);
     if (mesh.space_dim == 4)
-      cut_contour_of(to_contour<4>(mesh), factors, options_.threads(), results, bar);
+      cut_contour_of(to_contour<4>(mesh), factors, options_, results, bar);
     else
-      cut_contour_of(to_contour<3>(mesh), factors, options_.threads(), results, bar);
+      cut_contour_of(to_contour<3>(mesh), factors, options_, results, bar);
     return results;
   }
 
