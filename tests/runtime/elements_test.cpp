@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
+#include "errors.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
@@ -311,18 +312,13 @@ TEST(Elements, OfAnEmptyContourAreNoneAndCloseUp) {
 TEST(Elements, RefuseAttributesAndGridsThatDoNotFit) {
   const auto image = noise<float, 3>(6, 8);
   auto contour = extract<float>(image.view(), 0.5);
-  const auto code_of = [](const auto& call) {
-    try {
-      call();
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return ErrorCode::WriteFailed;
-  };
-  EXPECT_EQ(code_of([&] { elements_by_cell(contour, Grid<3>::unit({3, 3, 3})); }), ErrorCode::InvalidArgument);
-  EXPECT_EQ(code_of([&] { elements(contour, {.progress = [](double) { return false; }}); }), ErrorCode::Cancelled);
+  expect_error(ErrorCode::InvalidArgument, "expected it in a tile of the grid", [&] {
+    elements_by_cell(contour, Grid<3>::unit({3, 3, 3}));
+  });
+  expect_error(ErrorCode::Cancelled, "cancelled",
+               [&] { elements(contour, {.progress = [](double) { return false; }}); });
   contour.vertex_attributes.push_back({"short", "", 1, {1.0}});
-  EXPECT_EQ(code_of([&] { elements(contour); }), ErrorCode::InvalidArgument);
+  expect_error(ErrorCode::InvalidArgument, "attribute 'short' has 1 values", [&] { elements(contour); });
 }
 
 TEST(Elements, OfHugeAndTinyCoordinatesHaveSizes) {
