@@ -42,8 +42,9 @@ constexpr double kFlat = 1e-9;
 /// Of the longest edge: at this distance and more, it is bounded well enough without any matching.
 template <int N>
 constexpr double kFarAway = N == 4 ? 0.25 : 0.7;
-/// Of the content of a simplex: rounding of the sum of its parts.
+/// Of the content of a simplex: less that nothing covers is bounded by its size alone; still less is rounding.
 constexpr double kCoverPrecision = 1e-7;
+constexpr double kRounding = 1e-13;
 /// No use in cutting on when what is left is in so many parts.
 constexpr std::size_t kMostParts = 200;
 /// Of the longest edge: nearer to a plane is on it.
@@ -170,6 +171,14 @@ class Matcher {
  public:
   static constexpr int D = N - 1;
   using Part = std::array<PointN<D>, N>;
+  /// A simplex that covers some of another, seen in the frame of that one.
+  struct Match {
+    Index simplex = 0;
+    double height = 0.0;  ///< the largest over the part that it covers
+    Prism<N> prism;
+    Part flat;
+    Box<D> box;
+  };
 
   /// `of_vertices`: how far each vertex of `from` is from the nearest of `to`.
   Matcher(const Pieces<N>& from, const Pieces<N>& to, const BoxTree<N>& tree, const std::vector<double>& of_vertices,
@@ -182,7 +191,7 @@ class Matcher {
     double nearest = 0.0;
     for (const Index v : from_.simplices[s]) nearest = std::max(nearest, of_vertices_[v]);
     least = std::max(least, nearest);
-    bound_ = 0.0;
+    bound_ = nearest;
     const double edge = from_.edges[s];
     const double length = norm(from_.normals[s]);
     // What is flat has no normal; what is far away needs none.
@@ -236,46 +245,122 @@ class Matcher {
     return result;
   }
 
-  /// The usual case: what simplex s has in common with each near it makes up the whole of it, no more and no less.
-  /// (Gaps and double covers of exactly the same size would pass for that; nothing but a constructed example has them.)
+  /// The usual case: what simplex s has in common with each near it, no two of which overlap, makes up the whole of it.
   bool match_at_once(const Frame<N>& frame, Index s, const Part& whole, double edge, double reach) {
     const CornersN<N>& corners = from_.corners[s];
-    const double on_plane = kOnPlane * edge;
     Box<N> box;
     for (const PointN<N>& corner : corners) box.add(corner);
     Prism<N> own;
     if (!own.set(frame, corners, from_.normals[s])) return false;
     double covered = 0.0, farthest = 0.0;
     matches_.clear();
+    excess_ = 0.0;
     tree_.visit_near(box, reach, [&](Index t) {
-      Prism<N> prism;
-      if (!prism.set(frame, to_.corners[t], to_.normals[t])) return;
-      inside_.clear();
-      outside_.clear();
-      Part other;
-      for (int i = 0; i < N; ++i) other[i] = frame.along(to_.corners[t][i]);
-      if (is_beside(prism, whole, on_plane) || is_beside(own, other, on_plane)) return;
-      // The smaller of the two is cut by the sides of the larger.
-      if (to_.edges[t] < edge)
-        split(own, other, 0, on_plane);
-      else
-        split(prism, whole, 0, on_plane);
-      if (inside_.empty()) return;
-      double height = 0.0, content = 0.0;
-      for (const Part& piece : inside_) {
-        content += content_of(piece);
-        for (const PointN<D>& x : piece) height = std::max(height, std::abs(prism.height(x)));
-      }
-      if (height > reach) return;
+      const double content = match_with(frame, own, whole, t, edge, reach);
+      if (content > 0.0) farthest = std::max(farthest, matches_.back().height);
       covered += content;
-      farthest = std::max(farthest, height);
-      matches_.push_back({height, t});
     });
     const double all = content_of(whole);
-    if (!(std::abs(covered - all) <= kCoverPrecision * all)) return false;
-    bound_ = std::max(bound_, farthest);
-    for (const auto& [height, t] : matches_) raise(of_to_[t], height);
+    if (!(covered >= (1.0 - kCoverPrecision) * all) || !overlap_nowhere(kOnPlane * edge)) return false;
+    // What nothing covers has at most this share of the content. From any point in it, the simplex drawn together
+    // towards that point by the root of the share reaches what is covered, and distances grow no faster than the way.
+    const double slab = D == 1 ? 1.0 : D == 2 ? 2.0 * edge : 6.0 * edge * edge;
+    const double share = std::max(0.0, all - covered + slab * excess_) / all;
+    if (!(share <= kCoverPrecision)) return false;
+    const double gap = share <= kRounding ? 0.0 : edge * std::pow(share, 1.0 / D);
+    bound_ = std::max(bound_, farthest + gap);
+    for (const Match& match : matches_) raise(of_to_[match.simplex], match.height + gap);
     return true;
+  }
+
+  /// The content of what simplex t covers of the whole, which is noted as a match; 0 for none.
+  double match_with(const Frame<N>& frame, const Prism<N>& own, const Part& whole, Index t, double edge, double reach) {
+    const double on_plane = kOnPlane * edge;
+    Match match;
+    match.simplex = t;
+    if (!match.prism.set(frame, to_.corners[t], to_.normals[t])) return 0.0;
+    inside_.clear();
+    outside_.clear();
+    for (int i = 0; i < N; ++i) match.flat[i] = frame.along(to_.corners[t][i]);
+    if (is_beside(match.prism, whole, on_plane) || is_beside(own, match.flat, on_plane)) return 0.0;
+    const double excess = excess_;
+    // The smaller of the two is cut by the sides of the larger.
+    if (to_.edges[t] < edge)
+      split(own, match.flat, 0, on_plane);
+    else
+      split(match.prism, whole, 0, on_plane);
+    double content = 0.0;
+    for (const Part& piece : inside_) {
+      content += content_of(piece);
+      for (const PointN<D>& x : piece) match.height = std::max(match.height, std::abs(match.prism.height(x)));
+    }
+    if (!(content > 0.0) || match.height > reach) {
+      excess_ = excess;
+      return 0.0;
+    }
+    for (const PointN<D>& x : match.flat) match.box.add(x);
+    matches_.push_back(match);
+    return content;
+  }
+
+  /// Whether no two matches have more in common than rounding makes; adds that to the excess.
+  bool overlap_nowhere(double on_plane) {
+    std::sort(matches_.begin(), matches_.end(), [](const Match& a, const Match& b) {
+      return a.box.low[0] != b.box.low[0] ? a.box.low[0] < b.box.low[0] : a.simplex < b.simplex;
+    });
+    for (std::size_t i = 0; i < matches_.size(); ++i)
+      for (std::size_t j = i + 1; j < matches_.size() && matches_[j].box.low[0] < matches_[i].box.high[0]; ++j) {
+        const double depth = depth_of_overlap(matches_[i], matches_[j], on_plane);
+        if (depth > on_plane) return false;
+        excess_ += std::max(0.0, depth);
+      }
+    return true;
+  }
+
+  /// How wide the overlap of two matches is in some direction (0 or less: they do not overlap); in the first found in
+  /// which it is no wider than `enough`. Two convex bodies without common inside are apart along a side of one or, in
+  /// three dimensions, at right angles to an edge of each.
+  static double depth_of_overlap(const Match& a, const Match& b, double enough) {
+    double least = kInfinity;
+    for (int k = 0; k < D; ++k) least = std::min({least, a.box.high[k] - b.box.low[k], b.box.high[k] - a.box.low[k]});
+    for (int side = 0; side < N && least > enough; ++side) {
+      double in_a = -kInfinity, in_b = -kInfinity;
+      for (int i = 0; i < N; ++i) {
+        in_a = std::max(in_a, a.prism.inside(side, b.flat[i]));
+        in_b = std::max(in_b, b.prism.inside(side, a.flat[i]));
+      }
+      least = std::min({least, in_a, in_b});
+    }
+    if constexpr (D == 3)
+      for (int i = 1; i < N && least > enough; ++i)
+        for (int j = 0; j < i && least > enough; ++j)
+          least = std::min(least, depth_across_edge(a, b, minus(a.flat[i], a.flat[j]), enough));
+    return least;
+  }
+
+  /// The same in the directions at right angles to the given edge of one and to those of the other.
+  static double depth_across_edge(const Match& a, const Match& b, const PointN<D>& edge, double enough) {
+    double least = kInfinity;
+    for (int i = 1; i < N && least > enough; ++i)
+      for (int j = 0; j < i && least > enough; ++j) {
+        const PointN<D> other = minus(b.flat[i], b.flat[j]);
+        PointN<D> axis = {edge[1] * other[2] - edge[2] * other[1], edge[2] * other[0] - edge[0] * other[2],
+                          edge[0] * other[1] - edge[1] * other[0]};
+        const double length = norm(axis);
+        if (!(length > 1e-6 * norm(edge) * norm(other))) continue;
+        double low_a = kInfinity, high_a = -kInfinity, low_b = kInfinity, high_b = -kInfinity;
+        for (int k = 0; k < N; ++k) {
+          // From one origin, so that the place of the contour adds no rounding.
+          const double at_a = dot(axis, minus(a.flat[k], a.flat[0])) / length;
+          const double at_b = dot(axis, minus(b.flat[k], a.flat[0])) / length;
+          low_a = std::min(low_a, at_a);
+          high_a = std::max(high_a, at_a);
+          low_b = std::min(low_b, at_b);
+          high_b = std::max(high_b, at_b);
+        }
+        least = std::min({least, high_a - low_b, high_b - low_a});
+      }
+    return least;
   }
 
   /// Length, area or volume, times (N-1)!.
@@ -359,7 +444,10 @@ class Matcher {
         if (at[i] > at[highest]) highest = i;
         if (at[i] < at[lowest]) lowest = i;
       }
-      if (at[lowest] >= -on_plane) continue;
+      if (at[lowest] >= -on_plane) {
+        excess_ += std::max(0.0, -at[lowest]);
+        continue;
+      }
       if (at[highest] <= on_plane) {
         outside_.push_back(part);
         return;
@@ -416,7 +504,8 @@ class Matcher {
   std::vector<double>& of_to_;
   double bound_ = 0.0;
   std::vector<Part> inside_, outside_;
-  std::vector<std::pair<double, Index>> matches_;
+  std::vector<Match> matches_;
+  double excess_ = 0.0;  ///< how deep what was counted as covered lies beyond the sides of what covers it, in sum
 };
 
 template <int N>

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "distance_oracle.hpp"
 #include "errors.hpp"
@@ -84,6 +86,93 @@ TYPED_TEST(DeviationOf, IsMeasuredInUnitsOfTheScale) {
   scale_axes(from, factors);
   scale_axes(to, factors);
   EXPECT_NEAR(deviation(from, to).bound, scaled, 1e-9);
+}
+
+/// A simplex in the hyperplane of the last axis, with its corners at the origin and at 1 along each other axis.
+template <int N>
+Contour<N, double> one_simplex() {
+  Contour<N, double> contour;
+  contour.vertices.resize(N, std::array<double, N>{});
+  std::array<Index, N> simplex;
+  for (int i = 0; i < N; ++i) {
+    if (i > 0) contour.vertices[i][i - 1] = 1.0;
+    simplex[i] = static_cast<Index>(i);
+  }
+  contour.simplices.push_back(simplex);
+  return contour;
+}
+
+/// Slices of that simplex of equal content, from one point to the next along its first edge.
+template <int N>
+Contour<N, double> in_slices(const std::vector<std::pair<double, double>>& slices, double height) {
+  Contour<N, double> contour;
+  for (const auto& [first, end] : slices) {
+    auto slice = one_simplex<N>();
+    slice.vertices[0][0] = first;
+    slice.vertices[1][0] = end;
+    std::array<Index, N> simplex = slice.simplices[0];
+    for (Index& v : simplex) v += static_cast<Index>(contour.vertices.size());
+    for (auto& vertex : slice.vertices) {
+      vertex[N - 1] = height;
+      contour.vertices.push_back(vertex);
+    }
+    contour.simplices.push_back(simplex);
+  }
+  return contour;
+}
+
+/// What is covered twice does not make up for what is not covered at all.
+TYPED_TEST(DeviationOf, SeesAHoleAsLargeAsADoubleCover) {
+  constexpr int N = TypeParam::value;
+  const auto from = one_simplex<N>();
+  for (const double height : {0.0, 0.01, 0.1}) {
+    const auto to = in_slices<N>({{0.0, 0.25}, {0.5, 0.75}, {0.5, 0.75}, {0.75, 1.0}}, height);
+    const double truth =
+        std::hypot(0.125, height) / (N == 2 ? 1.0 : 2.0);  // less than the distance of the hole's middle
+    const Deviation result = deviation(from, to);
+    EXPECT_GE(result.bound, truth) << "height " << height;
+    EXPECT_GE(result.bound, sampled_deviation(from, to, 2000, 5)) << "height " << height;
+    EXPECT_LE(result.bound, 1.0) << "height " << height;
+  }
+}
+
+/// Also one that the sum of contents hardly shows.
+TYPED_TEST(DeviationOf, SeesACornerThatIsCutOff) {
+  constexpr int N = TypeParam::value;
+  const auto from = one_simplex<N>();
+  for (const double share : {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 4e-3, 1e-2, 1e-1}) {
+    // What is left without the corner at 0: a slice that ends before each of the other corners.
+    Contour<N, double> to;
+    std::vector<std::array<double, N>> low, high;  // where the edges from 0 are cut, and where they end
+    for (int a = 0; a + 1 < N; ++a) {
+      std::array<double, N> point{};
+      point[a] = share;
+      low.push_back(point);
+      point[a] = 1.0;
+      high.push_back(point);
+    }
+    to.vertices.assign(low.begin(), low.end());
+    to.vertices.insert(to.vertices.end(), high.begin(), high.end());
+    for (int k = 0; k + 1 < N; ++k) {  // the prism between both: low 0 … k, high k … N - 2
+      std::array<Index, N> simplex;
+      for (int i = 0; i < N; ++i) simplex[i] = static_cast<Index>(i <= k ? i : N - 1 + i - 1);
+      to.simplices.push_back(simplex);
+    }
+    // Facing as `from` does.
+    for (auto& simplex : to.simplices) {
+      Eigen::Matrix<double, N - 1, N - 1> edges;
+      for (int i = 1; i < N; ++i)
+        for (int a = 0; a + 1 < N; ++a) edges(a, i - 1) = to.vertices[simplex[i]][a] - to.vertices[simplex[0]][a];
+      if (edges.determinant() < 0) std::swap(simplex[0], simplex[1]);
+    }
+    const double truth = share / std::sqrt(N - 1.0);
+    const Deviation result = deviation(from, to);
+    EXPECT_GE(result.bound, truth * (1 - 1e-12)) << share;
+    EXPECT_GE(result.bound, result.least) << share;
+    EXPECT_NEAR(result.least, truth, 1e-12) << share;
+    EXPECT_LE(result.bound, 3.0 * truth + 1e-4) << share;
+    EXPECT_LE(deviation(to, from).bound, N == 4 ? 1e-3 : 1e-12) << share;  // flat tetrahedra: rounding is allowed for
+  }
 }
 
 TEST(Deviation, FromNothingIsInfiniteAndOfNothingZero) {

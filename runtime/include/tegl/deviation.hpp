@@ -39,8 +39,10 @@ struct Deviation {
 /// Each simplex of `from` is cut, along its normal, into the parts that lie above or below simplices of `to` that face
 /// the same way. Over such a part the distance along the normal is linear, so its corners tell the largest. What no
 /// simplex of `to` covers (next to borders, say) is measured by the distances of its corners from one simplex, which
-/// bound those of all points between, as that distance is convex. So the bound is one up to rounding; for contours that
-/// are close to each other it exceeds the distance by the cosine between their normals, for others by more.
+/// bound those of all points between, as that distance is convex. So the bound is one up to rounding (up to some 1e-4
+/// of the longest edge of a tetrahedron, where it alone can tell a gap between those that cover it from none); it is
+/// never less than the distance of a vertex. For contours that are close to each other it exceeds the distance by the
+/// cosine between their normals, for others by more.
 ///
 /// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range), Cancelled. Time: about
 /// O(S log S) for contours that are close to each other.
