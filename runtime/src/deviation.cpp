@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <thread>
 #include <utility>
@@ -44,11 +45,16 @@ template <int N>
 constexpr double kFarAway = N == 4 ? 0.25 : 0.7;
 /// Of the content of a simplex: less that nothing covers is bounded by its size alone; still less is rounding.
 constexpr double kCoverPrecision = 1e-7;
-constexpr double kRounding = 1e-13;
+constexpr double kRounding = 1e-12;
 /// No use in cutting on when what is left is in so many parts.
 constexpr std::size_t kMostParts = 200;
-/// Of the longest edge: nearer to a plane is on it.
+/// Of the longest edge: nearer to a plane is on it. What is nearer than this share of that again is rounding.
 constexpr double kOnPlane = 1e-10;
+constexpr double kRoundingOfPlanes = 1e-3;
+/// The largest bounds are measured again with more parts: those of so many simplices, and of this share of them.
+constexpr std::size_t kMostRefined = 64;
+constexpr std::size_t kRefinedShare = 400;
+constexpr std::size_t kRefinedParts = 512;
 
 void raise(double& value, double candidate) {
   std::atomic_ref<double> shared(value);
@@ -211,6 +217,23 @@ class Matcher {
     return bound_;
   }
 
+  /// A bound of simplex s that took more pains: the part with the largest is halved until that is `enough`, or as long
+  /// as is worth it.
+  double refined_bound(Index s, double enough) const {
+    const auto less = [](const Bounded& a, const Bounded& b) { return a.bound < b.bound; };
+    std::vector<Bounded> parts{bound_of(from_.corners[s])};
+    while (parts.front().bound > enough && parts.size() < kRefinedParts) {
+      std::pop_heap(parts.begin(), parts.end(), less);
+      const CornersN<N> worst = parts.back().part;
+      parts.pop_back();
+      for (const CornersN<N>& half : halves(worst)) {
+        parts.push_back(bound_of(half));
+        std::push_heap(parts.begin(), parts.end(), less);
+      }
+    }
+    return parts.front().bound;
+  }
+
  private:
   static CornersN<N> in_space(const Frame<N>& frame, const Part& part) {
     CornersN<N> result;
@@ -312,7 +335,7 @@ class Matcher {
       for (std::size_t j = i + 1; j < matches_.size() && matches_[j].box.low[0] < matches_[i].box.high[0]; ++j) {
         const double depth = depth_of_overlap(matches_[i], matches_[j], on_plane);
         if (depth > on_plane) return false;
-        excess_ += std::max(0.0, depth);
+        if (depth > kRoundingOfPlanes * on_plane) excess_ += depth;
       }
     return true;
   }
@@ -445,7 +468,7 @@ class Matcher {
         if (at[i] < at[lowest]) lowest = i;
       }
       if (at[lowest] >= -on_plane) {
-        excess_ += std::max(0.0, -at[lowest]);
+        if (-at[lowest] > kRoundingOfPlanes * on_plane) excess_ -= at[lowest];
         continue;
       }
       if (at[highest] <= on_plane) {
@@ -463,38 +486,52 @@ class Matcher {
     inside_.push_back(part);
   }
 
+  struct Bounded {
+    double bound = 0.0;    ///< no point of the part is farther than this
+    double nearest = 0.0;  ///< and some are as far as this
+    std::array<Index, N + 1> candidates;
+    CornersN<N> part;
+  };
+
   /// The distance from one simplex is convex, so its largest value is at a corner; and no distance grows faster than
-  /// the way does. Either bound will do; what is too loose for both is halved.
-  void measure_uncovered(const CornersN<N>& part, int depth) {
+  /// the way does. Either bound will do.
+  [[nodiscard]] Bounded bound_of(const CornersN<N>& part) const {
     constexpr int kPoints = N + 1;
+    Bounded result;
+    result.part = part;
     std::array<PointN<N>, kPoints> points;
     points[N] = {};
     for (int i = 0; i < N; ++i) {
       points[i] = part[i];
       for (int a = 0; a < N; ++a) points[N][a] += part[i][a] / N;
     }
-    double nearest = 0.0, radius = 0.0, at_middle = 0.0;
-    std::array<Index, kPoints> candidates;
+    double radius = 0.0, at_middle = 0.0;
     for (int i = 0; i < kPoints; ++i) {
       const auto [distance, simplex] = tree_.nearest(points[i]);
-      candidates[i] = simplex;
+      result.candidates[i] = simplex;
       at_middle = distance;  // that of the last one is left
-      nearest = std::max(nearest, distance);
+      result.nearest = std::max(result.nearest, distance);
       radius = std::max(radius, norm(minus(points[i], points[N])));
     }
-    double best = at_middle + radius;
-    for (const Index t : candidates) {
+    result.bound = at_middle + radius;
+    for (const Index t : result.candidates) {
       double farthest = 0.0;
       for (const PointN<N>& corner : part)
         farthest = std::max(farthest, distance_to_simplex<N>(corner, to_.corners[t], N));
-      best = std::min(best, farthest);
+      result.bound = std::min(result.bound, farthest);
     }
-    if (best > kLooseness * nearest && best > bound_ && depth < kUncoveredHalvings<N>) {
+    return result;
+  }
+
+  /// What is bounded too loosely is halved.
+  void measure_uncovered(const CornersN<N>& part, int depth) {
+    const Bounded bounded = bound_of(part);
+    if (bounded.bound > kLooseness * bounded.nearest && bounded.bound > bound_ && depth < kUncoveredHalvings<N>) {
       for (const CornersN<N>& half : halves(part)) measure_uncovered(half, depth + 1);
       return;
     }
-    bound_ = std::max(bound_, best);
-    for (const Index t : candidates) raise(of_to_[t], best);
+    bound_ = std::max(bound_, bounded.bound);
+    for (const Index t : bounded.candidates) raise(of_to_[t], bounded.bound);
   }
 
   const Pieces<N>& from_;
@@ -513,6 +550,28 @@ void require_scale(const std::array<double, N>& scale) {
   for (const double s : scale)
     if (!(s > 0.0 && std::isfinite(s)))
       throw Error(ErrorCode::InvalidArgument, fmt::format("a scale is {}; expected a positive number", s));
+}
+
+/// Measures the simplices with the largest bounds again: few decide on the bound of all.
+template <int N>
+void refine_largest(const Matcher<N>& matcher, Deviation& result, Workers<int>& workers) {
+  std::vector<std::size_t> order(result.of_from.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t most = std::min(order.size() - 1, kMostRefined + order.size() / kRefinedShare);
+  const auto larger = [&](std::size_t a, std::size_t b) {
+    return result.of_from[a] != result.of_from[b] ? result.of_from[a] > result.of_from[b] : a < b;
+  };
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(), larger);
+  // No use in a closer bound of some than the others have.
+  const double enough = std::max(kLooseness * result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
+  workers.for_range(std::max<std::size_t>(most, 1), 1, [&](std::size_t first, std::size_t end, int&) {
+    for (std::size_t i = first; i < end; ++i) {
+      double& bound = result.of_from[order[i]];
+      if (bound > enough) bound = std::min(bound, matcher.refined_bound(static_cast<Index>(order[i]), enough));
+    }
+  });
+  result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
+  for (double& bound : result.of_to) bound = std::min(bound, result.bound);
 }
 
 }  // namespace
@@ -556,7 +615,7 @@ Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, co
     raise(result.least, least);
   });
   if (stopped) throw Error(ErrorCode::Cancelled, "measuring the distance of two contours cancelled");
-  result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
+  refine_largest(Matcher<N>(from_pieces, to_pieces, tree, of_vertices, result.of_to), result, workers);
   return result;
 }
 
