@@ -3,9 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <system_error>
+
 #include "output.hpp"
 
 namespace tegl::cli {
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  return {[least, most](std::string& text) {
+            std::uint64_t value = 0;
+            const char* const end = text.data() + text.size();
+            const auto [at, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc{} && at == end && value >= least && value <= most) return std::string();
+            return fmt::format("'{}'; expected a whole number from {} to {}", text, least, most);
+          },
+          ""};
+}
 
 Command::Command(CLI::App& program, const std::string& name, const std::string& description,
                  const std::string& file_help)

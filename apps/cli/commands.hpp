@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -18,6 +19,9 @@ struct Streams {
   Console out{stdout};
   Console err{stderr};
 };
+
+/// What an option that counts takes: digits alone, at least `least`. (A minus sign would be read as a huge number.)
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000);
 
 /// A command of the program: `tegl NAME FILE ...`.
 class Command {

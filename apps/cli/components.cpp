@@ -75,7 +75,7 @@ class ComponentsCommand final : public ContourInputCommand {
         ->type_name("CONDITION");
     app()
         .add_option("--largest", largest_, "of these, so many, the largest by size")
-        ->check(CLI::PositiveNumber)
+        ->check(whole_number(1))
         ->type_name("COUNT");
     app().add_option("-o,--output", output_,
                      "one file with the components chosen (.ply, .gltf, .glb, .vtkhdf), their labels as attribute");
@@ -83,6 +83,8 @@ class ComponentsCommand final : public ContourInputCommand {
     app().add_option("--csv", csv_, "the table as CSV");
     app()
         .add_option("--rows", rows_, "rows of the table that is shown, the largest first; 0: all")
+        ->check(whole_number(0))
+        ->type_name("COUNT")
         ->capture_default_str();
     app().footer(kExamples);
   }

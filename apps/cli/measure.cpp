@@ -24,7 +24,7 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  tegl measure head.nii.gz --iso 60 --close\n"
     "  tegl contour ocean.nc --iso 20 --close -o ocean.vtkhdf\n"
-    "  tegl measure ocean.vtkhdf --at t=0.5,3.25,7.3\n"
+    "  tegl measure ocean.vtkhdf --at t=1.5,3.25,7.3\n"
     "  tegl measure ocean.vtkhdf --samples 100 --csv curve.csv\n"
     "What an open contour encloses is not defined; --close closes the contour of an image at its border.";
 
@@ -51,7 +51,7 @@ class MeasureCommand final : public ContourInputCommand {
         ->type_name("AXIS=NUMBER");
     app()
         .add_option("--samples", samples_, "also of so many cuts, evenly from the contour's first to its last")
-        ->check(CLI::Range(2, 1000000))
+        ->check(whole_number(2, 1000000))
         ->type_name("COUNT");
     app().add_option("--csv", csv_, "the measures of the cuts as CSV");
     app().footer(kExamples);
@@ -107,9 +107,12 @@ class MeasureCommand final : public ContourInputCommand {
                 {}};
     if constexpr (N >= 3) {
       std::vector<double> at;
-      for (const Cut& cut : cuts) at.push_back(cut.value);
       const double first = whole.lowest[N - 1];
       const double last = whole.highest[N - 1];
+      for (const Cut& cut : cuts) {
+        require_within(cut, first, last, contour.axis_names[N - 1]);
+        at.push_back(cut.value);
+      }
       for (std::size_t i = 0; i < samples_; ++i)
         at.push_back(i + 1 == samples_
                          ? last
@@ -117,6 +120,16 @@ class MeasureCommand final : public ContourInputCommand {
       if (!at.empty()) found.cuts = measure_cuts(contour, at, {threads(), bar.stage("cuts")});
     }
     return found;
+  }
+
+  /// A time outside of the contour is more likely a mistake than a question. (A contour may come from a file of
+  /// floats.)
+  static void require_within(const Cut& cut, double first, double last, const std::string& axis) {
+    const auto value = static_cast<float>(cut.value);
+    if (value >= static_cast<float>(first) && value <= static_cast<float>(last)) return;
+    throw Error(ErrorCode::EmptyResult,
+                fmt::format("the cut at {} = {} lies outside of the contour; expected {} <= {} <= {}", cut.axis,
+                            cut.text, number(first), axis.empty() ? cut.axis : axis, number(last)));
   }
 
   static std::vector<std::string> units(const ContourInput& input, int count) {

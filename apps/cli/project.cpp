@@ -109,7 +109,10 @@ class ProjectCommand final : public ContourInputCommand {
     app()
         .add_option("--eye", eye_, "perspective: how far an eye is before the first time; 0: parallel")
         ->type_name("NUMBER");
-    app().add_option("--count", count_, "of --as cuts: how many")->check(CLI::Range(1, 100000))->capture_default_str();
+    app()
+        .add_option("--count", count_, "of --as cuts: how many")
+        ->check(whole_number(1, 100000))
+        ->capture_default_str();
     app()
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb or .vtkhdf; tetrahedra: .vtkhdf")
         ->required();

@@ -110,14 +110,24 @@ class TrackCommand final : public ContourInputCommand {
     app()
         .add_option("--csv", csv_, "tables: NAME-events.csv, NAME-segments.csv and NAME-samples.csv")
         ->type_name("NAME");
-    app().add_option("--min-lifetime", min_lifetime_,
-                     "leave out branches that live shorter than this, in the unit of the last axis");
+    app().add_option(
+        "--min-lifetime", min_lifetime_,
+        "leave out branches that live shorter than this, in the unit of the last axis; what splits and merges "
+        "again goes only if none of its ways splits in between");
     app()
         .add_option("--samples", samples_, "how many times to measure the parts, evenly over the whole time")
+        ->check(whole_number(0, 1000000))
+        ->type_name("COUNT")
         ->capture_default_str();
-    CLI::Option* const longest =
-        app().add_option("--longest", longest_, "only so many tracks, those that live longest");
-    app().add_option("--largest", largest_, "only so many tracks, those that grow largest")->excludes(longest);
+    CLI::Option* const longest = app()
+                                     .add_option("--longest", longest_, "only so many tracks, those that live longest")
+                                     ->check(whole_number(1))
+                                     ->type_name("COUNT");
+    app()
+        .add_option("--largest", largest_, "only so many tracks, those that grow largest")
+        ->check(whole_number(1))
+        ->type_name("COUNT")
+        ->excludes(longest);
     app().footer(kExamples);
   }
 
@@ -157,6 +167,8 @@ class TrackCommand final : public ContourInputCommand {
     if (largest_ && samples_ == 0)
       throw Error(ErrorCode::InvalidArgument, "--largest needs samples to measure by; expected --samples above 0");
     for (const std::string& output : outputs_) {
+      if (std::count(outputs_.begin(), outputs_.end(), output) > 1)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--output {} is given twice", output));
       if (is_track_file(output))
         require_text_output(output, file());
       else if (find_mesh_file_format(output) != nullptr)

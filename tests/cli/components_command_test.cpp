@@ -198,6 +198,12 @@ TEST_F(MeasureCommand, OfAnOpenContourSaysSo) {
   EXPECT_GT(run_json({"measure", file, "--iso", "0", "--close"})["content"], 1000);
 }
 
+TEST_F(MeasureCommand, OfATimeOutsideIsRefused) {
+  const RunResult run = run_tegl({"measure", file_, "--iso", "0", "--at", "z=-1"});
+  EXPECT_EQ(run.exit, 5);
+  EXPECT_THAT(run.err, HasSubstr("the cut at z = -1 lies outside of the contour; expected "));
+}
+
 TEST_F(MeasureCommand, OverTimeIsThatOfTheCuts) {
   const std::string file = write("moving.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 2}));
   const nlohmann::json report =

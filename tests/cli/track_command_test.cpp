@@ -52,6 +52,17 @@ TEST_F(Track, ReportsEventsAsJson) {
   EXPECT_GT(samples, 10u) << "ten times, two parts before the merge";
 }
 
+TEST_F(Track, CountsThatAreNoneAreNamed) {
+  for (const auto& [option, value] : {std::pair{"--samples", "-2"}, {"--longest", "0"}, {"--largest", "1e3"}}) {
+    const RunResult run = run_tegl({"track", image(), "--iso", "0", option, value});
+    EXPECT_EQ(run.exit, 2);
+    EXPECT_THAT(run.err, HasSubstr(std::string(option) + ": '" + value + "'; expected a whole number from "));
+  }
+  const RunResult twice = run_tegl({"track", image(), "--iso", "0", "-o", path("g.svg"), "-o", path("g.svg")});
+  EXPECT_EQ(twice.exit, 2);
+  EXPECT_THAT(twice.err, HasSubstr("is given twice"));
+}
+
 TEST_F(Track, WritesGraphsPicturesTablesAndTheContour) {
   const RunResult run = run_tegl({"track", image(), "--iso", "0", "-o", path("g.json"), "-o", path("g.dot"), "-o",
                                   path("g.svg"), "-o", path("g.vtkhdf"), "--csv", path("g"), "-q"});

@@ -6,6 +6,8 @@
     docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
     docs_test.py links SOURCE           every relative link leads to a file
     docs_test.py options SOURCE BIN     docs/command-line.md names every option that the programs' help names
+    docs_test.py examples SOURCE BIN    what the help and inline code show of ocean.vtkhdf and ocean.nc works with the
+                                        file in examples/data
 
 Blocks marked otherwise (```console, ```text) are for reading only.
 """
@@ -90,16 +92,47 @@ def links(source, _=None):
     print(f"{count} links lead somewhere")
 
 
+def examples(source, programs):
+    """Of other files, and of other variables, it is not known what they are; to simplify takes long."""
+    count = 0
+    environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+    shown = [(f"tegl {name} --help", line.split("   (")[0].strip())
+             for name in commands_of_tegl(programs) for line in help_of(programs, ["tegl", name]).splitlines()]
+    shown += [(page, code) for page in pages(source)
+              for code in re.findall(r"(?<!`)`([^`\n]+)`(?!`)", page.read_text(encoding="utf-8"))]
+    with tempfile.TemporaryDirectory() as folder:
+        os.symlink(source / "examples/data/ocean_temperature.nc", pathlib.Path(folder) / "ocean.nc")
+        run = lambda text: subprocess.run(["bash", "-c", text], cwd=folder, env=environment, text=True,
+                                          capture_output=True, check=False)
+        assert run("tegl contour ocean.nc --iso 20 -o ocean.vtkhdf").returncode == 0
+        for where, text in shown:
+            if "--var" in text or text.startswith("tegl simplify") or not re.match(r"tegl [a-z]+ ocean\.(nc|vtkhdf) ", text):
+                continue
+            done = run(text)
+            if done.returncode != 0:
+                sys.exit(f"{where}: exit status {done.returncode}\n{text}\n{done.stdout}{done.stderr}")
+            count += 1
+    assert count > 10, "the help has lost its examples"
+    print(f"{count} examples ran")
+
+
+def help_of(programs, program):
+    return subprocess.run([f"{programs}/{program[0]}", *program[1:], "--help"], text=True, capture_output=True,
+                          check=True).stdout
+
+
+def commands_of_tegl(programs):
+    listed = help_of(programs, ["tegl"]).split("Subcommands:")[1].split("Exit codes:")[0]
+    found = re.findall(r"^  ([a-z]+) ", listed, re.MULTILINE)
+    assert {"info", "contour", "slice", "check"} <= set(found), found
+    return found
+
+
 def options(source, programs):
     page = (source / "docs/command-line.md").read_text(encoding="utf-8")
     count = 0
-    help_of = lambda program: subprocess.run([f"{programs}/{program[0]}", *program[1:], "--help"], text=True,
-                                             capture_output=True, check=True).stdout
-    listed = help_of(["tegl"]).split("Subcommands:")[1].split("Exit codes:")[0]
-    commands_of_tegl = re.findall(r"^  ([a-z]+) ", listed, re.MULTILINE)
-    assert {"info", "contour", "slice", "check"} <= set(commands_of_tegl), commands_of_tegl
-    for program in (["tegl"], *(["tegl", command] for command in commands_of_tegl), ["gen"]):
-        text = help_of(program)
+    for program in (["tegl"], *(["tegl", command] for command in commands_of_tegl(programs)), ["gen"]):
+        text = help_of(programs, program)
         for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", text))):
             if f"`{option}" not in page and f" {option}" not in page:
                 sys.exit(f"docs/command-line.md does not mention {option} of {' '.join(program)}")
