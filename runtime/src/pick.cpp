@@ -62,12 +62,27 @@ class NearestTile {
   /// All tiles of the shell with these indices along the axes above `axis`; `on_shell`: those are on it already.
   void look(int axis, bool on_shell, std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
     if (axis < 0) return weigh(index, report);
-    const bool ends_alone = axis == 0 && !on_shell && radius_ > 0;
-    for (std::ptrdiff_t d = -radius_; d <= radius_; d += ends_alone ? 2 * radius_ : 1) {
+    const auto step_to = [&](std::ptrdiff_t d) {
       index[axis] = centre_[axis] + d;
-      if (index[axis] < 0 || index[axis] >= static_cast<std::ptrdiff_t>(grid().size(axis))) continue;
       look(axis - 1, on_shell || d == -radius_ || d == radius_, index, report);
+    };
+    const std::ptrdiff_t first = std::max(-radius_, -centre_[axis]);
+    const std::ptrdiff_t last = std::min(radius_, static_cast<std::ptrdiff_t>(grid().size(axis)) - 1 - centre_[axis]);
+    if (on_shell || radius_ <= reach_below(axis)) {
+      for (std::ptrdiff_t d = first; d <= last; ++d) step_to(d);
+      return;
     }
+    // No other axis is left to come to the shell along.
+    if (first == -radius_) step_to(first);
+    if (last == radius_ && radius_ > 0) step_to(last);
+  }
+
+  /// How far tiles are along the axes below `axis`; -1: there are none.
+  [[nodiscard]] std::ptrdiff_t reach_below(int axis) const noexcept {
+    std::ptrdiff_t reach = -1;
+    for (int a = 0; a < axis; ++a)
+      reach = std::max({reach, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
+    return reach;
   }
 
   void weigh(const std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
