@@ -83,6 +83,21 @@ std::size_t axis_called(const std::string& name, const CutSpace& space) {
   return space.axes.size();
 }
 
+/// Tells cuts across axes of a saved contour where the vertices are that they mean.
+void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
+  for (std::size_t axis = 0; axis < space.axes.size(); ++axis) {
+    const auto is_across = [&](const Cut& cut) { return cut.across && static_cast<std::size_t>(*cut.across) == axis; };
+    std::vector<double> values;
+    for (const Cut& cut : cuts)
+      if (is_across(cut)) values.push_back(cut.value);
+    if (values.empty()) continue;
+    const std::vector<double> level = meet_vertices(values, space.vertices, space.axes.size(), axis);
+    std::size_t next = 0;
+    for (Cut& cut : cuts)
+      if (is_across(cut)) cut.level = level[next++];
+  }
+}
+
 std::string axis_names(const CutSpace& space) {
   std::vector<std::string> names;
   for (const CutAxis& axis : space.axes) names.push_back(axis.name);
@@ -96,7 +111,7 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   for (const std::string& argument : at) {
     const auto [axis, values] = halves("--at", argument, "an axis and a number, as in t=7.3");
     for (const auto& [value, text] : numbers_of(fmt::format("--at {}", argument), values))
-      cuts.push_back({axis, value, text, {}, {}, {}});
+      cuts.push_back({axis, value, text, {}, {}, {}, {}});
   }
   return cuts;
 }
@@ -116,7 +131,7 @@ std::vector<Cut> parse_planes(const std::vector<std::string>& planes) {
     const auto [numbers, values] = halves("--plane", argument, "a normal and an offset, as in 1,0,0,0.5=3");
     const std::vector<double> normal = parse_normal(fmt::format("--plane {}", argument), numbers);
     for (const auto& [value, text] : numbers_of(fmt::format("--plane {}", argument), values))
-      cuts.push_back({numbers, value, text, normal, {}, {}});
+      cuts.push_back({numbers, value, text, normal, {}, {}, {}});
   }
   return cuts;
 }
@@ -124,7 +139,7 @@ std::vector<Cut> parse_planes(const std::vector<std::string>& planes) {
 CutSpace space_of(const AnyImage& image) {
   const auto of_owned = [](const auto& owned) {
     constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
-    CutSpace space{{}, "image"};
+    CutSpace space{{}, "image", {}};
     for (int a = 0; a < kDim; ++a) {
       CutAxis& world = space.axes.emplace_back();
       world = {axis_label(owned.grid.axes[a].name, static_cast<std::size_t>(a)), owned.grid.offset(a),
@@ -143,7 +158,7 @@ CutSpace space_of(const AnyImage& image) {
 }
 
 CutSpace space_of(const Mesh& mesh) {
-  CutSpace space{{}, "saved contour"};
+  CutSpace space{{}, "saved contour", mesh.coordinates};
   const auto n = static_cast<std::size_t>(mesh.space_dim);
   for (std::size_t a = 0; a < n; ++a) {
     CutAxis& axis = space.axes.emplace_back();
@@ -174,6 +189,30 @@ std::vector<double> parse_scale(const std::vector<std::string>& scale, const Cut
   return factors;
 }
 
+std::vector<double> meet_vertices(std::vector<double> values, std::span<const double> vertices, std::size_t dim,
+                                  std::size_t axis) {
+  const auto in_single = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+  struct Rounded {
+    double to;
+    std::size_t value;
+    bool is_met;
+  };
+  std::vector<Rounded> rounded;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (const double to = in_single(values[i]); to != values[i]) rounded.push_back({to, i, false});
+  if (rounded.empty()) return values;
+  std::sort(rounded.begin(), rounded.end(), [](const Rounded& a, const Rounded& b) { return a.to < b.to; });
+  for (std::size_t i = axis; i < vertices.size(); i += dim) {
+    if (in_single(vertices[i]) != vertices[i]) return values;
+    auto met = std::lower_bound(rounded.begin(), rounded.end(), vertices[i],
+                                [](const Rounded& a, double x) { return a.to < x; });
+    for (; met != rounded.end() && met->to == vertices[i]; ++met) met->is_met = true;
+  }
+  for (const Rounded& one : rounded)
+    if (one.is_met) values[one.value] = one.to;
+  return values;
+}
+
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
   for (Cut& cut : cuts) {
     if (!cut.normal.empty()) {
@@ -188,12 +227,17 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
     if (a == space.axes.size())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--at {}={} names no axis; expected one of {}", cut.axis, cut.text, axis_names(space)));
-    const CutAxis& axis = space.axes[a];
     cut.across = static_cast<int>(a);
-    cut.axis = axis.name;
+    cut.axis = space.axes[a].name;
     cut.normal.assign(space.axes.size(), 0.0);
     cut.normal[a] = 1.0;
-    if (cut.value >= axis.first && cut.value <= axis.last) continue;
+  }
+  find_levels(cuts, space);
+  for (const Cut& cut : cuts) {
+    if (!cut.across) continue;
+    const CutAxis& axis = space.axes[static_cast<std::size_t>(*cut.across)];
+    const double level = cut.level.value_or(cut.value);
+    if (level >= axis.first && level <= axis.last) continue;
     throw Error(ErrorCode::EmptyResult,
                 fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {}", axis.name, cut.text,
                             space.of, number(axis.first), axis.name, number(axis.last)));

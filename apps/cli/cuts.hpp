@@ -3,6 +3,7 @@
 // The values of --at and --plane, the space that they are asked of, and the output that belongs to each.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,8 @@ struct CutAxis {
 struct CutSpace {
   std::vector<CutAxis> axes;
   const char* of = "";  ///< what the ranges are those of, for messages
+  /// #V x axes.size() coordinates of a saved contour, which has to outlive this; none of an image.
+  std::span<const double> vertices = {};
 };
 CutSpace space_of(const AnyImage& image);
 CutSpace space_of(const Mesh& mesh);
@@ -40,8 +43,15 @@ CutSpace space_of(const Mesh& mesh);
 /// The factors that the values of --scale ask for, one for each axis: "t=10", "x=2,y=3". Throws InvalidArgument.
 std::vector<double> parse_scale(const std::vector<std::string>& scale, const CutSpace& space);
 
-/// The cuts with the axes' own names and, in all cases, normals. Throws InvalidArgument for axes and normals that the
-/// space has not, EmptyResult outside of an axis's range.
+/// The values, but for those that mean a vertex's coordinate and miss it by rounding: t = 0.1 of a contour that was
+/// made in single precision, where the number nearest to it is another than in double. These are replaced by that
+/// coordinate. They are known by all coordinates on the axis being numbers in single precision. `vertices`: #V x dim
+/// coordinates.
+std::vector<double> meet_vertices(std::vector<double> values, std::span<const double> vertices, std::size_t dim,
+                                  std::size_t axis);
+
+/// The cuts with the axes' own names and, in all cases, normals; and levels where values mean vertices. Throws
+/// InvalidArgument for axes and normals that the space has not, EmptyResult outside of an axis's range.
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space);
 
 /// The output of each cut: `pattern` with "{t}" or "{at}", or the axis as it was typed in braces, replaced by the

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -117,7 +118,10 @@ class MeasureCommand final : public ContourInputCommand {
         at.push_back(i + 1 == samples_
                          ? last
                          : first + (last - first) * static_cast<double>(i) / static_cast<double>(samples_ - 1));
-      if (!at.empty()) found.cuts = measure_cuts(contour, at, {threads(), bar.stage("cuts")});
+      if (at.empty()) return found;
+      const std::span<const double> vertices(contour.vertices.data()->data(), contour.vertices.size() * N);
+      found.cuts = measure_cuts(contour, meet_vertices(at, vertices, N, N - 1), {threads(), bar.stage("cuts")});
+      for (std::size_t i = 0; i < at.size(); ++i) found.cuts[i].at = at[i];
     }
     return found;
   }

@@ -66,6 +66,7 @@ struct Cut {
   std::vector<double> normal;     ///< of the hyperplane <normal, x> = value
   std::optional<int> across;      ///< the axis, if it is one
   std::optional<CutFrame> frame;  ///< of others, where it is known
+  std::optional<double> level;    ///< where to cut instead of at `value`: where the vertices are that it means
 };
 
 /// What --pick found.

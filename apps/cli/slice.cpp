@@ -53,6 +53,10 @@ void require_cut(const ContourResult& result) {
 /// The hyperplane of a cut where axis a is stretched by factors[a].
 template <int N>
 Hyperplane<N> hyperplane_of(const Cut& cut, const std::vector<double>& factors) {
+  // Across an axis by the product that vertices have too, to meet those that lie there.
+  if (cut.across)
+    return Hyperplane<N>::across(*cut.across,
+                                 cut.level.value_or(cut.value) * factors[static_cast<std::size_t>(*cut.across)]);
   Hyperplane<N> hyperplane;
   for (int a = 0; a < N; ++a)
     hyperplane.normal[a] = cut.normal[static_cast<std::size_t>(a)] / factors[static_cast<std::size_t>(a)];
@@ -83,9 +87,12 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
   stretch(contour, factors);
   for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
     const Hyperplane<N> hyperplane = hyperplane_of<N>(*results[first].cut, factors);
+    const Cut& like = *results[first].cut;
     std::vector<double> offsets;
-    for (end = first; end < results.size() && results[end].cut->normal == results[first].cut->normal; ++end)
-      offsets.push_back(results[end].cut->value);
+    for (end = first;
+         end < results.size() && results[end].cut->normal == like.normal && results[end].cut->across == like.across;
+         ++end)
+      offsets.push_back(hyperplane_of<N>(*results[end].cut, factors).offset);
     Stopwatch watch;
     auto cuts = slice_stack(contour, hyperplane.normal, offsets, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {

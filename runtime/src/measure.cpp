@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "measure_pieces.hpp"
+#include "slice_at.hpp"
 
 namespace tegl {
 namespace {
@@ -180,7 +181,9 @@ std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span
     if (!std::isfinite(t))
       throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
   const auto [low, high] = bounding_box(contour);
-  const CutValues values(at, low[N - 1]);
+  std::vector<double> levels;  // where `slice` cuts
+  for (const double t : at) levels.push_back(static_cast<double>(detail::rounded_at<Real>(t)));
+  const CutValues values(levels, low[N - 1]);
   const std::vector<bool> open = find_open_cuts(contour, values, options);
   PointOf<N> origin;  // near the contour, to keep the terms of the contents small
   for (int a = 0; a < N; ++a) origin[a] = low[a] + 0.5 * (high[a] - low[a]);
@@ -205,7 +208,7 @@ std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span
       total.content.add(part[i].content.value());
     }
     CutMeasures& cut = result[values.place(i)];
-    cut.at = values[i];
+    cut.at = at[values.place(i)];
     cut.size = total.size.value();
     const double content = total.content.value() / (N - 1);
     if (!open[i]) cut.content = contour.direction == GradientDirection::descent ? content : -content;

@@ -27,6 +27,7 @@
 #include <limits>
 #include <utility>
 
+#include "slice_at.hpp"
 #include "track_link.hpp"
 #include "track_measure.hpp"
 
@@ -52,16 +53,16 @@ class Sweeper {
     const std::size_t count = contour.simplices.size();
     labels_.assign(count, kNone);
     seen_.assign(count, 0);
+    for (const double time : options.times) times_.push_back(static_cast<double>(rounded_at<Real>(time)));
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
-    if (!options.times.empty() && count > 0) plan_samples();
+    if (!times_.empty() && count > 0) plan_samples();
   }
 
   SweepResult run() {
     const std::span<const Index> order = complex_.order();
     for (std::size_t i = 0; i < order.size(); ++i) {
       const double time = complex_.time(order[i]);
-      while (!starts_.empty() && next_time_ < options_.times.size() && options_.times[next_time_] <= time)
-        take_sample();
+      while (!starts_.empty() && next_time_ < times_.size() && times_[next_time_] <= time) take_sample();
       if (i == 0 || time != complex_.time(order[i - 1])) settle_starts();
       if (i % 16384 == 0) report(static_cast<double>(i) / static_cast<double>(order.size()));
       visit(order[i]);
@@ -350,11 +351,11 @@ class Sweeper {
     const auto& contour = complex_.contour();
     const auto first_cut = [&](Index s) {
       const auto [low, high] = span(s);
-      const auto at = std::upper_bound(options_.times.begin(), options_.times.end(), low);
-      const bool is_cut = at != options_.times.end() && *at <= high && !is_collapsed<N>(complex_.simplex(s).data());
-      return is_cut ? static_cast<std::size_t>(at - options_.times.begin()) : options_.times.size();
+      const auto at = std::upper_bound(times_.begin(), times_.end(), low);
+      const bool is_cut = at != times_.end() && *at <= high && !is_collapsed<N>(complex_.simplex(s).data());
+      return is_cut ? static_cast<std::size_t>(at - times_.begin()) : times_.size();
     };
-    starts_.assign(options_.times.size() + 3, 0);
+    starts_.assign(times_.size() + 3, 0);
     for (Index s = 0; s < contour.simplices.size(); ++s) ++starts_[first_cut(s) + 2];
     for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
     starting_.resize(contour.simplices.size());
@@ -373,7 +374,8 @@ class Sweeper {
 
   /// All vertices before the time have been visited; a vertex at the time counts as above it, as in `slice`.
   void take_sample() {
-    const double time = options_.times[next_time_];
+    const double time = times_[next_time_];
+    const double asked_for = options_.times[next_time_];
     std::erase_if(cut_, [&](Index s) { return span(s).second < time; });
     cut_.insert(cut_.end(), starting_.begin() + static_cast<std::ptrdiff_t>(starts_[next_time_]),
                 starting_.begin() + static_cast<std::ptrdiff_t>(starts_[next_time_ + 1]));
@@ -390,7 +392,7 @@ class Sweeper {
     }
     for (const auto& [arc, sums] : sums_) slots_[arc] = kNone;
     std::sort(sums_.begin(), sums_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [arc, sums] : sums_) result_.samples.push_back({arc, sums.to_sample(time, N - 1, origin_)});
+    for (const auto& [arc, sums] : sums_) result_.samples.push_back({arc, sums.to_sample(asked_for, N - 1, origin_)});
   }
 
   void add_cut(Index s, double time, PartSums& sums) const {
@@ -432,6 +434,7 @@ class Sweeper {
   std::vector<Index> front_of_part_;
   Faces<N> faces_;
 
+  std::vector<double> times_;  ///< those of the options in the precision of the vertices, as `slice` rounds them
   std::size_t next_time_ = 0;
   std::vector<std::size_t> starts_;  ///< per time: where in `starting_` its simplices start
   std::vector<Index> starting_;

@@ -56,6 +56,37 @@ TEST_F(Slice, OfASavedContourEqualsThatOfItsImage) {
   }
 }
 
+TEST_F(Slice, OfAContourSavedInSinglePrecisionMeetsItsOwnTimes) {
+  // 0.1 and 0.7 are other numbers in single precision than in double, the first larger, the second smaller.
+  const std::vector<double> places = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
+  write_netcdf(path("balls.nc"), {"x", "y", "z", "t"}, {places, places, places, {0.1, 0.3, 0.4, 0.5, 0.7}},
+               {{"TEMP", merging_balls(18, 5)}});
+  ASSERT_EQ(
+      run_tegl({"contour", path("balls.nc"), "--iso", "0", "--precision", "float", "-o", path("all.vtkhdf"), "-q"})
+          .exit,
+      0);
+  for (const char* at : {"t=0.1", "t=0.3", "t=0.7"}) {
+    const RunResult saved = run_tegl({"slice", path("all.vtkhdf"), "--at", at, "-o", path("saved.ply"), "--json"});
+    ASSERT_EQ(saved.exit, 0) << saved.err;
+    const RunResult direct = run_tegl(
+        {"slice", path("balls.nc"), "--iso", "0", "--precision", "float", "--at", at, "-o", path("a.ply"), "--json"});
+    ASSERT_EQ(direct.exit, 0) << direct.err;
+    for (const char* key : {"at", "vertices", "simplices", "components", "euler", "boundary_simplices"})
+      EXPECT_EQ(saved.json()[key], direct.json()[key]) << at << " " << key;
+    for (const char* scale : {"t=10", "t=3"})
+      EXPECT_EQ(run_tegl({"slice", path("all.vtkhdf"), "--at", at, "--scale", scale, "-o", path("b.ply"), "--json"})
+                    .json()["simplices"],
+                saved.json()["simplices"]);
+    const nlohmann::json cut =
+        run_tegl({"measure", path("balls.nc"), "--iso", "0", "--precision", "float", "--at", at, "--json"})
+            .json()["cuts"][0];
+    EXPECT_EQ(cut["value"], saved.json()["at"]["value"]);
+    EXPECT_GT(cut["size"], 100);
+    EXPECT_GT(cut["content"], 100);
+  }
+  EXPECT_EQ(run_tegl({"slice", path("all.vtkhdf"), "--at", "t=0.0999", "-o", path("no.ply")}).exit, 5);
+}
+
 TEST_F(Slice, HasTheNormalsOfTheSavedContourOrOfTheImage) {
   const auto sorted = [&](const std::string& name) {
     const Mesh mesh = read_mesh(path(name));

@@ -160,6 +160,25 @@ TEST(MeasureCuts, AreThoseOfSlices) {
   }
 }
 
+TEST(MeasureCuts, OfASingleContourMeetTheTimesThatDoublesMiss) {
+  // 0.1, 0.2 … are other numbers in single precision than in double: some larger, some smaller. At its own first and
+  // last time the contour must not be missed.
+  Grid<4> grid = Grid<4>::unit({6, 6, 6, 8});
+  grid.axes[3] = Axis::uniform(8, 0.1, 0.1);
+  const auto contour = extract<float>(noise<float, 4>(grid, 23).view(), 0.5);
+  std::vector<double> at;
+  for (std::size_t k = 0; k < 8; ++k) at.push_back(grid.axes[3][k]);
+  at.push_back(0.7);
+  at.push_back(0.8);
+  const std::vector<CutMeasures> found = measure_cuts(contour, at);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double size = test::measure(slice(contour, at[i]));
+    EXPECT_EQ(found[i].at, at[i]);
+    EXPECT_GT(size, 1.0);
+    EXPECT_NEAR(found[i].size, size, 1e-5 * size) << at[i];
+  }
+}
+
 TEST(MeasureCuts, AreClosedWhereTheContourIsOpenInTimeAlone) {
   // A ball that is there from the first to the last time: the 4D contour is open at both, its cuts are closed.
   const auto contour = contour_of<4>([](const Point<4>& x) { return 0.7 - std::hypot(x[0], x[1], x[2]); }, 12, 1.0);

@@ -13,6 +13,7 @@
 #include "invariants.hpp"
 #include "measure.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl {
 namespace {
@@ -240,6 +241,25 @@ TEST(Track, WhatCrossesTheBorderEntersAndLeaves) {
   options.last = 1.2;
   EXPECT_THAT(kinds(track(contour_of(grid, field, true), options)),
               ElementsAre(Kind::begin, Kind::birth, Kind::death, Kind::end));
+}
+
+TEST(Track, OfASingleContourMeasuresTimesThatDoublesMiss) {
+  // 0.7 is more than the single precision number nearest to it, where this contour ends.
+  Grid<4> grid = space_time<4>(12, 1.0, 7, 0.0, 1.0);
+  grid.axes[3] = Axis::uniform(7, 0.1, 0.1);
+  const auto image =
+      test::sample_field<float, 4>(grid, [](const Point<4>& p) { return 0.6 - std::hypot(p[0], p[1], p[2]); });
+  const Contour<4, float> contour = extract<float>(image.view(), 0.0);
+  TrackOptions options;
+  options.times = {0.2, 0.3, 0.7};
+  const TrackGraph graph = track(contour, options);
+  ASSERT_EQ(graph.segments.size(), 1u);
+  ASSERT_EQ(graph.segments[0].samples.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(graph.segments[0].samples[i].time, options.times[i]);
+    const double area = test::measure(slice(contour, options.times[i]));
+    EXPECT_NEAR(graph.segments[0].samples[i].measure, area, 1e-5 * area);
+  }
 }
 
 TEST(Track, BeginsAndEndsWhereTheDataSaySo) {

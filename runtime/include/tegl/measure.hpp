@@ -48,7 +48,8 @@ struct CutMeasures {
 };
 
 /// Measures the cuts of a contour in N = 3, 4 or 5 dimensions at any values of the last coordinate, in any order,
-/// without making them: of a 4D contour the area and the enclosed volume at times t.
+/// without making them: of a 4D contour the area and the enclosed volume at times t. Like `slice` it rounds values to
+/// Real first; CutMeasures::at is what was asked for.
 ///
 /// Exact, up to rounding: the cut of a simplex has a size that is a B-spline in t with the simplex's vertices as its
 /// knots (H. B. Curry and I. J. Schoenberg, On Pólya frequency functions IV, 1966), of degree N - 2, times the spatial

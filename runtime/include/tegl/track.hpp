@@ -112,7 +112,7 @@ struct TrackOptions {
   /// to the merge of the same two, are left out. 0: all are shown but those that last no longer than rounding may let
   /// them (4 units in the last place of the largest time).
   double min_lifetime = 0;
-  /// When to measure the parts, ascending.
+  /// When to measure the parts, ascending. Rounded to Real, as `slice` does.
   std::vector<double> times = {};
   /// When the data begin and end; by default the least and the greatest last coordinate of the contour.
   std::optional<double> first = {};
