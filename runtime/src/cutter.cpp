@@ -27,6 +27,11 @@
 // below, and the simplices above cut to its faces in the same way; if the contour is closed at its first layer, the cap
 // lies flat in the hyperplane with nothing below. Where tiles below are missing under a part of M alone, the faces
 // met from above are boundary faces of the contour, and are added as they are.
+//
+// Boundary faces lie flat in the hyperplane for another reason too where samples equal the isovalue: faces in a side of
+// the image along another axis whose vertices all happen to be on. The cut from below is whole without them. The
+// extraction makes none for layers of the last axis; for others, faces that may be such ones are left out, and so are
+// all in oblique hyperplanes, which are no layers.
 #include "cutter.hpp"
 
 #include <algorithm>
@@ -213,7 +218,7 @@ class Cutter {
   /// Draws the points around on vertices together. Where the result is pinched and the points themselves were not, the
   /// vertices concerned are left apart; each round leaves more of them so, and with all apart nothing is pinched.
   void draw_together() {
-    const std::vector<Piece> faces = faces_met_from_above();
+    std::vector<Piece> faces = faces_met_from_above();
     std::vector<bool> apart(on_.size(), false);
     std::vector<PointKey> excused;
     for (int round = 0;; ++round) {
@@ -221,7 +226,7 @@ class Cutter {
       drawn.insert(drawn.end(), faces.begin(), faces.end());
       const std::vector<PointKey> pinched = detail::pinched_points(drawn);
       if (round == 0 && !pinched.empty()) excused = detail::pinched_points(pieces_);
-      if (leave_apart(pinched, excused, round >= kMostRounds, apart)) continue;
+      if (drop_faces(pinched, apart, faces) || leave_apart(pinched, excused, round >= kMostRounds, apart)) continue;
       pieces_ = std::move(drawn);
       return;
     }
@@ -264,8 +269,33 @@ class Cutter {
     return changed;
   }
 
+  /// Drops the faces at vertices around which the cut is pinched although they are left apart: there faces alone meet.
+  /// True if there are any.
+  bool drop_faces(const std::vector<PointKey>& pinched, const std::vector<bool>& apart,
+                  std::vector<Piece>& faces) const {
+    return std::erase_if(faces, [&](const Piece& face) {
+             return std::any_of(face.points.begin(), face.points.begin() + face.count, [&](PointKey key) {
+               return apart[on_(upper_end(key))] && std::binary_search(pinched.begin(), pinched.end(), key);
+             });
+           }) > 0;
+  }
+
+  /// Whether a boundary face of a simplex may lie in a side of the image along another axis than the cut's.
+  [[nodiscard]] bool may_lie_in_another_side(const OnFace& face) const {
+    const auto& inside = contour_.vertices[contour_.simplices[face.simplex][face.omitted]];
+    const auto& first = contour_.vertices[face.vertices[0]];
+    for (int a = 0; a < N; ++a) {
+      if (a == section_.dropped_axis() || inside[a] == first[a]) continue;
+      if (std::all_of(face.vertices.begin(), face.vertices.end(),
+                      [&](Index v) { return contour_.vertices[v][a] == first[a]; }))
+        return true;
+    }
+    return false;
+  }
+
   /// The contour's boundary faces among vertices that count as above, whose simplex is above; see the top of this file.
   [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
+    if (!section_.is_across_axis()) return {};
     std::vector<OnFace> on_faces;
     for (const Index s : touching_)
       gather_on_faces(s, corners(contour_.simplices[s], [](Side side) { return side == Side::on_high; }), on_faces);
@@ -277,6 +307,7 @@ class Cutter {
       while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
       const auto& simplex = contour_.simplices[on_faces[i].simplex];
       if (j - i != 1 || side(simplex[on_faces[i].omitted]) != Side::above) continue;
+      if (!section_.is_along_last_axis() && may_lie_in_another_side(on_faces[i])) continue;
       Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
       for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
       faces.push_back(face);
@@ -311,8 +342,9 @@ class Cutter {
       }
     // Both vertex numbers side by side in as few bits as there are.
     const auto bits = static_cast<unsigned>(std::bit_width(most));
-    sort_by_bits(all, 2 * bits,
-                 [bits](const Corner& corner) { return PointKey{lower_end(corner.key)} << bits | upper_end(corner.key); });
+    sort_by_bits(all, 2 * bits, [bits](const Corner& corner) {
+      return PointKey{lower_end(corner.key)} << bits | upper_end(corner.key);
+    });
     for (const Corner& corner : all) {
       if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
       pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;

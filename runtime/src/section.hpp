@@ -69,6 +69,10 @@ class Section {
   [[nodiscard]] bool keeps_axis(int i) const { return normal_[i < dropped_axis() ? i : i + 1] == 0.0; }
   /// Whether the normal is a multiple of an axis, which is then the one that is dropped.
   [[nodiscard]] bool is_across_axis() const noexcept { return is_across_axis_; }
+  /// Whether the normal is a positive multiple of the last axis.
+  [[nodiscard]] bool is_along_last_axis() const noexcept {
+    return is_across_axis_ && !is_reversed_ && frame_.dropped == N - 1;
+  }
   [[nodiscard]] int dropped_axis() const noexcept { return frame_.dropped; }
   [[nodiscard]] bool is_right_handed() const noexcept { return frame_.is_right_handed; }
 

@@ -37,13 +37,17 @@ template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
 /// The cut by any hyperplane, in the coordinates of `frame_of(hyperplane)`: along x of a 4D contour a surface in y, z
-/// and t. All that is said above holds, with "above" as the side that the hyperplane's normal points to, and the layers
-/// of the axis that it is across, if it is across one: the last axis is the special case. Vertices lie on the
-/// hyperplane if <normal, x> equals the offset as computed in double, and if the normal is a multiple of an axis, if
-/// the coordinate equals the quotient in Real. Orientation: the cut's positive side in the frame's coordinates is that
-/// of the contour, also where the frame is left-handed. Names and units of axes are kept where the frame's axis is one
-/// of the contour's, and empty elsewhere.
-/// Errors: those of `frame_of`. Cost: as above.
+/// and t. "Above" is the side that the hyperplane's normal points to; along the last axis it is the cut above. Whatever
+/// it meets, the cut of a manifold is a manifold, oriented alike, and closed if the contour is. It is the limit from
+/// below, or from above around vertices that the contour does not come up to from below. Of the contour's boundary,
+/// parts in the hyperplane whose upper side alone has a contour belong to cuts across an axis, unless they may lie in a
+/// side of the image along another axis too, and never to oblique ones. So at a sample's coordinate on any axis the cut
+/// is the contour of that layer, if no sample equals the isovalue; where samples do, pieces of the layer's contour that
+/// lie flat in it may be missing. Vertices lie on the hyperplane if <normal, x> equals the offset as computed in
+/// double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real. Orientation: the
+/// cut's positive side in the frame's coordinates is that of the contour, also where the frame is left-handed. Names
+/// and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere. Errors: those of
+/// `frame_of`. Cost: as above.
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
 
