@@ -6,8 +6,11 @@
 // whose seed fill gives the same labels in one thread.
 #include "tegl/components.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -50,40 +53,42 @@ Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<cons
   return part;
 }
 
+/// As many labels as there are vertices and simplices, each below their count and each used; of simplices those of
+/// their vertices, and of vertices in no simplex none.
 template <int N, class Real>
 void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels) {
-  const auto require = [](std::size_t found, std::size_t expected, const char* what) {
+  detail::require_vertices(contour);
+  const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
+  const auto require_count = [&](std::size_t found, std::size_t expected, const char* what) {
     if (found != expected)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("labels for {} {}; expected {}, as many as the contour has", found, what, expected));
+      fail(fmt::format("labels for {} {}; expected {}, as many as the contour has", found, what, expected));
   };
-  require(labels.vertices.size(), contour.vertices.size(), "vertices");
-  require(labels.simplices.size(), contour.simplices.size(), "simplices");
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
-    for (const Index v : contour.simplices[s])
-      if (v >= labels.vertices.size() || labels.simplices[s] >= labels.count ||
-          labels.vertices[v] != labels.simplices[s])
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("simplex {} has the label {} of {}, and its vertex {} another one; expected the labels "
-                                "of this contour",
-                                s, labels.simplices[s], labels.count, v));
-}
-
-/// Attributes and normals must be as many as what they belong to, or copies of their parts would read beyond them.
-template <int N, class Real>
-void require_attributes(const Contour<N, Real>& contour) {
-  const auto require = [](const std::vector<Attribute>& attributes, std::size_t count) {
-    for (const Attribute& attribute : attributes)
-      if (attribute.width < 1 || attribute.values.size() != count * static_cast<std::size_t>(attribute.width))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("attribute '{}' has {} values of width {}; expected {} times the width", attribute.name,
-                                attribute.values.size(), attribute.width, count));
-  };
-  require(contour.vertex_attributes, contour.vertices.size());
-  require(contour.simplex_attributes, contour.simplices.size());
-  if (!contour.normals.empty() && contour.normals.size() != contour.vertices.size())
-    throw Error(ErrorCode::InvalidArgument, fmt::format("{} normals for {} vertices; expected as many, or none",
-                                                        contour.normals.size(), contour.vertices.size()));
+  require_count(labels.vertices.size(), contour.vertices.size(), "vertices");
+  require_count(labels.simplices.size(), contour.simplices.size(), "simplices");
+  if (labels.count > contour.simplices.size())
+    fail(fmt::format("{} components of {} simplices; expected the labels of this contour", labels.count,
+                     contour.simplices.size()));
+  std::vector<bool> is_in_simplex(contour.vertices.size(), false);
+  std::vector<bool> has_simplex(labels.count, false);
+  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
+    const Index label = labels.simplices[s];
+    if (label >= labels.count)
+      fail(fmt::format("simplex {} has the label {}; expected less than {}, the number of components", s, label,
+                       labels.count));
+    has_simplex[label] = true;
+    for (const Index v : contour.simplices[s]) {
+      is_in_simplex[v] = true;
+      if (labels.vertices[v] != label)
+        fail(fmt::format("simplex {} has the label {}, and its vertex {} the label {}; expected the same", s, label, v,
+                         labels.vertices[v]));
+    }
+  }
+  for (std::size_t v = 0; v < is_in_simplex.size(); ++v)
+    if (!is_in_simplex[v] && labels.vertices[v] != kNoComponent)
+      fail(fmt::format("vertex {} in no simplex has the label {}; expected none", v, labels.vertices[v]));
+  if (const auto empty = std::find(has_simplex.begin(), has_simplex.end(), false); empty != has_simplex.end())
+    fail(fmt::format("component {} of {} has no simplex; expected the labels of this contour",
+                     empty - has_simplex.begin(), labels.count));
 }
 
 /// Labels in the order of the sets' leaders, which are their smallest vertices. Vertices without `used` get none.
@@ -166,7 +171,7 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
 template <int N, class Real>
 std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels) {
   require_labels(contour, labels);
-  require_attributes(contour);
+  detail::require_attributes(contour);
   const detail::Groups vertices = detail::group_by(labels.vertices, labels.count);
   const detail::Groups simplices = detail::group_by(labels.simplices, labels.count);
   Buffer<Index> number(contour.vertices.size());
@@ -183,7 +188,7 @@ template <int N, class Real>
 Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                    const std::vector<bool>& keep) {
   require_labels(contour, labels);
-  require_attributes(contour);
+  detail::require_attributes(contour);
   if (keep.size() != labels.count)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} components are to be kept or not; expected {}, as many as there are", keep.size(),
@@ -204,6 +209,7 @@ Contour<N, Real> select_components(const Contour<N, Real>& contour, const Compon
 template <int N, class Real>
 void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& labels) {
   require_labels(contour, labels);
+  detail::require_attributes(contour);
   const auto add = [](const Buffer<Index>& of, std::vector<Attribute>& attributes) {
     std::erase_if(attributes, [](const Attribute& attribute) { return attribute.name == "component"; });
     Attribute& attribute = attributes.emplace_back(Attribute{"component", "", 1, {}});

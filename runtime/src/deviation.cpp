@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "box_tree.hpp"
+#include "require.hpp"
 #include "simplex_shapes.hpp"
 #include "workers.hpp"
 
@@ -160,9 +161,6 @@ struct Pieces {
       CornersN<N> at;
       for (int i = 0; i < N; ++i) {
         const Index v = contour.simplices[s][i];
-        if (v >= contour.vertices.size())
-          throw Error(ErrorCode::InvalidArgument,
-                      fmt::format("simplex {} has the vertex {}; expected one of {}", s, v, contour.vertices.size()));
         at[i] = points[v];
       }
       corners.push_back(at);
@@ -581,6 +579,8 @@ template <int N, class Real>
 Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, const DeviationOptions<N>& options) {
   using namespace detail;
   require_scale<N>(options.scale);
+  require_vertices(from);
+  require_vertices(to);
   Deviation result;
   result.of_from.assign(from.simplices.size(), 0.0);
   result.of_to.assign(to.simplices.size(), 0.0);

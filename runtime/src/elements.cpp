@@ -17,19 +17,12 @@
 #include "disjoint_sets.hpp"
 #include "exact_sum.hpp"
 #include "locate.hpp"
+#include "require.hpp"
 #include "simplex_geometry.hpp"
 
 namespace tegl {
 
 namespace {
-
-void require_size(const Attribute& attribute, std::size_t rows, const char* what) {
-  const auto width = static_cast<std::size_t>(std::max(attribute.width, 0));
-  if (width > 0 && attribute.values.size() == rows * width) return;
-  throw Error(ErrorCode::InvalidArgument,
-              fmt::format("attribute '{}' has {} values of width {}; expected {} {} times the width", attribute.name,
-                          attribute.values.size(), attribute.width, rows, what));
-}
 
 template <int N, class Real>
 Elements<N> make_elements(const Contour<N, Real>& contour, std::size_t count) {
@@ -41,15 +34,14 @@ Elements<N> make_elements(const Contour<N, Real>& contour, std::size_t count) {
   result.axis_names = contour.axis_names;
   result.axis_units = contour.axis_units;
   result.direction = contour.direction;
-  const auto add = [&](const std::vector<Attribute>& attributes, std::size_t rows, const char* what) {
+  const auto add = [&](const std::vector<Attribute>& attributes) {
     for (const Attribute& attribute : attributes) {
-      require_size(attribute, rows, what);
       result.attributes.push_back({attribute.name, attribute.unit, attribute.width, {}});
       result.attributes.back().values.resize(count * static_cast<std::size_t>(attribute.width));
     }
   };
-  add(contour.vertex_attributes, contour.vertices.size(), "vertices");
-  add(contour.simplex_attributes, contour.simplices.size(), "simplices");
+  add(contour.vertex_attributes);
+  add(contour.simplex_attributes);
   return result;
 }
 
@@ -180,6 +172,7 @@ void merge(const Elements<N>& simplices, std::span<const Placed> piece, std::siz
 
 template <int N, class Real>
 Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options) {
+  detail::require_sound(contour);
   Elements<N> result = make_elements(contour, contour.simplices.size());
   detail::for_each_item(contour.simplices.size(), options.threads, options.progress, [&](std::size_t s) {
     const auto corners = detail::corners_of(contour, s);

@@ -17,6 +17,7 @@
 #include "blocks.hpp"
 #include "exact_sum.hpp"
 #include "faces_of_stars.hpp"
+#include "require.hpp"
 #include "simplex_geometry.hpp"
 #include "stars.hpp"
 #include "tegl/contour.hpp"
@@ -30,17 +31,6 @@ inline constexpr std::size_t kBlock = 4096;
 template <int N, class Real>
 std::span<const Index> rows_of(const Contour<N, Real>& contour) noexcept {
   return {contour.simplices.empty() ? nullptr : contour.simplices.data()->data(), contour.simplices.size() * N};
-}
-
-/// Throws InvalidArgument unless all vertex numbers are below the number of vertices.
-template <int N, class Real>
-void require_vertices(const Contour<N, Real>& contour) {
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
-    for (const Index v : contour.simplices[s])
-      if (v >= contour.vertices.size())
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices", s, v,
-                                contour.vertices.size()));
 }
 
 /// Items in the order of the groups that they are in: members[first[g] … first[g + 1]), ascending.

@@ -10,6 +10,7 @@
 #include "extract_cell.hpp"
 #include "extract_normals.hpp"
 #include "locate.hpp"
+#include "require.hpp"
 #include "simplex_geometry.hpp"
 
 namespace tegl {
@@ -75,6 +76,7 @@ double weight_of(const std::array<PointOf<N>, N>& corners, int j, double measure
 
 template <int N, class Real>
 Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& contour, const WorkOptions& options) {
+  detail::require_vertices(contour);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.simplices.size());
   detail::for_each_item(result.size(), options.threads, options.progress, [&](std::size_t s) {
     result[s] = rounded<N, Real>(unit<N>(detail::normal_vector_of<N>(detail::corners_of(contour, s))));
@@ -85,6 +87,7 @@ Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& c
 template <int N, class Real>
 Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Real>& contour, NormalWeights weights,
                                                             const WorkOptions& options) {
+  detail::require_vertices(contour);
   // By simplex: its unit normal, and what it counts for at its corners.
   struct Share {
     PointOf<N> normal;

@@ -22,6 +22,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "require.hpp"
 #include "section.hpp"
 #include "simplex_geometry.hpp"
 #include "tegl/slice.hpp"
@@ -88,6 +89,7 @@ bool is_far(const View<Real>& view, const std::array<Index, 4>& simplex, bool fl
 template <class Real>
 View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection) {
   check_projection(projection);
+  detail::require_sound(contour);
   const Section<4> section(projection.direction);
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
   View<Real> view;

@@ -23,6 +23,7 @@
 
 #include "cutter.hpp"
 #include "radix_sort.hpp"
+#include "require.hpp"
 #include "workers.hpp"
 
 namespace tegl {
@@ -54,6 +55,7 @@ template <int N, class Real>
 Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal, const WorkOptions& options)
     : contour_(&contour), normal_(normal) {
   const detail::Section<N> section(normal);
+  detail::require_sound(contour);
   report(options.progress, 0.0);
   if (contour.simplices.empty()) {
     nodes_.push_back({0, 0});

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "require.hpp"
 #include "shrinker.hpp"
 #include "simplify_fast.hpp"
 #include "simplify_orders.hpp"
@@ -57,6 +58,7 @@ class Simplifier {
   Simplifier(const Contour<N, Real>& contour, const SimplifyOptions<N>& options)
       : contour_(contour), options_(options) {
     require_options();
+    require_sound(contour);
     for (int a = 0; a < N; ++a) {
       double low = kInfinity, high = -kInfinity;
       for (const auto& vertex : contour.vertices) {
@@ -101,20 +103,6 @@ class Simplifier {
       if (!(scale > 0.0 && std::isfinite(scale))) fail(fmt::format("a scale is {}; expected a positive number", scale));
     if (options_.method == SimplifyMethod::fast && N != 3)
       fail(fmt::format("the fast method is for triangles; expected another one for simplices in {} dimensions", N));
-    for (const Attribute& attribute : contour_.vertex_attributes)
-      require_rows(attribute, contour_.vertices.size(), "vertices");
-    for (const Attribute& attribute : contour_.simplex_attributes)
-      require_rows(attribute, contour_.simplices.size(), "simplices");
-    if (!contour_.normals.empty() && contour_.normals.size() != contour_.vertices.size())
-      fail(fmt::format("{} normals; expected {}, as many as vertices", contour_.normals.size(),
-                       contour_.vertices.size()));
-  }
-
-  static void require_rows(const Attribute& attribute, std::size_t rows, const char* of) {
-    if (attribute.width > 0 && attribute.values.size() == rows * static_cast<std::size_t>(attribute.width)) return;
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the attribute '{}' has {} numbers of width {}; expected {} {} times that width",
-                            attribute.name, attribute.values.size(), attribute.width, rows, of));
   }
 
   /// Normals and attributes of each vertex, side by side. An error from before is no attribute but a debt.

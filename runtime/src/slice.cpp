@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cutter.hpp"
+#include "require.hpp"
 #include "workers.hpp"
 
 namespace tegl {
@@ -39,6 +40,7 @@ std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Sec
 
 template <int N, class Real>
 Contour<N - 1, Real> cut(const Contour<N, Real>& contour, const Section<N>& section, double offset) {
+  detail::require_sound(contour);
   const double level = section.template level<Real>(offset);
   return detail::cut_simplices(contour, section, level, touching_simplices(contour, section, level));
 }
@@ -86,6 +88,7 @@ std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
                                               const Eigen::Matrix<double, N, 1>& normal,
                                               std::span<const double> offsets, const WorkOptions& options) {
   const Section<N> section(normal);
+  detail::require_sound(contour);
   std::vector<double> levels;
   for (const double offset : offsets) levels.push_back(section.template level<Real>(offset));
   std::vector<double> sorted = levels;

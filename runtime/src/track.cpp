@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "measure_pieces.hpp"
+#include "require.hpp"
 #include "track_graph.hpp"
 #include "track_sweep.hpp"
 

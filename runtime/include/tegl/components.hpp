@@ -18,7 +18,9 @@ namespace tegl {
 inline constexpr Index kNoComponent = std::numeric_limits<Index>::max();
 
 /// Which component each vertex and each simplex belongs to: 0 … count - 1, in the order of the components' smallest
-/// vertex numbers.
+/// vertex numbers. Functions that take labels refuse those that do not fit the contour: of other numbers of vertices or
+/// simplices, with a label for a vertex in no simplex or none for one in a simplex, with a simplex whose vertices have
+/// other labels, or with a component without simplices.
 struct ComponentLabels {
   Index count = 0;
   Buffer<Index> vertices;   ///< #V; kNoComponent for vertices in no simplex
@@ -59,26 +61,27 @@ struct Component {
 
 /// Describes every component, in the order of the labels. Sums are compensated and in an order that does not depend on
 /// the threads. Simplices that repeat a vertex are counted in `simplices` alone.
-/// Errors: InvalidArgument if the labels are not those of this contour; Cancelled. O(#S log s) time for s simplices
-/// around a vertex; 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
+/// Errors: InvalidArgument (a vertex number out of range, labels that do not fit); Cancelled. O(#S log s) time for s
+/// simplices around a vertex; 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
 template <int N, class Real>
 std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                      const WorkOptions& options = {});
 
 /// A contour for each component, in the order of the labels, with vertices and simplices in the order that they have
 /// in the whole, and with its normals, attributes, names and units. Vertices in no simplex are left out.
-/// Errors: InvalidArgument if the labels are not those of this contour. O(#S + #V). Thread-safe.
+/// Errors: InvalidArgument (a vertex number out of range, labels that do not fit, attributes or normals of another
+/// number). O(#S + #V). Thread-safe.
 template <int N, class Real>
 std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels);
 
-/// The contour of the components with keep[label], otherwise as `split_components`. Errors: InvalidArgument if the
-/// labels are not those of this contour, or `keep` has another size than there are components.
+/// The contour of the components with keep[label], otherwise as `split_components`. Errors: its own, and
+/// InvalidArgument if `keep` has another size than there are components.
 template <int N, class Real>
 Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                    const std::vector<bool>& keep);
 
 /// Adds the labels as the attribute "component" of the vertices and of the simplices (replacing attributes of this
-/// name); vertices in no simplex get -1. Errors: InvalidArgument if the labels are not those of this contour.
+/// name); vertices in no simplex get -1. Errors: those of `split_components`.
 template <int N, class Real>
 void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& labels);
 

@@ -14,7 +14,8 @@ namespace tegl {
 enum class NormalWeights { area, angle, equal };
 
 /// The unit normal of every simplex, #S x N, to the side that its orientation faces; 0 for one of zero size. N = 2, 3,
-/// 4. Errors: Cancelled. O(#S) time; thread-safe. Source: M. Liversage, thesis, 1994, section 8.2.4.
+/// 4. Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S) time; thread-safe. Source: M. Liversage,
+/// thesis, 1994, section 8.2.4.
 template <int N, class Real>
 Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& contour,
                                                        const WorkOptions& options = {});
@@ -24,10 +25,10 @@ Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& c
 /// for nothing. It needs no image and follows the surface as it is, with its corners; where an image is at hand its
 /// gradient is an order more exact (docs/normals.md). N = 2, 3, 4.
 ///
-/// Errors: Cancelled. O(#S + #V) time, one thread for the sums; 8 N bytes per vertex and simplex. Thread-safe.
-/// Sources: M. Liversage, thesis, 1994, section 8.2.5; angles: G. Thuermer and C. A. Wuethrich, "Computing Vertex
-/// Normals from Polygonal Facets", 1998; solid angles: A. van Oosterom and J. Strackee, "The Solid Angle of a Plane
-/// Triangle", 1983.
+/// Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S + #V) time, one thread for the sums; 8 N
+/// bytes per vertex and simplex. Thread-safe. Sources: M. Liversage, thesis, 1994, section 8.2.5; angles: G. Thuermer
+/// and C. A. Wuethrich, "Computing Vertex Normals from Polygonal Facets", 1998; solid angles: A. van Oosterom and J.
+/// Strackee, "The Solid Angle of a Plane Triangle", 1983.
 template <int N, class Real>
 Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Real>& contour,
                                                             NormalWeights weights = NormalWeights::angle,

@@ -32,7 +32,7 @@ class Scrubber {
   using Vector = Eigen::Matrix<double, N, 1>;
 
   /// `normal`: of the hyperplanes. Throws InvalidArgument if it is 0 or not finite, or a coordinate of the contour is
-  /// not finite; Cancelled.
+  /// not finite, a vertex number out of range, or attributes or normals are of another number; Cancelled.
   explicit Scrubber(const Contour<N, Real>& contour, const Vector& normal = Vector::Unit(N - 1),
                     const WorkOptions& options = {});
   explicit Scrubber(Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const WorkOptions& = {}) = delete;

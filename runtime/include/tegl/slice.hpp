@@ -31,8 +31,9 @@ namespace tegl {
 ///    drawing points together would pinch the cut, they are left apart at the same place.
 ///
 /// Quadrilaterals are split by the shorter diagonal. The result's order depends on the contour's alone.
-/// Errors: InvalidArgument (`at` not finite). An `at` beyond the contour gives an empty cut.
-/// O(#S + #V) time plus O(c log c) for a cut of c simplices; #V bytes and O(c) of memory. Thread-safe.
+/// Errors: InvalidArgument (`at` not finite, a vertex number out of range, attributes or normals of another number). An
+/// `at` beyond the contour gives an empty cut. O(#S + #V) time plus O(c log c) for a cut of c simplices; #V bytes and
+/// O(c) of memory. Thread-safe.
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
@@ -47,7 +48,7 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 /// double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real. Orientation: the
 /// cut's positive side in the frame's coordinates is that of the contour, also where the frame is left-handed. Names
 /// and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere. Errors: those of
-/// `frame_of`. Cost: as above.
+/// `frame_of`, and as above. Cost: as above.
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a contour must be to be worked on: contours come from files and callers too, and no number in them may lead
+// beyond the end of something.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tegl/contour.hpp"
+#include "tegl/error.hpp"
+
+namespace tegl::detail {
+
+/// Throws InvalidArgument unless all vertex numbers are below the number of vertices. O(#S).
+template <int N, class Real>
+void require_vertices(const Contour<N, Real>& contour) {
+  const auto most = [](const auto& simplex) { return *std::max_element(simplex.begin(), simplex.end()); };
+  Index highest = 0;
+  for (const auto& simplex : contour.simplices) highest = std::max(highest, most(simplex));
+  if (contour.simplices.empty() || highest < contour.vertices.size()) return;
+  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
+    for (const Index v : contour.simplices[s])
+      if (v >= contour.vertices.size())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices", s, v,
+                                contour.vertices.size()));
+}
+
+/// Throws InvalidArgument unless attributes and normals are as many as what they belong to.
+template <int N, class Real>
+void require_attributes(const Contour<N, Real>& contour) {
+  const auto require = [](const std::vector<Attribute>& attributes, std::size_t count, const char* what) {
+    for (const Attribute& attribute : attributes)
+      if (attribute.width < 1 || attribute.values.size() != count * static_cast<std::size_t>(attribute.width))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("attribute '{}' has {} values of width {}; expected {} {} times the width",
+                                attribute.name, attribute.values.size(), attribute.width, count, what));
+  };
+  require(contour.vertex_attributes, contour.vertices.size(), "vertices");
+  require(contour.simplex_attributes, contour.simplices.size(), "simplices");
+  if (!contour.normals.empty() && contour.normals.size() != contour.vertices.size())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} normals for {} vertices; expected as many, or none",
+                                                        contour.normals.size(), contour.vertices.size()));
+}
+
+/// Both.
+template <int N, class Real>
+void require_sound(const Contour<N, Real>& contour) {
+  require_vertices(contour);
+  require_attributes(contour);
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours and labels that contradict themselves, as files and callers may bring them: every function that takes one
+// refuses it, and reads nothing beyond the end of anything.
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "errors.hpp"
+#include "tegl/components.hpp"
+#include "tegl/deviation.hpp"
+#include "tegl/elements.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/normals.hpp"
+#include "tegl/project.hpp"
+#include "tegl/scrubber.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/track.hpp"
+
+namespace tegl::test {
+namespace {
+
+using Any = Contour<4, float>;
+
+/// A tetrahedron, and a vertex in no simplex.
+Any tetrahedron() {
+  Any contour;
+  contour.vertices = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 1}, {5, 5, 5, 5}};
+  contour.simplices = {{0, 1, 2, 3}};
+  return contour;
+}
+
+ComponentLabels no_labels() { return {}; }
+
+SimplifyOptions<4> to_half() {
+  SimplifyOptions<4> options;
+  options.ratio = 0.5;
+  return options;
+}
+
+/// What looks up vertices by number.
+std::vector<std::pair<std::string, std::function<void(const Any&)>>> all_that_follow_vertices() {
+  static const std::vector<double> at = {0.5};
+  return {
+      {"label_components", [](const Any& c) { label_components(c); }},
+      {"components", [](const Any& c) { components(c, no_labels()); }},
+      {"split_components", [](const Any& c) { split_components(c, no_labels()); }},
+      {"select_components", [](const Any& c) { select_components(c, no_labels(), {}); }},
+      {"measure", [](const Any& c) { tegl::measure(c); }},
+      {"measure_cuts", [](const Any& c) { measure_cuts(c, at); }},
+      {"elements", [](const Any& c) { elements(c); }},
+      {"elements_by_cell",
+       [](const Any& c) {
+         elements_by_cell(c, Grid<4>::unit({9, 9, 9, 9}));
+       }},
+      {"slice", [](const Any& c) { slice(c, 0.5); }},
+      {"slice by a hyperplane", [](const Any& c) { slice(c, Hyperplane<4>::across(1, 0.5)); }},
+      {"slice_stack", [](const Any& c) { slice_stack<4, float>(c, Eigen::Vector4d::UnitW(), at); }},
+      {"Scrubber", [](const Any& c) { const Scrubber<4, float> scrubber(c); }},
+      {"project", [](const Any& c) { project(c); }},
+      {"outline", [](const Any& c) { outline(c); }},
+      {"flat_normals", [](const Any& c) { flat_normals(c); }},
+      {"geometric_normals", [](const Any& c) { geometric_normals(c); }},
+      {"simplify", [](const Any& c) { simplify(c, to_half()); }},
+      {"deviation from", [](const Any& c) { deviation(c, tetrahedron()); }},
+      {"deviation to", [](const Any& c) { deviation(tetrahedron(), c); }},
+      {"deviation of nothing", [](const Any& c) { deviation(Any(), c); }},
+      {"track", [](const Any& c) { track(c); }},
+  };
+}
+
+/// What carries normals and attributes along.
+std::vector<std::pair<std::string, std::function<void(const Any&)>>> all_that_carry_attributes() {
+  static const std::vector<double> at = {0.5};
+  return {
+      {"split_components", [](const Any& c) { split_components(c, label_components(c)); }},
+      {"select_components", [](const Any& c) { select_components(c, label_components(c), {true}); }},
+      {"add_component_attribute", [](Any c) { add_component_attribute(c, label_components(c)); }},
+      {"elements", [](const Any& c) { elements(c); }},
+      {"slice", [](const Any& c) { slice(c, 0.5); }},
+      {"slice by a hyperplane", [](const Any& c) { slice(c, Hyperplane<4>::across(1, 0.5)); }},
+      {"slice_stack", [](const Any& c) { slice_stack<4, float>(c, Eigen::Vector4d::UnitW(), at); }},
+      {"Scrubber", [](const Any& c) { const Scrubber<4, float> scrubber(c); }},
+      {"project", [](const Any& c) { project(c); }},
+      {"outline", [](const Any& c) { outline(c); }},
+      {"simplify", [](const Any& c) { simplify(c, to_half()); }},
+  };
+}
+
+TEST(UnsoundContours, VertexNumbersOutOfRangeAreRefused) {
+  for (const Index number : {Index{5}, Index{100000000}, std::numeric_limits<Index>::max()}) {
+    Any contour = tetrahedron();
+    contour.simplices[0][2] = number;
+    for (const auto& [name, call] : all_that_follow_vertices()) {
+      SCOPED_TRACE(name);
+      expect_error(ErrorCode::InvalidArgument,
+                   "simplex 0 has vertex number " + std::to_string(number) + "; expected less than 5",
+                   [&call = call, &contour] { call(contour); });
+    }
+  }
+}
+
+TEST(UnsoundContours, NormalsAndAttributesOfAnotherNumberAreRefused) {
+  for (const auto& [name, call] : all_that_carry_attributes()) {
+    SCOPED_TRACE(name);
+    const auto expect_refusal = [&call = call](const std::string& message, const std::function<void(Any&)>& spoil) {
+      Any contour = tetrahedron();
+      spoil(contour);
+      expect_error(ErrorCode::InvalidArgument, message, [&] { call(contour); });
+    };
+    expect_refusal("attribute 'a' has 1 values of width 3; expected 5 vertices", [](Any& c) {
+      c.vertex_attributes.push_back({"a", "", 3, {1.0}});
+    });
+    expect_refusal("attribute 'a' has 0 values of width 0", [](Any& c) {
+      c.vertex_attributes.push_back({"a", "", 0, {}});
+    });
+    expect_refusal("attribute 'b' has 5 values of width 2; expected 1 simplices", [](Any& c) {
+      c.simplex_attributes.push_back({"b", "", 2, {1.0, 2.0, 3.0, 4.0, 5.0}});
+    });
+    expect_refusal("1 normals for 5 vertices", [](Any& c) { c.normals.push_back({1, 0, 0, 0}); });
+  }
+}
+
+TEST(UnsoundLabels, AreRefused) {
+  const Any contour = tetrahedron();
+  const auto expect_refusal = [&](const std::string& message, const std::function<void(ComponentLabels&)>& spoil) {
+    ComponentLabels labels = label_components(contour);
+    spoil(labels);
+    const std::vector<bool> keep(labels.count < 9 ? labels.count : 1, true);
+    Any copy = contour;
+    expect_error(ErrorCode::InvalidArgument, message, [&] { components(contour, labels); });
+    expect_error(ErrorCode::InvalidArgument, message, [&] { split_components(contour, labels); });
+    expect_error(ErrorCode::InvalidArgument, message, [&] { select_components(contour, labels, keep); });
+    expect_error(ErrorCode::InvalidArgument, message, [&] { add_component_attribute(copy, labels); });
+  };
+  expect_refusal("vertex 4 in no simplex has the label 100000000", [](auto& l) { l.vertices[4] = 100000000; });
+  expect_refusal("vertex 4 in no simplex has the label 0", [](auto& l) { l.vertices[4] = 0; });
+  expect_refusal("its vertex 1 the label", [](auto& l) { l.vertices[1] = kNoComponent; });
+  expect_refusal("simplex 0 has the label 7; expected less than 1", [](auto& l) { l.simplices[0] = 7; });
+  expect_refusal("3 components of 1 simplices", [](auto& l) { l.count = 3; });
+  expect_refusal("4294967295 components", [](auto& l) { l.count = kNoComponent; });
+  expect_refusal("simplex 0 has the label 0; expected less than 0", [](auto& l) { l.count = 0; });
+  expect_refusal("labels for 4 vertices; expected 5", [](auto& l) { l.vertices.pop_back(); });
+  expect_refusal("labels for 0 simplices; expected 1", [](auto& l) { l.simplices.clear(); });
+}
+
+TEST(UnsoundLabels, OfAComponentWithoutSimplicesAreRefused) {
+  Any contour = tetrahedron();
+  contour.simplices.push_back({0, 1, 3, 2});
+  ComponentLabels labels = label_components(contour);
+  labels.count = 2;
+  expect_error(ErrorCode::InvalidArgument, "component 1 of 2 has no simplex", [&] { components(contour, labels); });
+}
+
+}  // namespace
+}  // namespace tegl::test
