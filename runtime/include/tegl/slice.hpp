@@ -43,8 +43,9 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 /// below, or from above around vertices that the contour does not come up to from below. Of the contour's boundary,
 /// parts in the hyperplane whose upper side alone has a contour belong to cuts across an axis, unless they may lie in a
 /// side of the image along another axis too, and never to oblique ones. So at a sample's coordinate on any axis the cut
-/// is the contour of that layer, if no sample equals the isovalue; where samples do, pieces of the layer's contour that
-/// lie flat in it may be missing. Vertices lie on the hyperplane if <normal, x> equals the offset as computed in
+/// is the contour of that layer, if no sample equals the isovalue. Where samples do, that is so on the last axis alone:
+/// elsewhere the limit may have other pieces than the layer's contour, flat in it or along samples of the isovalue.
+/// Vertices lie on the hyperplane if <normal, x> equals the offset as computed in
 /// double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real. Orientation: the
 /// cut's positive side in the frame's coordinates is that of the contour, also where the frame is left-handed. Names
 /// and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere. Errors: those of
