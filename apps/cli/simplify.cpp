@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -43,7 +44,7 @@ class SimplifyCommand final : public ContourInputCommand {
       : ContourInputCommand(program, "simplify", "Fewer simplices, the same manifold, and a bound of the error") {
     app()
         .add_option("--method", method_,
-                    "quadric: edges, best for its size; facets: by curvature; vertices: by distance, keeps places; "
+                    "quadric: edges, by quadrics; facets: by curvature; vertices: by distance, keeps places; "
                     "fast: triangles by meshoptimizer")
         ->check(CLI::IsMember(kMethods))
         ->capture_default_str();
@@ -99,8 +100,9 @@ class SimplifyCommand final : public ContourInputCommand {
 
  private:
   void require_goal() const {
-    if (ratio_.empty() && count_.empty() && max_error_.empty())
-      throw Error(ErrorCode::InvalidArgument, "no goal; expected --ratio, --count or --max-error");
+    if (ratio_.empty() && count_.empty() && max_error_.empty() && max_curvature_.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  "no goal; expected --ratio, --count or --max-error (or --method facets with --max-curvature)");
     if (no_bound_ && !max_error_.empty())
       throw Error(ErrorCode::InvalidArgument,
                   "--no-bound with --max-error, which needs the bound; expected one of them");
@@ -111,7 +113,31 @@ class SimplifyCommand final : public ContourInputCommand {
             fmt::format("{} is for --method {}, not for {}; expected the one or the other", option, method, method_));
     };
     require_method(!max_curvature_.empty(), "--max-curvature", "facets");
+    if (!ratio_.empty()) require_between("--ratio", ratio_, 0.0, 1.0);
+    if (!max_error_.empty()) require_between("--max-error", max_error_, 0.0);
+    if (!max_curvature_.empty()) require_between("--max-curvature", max_curvature_, 0.0);
     require_method(allow_nonmanifold_, "--allow-nonmanifold", "fast");
+  }
+
+  static void require_between(const char* option, const std::string& text, double least,
+                              double most = std::numeric_limits<double>::infinity()) {
+    const double value = parse_finite(option, text);
+    if (value >= least && value <= most) return;
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected {}", option, text,
+                                                        std::isinf(most) ? fmt::format("{} or more", least)
+                                                                         : fmt::format("{} to {}", least, most)));
+  }
+
+  /// In the words of the command line.
+  template <int N>
+  static Contour<N, double> simplify_or_explain(const Contour<N, double>& contour, const SimplifyOptions<N>& options,
+                                                SimplifyStats& stats) {
+    try {
+      return tegl::simplify(contour, options, &stats);
+    } catch (const Error& error) {
+      if (options.method != SimplifyMethod::fast || error.code() != ErrorCode::UnsupportedData) throw;
+      throw Error(error.code(), fmt::format("{} (--allow-nonmanifold, or another --method)", error.what()));
+    }
   }
 
   template <int N>
@@ -131,7 +157,7 @@ class SimplifyCommand final : public ContourInputCommand {
     used_scale_.assign(options.scale.begin(), options.scale.end());
     if (input.image) options.planes = planes<N>(input.image->image);
     options.progress = bar.stage("simplify");
-    return tegl::simplify(contour, options, &stats);
+    return simplify_or_explain(contour, options, stats);
   }
 
   [[nodiscard]] std::uint64_t parse_count() const {
@@ -165,6 +191,9 @@ class SimplifyCommand final : public ContourInputCommand {
     for (std::size_t first = 0; first <= scale_.size();) {
       const std::size_t comma = std::min(scale_.find(',', first), scale_.size());
       const double factor = parse_finite("--scale", std::string_view(scale_).substr(first, comma - first));
+      if (!(factor > 0.0))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--scale has '{}'; expected positive numbers", scale_.substr(first, comma - first)));
       if (given < N) result[given] = factor;
       ++given;
       first = comma + 1;

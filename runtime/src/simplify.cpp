@@ -89,8 +89,9 @@ class Simplifier {
 
   void require_options() const {
     const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
-    if (!options_.count && !options_.ratio && !options_.max_error)
-      fail("no goal; expected a count of simplices, a ratio or a largest error");
+    const bool curvature = options_.method == SimplifyMethod::facets && std::isfinite(options_.max_curvature);
+    if (!options_.count && !options_.ratio && !options_.max_error && !curvature)
+      fail("no goal; expected a count of simplices, a ratio, a largest error or, for facets, a largest curvature");
     if (options_.ratio && !(*options_.ratio >= 0.0 && *options_.ratio <= 1.0))
       fail(fmt::format("the ratio is {}; expected 0 <= ratio <= 1", *options_.ratio));
     if (options_.max_error && !(*options_.max_error >= 0.0))
@@ -225,7 +226,7 @@ class Simplifier {
     throw Error(
         ErrorCode::UnsupportedData,
         fmt::format("meshoptimizer's result is no oriented manifold ({} faces in more than two triangles, {} bad "
-                    "links, {} orientation conflicts); expected one: allow it, or take another method",
+                    "links, {} orientation conflicts); expected one: allow nonmanifold results, or take another method",
                     report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts));
   }
 

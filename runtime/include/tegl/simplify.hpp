@@ -46,7 +46,8 @@ enum class SimplifyBorder {
 template <int N>
 std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
 
-/// At least one of `count`, `ratio` and `max_error` has to be given; with several, the first that is reached ends it.
+/// At least one of `count`, `ratio` and `max_error` has to be given (or, for facets, `max_curvature`); with several, the
+/// first that is reached ends it.
 template <int N>
 struct SimplifyOptions {
   SimplifyMethod method = SimplifyMethod::quadric;
@@ -58,7 +59,7 @@ struct SimplifyOptions {
   /// facets: no facet of more curvature (1 / radius) than this is removed.
   double max_curvature = std::numeric_limits<double>::infinity();
   SimplifyBorder border = SimplifyBorder::fixed;
-  /// Vertices that lie in one of these hyperplanes stay in it, and those in several stay in all. Up to 31. To these are
+  /// Vertices that lie in one of these hyperplanes stay in it, and those in several stay in all. Up to 20. To these are
   /// added the sides of the contour's bounding box that whole simplices, or parts of the border, lie in.
   std::vector<Hyperplane<N>> planes;
   /// Distances and curvatures are those after coordinates were multiplied by these: what makes axes of different units
@@ -108,14 +109,16 @@ struct SimplifyStats {
 /// Normals and vertex attributes are interpolated where vertices move; simplex attributes are those of the simplices
 /// that are left. The attribute "error" of a vertex: every point of the original that was matched with a simplex is
 /// within the largest "error" of that simplex's vertices, and every point of the simplex is so near to the original. If
-/// the contour has such an attribute, from an earlier simplification, its largest value is added.
+/// the contour has such an attribute, from an earlier simplification, its largest value is added; that is a bound if
+/// `scale` is what it was then. So fields of one's own have to have another name.
 ///
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
 /// stays. It is the same for any number of threads. Errors: InvalidArgument (options; no manifold: a face in three
 /// simplices, a repeated vertex; `fast` for other than triangles, or without meshoptimizer), UnsupportedData (the
 /// result of `fast` is no manifold), Cancelled. Time: O(S log S), about 5 microseconds for each triangle and 10 for
 /// each tetrahedron (facets, vertices: up to five times that); the error as long for triangles, ten times as long for
-/// tetrahedra. Memory: about 200 bytes for each simplex.
+/// tetrahedra, and in noise a hundred times, in each of up to 12 rounds if there is a `max_error`. If no round keeps
+/// that, the result is the contour itself. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
                           SimplifyStats* stats = nullptr);
