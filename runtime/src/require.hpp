@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -18,10 +19,10 @@ namespace tegl::detail {
 /// Throws InvalidArgument unless all vertex numbers are below the number of vertices. O(#S).
 template <int N, class Real>
 void require_vertices(const Contour<N, Real>& contour) {
-  const auto most = [](const auto& simplex) { return *std::max_element(simplex.begin(), simplex.end()); };
-  Index highest = 0;
-  for (const auto& simplex : contour.simplices) highest = std::max(highest, most(simplex));
-  if (contour.simplices.empty() || highest < contour.vertices.size()) return;
+  std::array<Index, N> highest{};  // by corner: the maxima do not wait for each other
+  for (const auto& simplex : contour.simplices)
+    for (int j = 0; j < N; ++j) highest[j] = std::max(highest[j], simplex[j]);
+  if (contour.simplices.empty() || *std::max_element(highest.begin(), highest.end()) < contour.vertices.size()) return;
   for (std::size_t s = 0; s < contour.simplices.size(); ++s)
     for (const Index v : contour.simplices[s])
       if (v >= contour.vertices.size())
