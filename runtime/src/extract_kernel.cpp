@@ -57,8 +57,9 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
   const auto fit = [&] {
     const auto fixed =
         static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
-    const auto each = static_cast<double>(bits + counter.layer_planes_bytes() + counter.slab_planes_bytes() +
-                                          (ahead ? 2 : 1) * kBookkeeping);
+    // In 2D planes are not passed on.
+    const std::size_t planes = (ahead && N == 2 ? 2 : 1) * (counter.layer_planes_bytes() + counter.slab_planes_bytes());
+    const auto each = static_cast<double>(bits + planes + (ahead ? 2 : 1) * kBookkeeping);
     const double most = (std::max(kLittle, share * image) - fixed) / each;
     return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
   };
