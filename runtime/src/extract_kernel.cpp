@@ -43,8 +43,9 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
                          std::size_t thread_bytes, bool ahead) {
   // Several threads meet after every pass, which takes longer than the way from one cache to the next.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
-  const double share = ahead ? 0.05 : 0.057;  // of the image: the rest of a sixteenth is for what is not by slabs
-  constexpr double kLittle = 1u << 17;        // bytes, however small the image
+  // Of the image: the rest of a sixteenth is for what is not by slabs. (4D has few slabs, and needs two at a time.)
+  const double share = ahead && N < 4 ? 0.05 : 0.057;
+  constexpr double kLittle = 1u << 17;  // bytes, however small the image
   // Slabs that must fit in with their lists of tiles in 4D, or these are made twice.
   const std::size_t few = threads > 1 ? 2 : 1;
   const std::size_t layer = shape.rows() * shape.size(0);
