@@ -31,12 +31,13 @@ struct PickReport {
 /// with the lower number); all tiles that are reached from it through faces that the contour passes; of the components
 /// of the contour in those (often one: several where they pass one tile) the one with the vertex nearest to the point,
 /// in steps of the grid. The result is `extract` restricted to that component: the same vertices, normals and simplices
-/// in the same order, the vertices numbered anew. An image without active tiles gives an empty contour.
+/// in the same order, the vertices numbered anew (in 3D and 4D those next to missing values may come in another order).
+/// An image without active tiles gives an empty contour, whatever `close` would add.
 ///
 /// Cost: the tiles of the component and those beside them, and those that are nearer to the point than the contour is;
-/// no others are looked at. 5D, and `close`, take all of the contour instead and choose from it.
-/// Errors: those of `extract`; InvalidArgument for a point outside of the image. Real: float or double. Source:
-/// propagation after Bajaj, Pascucci, Schikore 1996.
+/// where components share tiles, as in noise, those of the others too; no others are looked at. 5D, and `close`, take
+/// all of the contour instead and choose from it. Errors: those of `extract`; InvalidArgument for a point outside of
+/// the image. Real: float or double. Source: propagation after Bajaj, Pascucci, Schikore 1996.
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
                                    const std::type_identity_t<std::array<double, N>>& point,
