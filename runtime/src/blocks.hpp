@@ -1,27 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Loops in blocks that do not depend on the number of threads, so that what is summed up by blocks does not either; and
-// progress of several passes after each other.
+// Loops in blocks that do not depend on the number of threads, so that what is summed up by blocks does not either.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 
-#include "tegl/error.hpp"
+#include "progress.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
-
-/// Tells `progress`; throws Cancelled where it says stop.
-inline void tell(const Progress& progress, double fraction) {
-  if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "cancelled by the progress callback");
-}
-
-/// The progress of a pass that takes the whole from `first` to `last`.
-inline Progress part_of(const Progress& progress, double first, double last) {
-  if (!progress) return {};
-  return [&progress, first, last](double fraction) { return progress(first + (last - first) * fraction); };
-}
 
 /// How many blocks of `size` there are in `count`; the last one may be smaller.
 constexpr std::size_t block_count(std::size_t count, std::size_t size) noexcept { return (count + size - 1) / size; }

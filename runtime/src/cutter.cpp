@@ -39,7 +39,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -47,6 +46,7 @@
 
 #include <fmt/format.h>
 
+#include "disjoint_sets.hpp"
 #include "index_map.hpp"
 #include "radix_sort.hpp"
 #include "slice_piece.hpp"
@@ -164,12 +164,7 @@ class Cutter {
 
   /// Makes groups of on vertices without a way down count as below.
   void group_on_vertices() {
-    std::vector<std::size_t> parent(on_.size());  // disjoint sets
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto find = [&parent](std::size_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
+    BasicDisjointSets<std::size_t> groups(on_.size());
     std::vector<bool> has_way_down(on_.size(), false);  // of vertices, then of sets
     for (const Index s : touching_) {
       const auto& simplex = contour_.simplices[s];
@@ -178,14 +173,14 @@ class Cutter {
       for (const Index v : simplex) {
         if (!is_on(v)) continue;
         const std::size_t here = on_(v);
-        if (last) parent[find(here)] = find(*last);
+        if (last) groups.join(here, *last);
         last = here;
         if (down) has_way_down[here] = true;
       }
     }
     for (std::size_t i = 0; i < on_.size(); ++i)
-      if (has_way_down[i]) has_way_down[find(i)] = true;
-    for (std::size_t i = 0; i < on_.size(); ++i) is_low_[i] = !has_way_down[find(i)];
+      if (has_way_down[i]) has_way_down[groups.find(i)] = true;
+    for (std::size_t i = 0; i < on_.size(); ++i) is_low_[i] = !has_way_down[groups.find(i)];
   }
 
   void cut_simplices() {

@@ -19,25 +19,26 @@
 namespace tegl::detail {
 
 /// Sets of 0 ... n-1, for one thread.
-class DisjointSets {
+template <class Number>
+class BasicDisjointSets {
  public:
-  DisjointSets() = default;
-  explicit DisjointSets(std::size_t n) { reset(n); }
+  BasicDisjointSets() = default;
+  explicit BasicDisjointSets(std::size_t n) { reset(n); }
   void reset(std::size_t n) {
     parent_.resize(n);
-    std::iota(parent_.begin(), parent_.end(), Index{0});
+    std::iota(parent_.begin(), parent_.end(), Number{0});
   }
   /// One number more, in a set of its own.
-  Index add() {
-    parent_.push_back(static_cast<Index>(parent_.size()));
+  Number add() {
+    parent_.push_back(static_cast<Number>(parent_.size()));
     return parent_.back();
   }
-  Index find(Index i) {
+  Number find(Number i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
   /// True if the two were in different sets.
-  bool join(Index a, Index b) {
+  bool join(Number a, Number b) {
     a = find(a);
     b = find(b);
     if (a == b) return false;
@@ -46,12 +47,13 @@ class DisjointSets {
     return true;
   }
   /// As `join`, where it is known who is to lead instead of the smallest: `leader` and `other` lead their sets.
-  void hang(Index other, Index leader) noexcept { parent_[other] = leader; }
+  void hang(Number other, Number leader) noexcept { parent_[other] = leader; }
   [[nodiscard]] std::size_t size() const noexcept { return parent_.size(); }
 
  private:
-  std::vector<Index> parent_;
+  std::vector<Number> parent_;
 };
+using DisjointSets = BasicDisjointSets<Index>;
 
 /// Sets of 0 ... n-1. Any number of threads may call `join` and `find` at a time; `find` gives the smallest number of
 /// the set once no thread joins any more. A number's parent is never larger than itself.

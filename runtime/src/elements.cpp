@@ -17,6 +17,7 @@
 #include "disjoint_sets.hpp"
 #include "exact_sum.hpp"
 #include "locate.hpp"
+#include "progress.hpp"
 #include "require.hpp"
 #include "simplex_geometry.hpp"
 
@@ -188,13 +189,9 @@ Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options
 template <int N, class Real>
 Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid, const WorkOptions& options) {
   // Two passes over all simplices, and two over the sorted ones, of which the last is left to tell.
-  const auto part_of = [&](double from, double to) {
-    return options.progress
-               ? Progress([&options, from, to](double f) { return options.progress(from + (to - from) * f); })
-               : Progress();
-  };
-  const Elements<N> simplices = elements(contour, {options.threads, part_of(0.0, 0.4)});
-  std::vector<Placed> placed = place_simplices<N, Real>(simplices, grid, {options.threads, part_of(0.4, 0.6)});
+  const Elements<N> simplices = elements(contour, {options.threads, detail::part_of(options.progress, 0.0, 0.4)});
+  std::vector<Placed> placed =
+      place_simplices<N, Real>(simplices, grid, {options.threads, detail::part_of(options.progress, 0.4, 0.6)});
   std::vector<std::size_t> ends;  // of pieces in `placed`
   PieceFinder<N, Real> finder(contour);
   for (std::size_t first = 0, end; first < placed.size(); first = end) {
@@ -204,7 +201,7 @@ Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& gri
       ends.push_back(first + piece_end);
   }
   Elements<N> result = make_elements(contour, ends.size());
-  detail::for_each_item(ends.size(), options.threads, part_of(0.8, 1.0), [&](std::size_t e) {
+  detail::for_each_item(ends.size(), options.threads, detail::part_of(options.progress, 0.8, 1.0), [&](std::size_t e) {
     const std::size_t first = e == 0 ? 0 : ends[e - 1];
     merge(simplices, std::span<const Placed>(placed).subspan(first, ends[e] - first), e, result);
   });

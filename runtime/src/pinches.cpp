@@ -14,6 +14,7 @@
 #include <span>
 #include <utility>
 
+#include "disjoint_sets.hpp"
 #include "extract_kernel.hpp"
 
 namespace tegl::detail {
@@ -73,27 +74,6 @@ template class PinchCandidates<3>;
 template class PinchCandidates<4>;
 
 namespace {
-
-/// Disjoint sets of 0 ... n - 1; the smallest number leads.
-class Sets {
- public:
-  void reset(std::size_t n) {
-    parent_.resize(n);
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 template <int N, class Real>
 class Separation {
@@ -341,7 +321,7 @@ class Separation {
   std::vector<Around> around_;
   std::vector<Rim> rim_;
   std::vector<Index> own_;
-  Sets sets_;
+  BasicDisjointSets<std::size_t> sets_;
 };
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "progress.hpp"
 #include "require.hpp"
 #include "section.hpp"
 #include "simplex_geometry.hpp"
@@ -32,9 +33,7 @@ namespace {
 
 using detail::Section;
 
-void report(const Progress& progress, double fraction) {
-  if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "projecting was cancelled");
-}
+void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "projecting was cancelled"); }
 
 /// The points and heights of a projected contour.
 template <class Real>

@@ -22,6 +22,7 @@
 #include <fmt/format.h>
 
 #include "cutter.hpp"
+#include "progress.hpp"
 #include "radix_sort.hpp"
 #include "require.hpp"
 #include "workers.hpp"
@@ -46,7 +47,7 @@ struct Range {
 };
 
 void report(const Progress& progress, double fraction) {
-  if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "building a scrubber was cancelled");
+  detail::tell(progress, fraction, "building a scrubber was cancelled");
 }
 
 }  // namespace

@@ -5,17 +5,12 @@
 #include <tuple>
 
 #include "level_sweep.hpp"
+#include "progress.hpp"
 #include "seed_methods.hpp"
 
 namespace tegl::detail {
 
 namespace {
-
-/// The part of a progress from `from` to `to`.
-Progress part_of(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
-}
 
 /// Sweeps among `picked` alone, up and down in turn, as long as picks can be spared.
 std::vector<std::uint32_t> spare(const SeedGraph& graph, std::vector<std::uint32_t> picked, SweepDirection last) {

@@ -3,6 +3,8 @@
 // Groups, trees and links. Each step goes through all tiles once and looks at their neighbours.
 #include "seed_graph.hpp"
 
+#include "progress.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <tuple>
@@ -239,7 +241,7 @@ class GraphMaker {
 }  // namespace
 
 void report_progress(const Progress& progress, double fraction) {
-  if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "seeds: cancelled by the progress callback");
+  tell(progress, fraction, "seeds: cancelled by the progress callback");
 }
 
 template <class Key>

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <Eigen/LU>
 
+#include "progress.hpp"
 #include "require.hpp"
 #include "shrinker.hpp"
 #include "simplify_fast.hpp"
@@ -37,12 +38,6 @@ constexpr double kRounding = 1e-12;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The part of the progress from `from` to `to`.
-Progress part_of(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
 }
 
 /// What is left of a contour, before it is one again.
@@ -140,7 +135,7 @@ class Simplifier {
       const double middle = measured ? 0.5 * (from + to) : to;
       ++stats_.rounds;
       survivors_.clear();
-      const Progress shrinking = part_of(options_.progress, from, middle);
+      const Progress shrinking = detail::part_of(options_.progress, from, middle);
       Contour<N, Real> result =
           options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
       if (!measured) return result;
@@ -278,9 +273,9 @@ class Simplifier {
     DeviationOptions<N> options;
     options.scale = options_.scale;
     options.threads = options_.threads;
-    options.progress = part_of(options_.progress, from, 0.5 * (from + to));
+    options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
     Deviation of_original = deviation(contour_, result, options);
-    options.progress = part_of(options_.progress, 0.5 * (from + to), to);
+    options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
     const Deviation of_result = deviation(result, contour_, options);
     std::vector<double> errors = std::move(of_original.of_to);
     for (std::size_t s = 0; s < errors.size(); ++s) errors[s] = std::max(errors[s], of_result.of_from[s]);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cutter.hpp"
+#include "progress.hpp"
 #include "require.hpp"
 #include "workers.hpp"
 
@@ -67,9 +68,7 @@ std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour,
   return touching;
 }
 
-void report(const Progress& progress, double fraction) {
-  if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, "cuts cancelled");
-}
+void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "cuts cancelled"); }
 
 }  // namespace
 

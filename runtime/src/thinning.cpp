@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <optional>
 #include <unordered_map>
 
 #include "seed_methods.hpp"
@@ -127,33 +128,30 @@ class Thinning {
       });
   }
 
+  /// The tile of the image that has this corner at a sample; none beyond the border.
+  [[nodiscard]] std::optional<Place> tile_with_corner(const std::array<std::size_t, N>& index, unsigned corner) const {
+    auto at = static_cast<std::ptrdiff_t>(tiles_.row_place(0));
+    for (int a = 0; a < N; ++a) {
+      const std::size_t back = corner >> a & 1u;
+      if (index[a] < back || index[a] - back >= tiles_.size(a)) return std::nullopt;
+      at += static_cast<std::ptrdiff_t>(index[a] - back) * tiles_.step(a);
+    }
+    return static_cast<Place>(at);
+  }
+
   /// Tiles of the image with a corner at a sample, whatever their state.
   template <class Visit>
   void for_tiles_around(const std::array<std::size_t, N>& index, const Visit& visit) const {
-    for (unsigned corner = 0; corner < 1u << N; ++corner) {
-      std::ptrdiff_t at = static_cast<std::ptrdiff_t>(tiles_.row_place(0));
-      bool inside = true;
-      for (int a = 0; a < N; ++a) {
-        const std::size_t back = corner >> a & 1u;
-        inside = inside && index[a] >= back && index[a] - back < tiles_.size(a);
-        at += (static_cast<std::ptrdiff_t>(index[a]) - static_cast<std::ptrdiff_t>(back)) * tiles_.step(a);
-      }
-      if (inside) visit(static_cast<Place>(at));
-    }
+    for (unsigned corner = 0; corner < 1u << N; ++corner)
+      if (const auto place = tile_with_corner(index, corner)) visit(*place);
   }
 
   /// Whether an edge, from a sample to the next along an axis, has a tile.
   [[nodiscard]] bool has_tile(const std::array<std::size_t, N>& index, int axis) const {
     for (unsigned corner = 0; corner < 1u << N; ++corner) {
       if ((corner >> axis & 1u) != 0) continue;
-      std::ptrdiff_t at = static_cast<std::ptrdiff_t>(tiles_.row_place(0));
-      bool inside = true;
-      for (int a = 0; a < N; ++a) {
-        const std::size_t back = corner >> a & 1u;
-        inside = inside && index[a] >= back && index[a] - back < tiles_.size(a);
-        at += (static_cast<std::ptrdiff_t>(index[a]) - static_cast<std::ptrdiff_t>(back)) * tiles_.step(a);
-      }
-      if (inside && state_[static_cast<std::size_t>(at)] != kNone) return true;
+      const auto place = tile_with_corner(index, corner);
+      if (place && state_[*place] != kNone) return true;
     }
     return false;
   }

@@ -27,6 +27,7 @@
 #include <limits>
 #include <utility>
 
+#include "progress.hpp"
 #include "slice_at.hpp"
 #include "track_link.hpp"
 #include "track_measure.hpp"
@@ -73,9 +74,7 @@ class Sweeper {
   }
 
  private:
-  void report(double fraction) const {
-    if (options_.progress && !options_.progress(fraction)) throw Error(ErrorCode::Cancelled, "tracking was cancelled");
-  }
+  void report(double fraction) const { detail::tell(options_.progress, fraction, "tracking was cancelled"); }
 
   // ---- the sweep ----
 

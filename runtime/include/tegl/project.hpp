@@ -59,9 +59,4 @@ template <class Real>
 Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection = {},
                          const WorkOptions& options = {});
 
-/// Appends a contour to another; both have the same attributes, or those that only one has are dropped. Axes and
-/// direction are the first's. Throws TooLarge beyond 2^32 vertices. O(size of both).
-template <int N, class Real>
-void append(Contour<N, Real>& to, const Contour<N, Real>& more);
-
 }  // namespace tegl
