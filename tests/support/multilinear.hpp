@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The topology of {f = 0} for the piecewise bilinear (2D) or trilinear (3D) interpolant f of samples, exactly: an
+// oracle for contours, which shares neither code nor method with what makes them.
+//
+// A cube is swept along one of its axes. In each plane across that axis f is bilinear, and the part of a square where a
+// bilinear function is >= 0 falls into contractible pieces, each with a corner of the square in it (a bilinear function
+// has its extremes over a set that it is constant around at corners). What the pieces are is told by the signs of the
+// four corners and, where high ones are across a diagonal, by the sign of q = f00 f11 - f10 f01. Along the sweep the
+// corners are linear and q is quadratic, so that the cube is a stack of finitely many levels, where one of them
+// vanishes, and of slabs between them, where nothing changes. All signs are decided in integers.
+//
+// Euler characteristics come from the stack by additivity: a level counts as its slice, an open slab as minus its
+// slice. The pieces of the cube come from union-find over (layer, corner). Pieces in a field meet in samples, as each
+// has a corner in every cube that it is in. Which axis the sweep follows must not matter: tests compare all three.
+//
+// Based on: Etiene, Nonato, Scheidegger, Tierny, Peters, Pascucci, Kirby and Silva, Topology verification for
+// isosurface extraction, 2012, for what is to be verified; their oracles are digital topology and stratified Morse
+// theory.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <ostream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace tegl::test {
+
+/// Euler characteristic and number of pieces.
+struct Topology {
+  std::int64_t components = 0;
+  std::int64_t euler = 0;
+  bool operator==(const Topology&) const = default;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Topology& topology) {
+  return out << topology.components << " components, Euler characteristic " << topology.euler;
+}
+
+/// Sets of numbers, joined two at a time.
+class Pieces {
+ public:
+  explicit Pieces(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  std::size_t find(std::size_t x) {
+    while (parent_[x] != x) x = parent_[x] = parent_[parent_[x]];
+    return x;
+  }
+  void join(std::size_t x, std::size_t y) { parent_[find(x)] = find(y); }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+__extension__ using Wide = __int128;
+
+/// The largest magnitude of a sample: with it all signs fit 128 bits.
+inline constexpr std::int64_t kLargestSample = std::int64_t{1} << 29;
+
+inline int sign_of(Wide x) { return (x > 0) - (x < 0); }
+
+/// Signs of the corners of a square, in the order 00, 10, 01, 11, and of q.
+struct Slice {
+  std::array<int, 4> corners{};
+  int q = 0;
+};
+
+/// The part of a slice where f >= 0.
+struct SlicePart {
+  std::array<bool, 4> has{};
+  bool joined = false;  ///< the two across a diagonal, where these alone are in the part
+
+  explicit SlicePart(const Slice& slice) {
+    for (int v = 0; v < 4; ++v) has[v] = slice.corners[v] >= 0;
+    // The value at the saddle is q over a positive number if 00 and 11 are high and the others low, over a negative one
+    // the other way around.
+    if (has[0] && has[3] && !has[1] && !has[2]) joined = slice.q >= 0;
+    if (has[1] && has[2] && !has[0] && !has[3]) joined = slice.q <= 0;
+  }
+  /// Calls join(v, w) for corners in one piece; enough of them for all.
+  template <class Join>
+  void for_each_join(const Join& join) const {
+    constexpr std::array<std::array<int, 2>, 4> kEdges{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
+    for (const auto& [v, w] : kEdges)
+      if (has[v] && has[w]) join(v, w);
+    if (joined) has[0] ? join(0, 3) : join(1, 2);
+  }
+  [[nodiscard]] int components() const {
+    Pieces pieces(4);
+    int count = has[0] + has[1] + has[2] + has[3];
+    for_each_join([&](int v, int w) {
+      count -= pieces.find(static_cast<std::size_t>(v)) != pieces.find(static_cast<std::size_t>(w));
+      pieces.join(static_cast<std::size_t>(v), static_cast<std::size_t>(w));
+    });
+    return count;
+  }
+};
+
+/// a t^2 + b t + c.
+struct Quadratic {
+  Wide a = 0, b = 0, c = 0;
+
+  [[nodiscard]] int sign_at(std::int64_t p, std::int64_t q) const { return sign_of((a * p + b * q) * p + c * q * q); }
+  [[nodiscard]] int slope_at(std::int64_t p, std::int64_t q) const { return sign_of(2 * a * p + b * q); }
+  /// The sign just after p / q (direction 1), or just before it (-1).
+  [[nodiscard]] int sign_beside(std::int64_t p, std::int64_t q, int direction) const {
+    if (const int here = sign_at(p, q)) return here;
+    if (const int slope = slope_at(p, q)) return direction * slope;
+    return sign_of(a);
+  }
+};
+
+/// A cube as a stack of slices along one axis: levels at even places, slabs between them at odd ones.
+class Stack {
+ public:
+  /// `corners`: of the cube, corner v with coordinate v >> a & 1 on axis a. Throws std::invalid_argument for samples
+  /// beyond kLargestSample.
+  Stack(const std::array<std::int64_t, 8>& corners, int axis) {
+    constexpr std::array<std::array<int, 2>, 3> kOthers{{{1, 2}, {0, 2}, {0, 1}}};
+    for (int v = 0; v < 4; ++v) {
+      place_[v] = (v & 1) << kOthers[axis][0] | (v >> 1) << kOthers[axis][1];
+      start_[v] = corners[place_[v]];
+      slope_[v] = corners[place_[v] | 1 << axis] - start_[v];
+      for (const std::int64_t value : {start_[v], start_[v] + slope_[v]})
+        if (value < -kLargestSample || value > kLargestSample)
+          throw std::invalid_argument("oracle: a sample too large");
+    }
+    along_ = 1 << axis;
+    const auto product = [&](int v, int w) {
+      return Quadratic{Wide{slope_[v]} * slope_[w], Wide{start_[v]} * slope_[w] + Wide{slope_[v]} * start_[w],
+                       Wide{start_[v]} * start_[w]};
+    };
+    const Quadratic even = product(0, 3), odd = product(1, 2);
+    q_ = {even.a - odd.a, even.b - odd.b, even.c - odd.c};
+    build();
+  }
+
+  [[nodiscard]] const std::vector<Slice>& layers() const { return layers_; }
+  /// No sample is 0, and neither is a critical value of f in the cube or in one of its squares. (Some cubes of which
+  /// this holds are refused: those with a whole slice at 0.)
+  [[nodiscard]] bool regular() const { return regular_; }
+
+  /// The part where f >= 0: its Euler characteristic, and which corners are in one piece, through join(v, w).
+  template <class Join>
+  int high_part(const Join& join) const {
+    int euler = 0;
+    Pieces pieces(4 * layers_.size());
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      const SlicePart here(layers_[i]);
+      euler += (i % 2 == 0 ? 1 : -1) * here.components();
+      here.for_each_join(
+          [&](int v, int w) { pieces.join(4 * i + static_cast<std::size_t>(v), 4 * i + static_cast<std::size_t>(w)); });
+      if (i == 0) continue;
+      const SlicePart before(layers_[i - 1]);
+      for (std::size_t v = 0; v < 4; ++v)
+        if (here.has[v] && before.has[v]) pieces.join(4 * i + v, 4 * i - 4 + v);
+    }
+    report(pieces, join);
+    return euler;
+  }
+
+ private:
+  struct Level {
+    std::int64_t p = 0, q = 1;
+  };
+
+  [[nodiscard]] std::array<int, 4> corners_at(const Level& at) const {
+    std::array<int, 4> signs{};
+    for (int v = 0; v < 4; ++v) signs[v] = sign_of(Wide{start_[v]} * at.q + Wide{slope_[v]} * at.p);
+    return signs;
+  }
+
+  void build() {
+    std::vector<Level> levels{{0, 1}, {1, 1}};
+    for (int v = 0; v < 4; ++v) {
+      const std::int64_t p = slope_[v] > 0 ? -start_[v] : start_[v], q = slope_[v] > 0 ? slope_[v] : -slope_[v];
+      if (0 < p && p < q) levels.push_back({p, q});
+    }
+    const auto before = [](const Level& x, const Level& y) { return Wide{x.p} * y.q < Wide{y.p} * x.q; };
+    std::sort(levels.begin(), levels.end(), before);
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (i > 0) {
+        if (!before(levels[i - 1], levels[i])) continue;
+        add_between(levels[i - 1], levels[i]);
+      }
+      add(corners_at(levels[i]), q_.sign_at(levels[i].p, levels[i].q));
+      const auto& corners = layers_.back().corners;
+      const auto zeros = std::count(corners.begin(), corners.end(), 0);
+      if (zeros == 4 || (zeros > 0 && (i == 0 || i + 1 == levels.size()))) regular_ = false;
+      if (layers_.back().q == 0 && is_diagonal()) regular_ = false;
+    }
+  }
+
+  /// Between two neighbouring roots of corners: their signs stay, that of q may change up to twice.
+  void add_between(const Level& from, const Level& to) {
+    const std::array<int, 4> corners = corners_at({from.p + to.p, from.q + to.q});
+    const int first = q_.sign_beside(from.p, from.q, 1), last = q_.sign_beside(to.p, to.q, -1);
+    add(corners, first);
+    if (std::count(corners.begin(), corners.end(), 0) > 0) regular_ = false;
+    if (is_diagonal() && first == 0) regular_ = false;
+    if (first != last) {  // one root
+      add(corners, 0);
+      add(corners, last);
+    } else if (sign_of(q_.a) != 0 && q_.slope_at(from.p, from.q) * q_.slope_at(to.p, to.q) < 0) {
+      // The extreme of q is between them: 4 a c - b^2 has the sign of a times its value.
+      const int extreme = sign_of(q_.a) * sign_of(4 * q_.a * q_.c - q_.b * q_.b);
+      if (extreme == first) return;
+      if (is_diagonal() && extreme == 0) regular_ = false;  // a critical point of f
+      add(corners, 0);
+      if (extreme != 0) {
+        add(corners, extreme);
+        add(corners, 0);
+      }
+      add(corners, last);
+    }
+  }
+
+  void add(const std::array<int, 4>& corners, int q) { layers_.push_back({corners, q}); }
+  [[nodiscard]] bool is_diagonal() const {
+    const auto& c = layers_.back().corners;
+    return c[0] * c[3] > 0 && c[1] * c[2] > 0 && c[0] * c[1] < 0;
+  }
+
+  /// Corners of the cube whose pieces met in some layer.
+  template <class Join>
+  void report(Pieces& pieces, const Join& join) const {
+    std::vector<std::pair<std::size_t, int>> found;
+    for (const bool end : {false, true}) {
+      const std::size_t layer = end ? layers_.size() - 1 : 0;
+      const SlicePart here(layers_[layer]);
+      for (std::size_t v = 0; v < 4; ++v)
+        if (here.has[v]) found.emplace_back(pieces.find(4 * layer + v), place_[v] | (end ? along_ : 0));
+    }
+    std::sort(found.begin(), found.end());
+    for (std::size_t i = 1; i < found.size(); ++i)
+      if (found[i].first == found[i - 1].first) join(found[i - 1].second, found[i].second);
+  }
+
+  std::array<int, 4> place_{};  ///< of the corners of the slice at 0
+  int along_ = 0;
+  std::array<std::int64_t, 4> start_{}, slope_{};
+  Quadratic q_;
+  std::vector<Slice> layers_;
+  bool regular_ = true;
+};
+
+/// Samples less the isovalue, axis 0 fastest.
+template <int N>
+struct SampledField {
+  std::array<std::size_t, N> sizes{};
+  std::vector<std::int64_t> values;
+};
+
+/// What the interpolant of a field is at level 0.
+struct InterpolantTopology {
+  bool regular = true;  ///< see Stack::regular; the rest holds if so
+  Topology high;        ///< {f >= 0}
+  Topology low;         ///< {f <= 0}
+  Topology contour;     ///< {f = 0}: a manifold, which ends at the border of the field
+};
+
+namespace multilinear {
+
+/// Euler characteristic and joins of the part of a face with these corners (1, 2, 4 or 8 of them) where f >= 0.
+template <class Join>
+int face_part(const std::vector<std::int64_t>& corners, int axis, bool& regular, const Join& join) {
+  const auto in = [&](std::size_t v) { return corners[v] >= 0; };
+  if (corners.size() == 1) {
+    regular = regular && corners[0] != 0;
+    return in(0);
+  }
+  if (corners.size() == 2) {
+    if (in(0) && in(1)) join(0, 1);
+    return in(0) || in(1);
+  }
+  if (corners.size() == 4) {
+    Slice slice;
+    for (std::size_t v = 0; v < 4; ++v) slice.corners[v] = sign_of(corners[v]);
+    slice.q = sign_of(Wide{corners[0]} * corners[3] - Wide{corners[1]} * corners[2]);
+    const auto& c = slice.corners;
+    regular = regular && !(slice.q == 0 && c[0] * c[3] > 0 && c[0] * c[1] < 0);
+    const SlicePart part(slice);
+    part.for_each_join(join);
+    return part.components();
+  }
+  std::array<std::int64_t, 8> cube{};
+  std::copy_n(corners.begin(), 8, cube.begin());
+  const Stack stack(cube, axis);
+  regular = regular && stack.regular();
+  return stack.high_part(join);
+}
+
+/// {f >= 0} of a field, by inclusion and exclusion over its cells and the faces inside it that they share.
+template <int N>
+Topology high_part(const SampledField<N>& field, int axis, bool& regular) {
+  Pieces pieces(field.values.size());
+  Topology result;
+  std::array<std::size_t, N> strides{}, at{};
+  for (int a = 0; a < N; ++a) strides[a] = a == 0 ? 1 : strides[a - 1] * field.sizes[a - 1];
+  std::vector<std::int64_t> corners;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < field.values.size(); ++i) {
+    for (unsigned axes = 0; axes < 1u << N; ++axes) {
+      bool inside = true;
+      for (int a = 0; a < N; ++a) inside = inside && at[a] + 1 < field.sizes[a] && ((axes >> a & 1u) != 0 || at[a] > 0);
+      if (!inside) continue;
+      places.assign(1, i);
+      for (int a = 0; a < N; ++a)
+        for (std::size_t k = 0, count = places.size(); (axes >> a & 1u) != 0 && k < count; ++k)
+          places.push_back(places[k] + strides[a]);
+      corners.clear();
+      for (const std::size_t place : places) corners.push_back(field.values[place]);
+      const int euler = face_part(corners, axis, regular, [&](int v, int w) {
+        pieces.join(places[static_cast<std::size_t>(v)], places[static_cast<std::size_t>(w)]);
+      });
+      result.euler += (N - __builtin_popcount(axes)) % 2 == 0 ? euler : -euler;
+    }
+    for (int a = 0; a < N && ++at[a] == field.sizes[a]; ++a) at[a] = 0;
+  }
+  for (std::size_t i = 0; i < field.values.size(); ++i)
+    result.components += field.values[i] >= 0 && pieces.find(i) == i;
+  for (const std::int64_t value : field.values) regular = regular && value != 0;
+  return result;
+}
+
+}  // namespace multilinear
+
+/// The topology of a field's interpolant at 0, found by sweeps along `axis` (3D). A box has no loop that is not
+/// bounded, so each component of the contour parts it, and the graph of parts and components is a tree: there is one
+/// component less than parts. The parts cover the box and have the contour in common: the Euler characteristics add up
+/// so. At least two samples along each axis.
+template <int N>
+requires(N == 2 || N == 3) InterpolantTopology interpolant_topology(const SampledField<N>& field, int axis = N - 1) {
+  InterpolantTopology result;
+  result.high = multilinear::high_part<N>(field, axis, result.regular);
+  SampledField<N> inverted = field;
+  for (std::int64_t& value : inverted.values) value = -value;
+  result.low = multilinear::high_part<N>(inverted, axis, result.regular);
+  result.contour.components = result.high.components + result.low.components - 1;
+  result.contour.euler = result.high.euler + result.low.euler - 1;
+  if (result.high.components == 0 || result.low.components == 0) result.contour = {};
+  return result;
+}
+
+}  // namespace tegl::test
