@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fillings of one or several polygons on a cube's boundary, found by search: an open edge of the front takes every
-// vertex in turn for the third one of its triangle, until no edge is open. The number of triangles says what surface
-// it is: a disc, or a sphere with holes. Where every such surface has a chord in a square, it is a copy of the region
-// between the polygons, pushed inwards. The certificate has the last word.
+// Fillings of one or several polygons on a cube's boundary. A polygon that the compact table has is filled as there;
+// what is not in it is found by search: an open edge of the front takes every vertex in turn for the third one of its
+// triangle, until no edge is open. The number of triangles says what surface it is: a disc, or a sphere with holes.
+// Where every such surface has a chord in a square, it is a copy of the region between the polygons, pushed inwards.
+// The certificate has the last word.
 #include "tegl/gen/resolved_cube.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 
 #include "tegl/facets/certificate.hpp"
 #include "tegl/gen/error.hpp"
+#include "tegl/gen/facets.hpp"
 #include "tegl/gen/lattice.hpp"
 #include "tegl/gen/resolutions.hpp"
 
@@ -379,8 +381,27 @@ class Table {
     return result;
   }
 
+  /// A polygon that the compact table has for this signature as well has the triangles that it has there: where nothing
+  /// is ambiguous, or all is resolved alike, both tables draw the same.
+  [[nodiscard]] Filling as_in_compact_table(const Polygon& polygon) const {
+    const bool all_high = high_squares_ != 0 && high_squares_ == table_.ambiguous.back();
+    const ContourBuilder& first = all_high ? compact_high_ : compact_low_;
+    const ContourBuilder& second = all_high ? compact_low_ : compact_high_;
+    for (const ContourBuilder* compact : {&first, &second})
+      for (const Facet& facet : compact->build(static_cast<Signature>(signature_)).facets) {
+        if (facet.points != polygon) continue;
+        Filling filling;
+        for (const Simplex& t : facet.simplices) filling.push_back({t[0], t[1], t[2]});
+        return filling;
+      }
+    return {};
+  }
+
   void fill(tables::ResolvedList& list, const std::vector<Polygon>& boundary, Choice choice) {
     Alone alone(frame_, tile_, boundary);
+    if (boundary.size() == 1)
+      if (const Filling known = as_in_compact_table(boundary[0]); !known.empty() && alone.passes(known))
+        return write(list, known, {});
     if (const auto flat = Search(frame_, alone, boundary, false).run()) return write(list, *flat, {});
     if (const auto coned = Search(frame_, alone, boundary, true).run()) {
       std::uint32_t mask = 0;
@@ -410,6 +431,8 @@ class Table {
 
   const Frame& frame_;
   facets::FacetBuilder builder_;
+  ContourBuilder compact_low_{frame_.tiles, 3, Alternative::low, Triangulation::compact};
+  ContourBuilder compact_high_{frame_.tiles, 3, Alternative::high, Triangulation::compact};
   ResolvedCube table_;
   // Of the entry at hand.
   facets::Signature signature_ = 0;

@@ -134,6 +134,35 @@ TEST(ResolvedCube, EveryEntryIsCertifiedAndIsTheSurfaceThatTheBuilderFinds) {
   EXPECT_EQ(tunnels, 308 + 2 * 8);
 }
 
+/// Triangles as a set, each from its smallest vertex on.
+std::set<std::array<std::uint8_t, 3>> as_set(const std::uint8_t* vertices, std::size_t count, bool reversed) {
+  std::set<std::array<std::uint8_t, 3>> result;
+  for (std::size_t i = 0; i < count; ++i, vertices += 3) {
+    std::array<std::uint8_t, 3> t = {vertices[0], vertices[reversed ? 2 : 1], vertices[reversed ? 1 : 2]};
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    result.insert(t);
+  }
+  return result;
+}
+
+TEST(ResolvedCube, ResolvedAlikeItHasTheCompactTablesTriangles) {
+  const tables::TileTable& compact = tables::kTile3Compact;
+  const auto of_compact = [&](std::uint32_t s, bool reversed) {
+    const tables::List& list = compact.lists[compact.list_of[s]];
+    return as_set(compact.simplices + 3 * std::size_t{list.first_simplex}, list.simplex_count, reversed);
+  };
+  for_each_entry([&](std::uint32_t s, unsigned high, const tables::ResolvedEntry& entry) {
+    const tables::ResolvedList& list = entry.separate;
+    const auto triangles =
+        as_set(kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle}, list.triangle_count, false);
+    if (high == 0) {
+      EXPECT_EQ(triangles, of_compact(s, false)) << s;
+    } else if (high == kTile3Resolved.ambiguous_squares[s]) {
+      EXPECT_EQ(triangles, of_compact(~s & 255u, true)) << s;
+    }
+  });
+}
+
 TEST(ResolvedCube, OwnVerticesAreMeansOfEdgesOrCopiesOfCorners) {
   std::uint32_t copies = 0;
   for_each_entry([&](std::uint32_t s, unsigned, const tables::ResolvedEntry& entry) {

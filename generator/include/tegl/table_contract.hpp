@@ -133,7 +133,8 @@ struct RegionTable {
 /// sphere with three or four holes. Of most entries two of the three lists are the same one. A local vertex below 12 is an
 /// edge's point; 12 + j is own vertex j of the list: with a mask of edges alone (bit 8 + e) the mean of their points, with
 /// a corner in it (bit v) half way from the cube's centre to the mean of its corners and points. In a square, the
-/// segments are the same in all entries that resolve it the same way. Orientation as above.
+/// segments are the same in all entries that resolve it the same way. Orientation as above. With no square or all
+/// ambiguous ones high, `separate` is what the compact table has for that alternative; with none ambiguous, for low.
 struct ResolvedList {
   std::uint16_t first_triangle;
   std::uint8_t triangle_count;

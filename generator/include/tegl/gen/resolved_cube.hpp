@@ -22,10 +22,11 @@ struct ResolvedCube {
   std::vector<std::uint16_t> masks;     ///< own vertex: set of the edges whose points it is the mean of
 };
 
-/// Searches, for every entry and every way, the triangulation with no vertex but edge points whose inner edges are
-/// shortest (points halfway along their edges); where the certificate allows none, with one more vertex; where it
-/// allows none of these either, a copy of the region between the polygons. Each passes the certificate. Errors:
-/// CertificateFailed, naming signature and resolution.
+/// A polygon that the compact table has for the signature is triangulated as there. Else searches, for every entry and
+/// every way, the triangulation with no vertex but edge points whose inner edges are shortest (points halfway along
+/// their edges); where the certificate allows none, with one more vertex; where it allows none of these either, a copy
+/// of the region between the polygons. Each passes the certificate. Errors: CertificateFailed, naming signature and
+/// resolution.
 [[nodiscard]] ResolvedCube make_resolved_cube();
 
 /// Digest (FNV-1a) of all numbers.
