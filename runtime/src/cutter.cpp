@@ -54,29 +54,30 @@
 namespace tegl::detail {
 namespace {
 
-/// Where a vertex lies; on_low and on_high lie on the hyperplane and count as below and above it.
-enum class Side : std::uint8_t { below, on_low, on_high, above };
-constexpr bool is_high(Side side) { return side >= Side::on_high; }
-
-/// The vertices of a simplex with those of `high` (bit j: vertex j) first, by an even permutation.
+/// The places of a simplex's vertices with those of `high` (bit j: vertex j) first, by an even permutation.
 template <int N>
-std::array<Index, N> high_first(const std::array<Index, N>& simplex, unsigned high) {
-  std::array<Index, N> sorted = simplex;
-  std::array<bool, N> is_first;
-  int high_count = 0;
-  for (int j = 0; j < N; ++j) high_count += is_first[j] = ((high >> j) & 1u) != 0;
+constexpr std::array<std::uint8_t, N> high_first(unsigned high) {
+  std::array<std::uint8_t, N> sorted{};
+  for (int j = 0; j < N; ++j) sorted[j] = static_cast<std::uint8_t>(j);
+  const auto is_first = [&](int i) { return ((high >> sorted[i]) & 1u) != 0; };
   bool odd = false;
   for (int i = 1; i < N; ++i)
-    for (int j = i; j > 0 && is_first[j] && !is_first[j - 1]; --j) {
+    for (int j = i; j > 0 && is_first(j) && !is_first(j - 1); --j) {
       std::swap(sorted[j], sorted[j - 1]);
-      std::swap(is_first[j], is_first[j - 1]);
       odd = !odd;
     }
   // There are at least three vertices, so two on one side to make the permutation even with.
+  const int high_count = std::popcount(high);
   if (odd && high_count >= 2) std::swap(sorted[0], sorted[1]);
   if (odd && high_count < 2) std::swap(sorted[N - 2], sorted[N - 1]);
   return sorted;
 }
+template <int N>
+constexpr auto kHighFirst = [] {
+  std::array<std::array<std::uint8_t, N>, 1u << N> all{};
+  for (unsigned high = 0; high < all.size(); ++high) all[high] = high_first<N>(high);
+  return all;
+}();
 
 /// The pairs (above, below) of places in the order of `high_first` whose edges the cut's points lie on, in the
 /// orientation derived at the top of this file.
@@ -99,10 +100,11 @@ class Cutter {
       : contour_(contour), section_(section), level_(level), touching_(touching) {}
 
   Contour<N - 1, Real> cut() {
-    find_on_vertices();
-    if (!on_.empty()) group_on_vertices();
-    cut_simplices();
-    if (!on_.empty()) draw_together();
+    classify();
+    if (on_.empty())
+      set_pieces(cut_pieces({}));
+    else
+      draw_together();
     number_points();
     Contour<N - 1, Real> result;
     for (int i = 0, a = 0; i < N - 1; ++i, ++a) {
@@ -133,73 +135,131 @@ class Cutter {
   };
   static constexpr unsigned kAll = (1u << N) - 1;
 
-  /// Bit j: `test` holds for the side of vertex j.
-  template <class Test>
-  [[nodiscard]] unsigned corners(const std::array<Index, N>& simplex, const Test& test) const {
-    unsigned mask = 0;
-    for (int j = 0; j < N; ++j) mask |= static_cast<unsigned>(test(side(simplex[j]))) << j;
-    return mask;
-  }
+  /// Which vertices of a simplex are below the hyperplane, and which on it: bit j for vertex j.
+  struct Sides {
+    std::uint8_t below = 0;
+    std::uint8_t on = 0;
+  };
 
   [[nodiscard]] double height(Index v) const { return section_.height(contour_.vertices[v]); }
   [[nodiscard]] bool is_on(Index v) const { return height(v) == level_; }
 
-  /// On vertices count as above until they are grouped.
-  [[nodiscard]] Side side(Index v) const {
-    const double here = height(v);
-    if (here != level_) return here < level_ ? Side::below : Side::above;
-    return is_low_[on_(v)] ? Side::on_low : Side::on_high;
+  /// Finds the sides of all vertices, those that are on, and which of these count as below.
+  void classify() {
+    // A number for each on vertex of each simplex: twice the vertex, plus 1 if the simplex reaches down. Most repeat
+    // what one of the simplices before had, which a short memory of these shows.
+    std::vector<std::uint64_t> on;
+    constexpr std::size_t kRecent = 1 << 12;
+    std::vector<std::uint64_t> recent(kRecent, ~std::uint64_t{0});
+    sides_.resize(touching_.size());
+    for (std::size_t i = 0; i < touching_.size(); ++i) {
+      const auto& simplex = contour_.simplices[touching_[i]];
+      Sides sides;
+      for (int j = 0; j < N; ++j) {
+        const double here = height(simplex[j]);
+        sides.below = static_cast<std::uint8_t>(sides.below | static_cast<unsigned>(here < level_) << j);
+        sides.on = static_cast<std::uint8_t>(sides.on | static_cast<unsigned>(here == level_) << j);
+        most_ = std::max(most_, simplex[j]);
+      }
+      sides_[i] = sides;
+      for (unsigned left = sides.on; left != 0; left &= left - 1) {
+        const std::uint64_t entry =
+            2 * std::uint64_t{simplex[std::countr_zero(left)]} + static_cast<unsigned>(sides.below != 0);
+        if (std::exchange(recent[entry % kRecent], entry) != entry) on.push_back(entry);
+      }
+    }
+    if (!on.empty()) list_on_vertices(std::move(on));
   }
 
-  void find_on_vertices() {
+  void list_on_vertices(std::vector<std::uint64_t> entries) {
+    sort_by_bits(entries, static_cast<unsigned>(std::bit_width(most_)) + 1, [](std::uint64_t entry) { return entry; });
     std::vector<Index> on;
-    for (const Index s : touching_)
-      for (const Index v : contour_.simplices[s])
-        if (is_on(v)) on.push_back(v);
-    sort_by_bits(on, 32, [](Index v) { return v; });
-    on.erase(std::unique(on.begin(), on.end()), on.end());
+    std::vector<bool> has_way_down;
+    bool all_have = true;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (i + 1 < entries.size() && entries[i + 1] / 2 == entries[i] / 2) continue;
+      on.push_back(static_cast<Index>(entries[i] / 2));
+      has_way_down.push_back(entries[i] % 2 == 1);
+      all_have = all_have && has_way_down.back();
+    }
     is_low_.assign(on.size(), false);
     on_ = IndexMap(std::move(on));
+    if (!all_have) group_on_vertices(std::move(has_way_down));
   }
 
   /// Makes groups of on vertices without a way down count as below.
-  void group_on_vertices() {
+  void group_on_vertices(std::vector<bool> has_way_down) {
     BasicDisjointSets<std::size_t> groups(on_.size());
-    std::vector<bool> has_way_down(on_.size(), false);  // of vertices, then of sets
-    for (const Index s : touching_) {
-      const auto& simplex = contour_.simplices[s];
-      const bool down = corners(simplex, [](Side side) { return side == Side::below; }) != 0;
+    for (std::size_t i = 0; i < touching_.size(); ++i) {
       std::optional<std::size_t> last;
-      for (const Index v : simplex) {
-        if (!is_on(v)) continue;
-        const std::size_t here = on_(v);
+      for (unsigned left = sides_[i].on; left != 0; left &= left - 1) {
+        const std::size_t here = on_(contour_.simplices[touching_[i]][std::countr_zero(left)]);
         if (last) groups.join(here, *last);
         last = here;
-        if (down) has_way_down[here] = true;
       }
     }
     for (std::size_t i = 0; i < on_.size(); ++i)
       if (has_way_down[i]) has_way_down[groups.find(i)] = true;
-    for (std::size_t i = 0; i < on_.size(); ++i) is_low_[i] = !has_way_down[groups.find(i)];
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+      is_low_[i] = !has_way_down[groups.find(i)];
+      any_low_ = any_low_ || is_low_[i];
+    }
   }
 
-  void cut_simplices() {
-    for (const Index s : touching_) {
-      const auto& simplex = contour_.simplices[s];
-      const unsigned high = corners(simplex, is_high);
-      if (high != 0 && high != kAll) pieces_.push_back(make_piece(s, high));
-    }
+  /// The on vertices of the i-th touching simplex that count as above.
+  [[nodiscard]] unsigned on_high(std::size_t i) const {
+    if (!any_low_) return sides_[i].on;
+    unsigned result = 0;
+    for (unsigned left = sides_[i].on; left != 0; left &= left - 1)
+      if (const int j = std::countr_zero(left); !is_low_[on_(contour_.simplices[touching_[i]][j])]) result |= 1u << j;
+    return result;
+  }
+
+  /// The vertices of the i-th touching simplex that are above or count so.
+  [[nodiscard]] unsigned high(std::size_t i) const {
+    return (kAll & ~(unsigned{sides_[i].below} | sides_[i].on)) | on_high(i);
   }
 
   /// The piece between the `high` vertices of a simplex and the others.
   [[nodiscard]] Piece make_piece(Index simplex, unsigned high) const {
-    const std::array<Index, N> sorted = high_first<N>(contour_.simplices[simplex], high);
+    const auto& vertices = contour_.simplices[simplex];
+    const auto& order = kHighFirst<N>[high];
     const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
     Piece piece;
     piece.simplex = simplex;
     piece.count = count;
-    for (int i = 0; i < count; ++i) piece.points[i] = edge_point(sorted[pairs[i].second], sorted[pairs[i].first]);
+    for (int i = 0; i < count; ++i)
+      piece.points[i] = edge_point(vertices[order[pairs[i].second]], vertices[order[pairs[i].first]]);
     return piece;
+  }
+
+  /// What is cut out of all simplices, with the points around on vertices drawn together, but for those left `apart`.
+  /// Pieces that collapse are left out.
+  [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
+    const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
+    const auto is_drawn = [&](Index v) { return !any_apart || !apart[on_(v)]; };
+    std::vector<Piece> result;
+    for (std::size_t i = 0; i < touching_.size(); ++i) {
+      const unsigned above = high(i);
+      if (above == 0 || above == kAll) continue;
+      const Piece piece = make_piece(touching_[i], above);
+      if (sides_[i].on == 0) {
+        result.push_back(piece);
+        continue;
+      }
+      Piece drawn;
+      drawn.simplex = piece.simplex;
+      for (int k = 0; k < piece.count; ++k) {
+        const std::optional<Index> on = on_end(piece.points[k]);
+        const PointKey key = on && is_drawn(*on) ? vertex_point(*on) : piece.points[k];
+        // Points drawn together are neighbours in the cycle: they share the on vertex.
+        const bool repeats = drawn.count > 0 &&
+                             (drawn.points[drawn.count - 1] == key || (k == piece.count - 1 && drawn.points[0] == key));
+        if (!repeats) drawn.points[drawn.count++] = key;
+      }
+      if (drawn.count >= N - 1) result.push_back(drawn);
+    }
+    return result;
   }
 
   /// The end of a point's edge that is on; an edge has at most one, as its ends would be in one group.
@@ -217,33 +277,21 @@ class Cutter {
     std::vector<bool> apart(on_.size(), false);
     std::vector<PointKey> excused;
     for (int round = 0;; ++round) {
-      std::vector<Piece> drawn = drawn_pieces(apart);
+      std::vector<Piece> drawn = cut_pieces(apart);
       drawn.insert(drawn.end(), faces.begin(), faces.end());
-      const std::vector<PointKey> pinched = detail::pinched_points(drawn);
-      if (round == 0 && !pinched.empty()) excused = detail::pinched_points(pieces_);
-      if (drop_faces(pinched, apart, faces) || leave_apart(pinched, excused, round >= kMostRounds, apart)) continue;
-      pieces_ = std::move(drawn);
-      return;
+      set_pieces(std::move(drawn));
+      const std::vector<PointKey> pinched = pinched_points(pieces_, corners_);
+      if (round == 0 && !pinched.empty()) {
+        const std::vector<Piece> undrawn = cut_pieces(std::vector<bool>(on_.size(), true));
+        excused = pinched_points(undrawn, corners_by_point(undrawn, most_));
+      }
+      if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
     }
   }
 
-  [[nodiscard]] std::vector<Piece> drawn_pieces(const std::vector<bool>& apart) const {
-    std::vector<Piece> result;
-    result.reserve(pieces_.size());
-    for (const Piece& piece : pieces_) {
-      Piece drawn;
-      drawn.simplex = piece.simplex;
-      for (int i = 0; i < piece.count; ++i) {
-        const std::optional<Index> on = on_end(piece.points[i]);
-        const PointKey key = on && !apart[on_(*on)] ? vertex_point(*on) : piece.points[i];
-        // Points drawn together are neighbours in the cycle: they share the on vertex.
-        const bool repeats = drawn.count > 0 &&
-                             (drawn.points[drawn.count - 1] == key || (i == piece.count - 1 && drawn.points[0] == key));
-        if (!repeats) drawn.points[drawn.count++] = key;
-      }
-      if (drawn.count >= N - 1) result.push_back(drawn);
-    }
-    return result;
+  void set_pieces(std::vector<Piece> pieces) {
+    pieces_ = std::move(pieces);
+    corners_ = corners_by_point(pieces_, most_);
   }
 
   /// Marks the on vertices among the pinched points (or all on vertices), except those around which the points were
@@ -292,16 +340,22 @@ class Cutter {
   [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
     if (!section_.is_across_axis()) return {};
     std::vector<OnFace> on_faces;
-    for (const Index s : touching_)
-      gather_on_faces(s, corners(contour_.simplices[s], [](Side side) { return side == Side::on_high; }), on_faces);
-    std::sort(on_faces.begin(), on_faces.end(), [](const OnFace& a, const OnFace& b) {
+    for (std::size_t i = 0; i < touching_.size(); ++i)
+      if (std::popcount(unsigned{sides_[i].on}) >= N - 1) gather_on_faces(touching_[i], on_high(i), on_faces);
+    sort_by_bits(on_faces, static_cast<unsigned>(std::bit_width(most_)),
+                 [](const OnFace& face) { return face.vertices[0]; });
+    const auto before = [](const OnFace& a, const OnFace& b) {
       return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
-    });
+    };
+    for (auto from = on_faces.begin(), to = from; from != on_faces.end(); from = to) {
+      to = std::find_if(from, on_faces.end(), [&](const OnFace& f) { return f.vertices[0] != from->vertices[0]; });
+      std::sort(from, to, before);
+    }
     std::vector<Piece> faces;
     for (std::size_t i = 0, j = 0; i < on_faces.size(); i = j) {
       while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
       const auto& simplex = contour_.simplices[on_faces[i].simplex];
-      if (j - i != 1 || side(simplex[on_faces[i].omitted]) != Side::above) continue;
+      if (j - i != 1 || !(height(simplex[on_faces[i].omitted]) > level_)) continue;
       if (!section_.is_along_last_axis() && may_lie_in_another_side(on_faces[i])) continue;
       Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
       for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
@@ -323,24 +377,7 @@ class Cutter {
 
   /// Numbers the points in the order of their keys, and puts numbers in the place of keys.
   void number_points() {
-    struct Corner {
-      PointKey key;
-      std::size_t at;  // 4 times the piece, plus the point's place in it
-    };
-    std::vector<Corner> all;
-    all.reserve(4 * pieces_.size());
-    Index most = 0;
-    for (std::size_t p = 0; p < pieces_.size(); ++p)
-      for (int i = 0; i < pieces_[p].count; ++i) {
-        all.push_back({pieces_[p].points[i], 4 * p + static_cast<std::size_t>(i)});
-        most = std::max({most, lower_end(all.back().key), upper_end(all.back().key)});
-      }
-    // Both vertex numbers side by side in as few bits as there are.
-    const auto bits = static_cast<unsigned>(std::bit_width(most));
-    sort_by_bits(all, 2 * bits, [bits](const Corner& corner) {
-      return PointKey{lower_end(corner.key)} << bits | upper_end(corner.key);
-    });
-    for (const Corner& corner : all) {
+    for (const Corner& corner : corners_) {
       if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
       pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;
     }
@@ -461,7 +498,11 @@ class Cutter {
   const std::vector<Index>& touching_;  ///< simplices not wholly on one side
   IndexMap on_;                         ///< vertices on the hyperplane, of those simplices
   std::vector<bool> is_low_;            ///< of these
+  bool any_low_ = false;
+  std::vector<Sides> sides_;  ///< of the touching simplices
+  Index most_ = 0;            ///< the largest number of their vertices
   std::vector<Piece> pieces_;
+  std::vector<Corner> corners_;  ///< of the pieces
   std::vector<PointKey> keys_;
 };
 

@@ -4,101 +4,81 @@
 #include "slice_piece.hpp"
 
 #include <algorithm>
-#include <cstddef>
-#include <numeric>
-#include <tuple>
+#include <bit>
 #include <utility>
+
+#include "disjoint_sets.hpp"
+#include "radix_sort.hpp"
 
 namespace tegl::detail {
 namespace {
 
-/// The corner i of piece p has the number 4 p + i.
-constexpr std::size_t corner_number(std::size_t piece, int i) { return 4 * piece + static_cast<std::size_t>(i); }
-
-/// A side of a polygon, from its smaller to its larger point, and the polygon's corners there.
-struct PolygonSide {
-  PointKey first;
-  PointKey second;
-  std::size_t first_corner;
-  std::size_t second_corner;
-};
-
-class Fans {
+/// The links of points, one after the other, in memory that they share.
+class Links {
  public:
-  explicit Fans(std::span<const Piece> pieces) : pieces_(pieces), parent_(4 * pieces.size()) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-    gather_sides();
-  }
+  explicit Links(std::span<const Piece> pieces) : pieces_(pieces) {}
 
-  std::vector<PointKey> pinched() {
-    std::vector<PointKey> result;
-    for (std::size_t i = 0, j = 0; i < sides_.size(); i = j) {
-      while (j < sides_.size() && sides_[j].first == sides_[i].first && sides_[j].second == sides_[i].second) ++j;
-      if (j - i > 2) result.insert(result.end(), {sides_[i].first, sides_[i].second});
-      if (j - i != 2) continue;
-      join(sides_[i].first_corner, sides_[i + 1].first_corner);
-      join(sides_[i].second_corner, sides_[i + 1].second_corner);
+  /// Whether the polygons at a point are one fan: their sides across from it (before it and after it, in the cycle)
+  /// make one path or one ring. The ends of those sides are the points that it has edges to.
+  bool is_fan(std::span<const Corner> corners) {
+    ends_.clear();
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Piece& piece = pieces_[corners[c].at / 4];
+      const int here = static_cast<int>(corners[c].at % 4);
+      ends_.emplace_back(piece.points[here == 0 ? piece.count - 1 : here - 1], c);
+      ends_.emplace_back(piece.points[here + 1 == piece.count ? 0 : here + 1], c);
     }
-    add_points_of_several_fans(result);
-    std::sort(result.begin(), result.end());
-    result.erase(std::unique(result.begin(), result.end()), result.end());
-    return result;
+    std::sort(ends_.begin(), ends_.end());
+    sets_.reset(corners.size());
+    std::size_t parts = corners.size();
+    for (std::size_t i = 1; i < ends_.size(); ++i) {
+      if (ends_[i].first != ends_[i - 1].first) continue;
+      if (i >= 2 && ends_[i].first == ends_[i - 2].first) return false;  // an edge of three polygons
+      parts -= sets_.join(ends_[i].second, ends_[i - 1].second);
+    }
+    return parts == 1;
   }
 
  private:
-  void gather_sides() {
-    for (std::size_t p = 0; p < pieces_.size(); ++p)
-      for (int i = 0; i < pieces_[p].count; ++i) {
-        const int j = i + 1 == pieces_[p].count ? 0 : i + 1;
-        PolygonSide side{pieces_[p].points[i], pieces_[p].points[j], corner_number(p, i), corner_number(p, j)};
-        if (side.first > side.second) {
-          std::swap(side.first, side.second);
-          std::swap(side.first_corner, side.second_corner);
-        }
-        sides_.push_back(side);
-      }
-    std::sort(sides_.begin(), sides_.end(), [](const PolygonSide& a, const PolygonSide& b) {
-      return std::tie(a.first, a.second) < std::tie(b.first, b.second);
-    });
-  }
-
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[find(a)] = find(b); }
-
-  void add_points_of_several_fans(std::vector<PointKey>& result) {
-    std::vector<std::pair<PointKey, std::size_t>> fans;
-    for (std::size_t p = 0; p < pieces_.size(); ++p)
-      for (int i = 0; i < pieces_[p].count; ++i) fans.emplace_back(pieces_[p].points[i], find(corner_number(p, i)));
-    std::sort(fans.begin(), fans.end());
-    for (std::size_t i = 1; i < fans.size(); ++i)
-      if (fans[i].first == fans[i - 1].first && fans[i].second != fans[i - 1].second) result.push_back(fans[i].first);
-  }
-
   std::span<const Piece> pieces_;
-  std::vector<std::size_t> parent_;
-  std::vector<PolygonSide> sides_;
+  std::vector<std::pair<PointKey, std::size_t>> ends_;
+  BasicDisjointSets<std::size_t> sets_;
 };
-
-/// Points where more than two segments meet.
-std::vector<PointKey> branching_points(std::span<const Piece> segments) {
-  std::vector<PointKey> ends;
-  for (const Piece& segment : segments) ends.insert(ends.end(), {segment.points[0], segment.points[1]});
-  std::sort(ends.begin(), ends.end());
-  std::vector<PointKey> result;
-  for (std::size_t i = 2; i < ends.size(); ++i)
-    if (ends[i] == ends[i - 2]) result.push_back(ends[i]);
-  result.erase(std::unique(result.begin(), result.end()), result.end());
-  return result;
-}
 
 }  // namespace
 
-std::vector<PointKey> pinched_points(std::span<const Piece> pieces) {
-  if (!pieces.empty() && pieces[0].count == 2) return branching_points(pieces);
-  return Fans(pieces).pinched();
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most) {
+  std::vector<Corner> corners;
+  std::size_t count = 0;
+  for (const Piece& piece : pieces) count += static_cast<std::size_t>(piece.count);
+  corners.reserve(count);
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    for (int i = 0; i < pieces[p].count; ++i)
+      corners.push_back({pieces[p].points[i], 4 * p + static_cast<std::size_t>(i)});
+  sort_by_bits(corners, static_cast<unsigned>(std::bit_width(most)),
+               [](const Corner& corner) { return lower_end(corner.key); });
+  // Few edges begin at one vertex.
+  for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
+    bool sorted = true;
+    for (j = i + 1; j < corners.size() && lower_end(corners[j].key) == lower_end(corners[i].key); ++j)
+      sorted = sorted && corners[j - 1].key <= corners[j].key;
+    const auto from = corners.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!sorted)
+      std::sort(from, corners.begin() + static_cast<std::ptrdiff_t>(j),
+                [](const Corner& a, const Corner& b) { return std::pair(a.key, a.at) < std::pair(b.key, b.at); });
+  }
+  return corners;
+}
+
+std::vector<PointKey> pinched_points(std::span<const Piece> pieces, std::span<const Corner> corners) {
+  std::vector<PointKey> result;
+  const bool of_segments = !pieces.empty() && pieces[0].count == 2;
+  Links links(pieces);
+  for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
+    for (j = i + 1; j < corners.size() && corners[j].key == corners[i].key;) ++j;
+    if (of_segments ? j - i > 2 : !links.is_fan(corners.subspan(i, j - i))) result.push_back(corners[i].key);
+  }
+  return result;
 }
 
 }  // namespace tegl::detail

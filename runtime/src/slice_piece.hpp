@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,8 +30,19 @@ struct Piece {
   Index simplex = 0;  ///< the simplex
 };
 
+/// A point of a piece, as seen from the point.
+struct Corner {
+  PointKey key;
+  std::size_t at;  ///< 4 times the piece, plus the point's place in it
+};
+
+/// All points of all pieces in the order of their keys, those of one point in the order of the pieces. `most`: no
+/// vertex number is larger. O(c) for c pieces.
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most);
+
 /// The points, ascending, around which the pieces are not one fan (of polygons) or one path (of segments), or from
-/// which an edge goes out that more than two polygons share. O(c log c) for c pieces.
-std::vector<PointKey> pinched_points(std::span<const Piece> pieces);
+/// which an edge goes out that more than two polygons share. `corners`: of these pieces. O(c) for c pieces if few meet
+/// at each point.
+std::vector<PointKey> pinched_points(std::span<const Piece> pieces, std::span<const Corner> corners);
 
 }  // namespace tegl::detail
