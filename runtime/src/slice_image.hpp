@@ -75,6 +75,30 @@ std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::
   return {first, std::min(size, layers.first + layers.second + 1) - first};
 }
 
+/// The image with an axis moved to the end, the others in their order.
+template <Value T, int N>
+Image<T, N> with_axis_last(const Image<T, N>& image, int axis) {
+  const Grid<N>& from = image.grid();
+  Grid<N> grid;
+  typename Image<T, N>::Strides strides;
+  const auto old = [&](int a) { return a == N - 1 ? axis : a + (a >= axis); };
+  for (int a = 0; a < N; ++a) {
+    grid.axes[a] = from.axes[old(a)];
+    strides[a] = image.strides()[old(a)];
+    grid.offset(a) = from.offset(old(a));
+    for (int b = 0; b < N; ++b) grid.linear(a, b) = from.linear(old(a), old(b));
+  }
+  return Image<T, N>(image.data(), std::move(grid), strides);
+}
+
+/// Whether one of the layers {first, count} along an axis lies at `at`.
+template <int N, class Real>
+bool is_at_layer(const Grid<N>& grid, int axis, double at, std::pair<std::size_t, std::size_t> layers) {
+  for (std::size_t i = layers.first; i < layers.first + layers.second; ++i)
+    if (world_coordinate<N, Real>(grid, axis, i) == rounded_at<Real>(at)) return true;
+  return false;
+}
+
 }  // namespace tegl::detail
 
 namespace tegl {
@@ -85,6 +109,9 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
   detail::check_arguments(isovalue, options);
   auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
   const bool is_last = axis == N - 1;
+  // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis.
+  if (N == 4 && !is_last && detail::is_at_layer<N, Real>(image.grid(), axis, at, layers))
+    return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, options, stats);
   if (!is_last && options.normals) layers = detail::with_neighbours<N>(layers, image.size(axis));
   const Image<T, N> slab = image.part(axis, layers.first, layers.second);
   // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.

@@ -317,8 +317,8 @@ TEST_P(ActiveTilesFile, BuildingCanBeCancelled) {
 
 TEST_P(ActiveTilesFile, IsovaluesThatAreNotFiniteAreRefused) {
   const auto index = build_active_tiles(image_.view(), GetParam());
-  EXPECT_THROW(index->find(std::nan("")), Error);
-  EXPECT_THROW(index->find_rows(std::numeric_limits<double>::infinity()), Error);
+  EXPECT_THROW((void)index->find(std::nan("")), Error);
+  EXPECT_THROW((void)index->find_rows(std::numeric_limits<double>::infinity()), Error);
 }
 
 }  // namespace

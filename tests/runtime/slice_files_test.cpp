@@ -75,7 +75,7 @@ class SliceOfFile : public ::testing::TestWithParam<File> {
 };
 
 TEST_P(SliceOfFile, IsAManifoldAtAnyTime) {
-  with_image([this](const auto& image) {
+  with_image([](const auto& image) {
     ExtractOptions options;
     options.close = true;
     const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile), options);
@@ -95,7 +95,7 @@ TEST_P(SliceOfFile, IsAManifoldAtAnyTime) {
 }
 
 TEST_P(SliceOfFile, IsAManifoldAlongAnyHyperplane) {
-  with_image([this](const auto& image) {
+  with_image([](const auto& image) {
     ExtractOptions options;
     options.close = true;
     const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile), options);
@@ -117,7 +117,7 @@ TEST_P(SliceOfFile, IsAManifoldAlongAnyHyperplane) {
 }
 
 TEST_P(SliceOfFile, ByAScrubberIsTheSame) {
-  with_image([this](const auto& image) {
+  with_image([](const auto& image) {
     const auto whole = extract<double>(image, isovalue_at(image, GetParam().quantile));
     const Scrubber<4, double> scrubber(whole);
     for (double index = 0.0; index <= static_cast<double>(image.size(3) - 1); index += 0.25) {
@@ -129,7 +129,7 @@ TEST_P(SliceOfFile, ByAScrubberIsTheSame) {
 }
 
 TEST_P(SliceOfFile, AtATimeStepEqualsThe3dContour) {
-  with_image([this](const auto& image) {
+  with_image([](const auto& image) {
     const double isovalue = isovalue_at(image, GetParam().quantile);
     const auto whole = extract<double>(image, isovalue);
     for (std::size_t k = 0; k < image.size(3); ++k)
@@ -140,7 +140,7 @@ TEST_P(SliceOfFile, AtATimeStepEqualsThe3dContour) {
 }
 
 TEST_P(SliceOfFile, TakenDirectlyEqualsTheCutOfTheWhole) {
-  with_image([this](const auto& image) {
+  with_image([](const auto& image) {
     const double isovalue = isovalue_at(image, GetParam().quantile);
     const auto whole = extract(image, isovalue);
     const auto last = static_cast<double>(image.size(3) - 1);

@@ -43,8 +43,11 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 /// below, or from above around vertices that the contour does not come up to from below. Of the contour's boundary,
 /// parts in the hyperplane whose upper side alone has a contour belong to cuts across an axis, unless they may lie in a
 /// side of the image along another axis too, and never to oblique ones. So at a sample's coordinate on any axis the cut
-/// is the contour of that layer, if no sample equals the isovalue. Where samples do, that is so on the last axis alone:
-/// elsewhere the limit may have other pieces than the layer's contour, flat in it or along samples of the isovalue.
+/// is the contour of that layer, if no sample equals the isovalue. Where samples do, that is so on the last axis alone,
+/// where `extract` keeps the points between layers out of these. On others such points lie in the layer as well, at the
+/// same places as points of the layer itself, and nothing in a contour tells one from the other: there the limit may
+/// have other pieces than the layer's contour, flat in it or along samples of the isovalue. `slice_image_across` has the
+/// image to go by, and gives the layer's contour.
 /// Vertices lie on the hyperplane if <normal, x> equals the offset as computed in
 /// double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real. Orientation: the
 /// cut's positive side in the frame's coordinates is that of the contour, also where the frame is left-handed. Names
@@ -78,7 +81,8 @@ Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, doub
 
 /// The same across any axis: the cut by x_axis = at, in the other coordinates. Only a slab of layers of that axis is
 /// contoured (for normals, the layers beside it too); all said of the last axis holds for this one, but that normals
-/// are the same up to rounding.
+/// are the same up to rounding. So at a sample's coordinate a cut of a 4D image is the contour of that layer, also where
+/// samples equal the isovalue, when cuts of the whole contour may differ from it.
 template <class Real = float, Value T, int N>
 Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue, int axis, double at,
                                         const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
