@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Squares and cubes of the multilinear interpolant f, by the signs of polynomials in its values; see saddle.hpp.
+//
+// Let f have the isovalue subtracted, H = {f >= 0}, L = {f < 0}.
+//
+// Squares. An ambiguous square with high corners A, C and low ones B, D has its saddle at the value
+// (A C - B D) / (A + C - B - D), whose denominator is positive: A and C are joined iff A C >= B D.
+//
+// Cubes. Cut the cube by the planes across one axis, at t in [0, 1]. In each, f is bilinear, with values A(t), B(t),
+// C(t), D(t) at the corners, linear in t. (1) From any point of H in a plane a path along the plane's two axes leads to
+// a high corner of the plane and stays in H: f
+//     is linear along each, so it does not decrease one way. The same holds for L. So the pieces of H in the cube are
+//     what arises from the high parts of the four edges along the axis, where two are joined if they are in one plane:
+//     both being neighbours (then the cube's surface joins them), or being diagonal in an ambiguous plane, with
+//     A C >= B D. (The pieces of these sets are closed, as H is; those of L, alike with A C > B D, are open, as L is.)
+// (2) The high part of an edge hangs on a high corner of the cube, so it belongs to one region of H on the cube's
+// surface
+//     (as the squares join corners). Two regions are joined inside the cube only by diagonal edges as in (1), inside
+//     the interval I of t where A and C are high and B and D are low. So are regions of L.
+// (3) This must come out the same along every axis. Of all 656 signatures with decided squares, there are just 180
+//     where joins of H along all three axes could lead to the same regions (and 180 for L, of which 8 are the
+//     same), and in all of these just one pair of regions can be joined: three or four loops are never joined at once.
+//     Along one axis at least, a single pair of diagonal edges can do it. A test enumerates them.
+// (4) q(t) = A C - B D is a quadratic. Let A and C be high on different regions that could be joined. At an end of I at
+// which B or D
+//     becomes high, the surface joins A and C: so there is none. At an end where A or C becomes low, or at 0 or 1,
+//     q <= 0 (a square that is not joined), strictly for H. So if A and C are joined, q has a maximum inside of
+//     I. With q(t) = q0 (1 - t)^2 + m t (1 - t) + q1 t^2 that is where t : 1 - t = u0 : u1, u0 = m - 2 q0, u1 =
+//     m - 2 q1, if u0, u1 > 0, and q is not negative there iff m^2 >= 4 q0 q1 (the hyperdeterminant of the eight
+//     values, which is the same along every axis). If moreover A and C are high there, B and D are low, or else the
+//     surface would join A and C. So the regions are joined iff
+//         u0 > 0,  u1 > 0,  m^2 >= 4 q0 q1,  A0 u1 + A1 u0 >= 0,  C0 u1 + C1 u0 >= 0,
+//     and for L, with the low diagonal as A and C, iff u0, u1 > 0, m^2 > 4 q0 q1, A0 u1 + A1 u0 < 0, C0 u1 + C1 u0 < 0.
+#include "tegl/saddle.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+#include "tegl/generated/tables.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+using facets::Choice;
+
+/// A value minus the isovalue spans 2^-1074 ... 2^1025; the polynomials have degree 4 at most.
+inline constexpr unsigned kExactBits = 4 * (1025 + 1074) + 16;
+using Exact = boost::multiprecision::number<
+    boost::multiprecision::cpp_int_backend<kExactBits, kExactBits, boost::multiprecision::signed_magnitude,
+                                           boost::multiprecision::unchecked, void>,
+    boost::multiprecision::et_off>;
+
+/// x = integer * 2^exponent; infinite as 2^1024.
+struct Dyadic {
+  std::int64_t integer;
+  int exponent;
+};
+
+Dyadic dyadic(double x) noexcept {
+  if (!std::isfinite(x)) return {x > 0.0 ? 1 : -1, std::numeric_limits<double>::max_exponent};
+  if (x == 0.0) return {0, std::numeric_limits<double>::max_exponent};
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);
+  auto integer = static_cast<std::int64_t>(std::ldexp(fraction, std::numeric_limits<double>::digits));
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(integer));
+  return {integer / (std::int64_t{1} << zeros), exponent - std::numeric_limits<double>::digits + zeros};
+}
+
+/// Values minus the isovalue, times a power of two that makes all of them integers.
+template <std::size_t kCorners>
+std::array<Exact, kCorners> exact_differences(const std::array<double, kCorners>& values, double isovalue) noexcept {
+  std::array<Dyadic, kCorners> parts;
+  const Dyadic zero = dyadic(isovalue);
+  int least = zero.exponent;
+  for (std::size_t v = 0; v < kCorners; ++v) {
+    parts[v] = dyadic(values[v]);
+    least = std::min(least, parts[v].exponent);
+  }
+  const auto scaled = [&](const Dyadic& x) { return Exact(x.integer) << (x.exponent - least); };
+  std::array<Exact, kCorners> result;
+  for (std::size_t v = 0; v < kCorners; ++v) result[v] = scaled(parts[v]) - scaled(zero);
+  return result;
+}
+
+int sign(const Exact& x) noexcept { return x.sign(); }
+
+/// A C - B D of the corners 0, 3 and 1, 2.
+template <class Number>
+Number determinant(const Number& v0, const Number& v1, const Number& v2, const Number& v3) noexcept {
+  return v0 * v3 - v1 * v2;
+}
+
+bool joins_high(int determinant_sign, bool first_is_high) noexcept {
+  return first_is_high ? determinant_sign >= 0 : determinant_sign <= 0;
+}
+
+/// The corners of square 2 a + side.
+constexpr std::array<std::array<std::uint8_t, 4>, 6> kSquares = {
+    {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}}};
+
+/// A pair of diagonal edges along an axis: the lower corners of A, C and of the two others, B, D.
+struct Pair {
+  std::uint8_t a, c, b, d, step;
+};
+constexpr std::array<Pair, 6> kPairs = {
+    {{0, 6, 2, 4, 1}, {2, 4, 0, 6, 1}, {0, 5, 1, 4, 2}, {1, 4, 0, 5, 2}, {0, 3, 1, 2, 4}, {1, 2, 0, 3, 4}}};
+
+/// For an entry of kTile3Resolved: the pair that can join two regions of a sign, + 1; 0: none can.
+struct Joins {
+  std::uint8_t high = 0, low = 0;
+};
+
+/// Regions of the corners of one sign, as the cube's surface joins them.
+class Regions {
+ public:
+  Regions(unsigned corners, unsigned ambiguous, unsigned joined_squares) {
+    for (std::uint8_t v = 0; v < 8; ++v) region_[v] = v;
+    for (unsigned v = 0; v < 8; ++v)
+      for (unsigned step = 1; step < 8; step *= 2)
+        if (((corners >> v) & 1u) != 0 && ((corners >> (v ^ step)) & 1u) != 0) join(v, v ^ step);
+    for (unsigned q = 0; q < 6; ++q) {
+      if (((ambiguous & joined_squares) >> q & 1u) == 0) continue;
+      const auto& s = kSquares[q];
+      if ((corners >> s[0] & 1u) != 0)
+        join(s[0], s[3]);
+      else
+        join(s[1], s[2]);
+    }
+  }
+  [[nodiscard]] std::uint8_t operator[](unsigned corner) const { return region_[corner]; }
+
+  void join(unsigned v, unsigned w) {
+    const std::uint8_t from = region_[v], to = region_[w];
+    std::replace(region_.begin(), region_.end(), from, to);
+  }
+  /// How many, of the corners given.
+  [[nodiscard]] int count(unsigned corners) const {
+    unsigned seen = 0;
+    for (unsigned v = 0; v < 8; ++v)
+      if ((corners >> v & 1u) != 0) seen |= 1u << region_[v];
+    return std::popcount(seen);
+  }
+
+ private:
+  std::array<std::uint8_t, 8> region_{};
+};
+
+/// Whether a pair of edges could join two regions. `corners`: those of the regions' sign.
+bool could_join(const Pair& pair, unsigned corners, const Regions& regions) {
+  const auto has = [&](unsigned v) { return (corners >> v & 1u) != 0; };
+  const auto end_of = [&](unsigned v) { return has(v) ? v : v + pair.step; };
+  const auto stays = [&](unsigned v) { return has(v) && has(v + pair.step); };
+  const unsigned a = end_of(pair.a), c = end_of(pair.c);
+  return has(a) && has(c) && !stays(pair.b) && !stays(pair.d) && regions[a] != regions[c];
+}
+
+/// The pair that decides whether regions are joined, + 1; 0: none are. See (3) above.
+std::uint8_t deciding_pair(unsigned corners, unsigned ambiguous, unsigned joined_squares) {
+  const Regions regions(corners, ambiguous, joined_squares);
+  if (regions.count(corners) != 2) return 0;
+  std::uint8_t deciding = 0;
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    const bool first = could_join(kPairs[2 * axis], corners, regions);
+    const bool second = could_join(kPairs[2 * axis + 1], corners, regions);
+    if (!first && !second) return 0;
+    if (first != second) deciding = static_cast<std::uint8_t>(2 * axis + (first ? 1 : 2));
+  }
+  return deciding;
+}
+
+struct JoinTable {
+  std::array<Joins, 656> of;
+
+  JoinTable() {
+    for (unsigned s = 0; s < 256; ++s) {
+      const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[s];
+      unsigned entry = tables::kTile3Resolved.first_entry[s], high = 0;
+      do {
+        of[entry++] = {deciding_pair(s, ambiguous, high), deciding_pair(~s & 0xffu, ambiguous, ~high)};
+        high = (high - ambiguous) & ambiguous;
+      } while (high != 0);
+    }
+  }
+};
+
+const Joins& joins_of(unsigned entry) noexcept {
+  static const JoinTable table;
+  return table.of[entry];
+}
+
+/// (4) above: the signs of what has to be positive (or zero, in the hyperdeterminant of H).
+template <class Number>
+bool are_joined(const std::array<Number, 8>& f, const Pair& pair, bool high) noexcept {
+  const auto bottom = [&](unsigned v) -> const Number& { return f[v]; };
+  const auto top = [&](unsigned v) -> const Number& { return f[v + pair.step]; };
+  const Number q0 = bottom(pair.a) * bottom(pair.c) - bottom(pair.b) * bottom(pair.d);
+  const Number q1 = top(pair.a) * top(pair.c) - top(pair.b) * top(pair.d);
+  const Number m = bottom(pair.a) * top(pair.c) + top(pair.a) * bottom(pair.c) - bottom(pair.b) * top(pair.d) -
+                   top(pair.b) * bottom(pair.d);
+  const Number u0 = m - q0 - q0, u1 = m - q1 - q1;
+  if (sign(u0) <= 0 || sign(u1) <= 0) return false;
+  const int a = sign(Number(bottom(pair.a) * u1 + top(pair.a) * u0));
+  const int c = sign(Number(bottom(pair.c) * u1 + top(pair.c) * u0));
+  const Number q01 = q0 * q1;
+  const int hyperdeterminant = sign(Number(m * m - q01 - q01 - q01 - q01));
+  return high ? a >= 0 && c >= 0 && hyperdeterminant >= 0 : a < 0 && c < 0 && hyperdeterminant > 0;
+}
+
+}  // namespace
+
+bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept {
+  const auto f = exact_differences(values, isovalue);
+  return joins_high(sign(determinant(f[0], f[1], f[2], f[3])), f[0].sign() >= 0);
+}
+
+CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {
+  const auto f = exact_differences(values, isovalue);
+  unsigned signature = 0;
+  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(f[v].sign() >= 0) << v;
+  CubeDecision result;
+  unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
+  const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[signature];
+  for (unsigned q = 0; q < 6; ++q) {
+    if ((ambiguous >> q & 1u) == 0) continue;
+    const auto& s = kSquares[q];
+    if (joins_high(sign(determinant(f[s[0]], f[s[1]], f[s[2]], f[s[3]])), f[s[0]].sign() >= 0)) {
+      result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
+      entry += bit;
+    }
+    bit *= 2;
+  }
+  const Joins& joins = joins_of(entry);
+  if (joins.high != 0 && are_joined(f, kPairs[joins.high - 1u], true))
+    result.centre = Choice::high;
+  else if (joins.low != 0 && are_joined(f, kPairs[joins.low - 1u], false))
+    result.centre = Choice::low;
+  return result;
+}
+
+bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept {
+  return square_is_high_exactly(values, isovalue);
+}
+
+CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue) noexcept {
+  return decide_cube_exactly(values, isovalue);
+}
+
+}  // namespace tegl::detail
