@@ -18,10 +18,10 @@
 // surface
 //     (as the squares join corners). Two regions are joined inside the cube only by diagonal edges as in (1), inside
 //     the interval I of t where A and C are high and B and D are low. So are regions of L.
-// (3) This must come out the same along every axis. Of all 656 signatures with decided squares, there are just 180
-//     where joins of H along all three axes could lead to the same regions (and 180 for L, of which 8 are the
-//     same), and in all of these just one pair of regions can be joined: three or four loops are never joined at once.
-//     Along one axis at least, a single pair of diagonal edges can do it. A test enumerates them.
+// (3) This must come out the same along every axis. Of all 656 signatures with decided squares there are 98 where joins
+//     of H along all three axes could lead to the same regions (and 98 for L, of which 8 are the same). In all of
+//     these H has two regions, so that three or four are never joined, and along one axis at least there is just one
+//     pair of diagonal edges that can do it. A test enumerates them.
 // (4) q(t) = A C - B D is a quadratic. Let A and C be high on different regions that could be joined. At an end of I at
 // which B or D
 //     becomes high, the surface joins A and C: so there is none. At an end where A or C becomes low, or at 0 or 1,
