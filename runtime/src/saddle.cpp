@@ -36,6 +36,7 @@
 
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -54,6 +55,10 @@ using Exact = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<kExactBits, kExactBits, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked, void>,
     boost::multiprecision::et_off>;
+
+/// For differences of up to 31 bits with their sign: the polynomials then have 4 * 30 + 5 at most.
+using Short = boost::multiprecision::int128_t;
+inline constexpr int kShortBits = 30;
 
 /// x = integer * 2^exponent; infinite as 2^1024.
 struct Dyadic {
@@ -87,17 +92,111 @@ std::array<Exact, kCorners> exact_differences(const std::array<double, kCorners>
   return result;
 }
 
-int sign(const Exact& x) noexcept { return x.sign(); }
-
-/// A C - B D of the corners 0, 3 and 1, 2.
-template <class Number>
-Number determinant(const Number& v0, const Number& v1, const Number& v2, const Number& v3) noexcept {
-  return v0 * v3 - v1 * v2;
+/// The same as 31-bit integers, if they are: whole numbers of few bits and floats of similar size mostly are.
+template <std::size_t kCorners>
+bool short_differences(const std::array<double, kCorners>& values, double isovalue,
+                       std::array<Short, kCorners>& result) noexcept {
+  std::array<double, kCorners> differences;
+  double most = 0.0;
+  for (std::size_t v = 0; v < kCorners; ++v) {
+    const double difference = differences[v] = values[v] - isovalue;
+    // What was rounded off (D. E. Knuth, The Art of Computer Programming, vol. 2, 4.2.2).
+    const double value_part = difference + isovalue;
+    const double rest = (values[v] - value_part) + ((value_part - difference) - isovalue);
+    if (!(rest == 0.0)) return false;  // or no number: infinite values
+    most = std::max(most, std::abs(difference));
+  }
+  constexpr double kLeast = 0x1p-900, kMost = 0x1p+900;
+  if (!(most >= kLeast && most <= kMost)) return false;
+  int exponent = 0;
+  std::frexp(most, &exponent);
+  const double scale = std::ldexp(1.0, kShortBits - exponent);
+  for (std::size_t v = 0; v < kCorners; ++v) {
+    const double scaled = differences[v] * scale;
+    const auto integer = static_cast<std::int64_t>(scaled);
+    if (static_cast<double>(integer) != scaled) return false;
+    result[v] = integer;
+  }
+  return true;
 }
 
-bool joins_high(int determinant_sign, bool first_is_high) noexcept {
-  return first_is_high ? determinant_sign >= 0 : determinant_sign <= 0;
+/// A number computed in doubles from values minus the isovalue, each rounded, and the same with all signs positive. The
+/// relative error of a difference is u = 2^-53; a sum adds one u, a product the errors of its factors and one u,
+/// relative to `size`. Of the polynomials here, of degree 4 at most, none reaches 18 u. What underflows is far below
+/// kTiny; what overflows is unsure.
+struct Rounded {
+  double value, size;
+
+  static constexpr double kTiny = 0x1p-960;
+  static constexpr double kError = 0x1p-48;  // 32 u
+
+  friend Rounded operator+(Rounded x, Rounded y) noexcept { return {x.value + y.value, x.size + y.size}; }
+  friend Rounded operator-(Rounded x, Rounded y) noexcept { return {x.value - y.value, x.size + y.size}; }
+  friend Rounded operator*(Rounded x, Rounded y) noexcept { return {x.value * y.value, x.size * y.size + kTiny}; }
+  Rounded operator-() const noexcept { return {-value, size}; }
+};
+
+template <std::size_t kCorners>
+std::array<Rounded, kCorners> rounded(const std::array<double, kCorners>& differences) noexcept {
+  std::array<Rounded, kCorners> result;
+  for (std::size_t v = 0; v < kCorners; ++v) result[v] = {differences[v], std::abs(differences[v])};
+  return result;
 }
+
+enum class Answer : std::uint8_t { no, yes, unsure };
+
+Answer is_positive(const Rounded& x) noexcept {
+  const double error = x.size * Rounded::kError;
+  return x.value > error ? Answer::yes : x.value < -error ? Answer::no : Answer::unsure;
+}
+Answer is_not_negative(const Rounded& x) noexcept { return is_positive(x); }
+
+template <class Integer>
+Answer is_positive(const Integer& x) noexcept {
+  return x.sign() > 0 ? Answer::yes : Answer::no;
+}
+template <class Integer>
+Answer is_not_negative(const Integer& x) noexcept {
+  return x.sign() >= 0 ? Answer::yes : Answer::no;
+}
+
+/// One `no` is enough for no; all `yes` for yes.
+Answer all_of(std::initializer_list<Answer> answers) noexcept {
+  Answer result = Answer::yes;
+  for (const Answer answer : answers) {
+    if (answer == Answer::no) return answer;
+    if (answer == Answer::unsure) result = answer;
+  }
+  return result;
+}
+
+/// What a question asked of integers is answered with.
+template <std::size_t kCorners, class Question>
+[[gnu::noinline, gnu::cold]] bool ask_exactly(const std::array<double, kCorners>& values, double isovalue,
+                                              const Question& question) noexcept {
+  std::array<Short, kCorners> few_bits;
+  if (short_differences(values, isovalue, few_bits)) return question(few_bits) == Answer::yes;
+  return question(exact_differences(values, isovalue)) == Answer::yes;
+}
+
+/// Asks a question of rounded numbers first.
+template <std::size_t kCorners, class Question>
+bool ask(const std::array<double, kCorners>& values, const std::array<double, kCorners>& differences, double isovalue,
+         const Question& question) noexcept {
+  const Answer answer = question(rounded(differences));
+  return answer == Answer::unsure ? ask_exactly(values, isovalue, question) : answer == Answer::yes;
+}
+
+/// Whether an ambiguous square joins its high corners.
+struct SquareQuestion {
+  bool first_is_high;
+
+  template <class Number>
+  Answer operator()(const std::array<Number, 4>& f) const noexcept {
+    const Number even = f[0] * f[3], odd = f[1] * f[2];
+    return is_not_negative(first_is_high ? Number(even - odd) : Number(odd - even));
+  }
+};
 
 /// The corners of square 2 a + side.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> kSquares = {
@@ -193,61 +292,93 @@ const Joins& joins_of(unsigned entry) noexcept {
   return table.of[entry];
 }
 
-/// (4) above: the signs of what has to be positive (or zero, in the hyperdeterminant of H).
-template <class Number>
-bool are_joined(const std::array<Number, 8>& f, const Pair& pair, bool high) noexcept {
-  const auto bottom = [&](unsigned v) -> const Number& { return f[v]; };
-  const auto top = [&](unsigned v) -> const Number& { return f[v + pair.step]; };
-  const Number q0 = bottom(pair.a) * bottom(pair.c) - bottom(pair.b) * bottom(pair.d);
-  const Number q1 = top(pair.a) * top(pair.c) - top(pair.b) * top(pair.d);
-  const Number m = bottom(pair.a) * top(pair.c) + top(pair.a) * bottom(pair.c) - bottom(pair.b) * top(pair.d) -
-                   top(pair.b) * bottom(pair.d);
-  const Number u0 = m - q0 - q0, u1 = m - q1 - q1;
-  if (sign(u0) <= 0 || sign(u1) <= 0) return false;
-  const int a = sign(Number(bottom(pair.a) * u1 + top(pair.a) * u0));
-  const int c = sign(Number(bottom(pair.c) * u1 + top(pair.c) * u0));
-  const Number q01 = q0 * q1;
-  const int hyperdeterminant = sign(Number(m * m - q01 - q01 - q01 - q01));
-  return high ? a >= 0 && c >= 0 && hyperdeterminant >= 0 : a < 0 && c < 0 && hyperdeterminant > 0;
-}
+/// Whether A and C of a pair of edges are joined inside the cube: (4) above.
+struct PairQuestion {
+  Pair pair;
+  bool high;
 
-}  // namespace
+  template <class Number>
+  Answer operator()(const std::array<Number, 8>& f) const noexcept {
+    const Number &a0 = f[pair.a], &a1 = f[pair.a + pair.step], &c0 = f[pair.c], &c1 = f[pair.c + pair.step];
+    const Number &b0 = f[pair.b], &b1 = f[pair.b + pair.step], &d0 = f[pair.d], &d1 = f[pair.d + pair.step];
+    const Number q0 = a0 * c0 - b0 * d0, q1 = a1 * c1 - b1 * d1;
+    const Number m = a0 * c1 + a1 * c0 - b0 * d1 - b1 * d0;
+    const Number u0 = m - q0 - q0, u1 = m - q1 - q1;
+    const Answer is_inside = all_of({is_positive(u0), is_positive(u1)});
+    if (is_inside == Answer::no) return is_inside;
+    const Number a = a0 * u1 + a1 * u0, c = c0 * u1 + c1 * u0, q = q0 * q1;
+    const Number hyperdeterminant = m * m - q - q - q - q;
+    if (high) return all_of({is_inside, is_not_negative(a), is_not_negative(c), is_not_negative(hyperdeterminant)});
+    return all_of({is_inside, is_positive(Number(-a)), is_positive(Number(-c)), is_positive(hyperdeterminant)});
+  }
+};
 
-bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept {
-  const auto f = exact_differences(values, isovalue);
-  return joins_high(sign(determinant(f[0], f[1], f[2], f[3])), f[0].sign() >= 0);
-}
-
-CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {
-  const auto f = exact_differences(values, isovalue);
-  unsigned signature = 0;
-  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(f[v].sign() >= 0) << v;
+/// A cube, its questions answered by answer(corners of the face, question).
+template <class AnswerSquare, class AnswerPair>
+CubeDecision decide(unsigned signature, const AnswerSquare& answer_square, const AnswerPair& answer_pair) noexcept {
   CubeDecision result;
   unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
-  const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[signature];
-  for (unsigned q = 0; q < 6; ++q) {
-    if ((ambiguous >> q & 1u) == 0) continue;
-    const auto& s = kSquares[q];
-    if (joins_high(sign(determinant(f[s[0]], f[s[1]], f[s[2]], f[s[3]])), f[s[0]].sign() >= 0)) {
+  for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1) {
+    const auto q = static_cast<unsigned>(std::countr_zero(rest));
+    const SquareQuestion question{(signature >> kSquares[q][0] & 1u) != 0};
+    if (answer_square(kSquares[q], question)) {
       result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
       entry += bit;
     }
     bit *= 2;
   }
   const Joins& joins = joins_of(entry);
-  if (joins.high != 0 && are_joined(f, kPairs[joins.high - 1u], true))
+  if (joins.high != 0 && answer_pair(PairQuestion{kPairs[joins.high - 1u], true}))
     result.centre = Choice::high;
-  else if (joins.low != 0 && are_joined(f, kPairs[joins.low - 1u], false))
+  else if (joins.low != 0 && answer_pair(PairQuestion{kPairs[joins.low - 1u], false}))
     result.centre = Choice::low;
   return result;
 }
 
+template <std::size_t kCorners>
+std::array<double, kCorners> rounded_differences(const std::array<double, kCorners>& values, double isovalue) noexcept {
+  std::array<double, kCorners> result;
+  for (std::size_t v = 0; v < kCorners; ++v) result[v] = values[v] - isovalue;
+  return result;
+}
+
+unsigned signature_of(const std::array<double, 8>& values, double isovalue) noexcept {
+  unsigned signature = 0;
+  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(values[v] >= isovalue) << v;
+  return signature;
+}
+
+std::array<double, 4> pick(const std::array<double, 8>& of, const std::array<std::uint8_t, 4>& corners) noexcept {
+  return {of[corners[0]], of[corners[1]], of[corners[2]], of[corners[3]]};
+}
+
+}  // namespace
+
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept {
-  return square_is_high_exactly(values, isovalue);
+  return ask(values, rounded_differences(values, isovalue), isovalue, SquareQuestion{values[0] >= isovalue});
 }
 
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue) noexcept {
-  return decide_cube_exactly(values, isovalue);
+  const std::array<double, 8> differences = rounded_differences(values, isovalue);
+  return decide(
+      signature_of(values, isovalue),
+      [&](const std::array<std::uint8_t, 4>& corners, const SquareQuestion& question) {
+        return ask(pick(values, corners), pick(differences, corners), isovalue, question);
+      },
+      [&](const PairQuestion& question) { return ask(values, differences, isovalue, question); });
+}
+
+bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept {
+  return SquareQuestion{values[0] >= isovalue}(exact_differences(values, isovalue)) == Answer::yes;
+}
+
+CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {
+  return decide(
+      signature_of(values, isovalue),
+      [&](const std::array<std::uint8_t, 4>& corners, const SquareQuestion& question) {
+        return question(exact_differences(pick(values, corners), isovalue)) == Answer::yes;
+      },
+      [&](const PairQuestion& question) { return question(exact_differences(values, isovalue)) == Answer::yes; });
 }
 
 }  // namespace tegl::detail
