@@ -261,6 +261,9 @@ struct InterpolantTopology {
   Topology high;        ///< {f >= 0}
   Topology low;         ///< {f <= 0}
   Topology contour;     ///< {f = 0}: a manifold, which ends at the border of the field
+  /// For each sample the number of one in its piece, of high or of low. A critical edge leads from one piece to
+  /// another: two are met by the same component of the contour if they lead from and to the same.
+  std::vector<std::size_t> pieces;
 };
 
 namespace multilinear {
@@ -294,10 +297,10 @@ int face_part(const std::vector<std::int64_t>& corners, int axis, bool& regular,
   return stack.high_part(join);
 }
 
-/// {f >= 0} of a field, by inclusion and exclusion over its cells and the faces inside it that they share.
+/// {f >= 0} of a field, by inclusion and exclusion over its cells and the faces inside it that they share. Joins the
+/// samples in one piece.
 template <int N>
-Topology high_part(const SampledField<N>& field, int axis, bool& regular) {
-  Pieces pieces(field.values.size());
+Topology high_part(const SampledField<N>& field, int axis, Pieces& pieces, bool& regular) {
   Topology result;
   std::array<std::size_t, N> strides{}, at{};
   for (int a = 0; a < N; ++a) strides[a] = a == 0 ? 1 : strides[a - 1] * field.sizes[a - 1];
@@ -336,13 +339,16 @@ Topology high_part(const SampledField<N>& field, int axis, bool& regular) {
 template <int N>
 requires(N == 2 || N == 3) InterpolantTopology interpolant_topology(const SampledField<N>& field, int axis = N - 1) {
   InterpolantTopology result;
-  result.high = multilinear::high_part<N>(field, axis, result.regular);
+  Pieces high(field.values.size()), low(field.values.size());
+  result.high = multilinear::high_part<N>(field, axis, high, result.regular);
   SampledField<N> inverted = field;
   for (std::int64_t& value : inverted.values) value = -value;
-  result.low = multilinear::high_part<N>(inverted, axis, result.regular);
+  result.low = multilinear::high_part<N>(inverted, axis, low, result.regular);
   result.contour.components = result.high.components + result.low.components - 1;
   result.contour.euler = result.high.euler + result.low.euler - 1;
   if (result.high.components == 0 || result.low.components == 0) result.contour = {};
+  for (std::size_t i = 0; i < field.values.size(); ++i)
+    result.pieces.push_back(field.values[i] >= 0 ? high.find(i) : low.find(i));
   return result;
 }
 
