@@ -10,21 +10,10 @@
 
 #include "fields.hpp"
 #include "multilinear.hpp"
+#include "random_fields.hpp"
 
 namespace tegl::test {
 namespace {
-
-template <int N>
-SampledField<N> random_field(std::mt19937_64& bits, std::size_t samples, std::int64_t bound) {
-  SampledField<N> field;
-  field.sizes.fill(samples);
-  std::size_t count = 1;
-  for (int a = 0; a < N; ++a) count *= samples;
-  for (std::size_t i = 0; i < count; ++i)
-    field.values.push_back(static_cast<std::int64_t>(random_below(bits, 2 * static_cast<std::uint64_t>(bound) + 1)) -
-                           bound);
-  return field;
-}
 
 SampledField<3> cell_of(const std::array<std::int64_t, 8>& corners) {
   return {{2, 2, 2}, {corners.begin(), corners.end()}};

@@ -290,6 +290,8 @@ int face_part(const std::vector<std::int64_t>& corners, int axis, bool& regular,
     part.for_each_join(join);
     return part.components();
   }
+  const auto high = std::count_if(corners.begin(), corners.end(), [](std::int64_t value) { return value >= 0; });
+  if (high == 0) return 0;
   std::array<std::int64_t, 8> cube{};
   std::copy_n(corners.begin(), 8, cube.begin());
   const Stack stack(cube, axis);
@@ -308,9 +310,13 @@ Topology high_part(const SampledField<N>& field, int axis, Pieces& pieces, bool&
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < field.values.size(); ++i) {
     for (unsigned axes = 0; axes < 1u << N; ++axes) {
-      bool inside = true;
-      for (int a = 0; a < N; ++a) inside = inside && at[a] + 1 < field.sizes[a] && ((axes >> a & 1u) != 0 || at[a] > 0);
-      if (!inside) continue;
+      bool fits = true, inside = true;
+      for (int a = 0; a < N; ++a) {
+        const bool free = (axes >> a & 1u) != 0;
+        fits = fits && (!free || at[a] + 1 < field.sizes[a]);
+        inside = inside && (free || (at[a] > 0 && at[a] + 1 < field.sizes[a]));
+      }
+      if (!fits) continue;
       places.assign(1, i);
       for (int a = 0; a < N; ++a)
         for (std::size_t k = 0, count = places.size(); (axes >> a & 1u) != 0 && k < count; ++k)
@@ -320,13 +326,12 @@ Topology high_part(const SampledField<N>& field, int axis, Pieces& pieces, bool&
       const int euler = face_part(corners, axis, regular, [&](int v, int w) {
         pieces.join(places[static_cast<std::size_t>(v)], places[static_cast<std::size_t>(w)]);
       });
-      result.euler += (N - __builtin_popcount(axes)) % 2 == 0 ? euler : -euler;
+      if (inside) result.euler += (N - __builtin_popcount(axes)) % 2 == 0 ? euler : -euler;
     }
     for (int a = 0; a < N && ++at[a] == field.sizes[a]; ++a) at[a] = 0;
   }
   for (std::size_t i = 0; i < field.values.size(); ++i)
     result.components += field.values[i] >= 0 && pieces.find(i) == i;
-  for (const std::int64_t value : field.values) regular = regular && value != 0;
   return result;
 }
 
