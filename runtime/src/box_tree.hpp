@@ -62,6 +62,10 @@ class BoxTree {
     for (std::size_t s = 0; s < simplices.size(); ++s)
       for (const PointN<N>& corner : simplices[s]) boxes_[s].add(corner);
     if (!order_.empty()) build(0, static_cast<Index>(order_.size()));
+    std::vector<Box<N>> in_order;  // as they are visited
+    in_order.reserve(boxes_.size());
+    for (const Index s : order_) in_order.push_back(boxes_[s]);
+    boxes_.swap(in_order);
   }
 
   /// Calls visit(simplex) for those whose box comes within `reach` of the box along every axis.
@@ -78,6 +82,12 @@ class BoxTree {
   [[nodiscard]] Nearest nearest(const PointN<N>& p) const {
     Nearest best;
     if (!nodes_.empty()) find_nearest(0, p, best);
+    return best;
+  }
+  /// The same, faster if `guess` is near. Of several as near as each other, which one it is may depend on the guess.
+  [[nodiscard]] Nearest nearest(const PointN<N>& p, Index guess) const {
+    Nearest best = {distance_to_simplex<N>(p, simplices_[guess], N), guess};
+    find_nearest(0, p, best);
     return best;
   }
 
@@ -118,7 +128,7 @@ class BoxTree {
     const Node& node = nodes_[number];
     if (!node.box.meets(box, reach)) return;
     for (Index i = node.first; i < node.end; ++i)
-      if (boxes_[order_[i]].meets(box, reach)) visit(order_[i]);
+      if (boxes_[i].meets(box, reach)) visit(order_[i]);
     if (node.end != 0) return;
     visit_node(number + 1, box, reach, visit);
     visit_node(node.right, box, reach, visit);
@@ -128,7 +138,7 @@ class BoxTree {
     const Node& node = nodes_[number];
     for (Index i = node.first; i < node.end; ++i) {
       const Index s = order_[i];
-      if (boxes_[s].square_distance(p) >= best.distance * best.distance) continue;
+      if (boxes_[i].square_distance(p) >= best.distance * best.distance) continue;
       const double distance = distance_to_simplex<N>(p, simplices_[s], N);
       if (distance < best.distance) best = {distance, s};
     }
@@ -142,7 +152,7 @@ class BoxTree {
 
   std::span<const CornersN<N>> simplices_;
   std::vector<Index> order_;
-  std::vector<Box<N>> boxes_;
+  std::vector<Box<N>> boxes_;  ///< in that order, once it is known
   std::vector<Node> nodes_;
 };
 

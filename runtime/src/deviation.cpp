@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far every point of one contour is from another, simplex by simplex: parts are cut off along the faces of what
-// they lie over, until nothing is left.
+// How far every point of one contour is from another, simplex by simplex: by the sheets of the other contour that pass
+// over all of it, or else by how far its corners are from one simplex; in parts, where that tells too little.
 #include "tegl/deviation.hpp"
 
 #include <algorithm>
@@ -10,52 +10,44 @@
 #include <limits>
 #include <numeric>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "blocks.hpp"
 #include "box_tree.hpp"
+#include "measure_pieces.hpp"
 #include "require.hpp"
+#include "sheets.hpp"
 #include "simplex_shapes.hpp"
-#include "workers.hpp"
 
 namespace tegl {
 namespace detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A part may be farther from what it lies over than its corners and middle are from the nearest simplices, by this
-/// factor, or by this share of the longest edge.
-constexpr double kSlack = 1.5;
-constexpr double kEdgeShare = 0.02;
-/// If that is too little, by this factor more.
-constexpr double kWider = 3.0;
-/// More simplices at hand than these: a part is halved first; in 4D, where halving is of little help, left.
-constexpr std::size_t kMostNear = 40;
-constexpr int kMostHalvings = 12;
-/// How often what nothing covers is halved, to measure it more closely.
-template <int N>
-constexpr int kUncoveredHalvings = N == 4 ? 2 : 10;
-/// How much more than the distance of one of its points the bound of a part may be.
+/// How much more than a distance that is reached a bound may be.
 constexpr double kLooseness = 1.25;
-/// Simplices that are flatter have no normal to speak of.
-constexpr double kFlat = 1e-9;
-/// Of the longest edge: at this distance and more, it is bounded well enough without any matching.
-template <int N>
-constexpr double kFarAway = N == 4 ? 0.25 : 0.7;
-/// Of the content of a simplex: less that nothing covers is bounded by its size alone; still less is rounding.
-constexpr double kCoverPrecision = 1e-7;
-constexpr double kRounding = 1e-12;
-/// No use in cutting on when what is left is in so many parts.
-constexpr std::size_t kMostParts = 200;
-/// Of the longest edge: nearer to a plane is on it. What is nearer than this share of that again is rounding.
-constexpr double kOnPlane = 1e-10;
-constexpr double kRoundingOfPlanes = 1e-3;
-/// The largest bounds are measured again with more parts: those of so many simplices, and of this share of them.
+/// A bound below these shares, of the longest edge and of the largest distance of a vertex, is good enough.
+constexpr double kEdgeShare = 0.02;
+constexpr double kLeastShare = 0.5;
+/// Sheets are looked for as far off as the corners are, by this factor and this share of the longest edge; then wider.
+constexpr double kSlack = 1.5;
+constexpr double kReachShare = 0.05;
+constexpr double kWider = 4.0;
+/// Farther away than this share of the longest edge, distances alone tell enough.
+constexpr double kFarAway = 2.0;
+/// Of the longest edge: the rim that is left out of a simplex where it decides. Much more than rounding.
+constexpr double kRim = 1e-11;
+/// Flatter simplices are looked at along the normal of what is next to them.
+constexpr double kFlat = 1e-2;
+/// In how many parts a simplex is measured at most; and where the largest bounds are measured again, how many
+/// simplices those are (and which share of all), in how many parts.
+constexpr std::size_t kMostParts = 24;
 constexpr std::size_t kMostRefined = 64;
-constexpr std::size_t kRefinedShare = 400;
-constexpr std::size_t kRefinedParts = 512;
+constexpr std::size_t kRefinedShare = 4000;
+constexpr std::size_t kRefinedParts = 400;
+constexpr std::size_t kGrain = 256;
 
 void raise(double& value, double candidate) {
   std::atomic_ref<double> shared(value);
@@ -64,87 +56,12 @@ void raise(double& value, double candidate) {
   }
 }
 
-/// Coordinates along a hyperplane, of D = N - 1 dimensions, and the height above it.
-template <int N>
-struct Frame {
-  static constexpr int D = N - 1;
-  std::array<PointN<N>, D> basis;
-  PointN<N> normal;
-  PointN<N> origin;
-
-  /// `unit_normal` becomes the last of an orthonormal basis by the reflection that carries an axis to it.
-  Frame(const PointN<N>& unit_normal, const PointN<N>& at) : normal(unit_normal), origin(at) {
-    int longest = 0;
-    for (int a = 1; a < N; ++a)
-      if (std::abs(normal[a]) > std::abs(normal[longest])) longest = a;
-    PointN<N> mirror = normal;
-    mirror[longest] += normal[longest] > 0.0 ? 1.0 : -1.0;
-    const double square = dot(mirror, mirror);
-    for (int a = 0, k = 0; a < N; ++a) {
-      if (a == longest) continue;
-      for (int b = 0; b < N; ++b) basis[k][b] = (a == b ? 1.0 : 0.0) - 2.0 * mirror[a] * mirror[b] / square;
-      ++k;
-    }
-  }
-  [[nodiscard]] PointN<D> along(const PointN<N>& p) const {
-    const PointN<N> way = minus(p, origin);
-    PointN<D> result;
-    for (int k = 0; k < D; ++k) result[k] = dot(way, basis[k]);
-    return result;
-  }
-  [[nodiscard]] PointN<N> in_space(const PointN<D>& x) const {
-    PointN<N> result = origin;
-    for (int k = 0; k < D; ++k)
-      for (int a = 0; a < N; ++a) result[a] += x[k] * basis[k][a];
-    return result;
-  }
-};
-
-/// What lies above and below a simplex, seen in a frame: N half-spaces, and the height over the frame as a linear
-/// function.
-template <int N>
-struct Prism {
-  static constexpr int D = N - 1;
-  std::array<PointN<D>, N> normals;
-  std::array<double, N> offsets;
-  PointN<D> slope;
-  double height_at_origin = 0;
-
-  [[nodiscard]] double inside(int side, const PointN<D>& x) const { return dot(normals[side], x) - offsets[side]; }
-  [[nodiscard]] double height(const PointN<D>& x) const { return height_at_origin + dot(slope, x); }
-
-  /// False if the simplex does not face the same way as the frame.
-  bool set(const Frame<N>& frame, const CornersN<N>& corners, const PointN<N>& normal) {
-    const double up = dot(normal, frame.normal);
-    if (!(up > 1e-9 * norm(normal))) return false;
-    std::array<PointN<D>, N> flat;
-    for (int i = 0; i < N; ++i) flat[i] = frame.along(corners[i]);
-    for (int omitted = 0; omitted < N; ++omitted) {
-      std::array<PointN<D>, D> face;
-      for (int i = 0, k = 0; i < N; ++i)
-        if (i != omitted) face[k++] = flat[i];
-      PointN<D> m = normal_of<D>(face);
-      double length = norm(m);
-      if (!(length > 0.0)) return false;
-      if (dot(m, minus(flat[omitted], face[0])) < 0.0) length = -length;
-      for (double& x : m) x /= length;
-      normals[omitted] = m;
-      offsets[omitted] = dot(m, face[0]);
-    }
-    height_at_origin = dot(normal, minus(corners[0], frame.origin)) / up;
-    for (int k = 0; k < D; ++k) slope[k] = -dot(normal, frame.basis[k]) / up;
-    return true;
-  }
-};
-
 /// The simplices of a contour, scaled.
 template <int N>
 struct Pieces {
   std::span<const std::array<Index, N>> simplices;
   std::vector<PointN<N>> points;
   std::vector<CornersN<N>> corners;
-  std::vector<double> edges;  ///< the longest of each
-  std::vector<PointN<N>> normals;
 
   template <class Real>
   Pieces(const Contour<N, Real>& contour, const std::array<double, N>& scale) : simplices(contour.simplices) {
@@ -155,392 +72,399 @@ struct Pieces {
       points.push_back(point);
     }
     corners.reserve(contour.simplices.size());
-    normals.reserve(contour.simplices.size());
-    edges.reserve(contour.simplices.size());
-    for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
-      CornersN<N> at;
-      for (int i = 0; i < N; ++i) {
-        const Index v = contour.simplices[s][i];
-        at[i] = points[v];
-      }
-      corners.push_back(at);
-      normals.push_back(normal_of<N>(at));
-      edges.push_back(longest_edge<N>(at));
+    for (const auto& simplex : contour.simplices) {
+      CornersN<N>& at = corners.emplace_back();
+      for (int i = 0; i < N; ++i) at[i] = points[simplex[i]];
     }
   }
 };
 
+/// Where the chain of a contour's simplices ends: of each simplex, bit i: its face opposite to corner i is one whose
+/// orientations do not cancel.
+template <int N>
+class OpenFaces {
+ public:
+  OpenFaces(const Pieces<N>& pieces, unsigned threads, const Progress& progress)
+      : rows_(pieces.simplices.begin(), pieces.simplices.end()), faces_(rows_.size(), 0) {
+    find(pieces.points.size(), threads, part_of(progress, 0.0, 0.5));
+    // Vertices at one place are one: files may have each simplex with corners of its own.
+    if (!ridges_.empty() && unite(pieces.points)) find(pieces.points.size(), threads, part_of(progress, 0.5, 1.0));
+    rows_ = {};
+  }
+  [[nodiscard]] unsigned of(Index simplex) const { return faces_[simplex]; }
+
+ private:
+  using Ridge = typename FacesOfStars<N>::Ridge;
+
+  void find(std::size_t vertices, unsigned threads, const Progress& progress) {
+    const std::span<const Index> rows(rows_.empty() ? nullptr : rows_[0].data(), rows_.size() * N);
+    const Stars stars = make_stars<N>(rows, vertices);
+    std::vector<std::vector<Ridge>> parts(block_count(vertices, kBlock));
+    count_faces<N>(rows, stars, {}, 1, false, threads, progress,
+                   [&](std::size_t block, const Ridge& ridge) { parts[block].push_back(ridge); });
+    std::fill(faces_.begin(), faces_.end(), std::uint8_t{0});
+    ridges_.clear();
+    for (const auto& part : parts)
+      for (const Ridge& ridge : part) {
+        ridges_.push_back(ridge);
+        for (const Index s : stars.of(ridge[0])) mark(s, ridge);
+      }
+  }
+
+  void mark(Index s, const Ridge& ridge) {
+    unsigned others = 0;
+    for (int i = 0; i < N; ++i)
+      if (std::find(ridge.begin(), ridge.end(), rows_[s][i]) == ridge.end()) others |= 1u << i;
+    if (std::has_single_bit(others)) faces_[s] |= static_cast<std::uint8_t>(others);
+  }
+
+  /// False if no two vertices of open faces are at one place.
+  bool unite(const std::vector<PointN<N>>& points) {
+    std::vector<Index> open;
+    for (const Ridge& ridge : ridges_) open.insert(open.end(), ridge.begin(), ridge.end());
+    const auto before = [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; };
+    std::sort(open.begin(), open.end(), before);
+    open.erase(std::unique(open.begin(), open.end()), open.end());
+    std::vector<Index> first(points.size());
+    std::iota(first.begin(), first.end(), Index{0});
+    bool any = false;
+    for (std::size_t i = 1; i < open.size(); ++i) {
+      if (points[open[i]] != points[open[i - 1]]) continue;
+      first[open[i]] = first[open[i - 1]];
+      any = true;
+    }
+    if (any)
+      for (auto& row : rows_)
+        for (Index& v : row) v = first[v];
+    return any;
+  }
+
+  std::vector<std::array<Index, N>> rows_;
+  std::vector<std::uint8_t> faces_;
+  std::vector<Ridge> ridges_;
+};
+
+/// What all simplices are measured with.
+template <int N>
+struct Measure {
+  const Pieces<N>& from;
+  const Pieces<N>& to;
+  const BoxTree<N>& tree;
+  const OpenFaces<N>& open;
+  const std::vector<double>& of_vertices;  ///< how far each vertex of `from` is from the nearest of `to`
+  double least;                            ///< the largest of these
+  std::vector<double>& of_to;
+};
+
+/// Measures one simplex after the other. One per thread.
 template <int N>
 class Matcher {
  public:
   static constexpr int D = N - 1;
-  using Part = std::array<PointN<D>, N>;
-  /// A simplex that covers some of another, seen in the frame of that one.
-  struct Match {
-    Index simplex = 0;
-    double height = 0.0;  ///< the largest over the part that it covers
-    Prism<N> prism;
-    Part flat;
-    Box<D> box;
-  };
 
-  /// `of_vertices`: how far each vertex of `from` is from the nearest of `to`.
-  Matcher(const Pieces<N>& from, const Pieces<N>& to, const BoxTree<N>& tree, const std::vector<double>& of_vertices,
-          std::vector<double>& of_to)
-      : from_(from), to_(to), tree_(tree), of_vertices_(of_vertices), of_to_(of_to) {}
+  explicit Matcher(const Measure<N>& measure) : m_(measure) {}
 
-  /// Bounds of simplex s; `least` is raised to a distance that is reached.
+  /// No point of simplex s is farther than that; `least` is raised to a distance that is reached.
   double bound(Index s, double& least) {
-    const CornersN<N>& corners = from_.corners[s];
-    double nearest = 0.0;
-    for (const Index v : from_.simplices[s]) nearest = std::max(nearest, of_vertices_[v]);
-    least = std::max(least, nearest);
-    bound_ = nearest;
-    const double edge = from_.edges[s];
-    const double length = norm(from_.normals[s]);
-    // What is flat has no normal; what is far away needs none.
-    if (shape_of_simplex<N>(corners, length) <= kFlat || nearest > kFarAway<N> * edge) {
-      measure_uncovered(corners, 0);
-      return bound_;
-    }
-    PointN<N> unit = from_.normals[s];
-    for (double& x : unit) x /= length;
-    const Frame<N> frame(unit, corners[0]);
-    Part whole;
-    for (int i = 0; i < N; ++i) whole[i] = frame.along(corners[i]);
-    const double reach = reach_of(corners, edge, nearest);
-    for (const double wider : {1.0, kWider})
-      if (match_at_once(frame, s, whole, edge, wider * reach)) return bound_;
-    match(frame, whole, kOnPlane * edge, 0);
-    return bound_;
-  }
-
-  /// A bound of simplex s that took more pains: the part with the largest is halved until that is `enough`, or as long
-  /// as is worth it.
-  double refined_bound(Index s, double enough) const {
-    const auto less = [](const Bounded& a, const Bounded& b) { return a.bound < b.bound; };
-    std::vector<Bounded> parts{bound_of(from_.corners[s])};
-    while (parts.front().bound > enough && parts.size() < kRefinedParts) {
-      std::pop_heap(parts.begin(), parts.end(), less);
-      const CornersN<N> worst = parts.back().part;
-      parts.pop_back();
-      for (const CornersN<N>& half : halves(worst)) {
-        parts.push_back(bound_of(half));
-        std::push_heap(parts.begin(), parts.end(), less);
-      }
-    }
-    return parts.front().bound;
-  }
-
- private:
-  static CornersN<N> in_space(const Frame<N>& frame, const Part& part) {
-    CornersN<N> result;
-    for (int i = 0; i < N; ++i) result[i] = frame.in_space(part[i]);
+    load(s);
+    const double enough = std::max(kLeastShare * m_.least, kEdgeShare * edge_);
+    const double result = in_parts(enough, kMostParts, least);
+    for (const Part& part : parts_)
+      for (const auto& [t, distance] : part.matches) raise(m_.of_to[t], distance);
     return result;
   }
 
-  /// How far from a part its match may be, if its corners are no farther from the nearest than that.
-  [[nodiscard]] double reach_of(const CornersN<N>& part, double edge, double nearest) const {
+  /// A bound that took more pains, until it is `enough`, or as long as is worth it.
+  double refined_bound(Index s, double enough) {
+    load(s);
+    double least = 0.0;
+    return in_parts(enough, kRefinedParts, least);
+  }
+
+ private:
+  /// A simplex of `to`, in the frame.
+  struct Near {
+    Index simplex;
+    CornersN<N> at;
+  };
+  /// What is left of such a one over a part.
+  struct Sheet {
+    double low, high;
+    Index near;
+    bool open;
+  };
+  struct Part {
+    double bound = kInfinity;
+    CornersN<N> corners;              ///< in the frame
+    std::vector<std::uint32_t> near;  ///< numbers in near_: all that come near it
+    std::vector<std::pair<Index, double>> matches;
+    std::uint32_t farthest = 0;  ///< the number in near_ of the match with the largest distance
+    Index next = 0;              ///< one of those nearest to it
+    bool operator<(const Part& other) const { return bound < other.bound; }
+  };
+
+  void load(Index s) {
+    const CornersN<N>& corners = m_.from.corners[s];
+    edge_ = longest_edge<N>(corners);
+    nearest_ = 0.0;
+    for (const Index v : m_.from.simplices[s]) nearest_ = std::max(nearest_, m_.of_vertices[v]);
+    PointN<N> normal = normal_of<N>(corners);
+    double length = norm(normal);
+    if (!(shape_of_simplex<N>(corners, length) > kFlat)) {
+      const PointN<N> next = normal_of<N>(m_.to.corners[m_.tree.nearest(middle_of(corners)).simplex]);
+      if (norm(next) > 0.0) {
+        normal = next;
+        length = norm(next);
+      }
+    }
+    if (!(length > 0.0)) {
+      normal = {};
+      normal[0] = length = 1.0;
+    }
+    for (double& x : normal) x /= length;
+    frame_ = Frame<N>(normal, corners[0]);
+    for (int i = 0; i < N; ++i) whole_[i] = frame_.to_frame(corners[i]);
+  }
+
+  static PointN<N> middle_of(const CornersN<N>& corners) {
     PointN<N> middle{};
-    for (const PointN<N>& corner : part)
+    for (const PointN<N>& corner : corners)
       for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
-    return kSlack * std::max(nearest, tree_.nearest(middle).distance) + kEdgeShare * edge;
+    return middle;
+  }
+
+  /// The largest bound of the parts; they are left in parts_.
+  double in_parts(double enough, std::size_t most, double& least) {
+    parts_.clear();
+    Part whole;
+    whole.corners = whole_;
+    const auto enough_now = [&] { return std::max(enough, kLooseness * nearest_); };
+    for (const double wider : {1.0, kWider}) {
+      gather_near(wider * (kSlack * nearest_ + kReachShare * edge_));
+      whole.near.resize(near_.size());
+      std::iota(whole.near.begin(), whole.near.end(), 0u);
+      if (nearest_ > kFarAway * edge_) break;
+      measure(whole, enough_now());
+      if (whole.bound <= enough_now()) break;
+    }
+    if (!(whole.bound <= enough_now())) {
+      measure_by_distances(whole);
+    }
+    parts_.push_back(std::move(whole));
+    while (parts_.front().bound > enough_now() && parts_.size() < most) {
+      std::pop_heap(parts_.begin(), parts_.end());
+      const Part worst = std::move(parts_.back());
+      parts_.pop_back();
+      for (const CornersN<N>& half : halves(worst.corners)) {
+        Part part;
+        part.corners = half;
+        part.near = worst.near;
+        part.next = worst.next;
+        measure(part, enough_now());
+        if (!(part.bound <= enough_now())) measure_by_distances(part);
+        part.bound = std::min(part.bound, worst.bound);
+        parts_.push_back(std::move(part));
+        std::push_heap(parts_.begin(), parts_.end());
+      }
+    }
+    least = std::max(least, nearest_);
+    return parts_.front().bound;
+  }
+
+  /// All that comes within `reach` of the whole along the frame's normal.
+  void gather_near(double reach) {
+    reach_ = reach;
+    near_.clear();
+    const Prism<N> prism(whole_, edge_);
+    Box<N> box;
+    const auto add = [&](PointN<N> x) {
+      const double level = x[D];
+      for (const double away : {-reach, reach}) {
+        x[D] = level + away;
+        box.add(frame_.to_space(x));
+      }
+    };
+    for (const PointN<N>& corner : whole_) add(corner);
+    if (prism.thin()) {
+      Box<N> whole;
+      for (const PointN<N>& corner : whole_) whole.add(corner);
+      for (unsigned k = 0; k < 1u << N; ++k) {
+        PointN<N> x;
+        for (int a = 0; a < N; ++a) x[a] = (k >> a & 1u) != 0 ? whole.high[a] : whole.low[a];
+        add(x);
+      }
+    }
+    Box<N> around;  // in the frame
+    for (const PointN<N>& corner : whole_) around.add(corner);
+    around.low[D] -= reach;
+    around.high[D] += reach;
+    const double rounding = 10.0 * prism.rounding();
+    m_.tree.visit_near(box, rounding, [&](Index t) {
+      Near near;
+      near.simplex = t;
+      Box<N> of_near;
+      for (int i = 0; i < N; ++i) {
+        near.at[i] = frame_.to_frame(m_.to.corners[t][i]);
+        of_near.add(near.at[i]);
+      }
+      if (of_near.meets(around, rounding)) near_.push_back(near);
+    });
+  }
+
+  /// By the nearest of the sheets that pass over all of the part. What is not near it is dropped from its list.
+  void measure(Part& part, double enough) {
+    const Prism<N> prism(part.corners, edge_);
+    // If all of each simplex is near enough, none needs to be cut.
+    gather_sheets(prism, part, false);
+    take_best_sheet(prism, part, 0.0);
+    if (part.bound <= std::max(kLeastShare * m_.least, kLooseness * nearest_)) return;
+    gather_sheets(prism, part, true);
+    take_best_sheet(prism, part, 0.0);
+    if (part.bound <= enough) return;
+    // All but a rim, every point of which is nearer than that to the rest: borders and walls that begin at the edge of
+    // the part are not over it then.
+    CornersN<N> inner = part.corners;
+    const PointN<N> middle = middle_of(part.corners);
+    for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
+    const Prism<N> inner_prism(inner, edge_);
+    gather_sheets(inner_prism, part, true);
+    take_best_sheet(inner_prism, part, kRim * edge_);
+    if (part.bound > enough && part.bound < kInfinity && !prism.thin()) probe(prism, part);
+  }
+
+  /// `cut`: what is left of them over the part; else what their corners and hyperplanes tell of that.
+  void gather_sheets(const Prism<N>& prism, Part& part, bool cut) {
+    sheets_.clear();
+    std::size_t kept = 0;
+    for (const std::uint32_t number : part.near) {
+      const Near& near = near_[number];
+      if (!remnant_.load(near.at, prism)) continue;
+      const unsigned open = m_.open.of(near.simplex);
+      if ((cut || open != 0) && !remnant_.cut(prism)) continue;
+      auto [low, high] = remnant_.heights(prism);
+      part.near[kept++] = number;
+      if (!cut) {
+        const auto [least, largest] = heights_of_plane<N>(near.at, part.corners, prism);
+        low = std::max(low, least);
+        high = std::min(high, largest);
+        if (low > high) continue;
+      }
+      sheets_.push_back({low, high, number, open != 0 && (remnant_.facets() & open) != 0});
+    }
+    part.near.resize(kept);
+    std::sort(sheets_.begin(), sheets_.end(),
+              [](const Sheet& a, const Sheet& b) { return a.low != b.low ? a.low < b.low : a.near < b.near; });
+  }
+
+  /// Of the groups of sheets that are apart from others by their heights, the nearest that passes over all of the part
+  /// for sure.
+  void take_best_sheet(const Prism<N>& prism, Part& part, double rim) {
+    const double apart = prism.rounding() + 1e-15 * reach_;
+    const double reach = reach_ - std::max(-prism.low(), prism.high());
+    for (std::size_t i = 0, j = 0; i < sheets_.size(); i = j) {
+      double high = sheets_[i].high;
+      bool open = false;
+      for (; j < sheets_.size() && sheets_[j].low <= high + apart; ++j) {
+        high = std::max(high, sheets_[j].high);
+        open = open || sheets_[j].open;
+      }
+      const double low = sheets_[i].low;
+      if (!(low > -reach && high < reach)) continue;
+      const double bound = std::max(high - prism.low(), prism.high() - low) + rim;
+      if (!(bound < part.bound)) continue;
+      if (open || !covered(std::span(sheets_).subspan(i, j - i), part.corners)) continue;
+      part.bound = bound;
+      part.matches.clear();
+      for (std::size_t k = i; k < j; ++k) {
+        const double far = std::max(sheets_[k].high - prism.low(), prism.high() - sheets_[k].low) + rim;
+        part.matches.emplace_back(near_[sheets_[k].near].simplex, far);
+        if (far == bound) part.farthest = sheets_[k].near;
+      }
+    }
+  }
+
+  /// Finds out how far the part is below or above the farthest corner of its sheets.
+  void probe(const Prism<N>& prism, Part& part) {
+    if (!remnant_.load(near_[part.farthest].at, prism) || !remnant_.cut(prism)) return;
+    const PointN<N> below = prism.at_level(remnant_.farthest(prism));
+    nearest_ = std::max(nearest_, m_.tree.nearest(frame_.to_space(below), near_[part.farthest].simplex).distance);
+  }
+
+  /// Whether sheets cover some point of the part other than as often from above as from below.
+  [[nodiscard]] bool covered(std::span<const Sheet> sheets, const CornersN<N>& part) const {
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      // Points without any symmetry to the part.
+      PointN<N> x{};
+      double sum = 0.0;
+      for (int i = 0; i < N; ++i) {
+        const double weight = 1.0 + 0.37 * ((i * (attempt + 1) + attempt) % N) + 0.11 * i;
+        sum += weight;
+        for (int a = 0; a < N; ++a) x[a] += weight * part[i][a];
+      }
+      for (double& coordinate : x) coordinate /= sum;
+      int times = 0;
+      bool sure = true;
+      for (const Sheet& sheet : sheets) {
+        const std::optional<int> side = covers<N>(near_[sheet.near].at, flat<N>(x));
+        sure = sure && side.has_value();
+        if (!sure) break;
+        times += *side;
+      }
+      if (sure) return times != 0;
+    }
+    return false;
+  }
+
+  /// The distance from one simplex is convex, so its largest value is at a corner; and no distance grows faster than
+  /// the way does. Either bound will do.
+  void measure_by_distances(Part& part) {
+    CornersN<N> corners;
+    for (int i = 0; i < N; ++i) corners[i] = frame_.to_space(part.corners[i]);
+    const PointN<N> middle = middle_of(corners);
+    const auto [distance, t] = m_.tree.nearest(middle, part.next);
+    part.next = t;
+    nearest_ = std::max(nearest_, distance);
+    double radius = 0.0, farthest = 0.0;
+    for (const PointN<N>& corner : corners) {
+      radius = std::max(radius, norm(minus(corner, middle)));
+      farthest = std::max(farthest, distance_to_simplex<N>(corner, m_.to.corners[t], N));
+    }
+    const double bound = std::min(distance + radius, farthest);
+    if (!(bound < part.bound)) return;
+    part.bound = bound;
+    part.matches.assign(1, {t, bound});
   }
 
   /// The two halves of a simplex, across its longest edge.
-  template <class Corners>
-  static std::array<Corners, 2> halves(const Corners& part) {
+  static std::array<CornersN<N>, 2> halves(const CornersN<N>& part) {
     int first = 0, second = 1;
     double longest = -1.0;
     for (int i = 0; i < N; ++i)
       for (int j = 0; j < i; ++j) {
-        const auto edge = minus(part[i], part[j]);
+        const PointN<N> edge = minus(part[i], part[j]);
         if (dot(edge, edge) > longest) {
           longest = dot(edge, edge);
           first = j;
           second = i;
         }
       }
-    std::array<Corners, 2> result = {part, part};
+    std::array<CornersN<N>, 2> result = {part, part};
     result[0][second] = result[1][first] = between(part[first], part[second], 0.5);
     return result;
   }
 
-  /// The usual case: what simplex s has in common with each near it, no two of which overlap, makes up the whole of it.
-  bool match_at_once(const Frame<N>& frame, Index s, const Part& whole, double edge, double reach) {
-    const CornersN<N>& corners = from_.corners[s];
-    Box<N> box;
-    for (const PointN<N>& corner : corners) box.add(corner);
-    Prism<N> own;
-    if (!own.set(frame, corners, from_.normals[s])) return false;
-    double covered = 0.0, farthest = 0.0;
-    matches_.clear();
-    excess_ = 0.0;
-    tree_.visit_near(box, reach, [&](Index t) {
-      const double content = match_with(frame, own, whole, t, edge, reach);
-      if (content > 0.0) farthest = std::max(farthest, matches_.back().height);
-      covered += content;
-    });
-    const double all = content_of(whole);
-    if (!(covered >= (1.0 - kCoverPrecision) * all) || !overlap_nowhere(kOnPlane * edge)) return false;
-    // What nothing covers has at most this share of the content. From any point in it, the simplex drawn together
-    // towards that point by the root of the share reaches what is covered, and distances grow no faster than the way.
-    const double slab = D == 1 ? 1.0 : D == 2 ? 2.0 * edge : 6.0 * edge * edge;
-    const double share = std::max(0.0, all - covered + slab * excess_) / all;
-    if (!(share <= kCoverPrecision)) return false;
-    const double gap = share <= kRounding ? 0.0 : edge * std::pow(share, 1.0 / D);
-    bound_ = std::max(bound_, farthest + gap);
-    for (const Match& match : matches_) raise(of_to_[match.simplex], match.height + gap);
-    return true;
-  }
-
-  /// The content of what simplex t covers of the whole, which is noted as a match; 0 for none.
-  double match_with(const Frame<N>& frame, const Prism<N>& own, const Part& whole, Index t, double edge, double reach) {
-    const double on_plane = kOnPlane * edge;
-    Match match;
-    match.simplex = t;
-    if (!match.prism.set(frame, to_.corners[t], to_.normals[t])) return 0.0;
-    inside_.clear();
-    outside_.clear();
-    for (int i = 0; i < N; ++i) match.flat[i] = frame.along(to_.corners[t][i]);
-    if (is_beside(match.prism, whole, on_plane) || is_beside(own, match.flat, on_plane)) return 0.0;
-    const double excess = excess_;
-    // The smaller of the two is cut by the sides of the larger.
-    if (to_.edges[t] < edge)
-      split(own, match.flat, 0, on_plane);
-    else
-      split(match.prism, whole, 0, on_plane);
-    double content = 0.0;
-    for (const Part& piece : inside_) {
-      content += content_of(piece);
-      for (const PointN<D>& x : piece) match.height = std::max(match.height, std::abs(match.prism.height(x)));
-    }
-    if (!(content > 0.0) || match.height > reach) {
-      excess_ = excess;
-      return 0.0;
-    }
-    for (const PointN<D>& x : match.flat) match.box.add(x);
-    matches_.push_back(match);
-    return content;
-  }
-
-  /// Whether no two matches have more in common than rounding makes; adds that to the excess.
-  bool overlap_nowhere(double on_plane) {
-    std::sort(matches_.begin(), matches_.end(), [](const Match& a, const Match& b) {
-      return a.box.low[0] != b.box.low[0] ? a.box.low[0] < b.box.low[0] : a.simplex < b.simplex;
-    });
-    for (std::size_t i = 0; i < matches_.size(); ++i)
-      for (std::size_t j = i + 1; j < matches_.size() && matches_[j].box.low[0] < matches_[i].box.high[0]; ++j) {
-        const double depth = depth_of_overlap(matches_[i], matches_[j], on_plane);
-        if (depth > on_plane) return false;
-        if (depth > kRoundingOfPlanes * on_plane) excess_ += depth;
-      }
-    return true;
-  }
-
-  /// How wide the overlap of two matches is in some direction (0 or less: they do not overlap); in the first found in
-  /// which it is no wider than `enough`. Two convex bodies without common inside are apart along a side of one or, in
-  /// three dimensions, at right angles to an edge of each.
-  static double depth_of_overlap(const Match& a, const Match& b, double enough) {
-    double least = kInfinity;
-    for (int k = 0; k < D; ++k) least = std::min({least, a.box.high[k] - b.box.low[k], b.box.high[k] - a.box.low[k]});
-    for (int side = 0; side < N && least > enough; ++side) {
-      double in_a = -kInfinity, in_b = -kInfinity;
-      for (int i = 0; i < N; ++i) {
-        in_a = std::max(in_a, a.prism.inside(side, b.flat[i]));
-        in_b = std::max(in_b, b.prism.inside(side, a.flat[i]));
-      }
-      least = std::min({least, in_a, in_b});
-    }
-    if constexpr (D == 3)
-      for (int i = 1; i < N && least > enough; ++i)
-        for (int j = 0; j < i && least > enough; ++j)
-          least = std::min(least, depth_across_edge(a, b, minus(a.flat[i], a.flat[j]), enough));
-    return least;
-  }
-
-  /// The same in the directions at right angles to the given edge of one and to those of the other.
-  static double depth_across_edge(const Match& a, const Match& b, const PointN<D>& edge, double enough) {
-    double least = kInfinity;
-    for (int i = 1; i < N && least > enough; ++i)
-      for (int j = 0; j < i && least > enough; ++j) {
-        const PointN<D> other = minus(b.flat[i], b.flat[j]);
-        PointN<D> axis = {edge[1] * other[2] - edge[2] * other[1], edge[2] * other[0] - edge[0] * other[2],
-                          edge[0] * other[1] - edge[1] * other[0]};
-        const double length = norm(axis);
-        if (!(length > 1e-6 * norm(edge) * norm(other))) continue;
-        double low_a = kInfinity, high_a = -kInfinity, low_b = kInfinity, high_b = -kInfinity;
-        for (int k = 0; k < N; ++k) {
-          // From one origin, so that the place of the contour adds no rounding.
-          const double at_a = dot(axis, minus(a.flat[k], a.flat[0])) / length;
-          const double at_b = dot(axis, minus(b.flat[k], a.flat[0])) / length;
-          low_a = std::min(low_a, at_a);
-          high_a = std::max(high_a, at_a);
-          low_b = std::min(low_b, at_b);
-          high_b = std::max(high_b, at_b);
-        }
-        least = std::min({least, high_a - low_b, high_b - low_a});
-      }
-    return least;
-  }
-
-  /// Length, area or volume, times (N-1)!.
-  static double content_of(const Part& part) {
-    if constexpr (D == 1) {
-      return std::abs(part[1][0] - part[0][0]);
-    } else {
-      std::array<PointN<D>, D> face;
-      std::copy(part.begin() + 1, part.end(), face.begin());
-      return std::abs(dot(normal_of<D>(face), minus(part[0], part[1])));
-    }
-  }
-
-  void match(const Frame<N>& frame, const Part& part, double on_plane, int depth) {
-    const CornersN<N> corners = in_space(frame, part);
-    const double edge = longest_edge<N>(corners);
-    double nearest = 0.0;
-    for (const PointN<N>& corner : corners) nearest = std::max(nearest, tree_.nearest(corner).distance);
-    const double reach = reach_of(corners, edge, nearest);
-    Box<N> box;
-    for (const PointN<N>& corner : corners) box.add(corner);
-    std::vector<Index> near;
-    tree_.visit_near(box, reach, [&](Index t) { near.push_back(t); });
-    if (near.size() > kMostNear) {
-      if (N == 4 || edge < 2.0 * reach || depth >= kMostHalvings) return measure_uncovered(corners, 0);
-      for (const Part& half : halves(part)) match(frame, half, on_plane, depth + 1);
-      return;
-    }
-    std::vector<Part> left{part};
-    for (const Index t : near) {
-      cover(frame, t, reach, on_plane, left);
-      if (left.empty()) return;
-      if (left.size() > kMostParts) break;
-    }
-    for (const Part& rest : left) measure_uncovered(in_space(frame, rest), 0);
-  }
-
-  /// Takes off the parts what lies over simplex t, no farther than `reach`.
-  void cover(const Frame<N>& frame, Index t, double reach, double on_plane, std::vector<Part>& left) {
-    Prism<N> prism;
-    if (!prism.set(frame, to_.corners[t], to_.normals[t])) return;
-    std::vector<Part> still;
-    double farthest = 0.0;
-    bool any = false;
-    for (const Part& part : left) {
-      inside_.clear();
-      outside_.clear();
-      split(prism, part, 0, on_plane);
-      double height = 0.0;
-      for (const Part& piece : inside_)
-        for (const PointN<D>& x : piece) height = std::max(height, std::abs(prism.height(x)));
-      if (inside_.empty() || height > reach) {
-        still.push_back(part);
-        continue;
-      }
-      any = true;
-      farthest = std::max(farthest, height);
-      still.insert(still.end(), outside_.begin(), outside_.end());
-    }
-    if (!any) return;
-    left.swap(still);
-    bound_ = std::max(bound_, farthest);
-    raise(of_to_[t], farthest);
-  }
-
-  /// Whether all of a part is beyond one side of a prism.
-  static bool is_beside(const Prism<N>& prism, const Part& part, double on_plane) {
-    for (int side = 0; side < N; ++side)
-      if (std::all_of(part.begin(), part.end(), [&](const PointN<D>& x) { return prism.inside(side, x) <= on_plane; }))
-        return true;
-    return false;
-  }
-
-  /// Parts a simplex at the sides of a prism, from the given side on.
-  void split(const Prism<N>& prism, const Part& part, int side, double on_plane) {
-    for (; side < N; ++side) {
-      int highest = 0, lowest = 0;
-      std::array<double, N> at;
-      for (int i = 0; i < N; ++i) {
-        at[i] = prism.inside(side, part[i]);
-        if (at[i] > at[highest]) highest = i;
-        if (at[i] < at[lowest]) lowest = i;
-      }
-      if (at[lowest] >= -on_plane) {
-        if (-at[lowest] > kRoundingOfPlanes * on_plane) excess_ -= at[lowest];
-        continue;
-      }
-      if (at[highest] <= on_plane) {
-        outside_.push_back(part);
-        return;
-      }
-      const PointN<D> crossing = between(part[highest], part[lowest], at[highest] / (at[highest] - at[lowest]));
-      for (const int gone : {lowest, highest}) {
-        Part half = part;
-        half[gone] = crossing;
-        split(prism, half, side, on_plane);
-      }
-      return;
-    }
-    inside_.push_back(part);
-  }
-
-  struct Bounded {
-    double bound = 0.0;    ///< no point of the part is farther than this
-    double nearest = 0.0;  ///< and some are as far as this
-    std::array<Index, N + 1> candidates;
-    CornersN<N> part;
-  };
-
-  /// The distance from one simplex is convex, so its largest value is at a corner; and no distance grows faster than
-  /// the way does. Either bound will do.
-  [[nodiscard]] Bounded bound_of(const CornersN<N>& part) const {
-    constexpr int kPoints = N + 1;
-    Bounded result;
-    result.part = part;
-    std::array<PointN<N>, kPoints> points;
-    points[N] = {};
-    for (int i = 0; i < N; ++i) {
-      points[i] = part[i];
-      for (int a = 0; a < N; ++a) points[N][a] += part[i][a] / N;
-    }
-    double radius = 0.0, at_middle = 0.0;
-    for (int i = 0; i < kPoints; ++i) {
-      const auto [distance, simplex] = tree_.nearest(points[i]);
-      result.candidates[i] = simplex;
-      at_middle = distance;  // that of the last one is left
-      result.nearest = std::max(result.nearest, distance);
-      radius = std::max(radius, norm(minus(points[i], points[N])));
-    }
-    result.bound = at_middle + radius;
-    for (const Index t : result.candidates) {
-      double farthest = 0.0;
-      for (const PointN<N>& corner : part)
-        farthest = std::max(farthest, distance_to_simplex<N>(corner, to_.corners[t], N));
-      result.bound = std::min(result.bound, farthest);
-    }
-    return result;
-  }
-
-  /// What is bounded too loosely is halved.
-  void measure_uncovered(const CornersN<N>& part, int depth) {
-    const Bounded bounded = bound_of(part);
-    if (bounded.bound > kLooseness * bounded.nearest && bounded.bound > bound_ && depth < kUncoveredHalvings<N>) {
-      for (const CornersN<N>& half : halves(part)) measure_uncovered(half, depth + 1);
-      return;
-    }
-    bound_ = std::max(bound_, bounded.bound);
-    for (const Index t : bounded.candidates) raise(of_to_[t], bounded.bound);
-  }
-
-  const Pieces<N>& from_;
-  const Pieces<N>& to_;
-  const BoxTree<N>& tree_;
-  const std::vector<double>& of_vertices_;
-  std::vector<double>& of_to_;
-  double bound_ = 0.0;
-  std::vector<Part> inside_, outside_;
-  std::vector<Match> matches_;
-  double excess_ = 0.0;  ///< how deep what was counted as covered lies beyond the sides of what covers it, in sum
+  const Measure<N>& m_;
+  // Of the simplex at hand.
+  double edge_ = 0.0;
+  double nearest_ = 0.0;  ///< the largest distance of a point of it that is known
+  Frame<N> frame_ = Frame<N>({1.0}, {});
+  CornersN<N> whole_;
+  double reach_ = 0.0;
+  std::vector<Near> near_;
+  std::vector<Part> parts_;
+  // Of the part at hand.
+  std::vector<Sheet> sheets_;
+  Remnant<N> remnant_;
 };
 
 template <int N>
@@ -552,7 +476,7 @@ void require_scale(const std::array<double, N>& scale) {
 
 /// Measures the simplices with the largest bounds again: few decide on the bound of all.
 template <int N>
-void refine_largest(const Matcher<N>& matcher, Deviation& result, Workers<int>& workers) {
+void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
   std::vector<std::size_t> order(result.of_from.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t most = std::min(order.size() - 1, kMostRefined + order.size() / kRefinedShare);
@@ -561,15 +485,46 @@ void refine_largest(const Matcher<N>& matcher, Deviation& result, Workers<int>& 
   };
   std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(), larger);
   // No use in a closer bound of some than the others have.
-  const double enough = std::max(kLooseness * result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
-  workers.for_range(std::max<std::size_t>(most, 1), 1, [&](std::size_t first, std::size_t end, int&) {
-    for (std::size_t i = first; i < end; ++i) {
-      double& bound = result.of_from[order[i]];
-      if (bound > enough) bound = std::min(bound, matcher.refined_bound(static_cast<Index>(order[i]), enough));
-    }
-  });
+  const double enough = std::max(result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
+  for_each_block(
+      std::max<std::size_t>(most, 1), 1, threads, progress, [&] { return Matcher<N>(measure); },
+      [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
+        for (std::size_t i = first; i < end; ++i) {
+          double& bound = result.of_from[order[i]];
+          if (bound > enough) bound = std::min(bound, matcher.refined_bound(static_cast<Index>(order[i]), enough));
+        }
+      });
   result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
   for (double& bound : result.of_to) bound = std::min(bound, result.bound);
+}
+
+template <int N>
+void measure_all(const Pieces<N>& from, const Pieces<N>& to, unsigned threads, const Progress& progress,
+                 Deviation& result) {
+  const OpenFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
+  const BoxTree<N> tree(to.corners);
+  std::vector<double> of_vertices(from.points.size());
+  for_each_block(from.points.size(), kGrain, threads, part_of(progress, 0.1, 0.2),
+                 [&](std::size_t, std::size_t first, std::size_t end) {
+                   auto nearest = tree.nearest(from.points[first]);
+                   for (std::size_t v = first; v < end; ++v) {
+                     nearest = tree.nearest(from.points[v], nearest.simplex);
+                     of_vertices[v] = nearest.distance;
+                   }
+                 });
+  double least = 0.0;
+  for (const auto& simplex : from.simplices)
+    for (const Index v : simplex) least = std::max(least, of_vertices[v]);
+  const Measure<N> measure{from, to, tree, open, of_vertices, least, result.of_to};
+  result.least = least;
+  for_each_block(
+      from.simplices.size(), kGrain, threads, part_of(progress, 0.2, 0.9), [&] { return Matcher<N>(measure); },
+      [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
+        double reached = 0.0;
+        for (std::size_t s = first; s < end; ++s) result.of_from[s] = matcher.bound(static_cast<Index>(s), reached);
+        raise(result.least, reached);
+      });
+  refine_largest(measure, result, threads, part_of(progress, 0.9, 1.0));
 }
 
 }  // namespace
@@ -591,31 +546,7 @@ Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, co
     return result;
   }
   const Pieces<N> from_pieces(from, options.scale), to_pieces(to, options.scale);
-  const BoxTree<N> tree(to_pieces.corners);
-  constexpr std::size_t kGrain = 256;
-  std::atomic<std::size_t> done = 0;
-  std::atomic<bool> stopped = false;
-  const std::thread::id caller = std::this_thread::get_id();
-  Workers<int> workers(options.threads, [] { return 0; });
-  std::vector<double> of_vertices(from.vertices.size());
-  workers.for_range(of_vertices.size(), kGrain, [&](std::size_t first, std::size_t end, int&) {
-    for (std::size_t v = first; v < end; ++v) of_vertices[v] = tree.nearest(from_pieces.points[v]).distance;
-  });
-  workers.for_range(from.simplices.size(), kGrain, [&](std::size_t first, std::size_t end, int&) {
-    Matcher<N> matcher(from_pieces, to_pieces, tree, of_vertices, result.of_to);
-    double least = 0.0;
-    for (std::size_t s = first; s < end && !stopped.load(std::memory_order_relaxed); ++s) {
-      result.of_from[s] = matcher.bound(static_cast<Index>(s), least);
-      if (s % kGrain != 0 || !options.progress || std::this_thread::get_id() != caller) continue;
-      const std::size_t so_far = done.load(std::memory_order_relaxed) + (s - first);
-      if (!options.progress(static_cast<double>(so_far) / static_cast<double>(from.simplices.size())))
-        stopped.store(true, std::memory_order_relaxed);
-    }
-    done.fetch_add(end - first, std::memory_order_relaxed);
-    raise(result.least, least);
-  });
-  if (stopped) throw Error(ErrorCode::Cancelled, "measuring the distance of two contours cancelled");
-  refine_largest(Matcher<N>(from_pieces, to_pieces, tree, of_vertices, result.of_to), result, workers);
+  measure_all(from_pieces, to_pieces, options.threads, options.progress, result);
   return result;
 }
 
