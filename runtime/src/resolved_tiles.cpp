@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A tile from its eight cubes: which lists, which components, how each is filled.
+#include "resolved_tiles.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "corners.hpp"
+#include "cube_regions.hpp"
+
+namespace tegl::detail {
+namespace {
+
+using facets::Choice;
+
+constexpr unsigned kCubes = ResolvedCubes::kCubes;
+constexpr unsigned kMaskEdge = 16;  ///< bit of edge 0 in masks
+
+constexpr std::uint32_t word(std::array<std::uint8_t, 4> vertices) { return std::bit_cast<std::uint32_t>(vertices); }
+
+/// Corners of squares, as sets.
+constexpr std::array<std::uint32_t, 24> kCornersOfSquares = [] {
+  std::array<std::uint32_t, 24> result{};
+  for (unsigned q = 0; q < 24; ++q)
+    for (unsigned v = 0; v < 16; ++v)
+      if ((v & ~unsigned{kTesseractSquares[q].axes}) == kTesseractSquares[q].base) result[q] |= 1u << v;
+  return result;
+}();
+constexpr std::array<std::uint32_t, 8> kCornersOfCubes = [] {
+  std::array<std::uint32_t, 8> result{};
+  for (unsigned f = 0; f < 8; ++f)
+    for (unsigned v = 0; v < 16; ++v)
+      if ((v >> (f / 2) & 1u) == f % 2) result[f] |= 1u << v;
+  return result;
+}();
+
+/// Whether two opposite corners of a square, and no others, are in the set: the one thing that makes it ambiguous.
+constexpr bool is_ambiguous(unsigned q, std::uint32_t corners) {
+  const std::uint32_t in = corners & kCornersOfSquares[q];
+  if (std::popcount(in) != 2) return false;
+  const auto first = static_cast<unsigned>(std::countr_zero(in)),
+             last = 31u - static_cast<unsigned>(std::countl_zero(in));
+  return (first ^ last) == kTesseractSquares[q].axes;
+}
+
+/// The corners of a set and those that an edge joins with it.
+constexpr std::uint32_t grown(std::uint32_t corners) {
+  constexpr std::array<std::uint32_t, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};
+  std::uint32_t result = corners;
+  for (unsigned a = 0; a < 4; ++a) result |= (corners & kLower[a]) << (1u << a) | (corners >> (1u << a) & kLower[a]);
+  return result;
+}
+
+Choice choice_of(const ResolvedKey& key, unsigned cube) {
+  if ((key.low_cubes >> cube & 1u) != 0) return Choice::low;
+  return (key.high_cubes >> cube & 1u) != 0 ? Choice::high : Choice::separate;
+}
+
+}  // namespace
+
+bool ResolvedTesseract::Component::is_sphere() const noexcept {
+  return 2 * static_cast<unsigned>(std::popcount(vertices)) == triangles + 4;
+}
+
+ResolvedTesseract::ResolvedTesseract() : cubes_(ResolvedCubes::instance()) {}
+
+const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key) {
+  find_cubes(key);
+  find_components();
+  simplex_count_ = 0;
+  masks_.clear();
+  if (is_in_table(key))
+    take_from_table(key);
+  else
+    fill(key);
+  view_ = {reinterpret_cast<const std::uint8_t*>(simplices_.data()), static_cast<std::uint32_t>(simplex_count_),
+           static_cast<std::uint32_t>(masks_.size()), masks_.data()};
+  return view_;
+}
+
+void ResolvedTesseract::find_cubes(const ResolvedKey& key) {
+  const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
+  part_count_ = 0;
+  as_low_ = true;
+  for (unsigned f = 0; f < kCubes; ++f) {
+    const auto signature = static_cast<unsigned>(signatures >> (8 * f) & 255u);
+    lists_[f] = ResolvedCubes::kNone;
+    if (signature == 0 || signature == 255) continue;
+    const std::uint16_t list = cubes_.list(signature, squares >> (8 * f) & 63u, choice_of(key, f));
+    lists_[f] = list;
+    as_low_ = as_low_ && cubes_.is_low(list);
+    for (const ResolvedCubes::Part& part : cubes_.parts(f, list)) parts_[part_count_++] = &part;
+  }
+}
+
+void ResolvedTesseract::find_components() {
+  component_count_ = 0;
+  for (unsigned p = 0; p < part_count_; ++p) {
+    const ResolvedCubes::Part& part = *parts_[p];
+    Component joined;
+    joined.vertices = part.vertices, joined.apexes = part.apexes, joined.parts = 1u << p;
+    joined.triangles = part.triangle_count, joined.cubes = static_cast<std::uint8_t>(1u << part.cube);
+    unsigned kept = 0;
+    for (unsigned c = 0; c < component_count_; ++c) {
+      const Component& other = components_[c];
+      if ((other.vertices & joined.vertices) == 0) {
+        if (kept != c) components_[kept] = other;
+        ++kept;
+        continue;
+      }
+      joined.cubes_twice |= static_cast<std::uint8_t>(other.cubes_twice | (joined.cubes & other.cubes));
+      joined.cubes |= other.cubes;
+      joined.vertices |= other.vertices, joined.apexes &= other.apexes;
+      joined.parts |= other.parts, joined.triangles += other.triangles;
+    }
+    components_[kept] = joined;
+    component_count_ = kept + 1;
+  }
+}
+
+/// The table holds the low-connected contour, its spheres coned and what is none filled as by a low centre.
+bool ResolvedTesseract::is_in_table(const ResolvedKey& key) const {
+  if (!as_low_) return false;
+  if (key.tile == Choice::separate) return true;
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (!components_[c].is_sphere() && key.tile == Choice::high) return false;
+  if (component_count_ < 2) return true;
+  std::uint32_t seen = 0;
+  for (unsigned c = 0; c < component_count_; ++c) {
+    const std::uint32_t region = region_of(key, components_[c], key.tile == Choice::low);
+    if ((region & seen) != 0) return false;
+    seen |= region;
+  }
+  return true;
+}
+
+void ResolvedTesseract::take_from_table(const ResolvedKey& key) {
+  const tables::TileTable& table = tables::kTile4Compact;
+  const tables::List& list = table.lists[table.list_of[key.signature]];
+  constexpr unsigned kFirstOfTable = tables::first_tile_vertex(4);
+  simplices_.resize(list.simplex_count);
+  const std::uint8_t* at = table.simplices + 4 * std::size_t{list.first_simplex};
+  for (unsigned j = 0; j < list.cone_vertices; ++j) masks_.push_back(0);
+  for (unsigned j = 0; j < list.side_vertices; ++j) masks_.push_back(table.side_masks[list.first_side + j]);
+  for (; simplex_count_ < list.simplex_count; ++simplex_count_, at += 4) {
+    std::array<std::uint8_t, 4> vertices = {at[0], at[1], at[2], at[3]};
+    for (std::uint8_t& v : vertices)
+      if (v >= kFirstOfTable) v = static_cast<std::uint8_t>(v - kFirstOfTable + kFirstOwn);
+    simplices_[simplex_count_] = word(vertices);
+    // A cone's vertex stands first, and lies at the mean of the points that it is over.
+    if (vertices[0] < kFirstOwn || vertices[0] >= kFirstOwn + list.cone_vertices) continue;
+    for (unsigned i = 1; i < 4; ++i) masks_[vertices[0] - kFirstOwn] |= std::uint64_t{1} << (kMaskEdge + vertices[i]);
+  }
+}
+
+/// The corners of a sign that hang together with those beside a component, in the tile's boundary.
+std::uint32_t ResolvedTesseract::region_of(const ResolvedKey& key, const Component& component, bool high) const {
+  const auto edge = static_cast<unsigned>(std::countr_zero(component.vertices));
+  const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
+  const std::uint32_t from = 1u << edge_base(4, edge);
+  std::uint32_t reached = (corners & from) != 0 ? from : from << (1u << edge / 8);
+  const std::uint8_t joining = high ? key.high_cubes & static_cast<std::uint8_t>(~key.low_cubes) : key.low_cubes;
+  for (std::uint32_t before = 0; reached != before;) {
+    before = reached;
+    reached = grown(reached) & corners;
+    for (unsigned f = 0; f < kCubes; ++f)
+      if ((joining >> f & 1u) != 0 && (reached & kCornersOfCubes[f]) != 0) reached |= corners & kCornersOfCubes[f];
+    for (unsigned q = 0; q < kCornersOfSquares.size(); ++q)
+      if (((key.squares >> q & 1u) != 0) == high && (reached & kCornersOfSquares[q]) != 0 && is_ambiguous(q, corners))
+        reached |= corners & kCornersOfSquares[q];
+  }
+  return reached;
+}
+
+void ResolvedTesseract::fill(const ResolvedKey& key) {
+  std::size_t triangles = 0;
+  for (unsigned p = 0; p < part_count_; ++p) triangles += parts_[p]->triangle_count;
+  if (simplices_.size() < triangles + 1) simplices_.resize(triangles + 1);
+  const bool high = key.tile != Choice::high;  // the side that is copied
+  // Cones first: of what is a sphere, and alone around its region if the tile's centre may join.
+  const bool joins = key.tile != Choice::separate && component_count_ > 1;
+  bool regions_known = joins;
+  if (joins) find_regions(key, high);
+  for (unsigned c = 0; c < component_count_; ++c) {
+    Component& component = components_[c];
+    component.is_coned = component.is_sphere() && (!joins || is_alone(c));
+    if (component.is_coned) {
+      cone(component);
+    } else if (!regions_known) {
+      regions_known = true;
+      find_regions(key, high);
+    }
+  }
+  for (unsigned c = 0; c < component_count_; ++c) {
+    if (components_[c].is_coned) continue;
+    bool is_first = true;
+    for (unsigned d = 0; d < c; ++d)
+      is_first = is_first && (components_[d].is_coned || components_[d].region != components_[c].region);
+    if (is_first) fill_region(components_[c].region, high);
+  }
+}
+
+void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
+  for (unsigned c = 0; c < component_count_; ++c) components_[c].region = region_of(key, components_[c], high);
+}
+
+bool ResolvedTesseract::is_alone(unsigned component) const {
+  for (unsigned d = 0; d < component_count_; ++d)
+    if (d != component && components_[d].region == components_[component].region) return false;
+  return true;
+}
+
+void ResolvedTesseract::cone(Component& component) {
+  for (unsigned twice = component.cubes_twice; twice != 0; twice &= twice - 1)
+    component.apexes &= ~cubes_.edges_of(static_cast<unsigned>(std::countr_zero(twice)));
+  // From the point of most triangles; all its neighbours are beside it, and there is nothing else beside it.
+  unsigned apex = kFirstOwn + static_cast<unsigned>(masks_.size());
+  int most = 0;
+  for (auto rest = component.apexes & static_cast<std::uint32_t>(component.vertices); rest != 0; rest &= rest - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(rest));
+    const int around = std::popcount(component.vertices & cubes_.beside(e));
+    if (around > most) most = around, apex = e;
+  }
+  if (apex >= kFirstOwn) add_own((component.vertices & 0xffffffffu) << kMaskEdge);
+  const std::uint32_t first = ResolvedCubes::apex_word(apex);
+  Word* out = simplices_.data() + simplex_count_;
+  const std::uint32_t repeated = apex * 0x01010101u;
+  for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
+    const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
+    const std::uint32_t* const triangles = cubes_.triangles(part);
+    for (unsigned t = 0; t < part.triangle_count; ++t) {
+      const std::uint32_t simplex = triangles[t] | first;
+      // Whether the apex stands once in it: then one byte of the difference is zero. All are less than 128.
+      const std::uint32_t zero_bytes = ~((simplex ^ repeated) + 0x7f7f7f7fu) & 0x80808080u;
+      *out = simplex;
+      out += (zero_bytes & (zero_bytes - 1)) == 0 ? 1 : 0;
+    }
+  }
+  simplex_count_ = static_cast<std::size_t>(out - simplices_.data());
+}
+
+/// A copy of a region of the tile's boundary: it keeps the vertices of Sigma, and has a vertex for each of its corners
+/// and for each that the regions of cubes add. Spheres around it that are coned are cut off from it first: of these it
+/// has a copy too, closed by a cone of its own.
+void ResolvedTesseract::fill_region(unsigned corners, bool high) {
+  std::array<std::uint8_t, 16> copy{};
+  for (unsigned rest = corners; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    copy[v] = static_cast<std::uint8_t>(add_own(std::uint64_t{1} << v));
+  }
+  std::array<std::uint8_t, ResolvedCubes::kVertices> sigma;
+  for (unsigned v = 0; v < sigma.size(); ++v) sigma[v] = static_cast<std::uint8_t>(v);
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (components_[c].is_coned && components_[c].region == corners) cap(components_[c], corners, sigma);
+  for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, copy, sigma);
+}
+
+/// Copies the vertices of a component, and closes the copy.
+void ResolvedTesseract::cap(const Component& component, unsigned corners, std::span<std::uint8_t> sigma) {
+  std::uint64_t all = 0;
+  for (std::uint64_t rest = component.vertices; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    const std::uint64_t mask = mask_of(v, corners);
+    all |= mask;
+    sigma[v] = static_cast<std::uint8_t>(add_own(mask));
+  }
+  const auto apex = static_cast<std::uint8_t>(add_own(all));
+  for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
+    const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
+    for (unsigned t = 0; t < part.triangle_count; ++t) {
+      const auto triangle = std::bit_cast<std::array<std::uint8_t, 4>>(cubes_.triangles(part)[t]);
+      add_simplex({apex, sigma[triangle[2]], sigma[triangle[1]], sigma[triangle[3]]});
+    }
+  }
+}
+
+/// Between a vertex of Sigma and the corners of a region: the corners that its edges have there.
+std::uint64_t ResolvedTesseract::mask_of(unsigned vertex, unsigned corners) const {
+  std::uint64_t mask = 0;
+  const auto add_edge = [&](unsigned e) {
+    const unsigned base = edge_base(4, e);
+    mask |= std::uint64_t{1} << (kMaskEdge + e) | ((1u << base | 1u << (base | 1u << e / 8)) & corners);
+  };
+  if (vertex < ResolvedCubes::kEdges) {
+    add_edge(vertex);
+    return mask;
+  }
+  const unsigned cube = (vertex - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
+  const unsigned own = (vertex - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn;
+  const tables::ResolvedList& list = *cubes_.lists()[lists_[cube]].list;
+  for (std::uint32_t rest = tables::kTile3Resolved.masks[list.first_mask + own]; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    if (v < 8)
+      mask |= std::uint64_t{1} << lifted_corner(cube, v);
+    else
+      add_edge(cubes_.lifted(cube, v - 8));
+  }
+  return mask;
+}
+
+void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool high,
+                                         std::span<const std::uint8_t, 16> copy,
+                                         std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma) {
+  const CubeRegions& all = CubeRegions::instance();
+  std::array<std::uint8_t, CubeRegions::kVertices> local{};
+  for (unsigned v = 0; v < 8; ++v) local[v] = copy[lifted_corner(cube, v)];
+  for (unsigned v = 0; v < 12 + ResolvedCubes::kMostOwn; ++v)
+    local[CubeRegions::kFirstEdge + v] = sigma[cubes_.lifted(cube, v)];
+  for (const CubeRegions::Region& region : all.regions(lists_[cube], high)) {
+    const auto corner = static_cast<unsigned>(std::countr_zero(unsigned{region.corners}));
+    if ((corners >> lifted_corner(cube, corner) & 1u) == 0) continue;
+    unsigned centre = CubeRegions::kFirstCentre;
+    for (const std::uint32_t mask : all.centres(region)) {
+      std::uint64_t lifted = 0;
+      for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+        const auto v = static_cast<unsigned>(std::countr_zero(rest));
+        lifted |= std::uint64_t{1} << (v < 8 ? lifted_corner(cube, v) : kMaskEdge + cubes_.lifted(cube, v - 8));
+      }
+      local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
+    }
+    const auto tetrahedra = all.tetrahedra(region);
+    if (cubes_.is_reversed(cube))
+      for (const CubeRegions::Tetrahedron& t : tetrahedra)
+        add_simplex({local[t[0]], local[t[1]], local[t[3]], local[t[2]]});
+    else
+      for (const CubeRegions::Tetrahedron& t : tetrahedra)
+        add_simplex({local[t[0]], local[t[1]], local[t[2]], local[t[3]]});
+  }
+}
+
+void ResolvedTesseract::add_simplex(const std::array<std::uint8_t, 4>& vertices) {
+  if (simplex_count_ == simplices_.size()) simplices_.resize(2 * simplex_count_ + 64);
+  simplices_[simplex_count_++] = word(vertices);
+}
+
+unsigned ResolvedTesseract::add_own(std::uint64_t mask) {
+  masks_.push_back(mask);
+  return kFirstOwn + static_cast<unsigned>(masks_.size()) - 1;
+}
+
+bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
+  static const std::vector<bool> settled = [] {
+    std::vector<bool> result(65536);
+    ResolvedTesseract tile;
+    for (unsigned s = 0; s < result.size(); ++s) {
+      const std::uint64_t cubes = tile.cubes_.signatures(static_cast<std::uint16_t>(s));
+      bool none = true;
+      for (unsigned f = 0; f < kCubes && none; ++f) {
+        const unsigned in_cube = cubes >> (8 * f) & 255u;
+        none = tables::kTile3Resolved.ambiguous_squares[in_cube] == 0 &&
+               tables::kTile3Resolved.entries[tables::kTile3Resolved.first_entry[in_cube]].components < 2;
+      }
+      if (!none) continue;
+      ResolvedKey key;
+      key.signature = static_cast<std::uint16_t>(s);
+      tile.find_cubes(key);
+      tile.find_components();
+      result[s] = tile.component_count_ == 0 || (tile.component_count_ == 1 && tile.components_[0].is_sphere());
+    }
+    return result;
+  }();
+  return settled[signature];
+}
+
+}  // namespace tegl::detail

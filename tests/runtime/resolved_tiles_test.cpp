@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tiles of four dimensions with every face resolved by itself: each passes the certificate, with a Sigma made of the
+// table of the resolved cube, and fills it as the engine that builds tiles one by one does.
+#include "resolved_tiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <bitset>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "corners.hpp"
+#include "cube_regions.hpp"
+#include "tegl/facets/certificate.hpp"
+#include "tegl/facets/facets.hpp"
+#include "tegl/generated/tables.hpp"
+#include "tegl/tile_facets.hpp"
+
+namespace tegl::detail {
+namespace {
+
+using facets::Choice;
+using facets::FaceLattice;
+using facets::kNoSimplex;
+using facets::Simplex;
+using facets::Simplices;
+using facets::VertexId;
+
+const ResolvedCubes& cubes() { return ResolvedCubes::instance(); }
+
+constexpr unsigned kFirstOwn = ResolvedTesseract::kFirstOwn;
+
+Choice cube_choice(const ResolvedKey& key, unsigned cube) {
+  if ((key.low_cubes >> cube & 1u) != 0) return Choice::low;
+  return (key.high_cubes >> cube & 1u) != 0 ? Choice::high : Choice::separate;
+}
+
+unsigned cube_signature(unsigned signature, unsigned cube) {
+  unsigned result = 0;
+  for (unsigned v = 0; v < 8; ++v) result |= (signature >> lifted_corner(cube, v) & 1u) << v;
+  return result;
+}
+
+/// The squares of a cube that are high, by the table's numbers, one by one.
+unsigned cube_squares(std::uint32_t squares, unsigned cube) {
+  unsigned result = 0;
+  for (unsigned q = 0; q < 6; ++q) {
+    const unsigned axis = q / 2 < cube / 2 ? q / 2 : q / 2 + 1;
+    const unsigned base = (q % 2) << axis | (cube % 2) << (cube / 2), axes = 15u ^ 1u << axis ^ 1u << (cube / 2);
+    for (unsigned s = 0; s < kTesseractSquares.size(); ++s)
+      if (kTesseractSquares[s].base == base && kTesseractSquares[s].axes == axes) result |= (squares >> s & 1u) << q;
+  }
+  return result;
+}
+
+const tables::ResolvedList& list_of(const ResolvedKey& key, unsigned cube) {
+  const unsigned signature = cube_signature(key.signature, cube), high = cube_squares(key.squares, cube);
+  unsigned entry = tables::kTile3Resolved.first_entry[signature];
+  for (unsigned q = 0, at = 0; q < 6; ++q)
+    if ((tables::kTile3Resolved.ambiguous_squares[signature] >> q & 1u) != 0) entry += (high >> q & 1u) << at++;
+  const tables::ResolvedEntry& lists = tables::kTile3Resolved.entries[entry];
+  const Choice choice = cube_choice(key, cube);
+  return choice == Choice::separate ? lists.separate : choice == Choice::low ? lists.low : lists.high;
+}
+
+/// Keys: all uniform, or what the mean of uniform noise gives.
+class Keys {
+ public:
+  ResolvedKey uniform() {
+    ResolvedKey key;
+    key.signature = static_cast<std::uint16_t>(random_());
+    if (random_() % 4 == 0) key.signature &= static_cast<std::uint16_t>(random_());
+    if (random_() % 4 == 0) key.signature |= static_cast<std::uint16_t>(random_());
+    key.squares = static_cast<std::uint32_t>(random_()) & 0xffffffu;
+    key.low_cubes = static_cast<std::uint8_t>(random_());
+    key.high_cubes = static_cast<std::uint8_t>(random_() & ~key.low_cubes);
+    key.tile = static_cast<Choice>(random_() % 3);
+    return key;
+  }
+
+  ResolvedKey of_means() {
+    std::array<double, 16> values;
+    for (double& value : values) value = std::uniform_real_distribution<double>(-1, 1)(random_);
+    const auto is_high = [&](unsigned base, unsigned axes) {
+      double sum = 0;
+      for (unsigned v = 0; v < 16; ++v)
+        if ((v & ~axes) == base) sum += values[v];
+      return sum >= 0;
+    };
+    ResolvedKey key;
+    for (unsigned v = 0; v < 16; ++v) key.signature |= static_cast<std::uint16_t>((is_high(v, 0) ? 1u : 0u) << v);
+    for (unsigned q = 0; q < 24; ++q)
+      key.squares |= (is_high(kTesseractSquares[q].base, kTesseractSquares[q].axes) ? 1u : 0u) << q;
+    for (unsigned f = 0; f < 8; ++f)
+      (is_high((f % 2) << (f / 2), 15u ^ 1u << (f / 2)) ? key.high_cubes : key.low_cubes) |=
+          static_cast<std::uint8_t>(1u << f);
+    key.tile = is_high(0, 15) ? Choice::high : Choice::low;
+    return key;
+  }
+
+ private:
+  std::mt19937_64 random_{20};
+};
+
+/// A looked-up tile in the form of those that are built.
+class AsBuilt {
+ public:
+  AsBuilt() {
+    for (unsigned e = 0; e < 32; ++e) {
+      const unsigned base = edge_base(4, e);
+      edge_face_[e] = static_cast<std::uint32_t>(face_number<4>(base, 1u << (e >> 3)));
+    }
+  }
+
+  [[nodiscard]] const FaceLattice& lattice() const { return lattice_; }
+  [[nodiscard]] std::uint32_t face_of_edge(unsigned e) const { return edge_face_[e]; }
+
+  facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view) const {
+    facets::TileFacets tile;
+    for (unsigned v = 0; v < kFirstOwn + view.own_vertices; ++v) {
+      facets::Vertex vertex;
+      vertex.kind = v < 32 ? facets::VertexKind::edge : facets::VertexKind::side;
+      vertex.face = v < 32 ? edge_face_[v] : v < kFirstOwn ? face_of_cube((v - 32) / 3) : lattice_.tile();
+      vertex.number = v;
+      tile.vertices.push_back(vertex);
+    }
+    const std::vector<std::uint32_t>& faces = lattice_.faces().back().faces;
+    tile.in_face.resize(faces.size()), tile.in_face_sign.resize(faces.size());
+    for (unsigned f = 0; f < 8; ++f) {
+      const auto g = static_cast<std::size_t>(std::find(faces.begin(), faces.end(), face_of_cube(f)) - faces.begin());
+      const unsigned in_cube = cube_signature(key.signature, f);
+      if (in_cube == 0 || in_cube == 255) continue;
+      const tables::ResolvedList& list = list_of(key, f);
+      const std::uint8_t* at = tables::kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
+      for (unsigned t = 0; t < list.triangle_count; ++t, at += 3) {
+        Simplex triangle = kNoSimplex;
+        for (unsigned i = 0; i < 3; ++i) triangle[i] = static_cast<VertexId>(cubes().lifted(f, at[i]));
+        const int sign = facets::sort_vertices(triangle);
+        tile.in_face[g].push_back(triangle), tile.in_face_sign[g].push_back(sign);
+        tile.sigma.push_back(triangle), tile.sigma_sign.push_back(sign * lattice_.faces().back().signs[g]);
+      }
+    }
+    facets::Facet& facet = tile.facets.emplace_back();
+    for (std::uint32_t q = 0; q < view.simplex_count; ++q) {
+      Simplex& simplex = facet.simplices.emplace_back(kNoSimplex);
+      for (unsigned i = 0; i < 4; ++i) simplex[i] = view.simplices[4 * q + i];
+    }
+    return tile;
+  }
+
+  /// The tile that the engine builds.
+  const facets::TileFacets& built(const ResolvedKey& key) {
+    std::vector<Choice> choices(lattice_.faces().size(), Choice::separate);
+    for (unsigned q = 0; q < 24; ++q)
+      choices[face_number<4>(kTesseractSquares[q].base, kTesseractSquares[q].axes)] =
+          (key.squares >> q & 1u) != 0 ? Choice::high : Choice::low;
+    for (unsigned f = 0; f < 8; ++f) choices[face_of_cube(f)] = cube_choice(key, f);
+    choices[lattice_.tile()] = key.tile;
+    return builder_.build(key.signature, {choices, facets::Alternative::low}, facets::Geometry::without);
+  }
+
+ private:
+  static std::uint32_t face_of_cube(unsigned f) {
+    return static_cast<std::uint32_t>(face_number<4>((f % 2) << (f / 2), 15u ^ 1u << (f / 2)));
+  }
+
+  FaceLattice lattice_ = FaceLattice::cube(4);
+  std::array<std::uint32_t, 32> edge_face_{};
+  facets::FacetBuilder builder_{FaceLattice::cube(4)};
+};
+
+TEST(ResolvedTiles, RandomKeysPassTheCertificate) {
+  Keys keys;
+  AsBuilt as_built;
+  ResolvedTesseract tile;
+  facets::Certifier certifier;
+  for (int i = 0; i < 60000; ++i) {
+    const ResolvedKey key = i % 2 == 0 ? keys.uniform() : keys.of_means();
+    const ResolvedView& view = tile.find(key);
+    ASSERT_LT(kFirstOwn + view.own_vertices, 256u);
+    const facets::Fault fault = certifier.certify(as_built.lattice(), as_built(key, view));
+    ASSERT_EQ(fault, facets::Fault::none)
+        << facets::fault_name(fault) << " signature " << key.signature << " squares " << key.squares << " low "
+        << int{key.low_cubes} << " high " << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
+  }
+}
+
+}  // namespace
+}  // namespace tegl::detail
