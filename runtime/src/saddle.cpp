@@ -56,6 +56,20 @@ using Exact = boost::multiprecision::number<
                                            boost::multiprecision::unchecked, void>,
     boost::multiprecision::et_off>;
 
+/// x * y, of polynomials of degree 2. The library multiplies numbers of 40 limbs and more by Karatsuba's method, which
+/// takes memory and leaves a leading zero in numbers of a fixed size (Boost 1.74): so one factor is cut in two.
+template <class Number>
+Number product(const Number& x, const Number& y) noexcept {
+  return x * y;
+}
+template <>
+Exact product(const Exact& x, const Exact& y) noexcept {
+  constexpr unsigned kHalf = 33 * 64;
+  const Exact size = abs(y), upper = size >> kHalf, lower = size - (upper << kHalf);
+  const Exact result = ((x * upper) << kHalf) + x * lower;
+  return y.sign() < 0 ? Exact(-result) : result;
+}
+
 /// For differences of up to 31 bits with their sign: the polynomials then have 4 * 30 + 5 at most.
 using Short = boost::multiprecision::int128_t;
 inline constexpr int kShortBits = 30;
@@ -114,7 +128,7 @@ bool short_differences(const std::array<double, kCorners>& values, double isoval
   for (std::size_t v = 0; v < kCorners; ++v) {
     const double scaled = differences[v] * scale;
     const auto integer = static_cast<std::int64_t>(scaled);
-    if (static_cast<double>(integer) != scaled) return false;
+    if (static_cast<double>(integer) != scaled || (integer == 0 && differences[v] != 0.0)) return false;
     result[v] = integer;
   }
   return true;
@@ -306,8 +320,8 @@ struct PairQuestion {
     const Number u0 = m - q0 - q0, u1 = m - q1 - q1;
     const Answer is_inside = all_of({is_positive(u0), is_positive(u1)});
     if (is_inside == Answer::no) return is_inside;
-    const Number a = a0 * u1 + a1 * u0, c = c0 * u1 + c1 * u0, q = q0 * q1;
-    const Number hyperdeterminant = m * m - q - q - q - q;
+    const Number a = a0 * u1 + a1 * u0, c = c0 * u1 + c1 * u0, q = product(q0, q1);
+    const Number hyperdeterminant = product(m, m) - q - q - q - q;
     if (high) return all_of({is_inside, is_not_negative(a), is_not_negative(c), is_not_negative(hyperdeterminant)});
     return all_of({is_inside, is_positive(Number(-a)), is_positive(Number(-c)), is_positive(hyperdeterminant)});
   }
