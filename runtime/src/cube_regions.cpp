@@ -217,8 +217,8 @@ class RegionMaker {
     return std::all_of(ends.begin(), ends.begin() + polygons, [](unsigned n) { return n >= 2; });
   }
 
-  /// Fills the parts that the curves cut the surface into, if they are spheres with the discs in the curves, and each
-  /// disc lies between two of them.
+  /// Fills the parts that the curves cut the surface into, if with the discs in the curves they are spheres, each with
+  /// a disc of the cube's boundary.
   bool cut(const std::vector<Triangle>& surface, unsigned polygons, const std::vector<const Curve*>& curves) {
     std::map<DirectedEdge, std::size_t> curve_of;
     for (std::size_t c = 0; c < curves.size(); ++c)
@@ -232,17 +232,33 @@ class RegionMaker {
     std::vector<std::uint8_t> middle;
     for (const Curve* curve : curves) middle.push_back(add_centre(curve->set));
     for (auto& part : parts) {
+      const bool is_product = is_outer_part_a_disc(part);
       const std::vector<Triangle> own = part;
       for (const Triangle& t : own)
         for (unsigned i = 0; i < 3; ++i)
           if (const auto at = curve_of.find(edge(t, i)); at != curve_of.end())
             part.push_back({middle[at->second], at->first.second, at->first.first});
-      if (is_closed(part) && euler_characteristic(part) == 2) continue;
+      if (is_product && is_closed(part) && euler_characteristic(part) == 2) continue;
       centres.resize(before);
       return false;
     }
     for (const auto& part : parts) cone(part, add_centre(part));
     return true;
+  }
+
+  /// Then the collar is the product of what lies in squares with an interval.
+  [[nodiscard]] bool is_outer_part_a_disc(const std::vector<Triangle>& part) const {
+    std::vector<Triangle> outer;
+    std::set<Set> edges;
+    Set vertices = 0;
+    for (const Triangle& t : part) {
+      if (std::find(contour_.begin(), contour_.end(), t) != contour_.end()) continue;
+      outer.push_back(t);
+      vertices |= set_of(t);
+      for (unsigned i = 0; i < 3; ++i) edges.insert(bit(t[i]) | bit(t[(i + 1) % 3]));
+    }
+    return parts_of(outer, [](DirectedEdge) { return true; }).size() == 1 &&
+           std::popcount(vertices) - static_cast<int>(edges.size()) + static_cast<int>(outer.size()) == 1;
   }
 
   static bool is_closed(const std::vector<Triangle>& triangles) {

@@ -175,12 +175,108 @@ class AsBuilt {
   facets::FacetBuilder builder_{FaceLattice::cube(4)};
 };
 
+/// What a filling makes of the points on the tile's edges, whatever its triangulation: which of them hang together, and
+/// which closed curves along the segments in squares bound in it (mod 2), as a reduced basis.
+class Topology {
+ public:
+  static constexpr std::size_t kMostColumns = 2048;
+  using Row = std::bitset<kMostColumns>;
+
+  explicit Topology(const facets::TileFacets& tile) {
+    std::map<VertexId, std::uint32_t> edge_of;
+    for (VertexId v = 0; v < tile.vertices.size(); ++v)
+      if (tile.vertices[v].kind == facets::VertexKind::edge) edge_of[v] = tile.vertices[v].face;
+    std::map<VertexId, VertexId> root;
+    const auto find = [&](VertexId v) {
+      root.try_emplace(v, v);
+      while (root[v] != v) v = root[v];
+      return v;
+    };
+    // Edges between points of one square first, by the names of these: they are the same in all triangulations.
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<VertexId, VertexId>> segments;
+    std::set<std::pair<VertexId, VertexId>> others;
+    const FaceLattice lattice = FaceLattice::cube(4);
+    std::set<std::array<VertexId, 3>> triangles;
+    for (const facets::Facet& facet : tile.facets)
+      for (const Simplex& s : facet.simplices)
+        for (int omitted = 0; omitted < 4; ++omitted) {
+          std::array<VertexId, 3> t;
+          for (int i = 0, k = 0; i < 4; ++i)
+            if (i != omitted) t[k++] = s[i];
+          std::sort(t.begin(), t.end());
+          triangles.insert(t);
+          for (int i = 1; i < 3; ++i) root[find(t[i])] = find(t[0]);
+          for (const auto& [a, b] : {std::pair{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}}) {
+            const auto at_a = edge_of.find(a), at_b = edge_of.find(b);
+            if (at_a != edge_of.end() && at_b != edge_of.end() && in_square(lattice, at_a->second, at_b->second))
+              segments[std::minmax(at_a->second, at_b->second)] = {a, b};
+            else
+              others.insert({a, b});
+          }
+        }
+    std::map<std::pair<VertexId, VertexId>, std::size_t> column;
+    std::size_t next = 0;
+    for (const auto& edge : others) column[edge] = next++;
+    const std::size_t first_segment = next;
+    for (const auto& [name, edge] : segments) {
+      column[edge] = next++;
+      segments_.push_back(name);
+    }
+    EXPECT_LE(next, kMostColumns);
+    reduce(triangles, column, first_segment, next);
+    for (const auto& [v, face] : edge_of)
+      if (root.contains(v)) parts_[find(v)].insert(face);
+  }
+
+  friend bool operator==(const Topology& a, const Topology& b) {
+    std::set<std::set<std::uint32_t>> parts_a, parts_b;
+    for (const auto& [v, part] : a.parts_) parts_a.insert(part);
+    for (const auto& [v, part] : b.parts_) parts_b.insert(part);
+    return parts_a == parts_b && a.segments_ == b.segments_ && a.bounding_ == b.bounding_;
+  }
+
+ private:
+  static bool in_square(const FaceLattice& lattice, std::uint32_t a, std::uint32_t b) {
+    const facets::Signature both = lattice.faces()[a].corners | lattice.faces()[b].corners;
+    return std::any_of(lattice.faces().begin(), lattice.faces().end(),
+                       [&](const facets::Face& f) { return f.dim == 2 && (both & ~f.corners) == 0; });
+  }
+
+  void reduce(const std::set<std::array<VertexId, 3>>& triangles,
+              const std::map<std::pair<VertexId, VertexId>, std::size_t>& column, std::size_t first_segment,
+              std::size_t columns) {
+    std::vector<Row> pivot(columns);
+    std::vector<bool> has(columns, false);
+    for (const auto& t : triangles) {
+      Row row;
+      row.flip(column.at({t[0], t[1]})), row.flip(column.at({t[0], t[2]})), row.flip(column.at({t[1], t[2]}));
+      for (std::size_t c = row._Find_first(); c < columns; c = row._Find_first()) {
+        if (!has[c]) {
+          has[c] = true, pivot[c] = row;
+          break;
+        }
+        row ^= pivot[c];
+      }
+    }
+    for (std::size_t c = columns; c-- > first_segment;) {
+      if (!has[c]) continue;
+      for (std::size_t d = c + 1; d < columns; ++d)
+        if (has[d] && pivot[c][d]) pivot[c] ^= pivot[d];
+      bounding_.push_back(pivot[c] >> first_segment);
+    }
+  }
+
+  std::map<VertexId, std::set<std::uint32_t>> parts_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> segments_;
+  std::vector<Row> bounding_;
+};
+
 TEST(ResolvedTiles, RandomKeysPassTheCertificate) {
   Keys keys;
   AsBuilt as_built;
   ResolvedTesseract tile;
   facets::Certifier certifier;
-  for (int i = 0; i < 60000; ++i) {
+  for (int i = 0; i < 50000; ++i) {
     const ResolvedKey key = i % 2 == 0 ? keys.uniform() : keys.of_means();
     const ResolvedView& view = tile.find(key);
     ASSERT_LT(kFirstOwn + view.own_vertices, 256u);
@@ -188,6 +284,19 @@ TEST(ResolvedTiles, RandomKeysPassTheCertificate) {
     ASSERT_EQ(fault, facets::Fault::none)
         << facets::fault_name(fault) << " signature " << key.signature << " squares " << key.squares << " low "
         << int{key.low_cubes} << " high " << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
+  }
+}
+
+TEST(ResolvedTiles, FillingsAreThoseOfTheEngine) {
+  Keys keys;
+  AsBuilt as_built;
+  ResolvedTesseract tile;
+  for (int i = 0; i < 2000; ++i) {
+    const ResolvedKey key = i % 2 == 0 ? keys.uniform() : keys.of_means();
+    const facets::TileFacets found = as_built(key, tile.find(key));
+    ASSERT_EQ(Topology(found), Topology(as_built.built(key)))
+        << " signature " << key.signature << " squares " << key.squares << " low " << int{key.low_cubes} << " high "
+        << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
   }
 }
 
