@@ -21,8 +21,9 @@ void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
           ->check(CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"}))
           ->capture_default_str(),
       app.add_option("--ambiguity", ambiguity_,
-                     "samples inside that meet across a diagonal: low parts, high joins them")
-          ->check(CLI::IsMember({"low", "high"}))
+                     "samples inside that meet across a diagonal: low parts, high joins them; from the data: mean (by "
+                     "the mean of the samples around) or saddle (as the multilinear interpolant has it)")
+          ->check(CLI::IsMember({"low", "high", "mean", "saddle"}))
           ->capture_default_str(),
       app.add_flag("--close", close_, "close the contour at the image's border"),
       app.add_flag(
@@ -77,7 +78,10 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
                             triangulation_));
   ExtractOptions options;
   options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
-  options.ambiguity = ambiguity_ == "low" ? Ambiguity::low : Ambiguity::high;
+  options.ambiguity = ambiguity_ == "low"    ? Ambiguity::low
+                      : ambiguity_ == "high" ? Ambiguity::high
+                      : ambiguity_ == "mean" ? Ambiguity::mean
+                                             : Ambiguity::saddle;
   options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
   options.close = close_;
   options.normals = normals_ == "gradient" || normals_ == "sobel";

@@ -9,6 +9,7 @@
 
 #include "extract_generate.hpp"
 #include "extract_kernel.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -44,13 +45,14 @@ TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, s
 
 template <int N, class Real>
 Caps<N, Real>::Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables,
-                    const Counter<N>& counter, const Placement<N, Real>& placement, bool inverted, bool flip,
-                    unsigned closed_axes)
+                    const Counter<N>& counter, const Placement<N, Real>& placement, const FaceEstimator<N>* estimator,
+                    bool inverted, bool flip, unsigned closed_axes)
     : source_(source),
       shape_(shape),
       tables_(tables),
       counter_(counter),
       placement_(placement),
+      estimator_(estimator),
       inverted_(inverted),
       flip_(flip),
       closed_axes_(closed_axes),
@@ -214,13 +216,13 @@ void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, s
     for (; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned signature = original(cells.signature(bit), kCorners);
-      const tables::RegionList& list = tables_.face->lists[signature];
-      if (list.simplex_count == 0) continue;
+      if (tables_.face->lists[signature].simplex_count == 0) continue;
       index[0] = w * kWordBits + bit;
+      const tables::RegionTable& table = table_of<kAxes>(signature, index);
       edges.ids(bit, ids.data() + kCorners);
       shared_ids<Omitted>(face, row, layer, index[0], signature, ids);
-      add_own<kAxes>(list, signature, index, ids);
-      add_simplices(list, ids, flip);
+      add_own<kAxes>(table, signature, index, ids);
+      add_simplices(table, signature, ids, flip);
     }
   }
 }
@@ -241,25 +243,40 @@ void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::si
 
 template <int N, class Real>
 template <unsigned Axes>
-void Caps<N, Real>::add_own(const tables::RegionList& list, unsigned signature,
+const tables::RegionTable& Caps<N, Real>::table_of(
+    [[maybe_unused]] unsigned signature, [[maybe_unused]] const typename RowShape<N>::Index& index) const noexcept {
+  if constexpr (N == 3)
+    if (estimator_ != nullptr && ambiguous_signatures<2>()[signature]) {
+      std::array<double, 4> values;
+      source_.corner_values(index, Axes, values.data());
+      if (estimator_->is_square_high(index, Axes, values)) return *tables_.high_face;
+    }
+  return *tables_.face;
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_own(const tables::RegionTable& table, unsigned signature,
                             const typename RowShape<N>::Index& index, Ids& ids) {
+  const tables::RegionList& list = table.lists[signature];
   if (list.own_vertices == 0) return;
   const EdgePlaces<N, Axes> places(source_, index, signature);
   for (unsigned j = 0; j < list.own_vertices; ++j) {
     ids[tables::first_region_vertex(N - 1) + j] = static_cast<Index>(vertices_.size());
-    add_vertex<Axes>(index, region_place<N, Axes>(places, tables_.face->masks[list.first_mask + j]));
+    add_vertex<Axes>(index, region_place<N, Axes>(places, table.masks[list.first_mask + j]));
   }
 }
 
 template <int N, class Real>
-void Caps<N, Real>::add_simplices(const tables::RegionList& list, const Ids& ids, bool flip) {
+void Caps<N, Real>::add_simplices(const tables::RegionTable& table, unsigned signature, const Ids& ids, bool flip) {
+  const tables::RegionList& list = table.lists[signature];
   constexpr unsigned kFirst = 1u << (N - 1);  // of the local vertices that are on the contour
   constexpr unsigned kEnd = kFirst + tables::edge_count(N - 1) + (N == 4 ? tables::kFaceSlots : 0);
   const auto number = [&](unsigned v) {
     if (v < kFirst || v >= kEnd) return kCapVertex | ids[v];
     return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
   };
-  const std::uint8_t* stored = tables_.face->simplices + std::size_t{list.first_simplex} * N;
+  const std::uint8_t* stored = table.simplices + std::size_t{list.first_simplex} * N;
   for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
     Simplex simplex;
     for (int j = 0; j < N; ++j) simplex[j] = number(stored[j]);

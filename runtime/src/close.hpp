@@ -30,8 +30,10 @@ class Caps {
 
   /// `inverted`: the layers' bits are. `flip`: against the orientation "positive side faces high".
   /// `closed_axes`: bit a: whether the borders across axis a get caps.
+  /// `estimator`: as Counter's.
   Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables, const Counter<N>& counter,
-       const Placement<N, Real>& placement, bool inverted, bool flip, unsigned closed_axes);
+       const Placement<N, Real>& placement, const FaceEstimator<N>* estimator, bool inverted, bool flip,
+       unsigned closed_axes);
 
   /// The cap vertices of layer k, between its slabs (or null); after its contour points are known.
   void add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above);
@@ -80,9 +82,14 @@ class Caps {
   template <int Omitted>
   void shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
                   Ids& ids) const;
+  /// The table that the cell of a face is in.
   template <unsigned Axes>
-  void add_own(const tables::RegionList& list, unsigned signature, const typename RowShape<N>::Index& index, Ids& ids);
-  void add_simplices(const tables::RegionList& list, const Ids& ids, bool flip);
+  [[nodiscard]] const tables::RegionTable& table_of(unsigned signature,
+                                                    const typename RowShape<N>::Index& index) const noexcept;
+  template <unsigned Axes>
+  void add_own(const tables::RegionTable& table, unsigned signature, const typename RowShape<N>::Index& index,
+               Ids& ids);
+  void add_simplices(const tables::RegionTable& table, unsigned signature, const Ids& ids, bool flip);
   template <int Omitted>
   void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
   template <int Omitted>
@@ -97,6 +104,7 @@ class Caps {
   TableSet<N> tables_;
   const Counter<N>& counter_;
   const Placement<N, Real>& placement_;
+  const FaceEstimator<N>* estimator_;
   bool inverted_;
   bool flip_;
   unsigned closed_axes_;

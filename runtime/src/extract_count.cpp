@@ -9,12 +9,14 @@
 #include <bit>
 
 #include "tile_selection.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 
 template <int N>
-Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks)
-    : shape_(shape), tile_(*tables.tile), rows_(rows), ranks_(ranks) {
+Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
+                    const FaceEstimator<N>* estimator)
+    : shape_(shape), tile_(*tables.tile), rows_(rows), estimator_(estimator), ranks_(ranks) {
   if constexpr (N == 4)
     for (unsigned s = 0; s < 256; ++s) {
       cube_vertices_[s] = tables.cube->lists[tables.cube->list_of[s]].cone_vertices;
@@ -321,6 +323,35 @@ void keep_count(const TileCount& count, Slab<N>& slab, std::size_t row) {
 }  // namespace
 
 template <int N>
+TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const {
+  TileCount count = count_tile_row<N>(tile_row(shape_, view, *view.slab, row), *rows_, room);
+  if (N < 4 && estimator_ != nullptr) resolve_tiles(view, row, room, count);
+  return count;
+}
+
+template <int N>
+void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const {
+  if constexpr (N < 4) {
+    const auto& ambiguous = ambiguous_signatures<N>();
+    const bool is_listed = shape_.size(0) <= kMostListed;
+    BitWalk walk(room.active);
+    auto base = shape_.index_of(row);
+    base[N - 1] = view.k;
+    for (std::uint32_t i = 0; i < count.active; ++i) {
+      const unsigned signature = room.signatures[i];
+      if (!ambiguous[signature]) continue;
+      base[0] = is_listed ? room.at[i] : walk.place_of(i);
+      const unsigned key = resolved_key<N>(*estimator_, base, signature);
+      const std::uint32_t* const entries = rows_->entries();
+      count.simplices += entries[key] & RowTable::kCountMask;
+      count.simplices -= entries[signature] & RowTable::kCountMask;
+      count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
+      room.signatures[i] = static_cast<std::uint16_t>(key);
+    }
+  }
+}
+
+template <int N>
 CountScratch Counter<N>::make_scratch() const {
   CountScratch scratch{std::vector<Word>(shape_.pitch()), {}};
   if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
@@ -345,7 +376,7 @@ ActiveTiles Counter<N>::tiles(const SlabView<N>& view, std::size_t row, CountScr
   }
   TileLists& lists = scratch.tiles;
   const TileRoom room{scratch.words.data(), lists.signatures.data(), lists.at.data()};
-  return {room.signatures, room.at, count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, room).active};
+  return {room.signatures, room.at, find_tiles(view, row, room).active};
 }
 
 template <int N>
@@ -358,7 +389,7 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   if (!shape_.has_cells(shape_.index_of(row), kAll)) return;
   if (is_uniform(view, row)) return;
   if (rows_ != nullptr) {
-    keep_count(count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, tile_room(slab, row, scratch)), slab, row);
+    keep_count(find_tiles(view, row, tile_room(slab, row, scratch)), slab, row);
     return;
   }
   CellBits<N, kAll> cells(view, row);
@@ -404,8 +435,7 @@ template <int N>
 void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
                                CountScratch& scratch) const {
   TileCount count;
-  if (!is_uniform(view, row))
-    count = count_tile_row<N>(tile_row(shape_, view, slab, row), *rows_, tile_room(slab, row, scratch));
+  if (!is_uniform(view, row)) count = find_tiles(view, row, tile_room(slab, row, scratch));
   keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];
   slab.edges.count[row] = count.edges[N - 1];

@@ -11,6 +11,7 @@
 #include "extract_cell.hpp"
 #include "extract_layers.hpp"
 #include "extract_rows.hpp"
+#include "face_estimator.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
@@ -18,12 +19,13 @@ namespace tegl::detail {
 /// Tables that one extraction uses. All of one triangulation.
 template <int N>
 struct TableSet {
-  const tables::TileTable* tile = nullptr;      ///< of N
-  const RowTable* rows = nullptr;               ///< `tile` for the quick way, if it is at hand
-  bool compact = false;                         ///< the compact triangulation
-  const tables::TileTable* cube = nullptr;      ///< of 3; N = 4 only
-  const tables::RegionTable* face = nullptr;    ///< of N - 1; for closed borders
-  const tables::RegionTable* square = nullptr;  ///< of 2; N = 4, for closed borders
+  const tables::TileTable* tile = nullptr;         ///< of N
+  const RowTable* rows = nullptr;                  ///< `tile` for the quick way, if it is at hand
+  bool compact = false;                            ///< the compact triangulation
+  const tables::TileTable* cube = nullptr;         ///< of 3; N = 4 only
+  const tables::RegionTable* face = nullptr;       ///< of N - 1; for closed borders
+  const tables::RegionTable* high_face = nullptr;  ///< the same of the high-connected alternative, where data decide
+  const tables::RegionTable* square = nullptr;     ///< of 2; N = 4, for closed borders
 };
 
 /// What a thread keeps while it counts and lists tiles.
@@ -38,7 +40,9 @@ template <int N>
 class Counter {
  public:
   /// `rows`: the table for the quick way, or null. `ranks`: whether others ask for the ranks of vertices on edges.
-  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks);
+  /// `estimator`: what decides on ambiguous tiles, or null: the table does.
+  Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
+          const FaceEstimator<N>* estimator = nullptr);
 
   /// Whether slabs keep the lists of their active tiles, four bytes for each sample. Otherwise each list is made twice:
   /// for large slabs (4D) they are most of what is kept.
@@ -126,12 +130,16 @@ class Counter {
   template <unsigned Axes>
   void count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
   void count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
+  /// Finds the active tiles of a row, ambiguous ones by their keys.
+  [[nodiscard]] TileCount find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const;
+  void resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const;
   [[nodiscard]] bool keeps_tiles() const noexcept { return keeps_tiles_ && quick_; }
   [[nodiscard]] TileRoom tile_room(Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
 
   const RowShape<N>& shape_;
   const tables::TileTable& tile_;
   const RowTable* rows_;
+  const FaceEstimator<N>* estimator_;
   bool ranks_;
   bool quick_ = false;
   bool keeps_tiles_ = true;

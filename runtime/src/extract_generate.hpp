@@ -15,6 +15,7 @@
 #include "extract_place.hpp"
 #include "extract_rows.hpp"
 #include "extract_tables.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 
@@ -61,10 +62,12 @@ class TileWriter {
   using Simplex = std::array<Index, N>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
-  /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null.
+  /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null. `estimator`: as
+  /// Counter's.
   TileWriter(const SampleSource<N>& source, const TableSet<N>& tables, const RowTable* rows,
-             const Placement<N, Real>& placement, bool flip, bool has_cubes)
+             const FaceEstimator<N>* estimator, const Placement<N, Real>& placement, bool flip, bool has_cubes)
       : source_(source),
+        estimator_(estimator),
         table_(*tables.tile),
         cube_(tables.cube),
         compact_(tables.compact),
@@ -104,38 +107,25 @@ class TileWriter {
       const TileWriter& writer;
       typename RowShape<N>::Index index;
       VertexRun<Vertex> vertices;
-      const Word* active;
+      BitWalk active;
       Index next;
-      std::size_t passed = 0;  ///< active tiles before `rest`
-      std::size_t word = 0;
-      Word rest = active[0];
 
-      void go_to(std::size_t ordinal) noexcept {
-        for (; passed < ordinal || rest == 0;) {
-          if (rest == 0) {
-            rest = active[++word];
-          } else {
-            rest &= rest - 1;
-            ++passed;
-          }
-        }
-        index[0] = word * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-      }
-      static Simplex* write(void* self, unsigned signature, std::size_t ordinal, const Index* edge_ids,
+      static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids,
                             Simplex* out) noexcept {
         Own& own = *static_cast<Own*>(self);
-        own.go_to(ordinal);
+        own.index[0] = own.active.place_of(ordinal);
         Ids ids;
         std::copy_n(edge_ids, tables::edge_count(N), ids.data());
-        const SimplexList<N> list(own.writer.table_, signature);
-        SharedPlaces<N> places(own.writer.source_, own.index, signature, own.writer.cube_);
+        const SimplexList<N> list(own.writer.table_, key);
+        SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
         own.writer.write_own(list, places, own.index, own.next, own.vertices);
         out = own.writer.write_simplices(list, ids, own.next, out);
         own.next += list.own_vertices();
         return out;
       }
     };
-    Own own{*this, start, vertices, view.slab->active.data() + row * view.shape->words(), view.slab->first_own(row)};
+    Own own{*this, start, vertices, BitWalk(view.slab->active.data() + row * view.shape->words()),
+            view.slab->first_own(row)};
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
@@ -159,11 +149,11 @@ class TileWriter {
       for (; rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<unsigned>(std::countr_zero(rest));
         const unsigned signature = cells.signature(bit);
-        const SimplexList<N> list(table_, signature);
+        index[0] = w * kWordBits + bit;
+        const SimplexList<N> list(table_, key_of(index, signature));
         edges.ids(bit, ids.data());
         if constexpr (N == 4)
           if (cubes) cube_ids(*cubes, bit, ids);
-        index[0] = w * kWordBits + bit;
         if (has_cubes_ || list.own_vertices() != 0) {
           SharedPlaces<N> places(source_, index, signature, cube_);
           write_own(list, places, index, own, vertices);
@@ -174,6 +164,14 @@ class TileWriter {
         own += list.own_vertices();
       }
     }
+  }
+
+  /// The key of a tile, in an image whose ambiguous tiles have one.
+  [[nodiscard]] unsigned key_of(const typename RowShape<N>::Index& index, unsigned signature) const noexcept {
+    if constexpr (N < 4)
+      if (estimator_ != nullptr && ambiguous_signatures<N>()[signature])
+        return resolved_key<N>(*estimator_, index, signature);
+    return signature;
   }
 
   /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per
@@ -241,6 +239,7 @@ class TileWriter {
   }
 
   const SampleSource<N>& source_;
+  const FaceEstimator<N>* estimator_;
   const tables::TileTable& table_;
   const tables::TileTable* cube_;
   bool compact_;

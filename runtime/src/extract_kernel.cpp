@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -32,6 +33,16 @@ void check_arguments(double isovalue, const ExtractOptions& options) {
   if (!(options.epsilon >= 0.0 && options.epsilon < 0.5))
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("epsilon {}; expected at least 0 and below 0.5", options.epsilon));
+  if (options.ambiguity == Ambiguity::custom && !options.estimator.choose)
+    throw Error(ErrorCode::InvalidArgument,
+                "ambiguity custom without an estimator; expected one in "
+                "ExtractOptions::estimator");
+}
+
+void require_consistent_method(const ExtractOptions& options, const char* what) {
+  if (is_estimated(options.ambiguity))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} with ambiguity {}; expected low or high", what, name_of(options.ambiguity)));
 }
 
 namespace {
@@ -86,8 +97,9 @@ class Extraction {
                                                                         : std::nullopt),
         row_table_(rows_ ? &*rows_ : tables.rows),
         placement_(grid),
-        counter_(shape_, tables, row_table_, options.close),
-        tiles_(source, tables, row_table_, placement_, against_tables(grid, options) != inverted_,
+        estimator_(make_estimator(source, grid, options, plan)),
+        counter_(shape_, tables, row_table_, options.close, estimator_.get()),
+        tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
                counter_.has_cubes()),
         pinches_(shape_, counter_),
         workers_(options.threads,
@@ -102,8 +114,8 @@ class Extraction {
         slabs_((ahead_ ? 2 : 1) * batch_ + 1) {
     if (options.normals) placement_.want_normals(source, grid, options);
     if (options.close)
-      caps_.emplace(source, shape_, tables_, counter_, placement_, inverted_, against_tables(grid, options),
-                    plan.closed_axes);
+      caps_.emplace(source, shape_, tables_, counter_, placement_, estimator_.get(), inverted_,
+                    against_tables(grid, options), plan.closed_axes);
     if (!plan.keeps_tiles) counter_.keep_tiles(false);
     for (Layer<N>& layer : layers_) counter_.allocate(layer);
     const std::size_t counted = kPassesPlanesOn ? batch_ + 1 : layers_.size();
@@ -140,6 +152,7 @@ class Extraction {
       }
       gather_border(first, end);
       watch.add_to(stats.close_seconds);
+      if (estimator_) estimator_->rethrow();
       output_.close(part_, pinches_);
       watch.add_to(stats.generate_seconds);
     }
@@ -160,7 +173,13 @@ class Extraction {
   Layer<N>& layer(std::size_t k) noexcept { return layers_[k % layers_.size()]; }
   Slab<N>& slab(std::size_t k) noexcept { return slabs_[k % slabs_.size()]; }
   Slab<N>* slab_above(std::size_t k) noexcept { return k + 1 < shape_.layers() ? &slab(k) : nullptr; }
-  SlabView<N> view(std::size_t k) noexcept { return {&shape_, {&layer(k), &layer(k + 1)}, &slab(k)}; }
+  SlabView<N> view(std::size_t k) noexcept { return {&shape_, {&layer(k), &layer(k + 1)}, &slab(k), k}; }
+
+  static std::unique_ptr<FaceEstimator<N>> make_estimator(const SampleSource<N>& source, const Grid<N>& grid,
+                                                          const ExtractOptions& options, const ExtractPlan& plan) {
+    if (!is_estimated(options.ambiguity)) return nullptr;
+    return std::make_unique<FaceEstimator<N>>(source, grid.sizes(), options, plan.part);
+  }
 
   /// Calls work(k, chunk, scratch) for all chunks of the layers (or slabs) first ... end - 1, side by side. Asks now
   /// and then whether to go on.
@@ -265,6 +284,7 @@ class Extraction {
       if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.counting.words.data());
       counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.counting);
     });
+    if (estimator_) estimator_->rethrow();
     const std::uint64_t before = part_.first_vertex;
     part_.first_vertex = part_.end_vertex;
     part_.first_simplex = part_.end_simplex;
@@ -446,6 +466,7 @@ class Extraction {
   std::optional<RowTable> rows_;
   const RowTable* row_table_;
   Placement<N, Real> placement_;
+  std::unique_ptr<FaceEstimator<N>> estimator_;  ///< null: tables decide
   Counter<N> counter_;
   TileWriter<N, Real> tiles_;
   std::optional<Caps<N, Real>> caps_;

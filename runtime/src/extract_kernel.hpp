@@ -13,6 +13,7 @@
 
 #include "extract_count.hpp"
 #include "extract_source.hpp"
+#include "face_estimator.hpp"
 #include "tegl/extract.hpp"
 
 namespace tegl::detail {
@@ -25,6 +26,9 @@ void check_vertex_count(std::uint64_t count, std::uint64_t limit);
 
 /// Throws InvalidIsovalue or InvalidArgument.
 void check_arguments(double isovalue, const ExtractOptions& options);
+
+/// Throws InvalidArgument for estimators from the data; `what` only knows the consistent method.
+void require_consistent_method(const ExtractOptions& options, const char* what);
 
 /// Where an output has to move, it gets room for what the share of the image that is `done` lets expect, within bounds.
 template <class T>
@@ -101,6 +105,7 @@ struct ExtractPlan {
   /// Of two batches, one after the other: numbers in simplices are told apart modulo 2^32.
   std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;
   const TileSelection* selection = nullptr;  ///< what to look at; null: all
+  PartOfImage part{};                        ///< for estimators: what the grid is a part of
   bool keeps_tiles = true;  ///< false: lists of active tiles are made twice, whatever memory there is for them
 };
 

@@ -157,9 +157,33 @@ struct Layer : LayerPlanes<N> {
 
 /// The active tiles of a row, in order.
 struct ActiveTiles {
-  const std::uint16_t* signatures = nullptr;
-  const std::uint16_t* at = nullptr;  ///< where they are along the row (modulo 2^16)
+  const std::uint16_t* signatures = nullptr;  ///< or keys (extract_rows.hpp)
+  const std::uint16_t* at = nullptr;          ///< where they are along the row (modulo 2^16)
   std::uint32_t count = 0;
+};
+
+/// The bits set in a row of words, one after the other.
+class BitWalk {
+ public:
+  explicit BitWalk(const Word* words) noexcept : words_(words), rest_(words[0]) {}
+  /// Where bit number `ordinal` of those that are set is; numbers that do not fall, of bits that there are.
+  std::size_t place_of(std::size_t ordinal) noexcept {
+    while (passed_ < ordinal || rest_ == 0) {
+      if (rest_ == 0) {
+        rest_ = words_[++word_];
+      } else {
+        rest_ &= rest_ - 1;
+        ++passed_;
+      }
+    }
+    return word_ * kWordBits + static_cast<std::size_t>(std::countr_zero(rest_));
+  }
+
+ private:
+  const Word* words_;
+  std::size_t passed_ = 0;  ///< bits before `rest_`
+  std::size_t word_ = 0;
+  Word rest_;
 };
 
 /// Room for active tiles.
@@ -208,6 +232,7 @@ struct SlabView {
   const RowShape<N>* shape;
   std::array<const Layer<N>*, 2> layers;
   const Slab<N>* slab;
+  std::size_t k = 0;  ///< the slab's number
 
   [[nodiscard]] const EdgePlane& edges(int axis, unsigned up) const noexcept {
     return axis == N - 1 ? slab->edges : layers[up]->edges[static_cast<std::size_t>(axis)];

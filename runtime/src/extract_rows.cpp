@@ -392,7 +392,7 @@ HWY_INLINE __m512i looked_up(__m128i local, const __m512i* ids) {
   }
 }
 
-template <int N, bool Flip>
+template <int N, bool Flip, bool Variants>
 HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
   constexpr std::uint32_t kNext = next_edges<N>();
   constexpr unsigned kAtOnce = 16 / N;  // simplices
@@ -403,7 +403,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
   auto* out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
-    const std::uint32_t edges = edges_of<N>(signature);
+    const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[signature];
     const unsigned count = entry & RowTable::kCountMask;
@@ -449,7 +449,7 @@ HWY_INLINE void add_bits(const Index* numbers, std::uint32_t bits, Index* to) {
 #endif
 }
 
-template <int N>
+template <int N, bool Variants>
 HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
   constexpr std::uint32_t kNext = next_edges<N>();
   constexpr unsigned kEdges = (TileOutput<N>::kEdges + 7) / 8 * 8;  // whole registers
@@ -461,7 +461,7 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
   auto* out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
-    const std::uint32_t edges = edges_of<N>(signature);
+    const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[signature];
     add_bits<kEdges>(first, moved, ids);
@@ -479,13 +479,13 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
 /// The four numbers of a 2D tile, and how they move on, in a register each.
 void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) {
   struct Moves {
-    alignas(16) std::array<std::array<Index, 4>, 16> moved{}, advance{};
+    alignas(16) std::array<std::array<Index, 4>, 32> moved{}, advance{};  // by key
   };
   static constexpr auto kMoves = [] {
     Moves moves;
     constexpr std::uint32_t kNext = next_edges<2>();
-    for (unsigned s = 0; s < 16; ++s) {
-      const std::uint32_t edges = critical_edges<2>(s);
+    for (unsigned s = 0; s < 32; ++s) {
+      const std::uint32_t edges = critical_edges<2>(signature_of<2>(s));
       const std::uint32_t moved = edges << 1 & kNext;
       for (unsigned e = 0; e < 4; ++e) {
         moves.moved[s][e] = moved >> e & 1u;
@@ -512,21 +512,29 @@ void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTi
   hn::StoreU(first, d, last.first.data());
   last.signatures += row.active - 1;
   last.active = 1;
-  write_generic<2>(last, table, own);
+  write_generic<2, true>(last, table, own);
 }
 
 #endif
 
-template <int N>
-HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
+template <int N, bool Variants>
+HWY_INLINE void write_by(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
 #if HWY_TARGET <= HWY_AVX3
   if constexpr (N >= 3)
-    return row.flip ? write_lanes<N, true>(row, table, own) : write_lanes<N, false>(row, table, own);
+    return row.flip ? write_lanes<N, true, Variants>(row, table, own)
+                    : write_lanes<N, false, Variants>(row, table, own);
 #endif
+  return write_generic<N, Variants>(row, table, own);
+}
+
+template <int N>
+HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
 #if HWY_TARGET != HWY_SCALAR
   if constexpr (N == 2) return write_segments(row, table, own);
 #endif
-  return write_generic<N>(row, table, own);
+  if constexpr (N < 4)
+    if (table.has_variants()) return write_by<N, true>(row, table, own);
+  return write_by<N, false>(row, table, own);
 }
 
 // Highway's tables of functions hold no templates.
@@ -581,8 +589,8 @@ bool RowTable::can_use(const tables::TileTable& table) noexcept {
          table.simplex_count < (1u << (32 - kFirstShift));
 }
 
-RowTable::RowTable(const tables::TileTable& table)
-    : table_(&table), entries_(std::size_t{1} << (1u << table.dim)), simplices_(table.simplices) {
+RowTable::RowTable(const tables::TileTable& table, std::size_t keys)
+    : table_(&table), entries_(keys), simplices_(table.simplices) {
   for (std::size_t s = 0; s < entries_.size(); ++s) {
     const tables::List& list = table.lists[table.list_of[s]];
     const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
@@ -594,7 +602,7 @@ RowTable::RowTable(const tables::TileTable& table)
 }
 
 void RowTable::choose_segment_bytes() {
-  for (unsigned s = 0; s < 16; ++s)
+  for (unsigned s = 0; s < entries_.size(); ++s)
     for (unsigned v = 0; v < 2 * (entries_[s] & kCountMask); ++v) {
       const unsigned edge = simplices_[2 * (entries_[s] >> kFirstShift) + v];
       for (unsigned byte = 0; byte < 4; ++byte) {

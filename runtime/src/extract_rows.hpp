@@ -23,6 +23,15 @@
 
 namespace tegl::detail {
 
+/// A *key* is a signature together with a variant, for tiles that may be filled in several ways:
+/// `signature | variant << 2^N`. How many keys there are, N = 2 or 3; and the signature of one.
+template <int N>
+inline constexpr std::size_t kKeys = N == 2 ? 32 : 256 * (1 + 3 * 64);
+template <int N>
+constexpr unsigned signature_of(unsigned key) noexcept {
+  return key & ((1u << (1u << N)) - 1);
+}
+
 /// A tile table in the flat layout, ready for the loops.
 class RowTable {
  public:
@@ -36,8 +45,12 @@ class RowTable {
   /// Whether the loops can use a table: flat, and no larger than entries can say.
   static bool can_use(const tables::TileTable& table) noexcept;
 
-  explicit RowTable(const tables::TileTable& table);
+  explicit RowTable(const tables::TileTable& table) : RowTable(table, std::size_t{1} << (1u << table.dim)) {}
+  /// Of a table whose lists go by `keys` keys (tile_variants.hpp). Where it says "signature", keys do as well.
+  RowTable(const tables::TileTable& table, std::size_t keys);
 
+  /// Whether there are more keys than signatures.
+  [[nodiscard]] bool has_variants() const noexcept { return entries_.size() > std::size_t{1} << (1u << table_->dim); }
   /// By signature.
   [[nodiscard]] const std::uint32_t* entries() const noexcept { return entries_.data(); }
   /// dim local vertices each.
@@ -64,7 +77,7 @@ class RowTable {
   std::vector<std::uint32_t> entries_;
   const std::uint8_t* simplices_;
   std::array<std::uint8_t, 256> counts_{};
-  std::array<std::array<std::array<std::uint8_t, 16>, 16>, 2> segment_bytes_{};
+  std::array<std::array<std::array<std::uint8_t, 16>, 32>, 2> segment_bytes_{};
 };
 
 /// A row of tiles, to be counted.
@@ -117,7 +130,7 @@ struct TileOutput {
   using Simplex = std::array<Index, N>;
   static constexpr unsigned kEdges = tables::edge_count(N);
 
-  const std::uint16_t* signatures;
+  const std::uint16_t* signatures;  ///< or keys, if the table has them
   std::size_t active;
   std::array<Index, kEdges> first;  ///< by local edge: the first vertex of its stream
   bool flip;                        ///< against the orientation of the table

@@ -3,6 +3,7 @@
 // What the extraction asks of rows of samples; see extract_source.hpp.
 #include "extract_source.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -26,14 +27,7 @@ void RowSource<T, N>::edge_alphas(std::size_t k, int axis, const EdgesInRows& ed
 }
 
 template <Value T, int N>
-void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept {
-  static constexpr auto kInOrder = [] {
-    std::array<std::uint32_t, N << (N - 1)> result{};
-    for (std::uint32_t i = 0; i < result.size(); ++i) result[i] = i;
-    return result;
-  }();
-  static constexpr std::array<std::ptrdiff_t, kInOrder.size()> kOneRow{};
-  std::array<T, std::size_t{1} << N> corners;
+unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corners& corners) const noexcept {
   std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
   const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
   const T* const samples = row(base) + along;
@@ -51,6 +45,26 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
     }
     ++dim;
   }
+  return dim;
+}
+
+template <Value T, int N>
+void RowSource<T, N>::corner_values(const Index& base, unsigned axes, double* out) const noexcept {
+  Corners corners;
+  const unsigned dim = gather_corners(base, axes, corners);
+  std::copy_n(corners.begin(), std::size_t{1} << dim, out);
+}
+
+template <Value T, int N>
+void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept {
+  static constexpr auto kInOrder = [] {
+    std::array<std::uint32_t, N << (N - 1)> result{};
+    for (std::uint32_t i = 0; i < result.size(); ++i) result[i] = i;
+    return result;
+  }();
+  static constexpr std::array<std::ptrdiff_t, kInOrder.size()> kOneRow{};
+  Corners corners;
+  const unsigned dim = gather_corners(base, axes, corners);
   std::array<T, kInOrder.size()> first{};
   std::array<T, kInOrder.size()> second{};
   std::array<double, kInOrder.size()> alphas;

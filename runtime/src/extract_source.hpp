@@ -66,6 +66,16 @@ class SampleSource {
 
   /// One sample.
   [[nodiscard]] virtual bool is_high(const Index& index) const noexcept = 0;
+  /// Its value, which double holds whatever the type; layers before the first may be asked for, modulo 2^64, if there
+  /// are any.
+  [[nodiscard]] virtual double value(const Index& index) const noexcept = 0;
+  /// The values at the corners of the cell along `axes` based at `base`, in the order of the cell's own corners.
+  virtual void corner_values(const Index& base, unsigned axes, double* out) const noexcept = 0;
+  [[nodiscard]] virtual double isovalue() const noexcept = 0;
+  /// The layer of the image that layer 0 is.
+  [[nodiscard]] virtual std::size_t first_layer() const noexcept { return 0; }
+  /// How many layers the image has from there on, if they are more than what is worked on; else 0.
+  [[nodiscard]] virtual std::size_t layers_at_hand() const noexcept { return 0; }
 
   /// From sample to sample within a layer; of the last axis nothing.
   [[nodiscard]] virtual std::array<std::ptrdiff_t, N> strides() const noexcept = 0;
@@ -107,6 +117,11 @@ class RowSource : public SampleSource<N> {
   [[nodiscard]] bool is_high(const Index& index) const noexcept final {
     return !threshold_.never && row(index)[static_cast<std::ptrdiff_t>(index[0]) * strides_[0]] >= threshold_.value;
   }
+  [[nodiscard]] double value(const Index& index) const noexcept final {
+    return static_cast<double>(row(index)[static_cast<std::ptrdiff_t>(index[0]) * strides_[0]]);
+  }
+  void corner_values(const Index& base, unsigned axes, double* out) const noexcept final;
+  [[nodiscard]] double isovalue() const noexcept final { return isovalue_; }
   [[nodiscard]] Strides strides() const noexcept final { return strides_; }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;
@@ -145,6 +160,9 @@ class RowSource : public SampleSource<N> {
     start[axis] += step;
     return row(start);
   }
+  using Corners = std::array<T, std::size_t{1} << N>;
+  /// The values at a cell's corners; returns its dimension.
+  unsigned gather_corners(const Index& base, unsigned axes, Corners& corners) const noexcept;
   template <bool kAlongRow, class Calc>
   std::uint64_t gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges, Calc* out) const noexcept;
 
@@ -168,6 +186,8 @@ class ImageSource final : public RowSource<T, N> {
         first_(first) {}
 
   [[nodiscard]] bool is_at_hand() const noexcept override { return true; }
+  [[nodiscard]] std::size_t first_layer() const noexcept override { return first_; }
+  [[nodiscard]] std::size_t layers_at_hand() const noexcept override { return last_axis_.size() - first_; }
   [[nodiscard]] AxisSteps last_steps(const Grid<N>& /*grid*/) const override { return AxisSteps(last_axis_, first_); }
 
  private:

@@ -5,6 +5,7 @@
 
 #include "extract_kernel.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 
@@ -25,11 +26,19 @@ const RowTable* row_table() {
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options) {
   const int triangulation = options.triangulation == Triangulation::barycentric ? 0 : 1;
-  const int alternative = options.ambiguity == Ambiguity::low ? 0 : 1;
+  const int alternative = options.ambiguity == Ambiguity::high ? 1 : 0;
   TableSet<N> set;
   set.tile = &tables::tile_table(N, triangulation);
   set.rows = triangulation == 0 ? row_table<N, 0>() : row_table<N, 1>();
   set.compact = options.triangulation == Triangulation::compact;
+  if constexpr (N == 4) require_consistent_method(options, "contours of 4D images");
+  if constexpr (N < 4)
+    if (is_estimated(options.ambiguity)) {
+      const VariantTable<N>& variants = variant_table<N>(triangulation);
+      set.tile = &variants.tile();
+      set.rows = &variants.rows();
+      if (options.close) set.high_face = &tables::region_table(N - 1, triangulation, 1);
+    }
   if (N == 4) set.cube = &tables::tile_table(3, triangulation);
   if (options.close) set.face = &tables::region_table(N - 1, triangulation, alternative);
   if (options.close && N == 4) set.square = &tables::region_table(2, triangulation, alternative);

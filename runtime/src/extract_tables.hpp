@@ -224,7 +224,12 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
       sum.add(v < (1u << K) ? corner_point<K>(list.mapped_corner(v)) : place(v - (1u << K)), 1.0);
     }
-    for (int a = 0; a < K; ++a) out[cones + j][a] = 0.5 * (0.5 + sum.point[a] / sum.weight);
+    // Of edges alone (cubes resolved from the data): their mean itself.
+    const bool has_corners = (list.side_mask(j) & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
+    for (int a = 0; a < K; ++a) {
+      const double mean = sum.point[a] / sum.weight;
+      out[cones + j][a] = has_corners ? 0.5 * (0.5 + mean) : mean;
+    }
   }
 }
 

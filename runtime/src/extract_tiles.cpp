@@ -436,6 +436,7 @@ class TileExtraction {
 template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
                           Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes) {
+  require_consistent_method(options, "contours of 5D images");
   if (contour != nullptr) {
     for (int a = 0; a < N; ++a) {
       contour->axis_names[a] = grid.axes[a].name;

@@ -369,6 +369,7 @@ class FacetExtraction {
 
 template <int N, class Real>
 FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
+  require_consistent_method(options, "facets");
   const auto sizes = grid.sizes();
   if (*std::min_element(sizes.begin(), sizes.end()) < 2) {
     FacetHierarchy<N, Real> none;

@@ -8,6 +8,7 @@
 #include <span>
 #include <type_traits>
 
+#include "tegl/ambiguity.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
 
@@ -15,9 +16,6 @@ namespace tegl {
 
 /// In 5D there is one triangulation, the barycentric one, and both names mean it.
 enum class Triangulation { compact, barycentric };
-/// How ambiguous faces are resolved (theory: the consistent method). low: high corners that meet only
-/// across a diagonal are kept apart; high: they are joined.
-enum class Ambiguity { low, high };
 
 /// How the gradient at a sample is made, which normals follow. differences: the mean of the difference quotients
 /// forward and backward; sobel: the mean of those of all lines of samples beside it, itself among them, weighted by
@@ -26,7 +24,8 @@ enum class GradientKind { differences, sobel };
 
 struct ExtractOptions {
   Triangulation triangulation = Triangulation::compact;
-  Ambiguity ambiguity = Ambiguity::low;
+  Ambiguity ambiguity = Ambiguity::low;  ///< how ambiguous faces are resolved
+  Estimator estimator = {};              ///< for Ambiguity::custom, else not looked at
   GradientDirection direction = GradientDirection::descent;
   /// Close the contour at the image's border by the high part of the border itself. Where the border
   /// of the *data* lies inside the image (missing values), the contour stays open.

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How the ambiguous faces of tiles are resolved: the same way everywhere, or from the data.
+//
+// Based on: M. Liversage, thesis, 1994, sections 6.3 and 7.3 (the consistent method and the estimation method); G. M.
+// Nielson and B. Hamann, "The asymptotic decider", 1991.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+
+#include "tegl/facets/facets.hpp"
+
+namespace tegl {
+
+/// A square with two high corners across from each other is ambiguous: are they joined in it, or apart? So is a cube in
+/// which the contour has several loops on the boundary (does a tunnel join them?), and so on upwards. However it is
+/// resolved, tiles agree in the faces that they share, and the contour is a closed manifold.
+/// - low, high: the consistent method, by table. low: high corners that meet only across a diagonal are kept apart;
+/// high:
+///   they are joined. Loops in a cube are never joined.
+/// - mean: the estimation method. The centre of every ambiguous face is high if the mean of the face's corners is at or
+///   above the isovalue, low otherwise (exactly: no rounding), and what has the centre's sign hangs together in the
+///   face.
+/// - saddle: as the multilinear interpolant has it, exactly in squares and cubes (tegl/saddle.hpp); in faces of four
+/// and
+///   more dimensions, by the sign of their centre as `mean`.
+/// - custom: as ExtractOptions::estimator says.
+/// Faces that are not ambiguous come from the tables in any case.
+enum class Ambiguity { low, high, mean, saddle, custom };
+
+/// An ambiguous face of the image's grid, as an estimator sees it. Valid during the call only.
+class AmbiguousFace {
+ public:
+  /// Reads sample `index` of `image`, for `sample`.
+  using Reader = double (*)(const void* image, const std::ptrdiff_t* index);
+
+  /// Called by extractions. `origin`: the place in the image of sample 0 of what is read; `first`, `end`: the samples
+  /// that there are along each axis, counted from there.
+  struct Surroundings {
+    const void* image = nullptr;
+    Reader read = nullptr;
+    std::array<std::ptrdiff_t, 5> origin{}, first{}, end{};
+  };
+  AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
+                const Surroundings& around);
+
+  /// Dimensions of the image, and of the face: 2 or more.
+  [[nodiscard]] int image_dim() const noexcept { return image_dim_; }
+  [[nodiscard]] int dim() const noexcept { return dim_; }
+  /// Bit a: whether the face extends along axis a.
+  [[nodiscard]] unsigned axes() const noexcept { return axes_; }
+  /// The index of its first corner in the image, by axis: the face goes from there to the next sample along its axes.
+  [[nodiscard]] std::span<const std::size_t> base() const noexcept {
+    return {base_.data(), static_cast<std::size_t>(image_dim_)};
+  }
+  /// At its 2^dim corners; corner v is one step along the j-th of its axes where bit j of v is set.
+  [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
+  [[nodiscard]] double isovalue() const noexcept { return isovalue_; }
+  /// The value at `base` + `steps`, steps by axis of the image; beyond the image's border that of the nearest sample
+  /// inside. NaN where it is missing. How far it may go: Estimator::reach.
+  [[nodiscard]] double sample(std::span<const std::ptrdiff_t> steps) const noexcept;
+
+ private:
+  int image_dim_, dim_;
+  unsigned axes_;
+  std::array<std::size_t, 5> base_{};
+  std::span<const double> values_;
+  double isovalue_;
+  const Surroundings* around_;
+};
+
+/// A caller's own way to resolve ambiguous faces, from their values and from what is around them.
+struct Estimator {
+  /// Asked for ambiguous squares, for cubes whose boundary the contour meets in several loops, and for faces of four
+  /// and five dimensions where one is ambiguous in them or where what the contour has on their boundary is of several
+  /// parts or not a sphere; in what order, how often and by which threads is not defined, and several ask at the same
+  /// time. The answer has to depend on the face alone, not on who asks: a face is asked for once by each tile around
+  /// it. For a square, `separate` is as `low`. What it throws ends the extraction and reaches the caller.
+  std::function<facets::Choice(const AmbiguousFace& face)> choose;
+  /// How many samples beyond the face `choose` looks at, along any axis, through AmbiguousFace::sample. Layers of
+  /// streamed images are kept for so long; beyond them nothing is known there.
+  std::size_t reach = 0;
+};
+
+}  // namespace tegl

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Squares and cubes with their ambiguities resolved, as tables that the extraction goes through like the others.
+//
+// Variant 0 of a signature (extract_rows.hpp) is the plain table's tile; only ambiguous signatures have others. In 2D
+// variant 1 is the square with a high centre. In 3D it is 1 + 3 r + choice, with r the resolution of the ambiguous
+// squares (tables::ResolvedTable) and the cube's own choice.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "extract_rows.hpp"
+#include "face_estimator.hpp"
+#include "tegl/saddle.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+/// The table of all keys, N = 2 or 3. In the barycentric triangulation what is no tunnel is coned from its barycentre.
+template <int N>
+class VariantTable {
+ public:
+  explicit VariantTable(int triangulation);
+  VariantTable(const VariantTable&) = delete;
+  VariantTable& operator=(const VariantTable&) = delete;
+
+  /// By key.
+  [[nodiscard]] const tables::TileTable& tile() const noexcept { return tile_; }
+  [[nodiscard]] const RowTable& rows() const noexcept { return rows_.front(); }
+
+ private:
+  void add(unsigned key, const std::vector<std::uint8_t>& simplices, unsigned cones,
+           const std::vector<std::uint64_t>& masks);
+  void add_plain(unsigned key, const tables::TileTable& from, unsigned signature, bool reversed);
+  void add_variants(int triangulation);
+  void finish();
+
+  std::vector<tables::List> lists_;
+  std::vector<std::uint16_t> list_of_;
+  std::vector<std::uint8_t> simplices_;
+  std::vector<std::uint64_t> masks_;
+  tables::TileTable tile_{};
+  std::vector<RowTable> rows_;
+};
+
+/// The one of a triangulation (0: barycentric, 1: compact), made when it is first asked for.
+template <int N>
+const VariantTable<N>& variant_table(int triangulation);
+
+/// Whether the data have a say in a tile: a square of it is ambiguous, or it has several polygons. By signature.
+template <int N>
+const std::array<bool, std::size_t{1} << (1u << N)>& ambiguous_signatures() noexcept;
+template <>
+const std::array<bool, 16>& ambiguous_signatures<2>() noexcept;
+template <>
+const std::array<bool, 256>& ambiguous_signatures<3>() noexcept;
+
+/// The squares and the inside of the cube along `axes` based at `base`, whose signature is ambiguous.
+template <int N>
+CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                    std::span<const double, 8> values, unsigned signature) noexcept;
+
+/// The key of an ambiguous tile.
+template <int N>
+unsigned resolved_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base,
+                      unsigned signature) noexcept;
+template <>
+unsigned resolved_key<2>(const FaceEstimator<2>& estimator, const std::array<std::size_t, 2>& base,
+                         unsigned signature) noexcept;
+template <>
+unsigned resolved_key<3>(const FaceEstimator<3>& estimator, const std::array<std::size_t, 3>& base,
+                         unsigned signature) noexcept;
+
+}  // namespace tegl::detail
