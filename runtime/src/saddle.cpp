@@ -134,27 +134,31 @@ bool short_differences(const std::array<double, kCorners>& values, double isoval
   return true;
 }
 
-/// A number computed in doubles from values minus the isovalue, each rounded, and the same with all signs positive. The
-/// relative error of a difference is u = 2^-53; a sum adds one u, a product the errors of its factors and one u,
-/// relative to `size`. Of the polynomials here, of degree 4 at most, none reaches 18 u. What underflows is far below
-/// kTiny; what overflows is unsure.
+/// A value minus the isovalue, rounded.
+struct Difference {
+  double value;
+};
+
+/// A number computed in doubles from differences, and the same with all signs positive. The relative error of a
+/// difference is u = 2^-53; a sum adds one u, a product the errors of its factors and one u, relative to `size`. Of the
+/// polynomials here, of degree 4 at most, none reaches 18 u. What underflows is far below kTiny; what overflows is
+/// unsure.
 struct Rounded {
   double value, size;
 
   static constexpr double kTiny = 0x1p-960;
   static constexpr double kError = 0x1p-48;  // 32 u
-
-  friend Rounded operator+(Rounded x, Rounded y) noexcept { return {x.value + y.value, x.size + y.size}; }
-  friend Rounded operator-(Rounded x, Rounded y) noexcept { return {x.value - y.value, x.size + y.size}; }
-  friend Rounded operator*(Rounded x, Rounded y) noexcept { return {x.value * y.value, x.size * y.size + kTiny}; }
-  Rounded operator-() const noexcept { return {-value, size}; }
 };
 
-template <std::size_t kCorners>
-std::array<Rounded, kCorners> rounded(const std::array<double, kCorners>& differences) noexcept {
-  std::array<Rounded, kCorners> result;
-  for (std::size_t v = 0; v < kCorners; ++v) result[v] = {differences[v], std::abs(differences[v])};
-  return result;
+Rounded operator+(Rounded x, Rounded y) noexcept { return {x.value + y.value, x.size + y.size}; }
+Rounded operator-(Rounded x, Rounded y) noexcept { return {x.value - y.value, x.size + y.size}; }
+Rounded operator*(Rounded x, Rounded y) noexcept { return {x.value * y.value, x.size * y.size + Rounded::kTiny}; }
+Rounded operator*(Difference x, Rounded y) noexcept {
+  return {x.value * y.value, std::abs(x.value) * y.size + Rounded::kTiny};
+}
+Rounded operator*(Difference x, Difference y) noexcept {
+  const double value = x.value * y.value;
+  return {value, std::abs(value) + Rounded::kTiny};
 }
 
 enum class Answer : std::uint8_t { no, yes, unsure };
@@ -163,15 +167,21 @@ Answer is_positive(const Rounded& x) noexcept {
   const double error = x.size * Rounded::kError;
   return x.value > error ? Answer::yes : x.value < -error ? Answer::no : Answer::unsure;
 }
+Answer is_negative(const Rounded& x) noexcept { return is_positive({-x.value, x.size}); }
 Answer is_not_negative(const Rounded& x) noexcept { return is_positive(x); }
 
+Answer answer_of(bool is_so) noexcept { return is_so ? Answer::yes : Answer::no; }
 template <class Integer>
 Answer is_positive(const Integer& x) noexcept {
-  return x.sign() > 0 ? Answer::yes : Answer::no;
+  return answer_of(x.sign() > 0);
+}
+template <class Integer>
+Answer is_negative(const Integer& x) noexcept {
+  return answer_of(x.sign() < 0);
 }
 template <class Integer>
 Answer is_not_negative(const Integer& x) noexcept {
-  return x.sign() >= 0 ? Answer::yes : Answer::no;
+  return answer_of(x.sign() >= 0);
 }
 
 /// One `no` is enough for no; all `yes` for yes.
@@ -186,34 +196,47 @@ Answer all_of(std::initializer_list<Answer> answers) noexcept {
 
 /// What a question asked of integers is answered with.
 template <std::size_t kCorners, class Question>
-[[gnu::noinline, gnu::cold]] bool ask_exactly(const std::array<double, kCorners>& values, double isovalue,
-                                              const Question& question) noexcept {
-  std::array<Short, kCorners> few_bits;
-  if (short_differences(values, isovalue, few_bits)) return question(few_bits) == Answer::yes;
-  return question(exact_differences(values, isovalue)) == Answer::yes;
+bool ask_exactly(const std::array<double, kCorners>& values, double isovalue, const Question& question) noexcept {
+  const auto integers = exact_differences(values, isovalue);
+  return question([&](unsigned v) -> const Exact& { return integers[v]; }) == Answer::yes;
 }
 
-/// Asks a question of rounded numbers first.
+/// Where rounding could decide.
+template <std::size_t kCorners, class Question>
+[[gnu::noinline, gnu::cold]] bool ask_again(const std::array<double, kCorners>& values, double isovalue,
+                                            const Question& question) noexcept {
+  std::array<Short, kCorners> few_bits;
+  if (!short_differences(values, isovalue, few_bits)) return ask_exactly(values, isovalue, question);
+  return question([&](unsigned v) -> const Short& { return few_bits[v]; }) == Answer::yes;
+}
+
+/// Asks a question of rounded numbers first: `differences` are the values' minus the isovalue.
 template <std::size_t kCorners, class Question>
 bool ask(const std::array<double, kCorners>& values, const std::array<double, kCorners>& differences, double isovalue,
          const Question& question) noexcept {
-  const Answer answer = question(rounded(differences));
-  return answer == Answer::unsure ? ask_exactly(values, isovalue, question) : answer == Answer::yes;
+  const Answer answer = question([&](unsigned v) { return Difference{differences[v]}; });
+  return answer == Answer::unsure ? ask_again(values, isovalue, question) : answer == Answer::yes;
 }
 
-/// Whether an ambiguous square joins its high corners.
+/// The corners of a square, by their numbers in the tile.
+using Square = std::array<std::uint8_t, 4>;
+
+/// Whether an ambiguous square joins its high corners. A question is asked of f(corner).
 struct SquareQuestion {
+  Square square;
   bool first_is_high;
 
-  template <class Number>
-  Answer operator()(const std::array<Number, 4>& f) const noexcept {
-    const Number even = f[0] * f[3], odd = f[1] * f[2];
-    return is_not_negative(first_is_high ? Number(even - odd) : Number(odd - even));
+  template <class Values>
+  Answer operator()(const Values& f) const noexcept {
+    const auto determinant = f(square[0]) * f(square[3]) - f(square[1]) * f(square[2]);
+    if (first_is_high) return is_not_negative(determinant);
+    const Answer is_odd = is_positive(determinant);
+    return is_odd == Answer::unsure ? is_odd : answer_of(is_odd == Answer::no);
   }
 };
 
 /// The corners of square 2 a + side.
-constexpr std::array<std::array<std::uint8_t, 4>, 6> kSquares = {
+constexpr std::array<Square, 6> kSquares = {
     {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}}};
 
 /// A pair of diagonal edges along an axis: the lower corners of A, C and of the two others, B, D.
@@ -311,40 +334,37 @@ struct PairQuestion {
   Pair pair;
   bool high;
 
-  template <class Number>
-  Answer operator()(const std::array<Number, 8>& f) const noexcept {
-    const Number &a0 = f[pair.a], &a1 = f[pair.a + pair.step], &c0 = f[pair.c], &c1 = f[pair.c + pair.step];
-    const Number &b0 = f[pair.b], &b1 = f[pair.b + pair.step], &d0 = f[pair.d], &d1 = f[pair.d + pair.step];
-    const Number q0 = a0 * c0 - b0 * d0, q1 = a1 * c1 - b1 * d1;
-    const Number m = a0 * c1 + a1 * c0 - b0 * d1 - b1 * d0;
-    const Number u0 = m - q0 - q0, u1 = m - q1 - q1;
+  template <class Values>
+  Answer operator()(const Values& f) const noexcept {
+    const auto &a0 = f(pair.a), &a1 = f(pair.a + pair.step), &c0 = f(pair.c), &c1 = f(pair.c + pair.step);
+    const auto &b0 = f(pair.b), &b1 = f(pair.b + pair.step), &d0 = f(pair.d), &d1 = f(pair.d + pair.step);
+    const auto q0 = a0 * c0 - b0 * d0, q1 = a1 * c1 - b1 * d1;
+    const auto m = a0 * c1 + a1 * c0 - b0 * d1 - b1 * d0;
+    const auto u0 = m - q0 - q0, u1 = m - q1 - q1;
     const Answer is_inside = all_of({is_positive(u0), is_positive(u1)});
     if (is_inside == Answer::no) return is_inside;
-    const Number a = a0 * u1 + a1 * u0, c = c0 * u1 + c1 * u0, q = product(q0, q1);
-    const Number hyperdeterminant = product(m, m) - q - q - q - q;
+    const auto a = a0 * u1 + a1 * u0, c = c0 * u1 + c1 * u0, q = product(q0, q1);
+    const auto hyperdeterminant = product(m, m) - q - q - q - q;
     if (high) return all_of({is_inside, is_not_negative(a), is_not_negative(c), is_not_negative(hyperdeterminant)});
-    return all_of({is_inside, is_positive(Number(-a)), is_positive(Number(-c)), is_positive(hyperdeterminant)});
+    return all_of({is_inside, is_negative(a), is_negative(c), is_positive(hyperdeterminant)});
   }
 };
 
-/// A cube, its questions answered by answer(corners of the face, question).
-template <class AnswerSquare, class AnswerPair>
-CubeDecision decide(unsigned signature, const AnswerSquare& answer_square, const AnswerPair& answer_pair) noexcept {
+/// A cube, by the answers to questions about it.
+template <class Ask>
+CubeDecision decide(unsigned signature, const Ask& is_so) noexcept {
   CubeDecision result;
   unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
-  for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1) {
+  for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1, bit *= 2) {
     const auto q = static_cast<unsigned>(std::countr_zero(rest));
-    const SquareQuestion question{(signature >> kSquares[q][0] & 1u) != 0};
-    if (answer_square(kSquares[q], question)) {
-      result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
-      entry += bit;
-    }
-    bit *= 2;
+    if (!is_so(SquareQuestion{kSquares[q], (signature >> kSquares[q][0] & 1u) != 0})) continue;
+    result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
+    entry += bit;
   }
   const Joins& joins = joins_of(entry);
-  if (joins.high != 0 && answer_pair(PairQuestion{kPairs[joins.high - 1u], true}))
+  if (joins.high != 0 && is_so(PairQuestion{kPairs[joins.high - 1u], true}))
     result.centre = Choice::high;
-  else if (joins.low != 0 && answer_pair(PairQuestion{kPairs[joins.low - 1u], false}))
+  else if (joins.low != 0 && is_so(PairQuestion{kPairs[joins.low - 1u], false}))
     result.centre = Choice::low;
   return result;
 }
@@ -356,43 +376,27 @@ std::array<double, kCorners> rounded_differences(const std::array<double, kCorne
   return result;
 }
 
-unsigned signature_of(const std::array<double, 8>& values, double isovalue) noexcept {
-  unsigned signature = 0;
-  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(values[v] >= isovalue) << v;
-  return signature;
-}
-
-std::array<double, 4> pick(const std::array<double, 8>& of, const std::array<std::uint8_t, 4>& corners) noexcept {
-  return {of[corners[0]], of[corners[1]], of[corners[2]], of[corners[3]]};
-}
+constexpr Square kWhole = {0, 1, 2, 3};
 
 }  // namespace
 
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept {
-  return ask(values, rounded_differences(values, isovalue), isovalue, SquareQuestion{values[0] >= isovalue});
-}
-
-CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue) noexcept {
-  const std::array<double, 8> differences = rounded_differences(values, isovalue);
-  return decide(
-      signature_of(values, isovalue),
-      [&](const std::array<std::uint8_t, 4>& corners, const SquareQuestion& question) {
-        return ask(pick(values, corners), pick(differences, corners), isovalue, question);
-      },
-      [&](const PairQuestion& question) { return ask(values, differences, isovalue, question); });
+  const SquareQuestion question{kWhole, values[0] >= isovalue};
+  return ask(values, rounded_differences(values, isovalue), isovalue, question);
 }
 
 bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept {
-  return SquareQuestion{values[0] >= isovalue}(exact_differences(values, isovalue)) == Answer::yes;
+  return ask_exactly(values, isovalue, SquareQuestion{kWhole, values[0] >= isovalue});
+}
+
+CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept {
+  const std::array<double, 8> differences = rounded_differences(values, isovalue);
+  return decide(signature, [&](const auto& question) { return ask(values, differences, isovalue, question); });
 }
 
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {
-  return decide(
-      signature_of(values, isovalue),
-      [&](const std::array<std::uint8_t, 4>& corners, const SquareQuestion& question) {
-        return question(exact_differences(pick(values, corners), isovalue)) == Answer::yes;
-      },
-      [&](const PairQuestion& question) { return question(exact_differences(values, isovalue)) == Answer::yes; });
+  return decide(signature_of(values, isovalue),
+                [&](const auto& question) { return ask_exactly(values, isovalue, question); });
 }
 
 }  // namespace tegl::detail

@@ -35,11 +35,7 @@ Values as_values(const Cube& cube) {
   return values;
 }
 
-unsigned signature_of(const Values& values, double isovalue = 0.0) {
-  unsigned signature = 0;
-  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(values[v] >= isovalue) << v;
-  return signature;
-}
+unsigned signature_of(const Values& values, double isovalue = 0.0) { return detail::signature_of(values, isovalue); }
 
 bool is_ambiguous(unsigned signature, const std::array<unsigned, 4>& square) {
   const auto sign = [&](unsigned i) { return signature >> square[i] & 1u; };
@@ -299,7 +295,7 @@ TEST(Saddle, FilteredDecisionsAreTheExactOnes) {
   for (int i = 0; i < 400000; ++i) {
     const double isovalue = i % 3 == 0 ? 0.0 : std::ldexp(static_cast<double>(random() % 1000), -(i % 7) - 3);
     const Values values = nearly_degenerate(random, isovalue);
-    differ += !(detail::decide_cube(values, isovalue) == detail::decide_cube_exactly(values, isovalue));
+    differ += !(decide_cube<double>(values, isovalue) == detail::decide_cube_exactly(values, isovalue));
     for (const auto& s : kSquares) {
       const std::array<double, 4> square = {values[s[0]], values[s[1]], values[s[2]], values[s[3]]};
       if (is_ambiguous(signature_of(values, isovalue), s))
@@ -402,7 +398,7 @@ TEST(Saddle, InfiniteValuesAreLargeAndNothingIsUndefined) {
     Values cube;
     for (auto& x : cube) x = values[random() % values.size()];
     const double isovalue = values[3 + random() % 6];
-    ASSERT_EQ(detail::decide_cube(cube, isovalue), detail::decide_cube_exactly(cube, isovalue));
+    ASSERT_EQ(decide_cube<double>(cube, isovalue), detail::decide_cube_exactly(cube, isovalue));
   }
 }
 

@@ -42,10 +42,17 @@ struct CubeDecision {
 namespace detail {
 /// The public functions, with the values as doubles, which hold all of theirs exactly.
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
-CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue) noexcept;
+/// `signature`: bit v is set if corner v is high.
+CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
 /// The same without the filter, for tests: all signs by exact arithmetic.
 bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept;
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept;
+
+inline unsigned signature_of(const std::array<double, 8>& values, double isovalue) noexcept {
+  unsigned signature = 0;
+  for (unsigned v = 0; v < 8; ++v) signature |= static_cast<unsigned>(values[v] >= isovalue) << v;
+  return signature;
+}
 
 template <Value T, std::size_t kCorners>
 std::array<double, kCorners> as_doubles(std::span<const T, kCorners> values) noexcept {
@@ -69,7 +76,8 @@ bool square_is_high(std::span<const T, 4> values, double isovalue) noexcept {
 /// one piece, is `separate`. Infinite values, NaN, errors and cost: as square_is_high; tens of nanoseconds.
 template <Value T>
 CubeDecision decide_cube(std::span<const T, 8> values, double isovalue) noexcept {
-  return detail::decide_cube(detail::as_doubles(values), isovalue);
+  const std::array<double, 8> doubles = detail::as_doubles(values);
+  return detail::decide_cube(doubles, isovalue, detail::signature_of(doubles, isovalue));
 }
 
 /// The same, only the inside: the cube's own choice.
