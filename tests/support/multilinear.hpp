@@ -140,8 +140,7 @@ class Stack {
   }
 
   [[nodiscard]] const std::vector<Slice>& layers() const { return layers_; }
-  /// No sample is 0, and neither is a critical value of f in the cube or in one of its squares. (Some cubes of which
-  /// this holds are refused: those with a whole slice at 0.)
+  /// No sample is 0, and neither is a critical value of f in the cube or in one of its squares at the ends.
   [[nodiscard]] bool regular() const { return regular_; }
 
   /// The part where f >= 0: its Euler characteristic, and which corners are in one piece, through join(v, w).
@@ -174,6 +173,13 @@ class Stack {
     return signs;
   }
 
+  /// Whether all corners rise, or all fall.
+  [[nodiscard]] bool same_slopes() const {
+    const auto rising = std::count_if(slope_.begin(), slope_.end(), [](std::int64_t s) { return s > 0; });
+    const auto falling = std::count_if(slope_.begin(), slope_.end(), [](std::int64_t s) { return s < 0; });
+    return rising == 4 || falling == 4;
+  }
+
   void build() {
     std::vector<Level> levels{{0, 1}, {1, 1}};
     for (int v = 0; v < 4; ++v) {
@@ -190,7 +196,8 @@ class Stack {
       add(corners_at(levels[i]), q_.sign_at(levels[i].p, levels[i].q));
       const auto& corners = layers_.back().corners;
       const auto zeros = std::count(corners.begin(), corners.end(), 0);
-      if (zeros == 4 || (zeros > 0 && (i == 0 || i + 1 == levels.size()))) regular_ = false;
+      if (zeros == 4 && !same_slopes()) regular_ = false;
+      if (zeros > 0 && (i == 0 || i + 1 == levels.size())) regular_ = false;
       if (layers_.back().q == 0 && is_diagonal()) regular_ = false;
     }
   }

@@ -70,4 +70,11 @@ std::string describe(const SampledField<N>& field) {
   return text.str();
 }
 
+/// The field 2^24 times as large and raised by 1: at 0 it is what the field is just below 0. For values up to 16.
+template <int N>
+SampledField<N> just_below(SampledField<N> field) {
+  for (std::int64_t& value : field.values) value = (value * (1 << 24)) + 1;
+  return field;
+}
+
 }  // namespace tegl::test

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The contour of the mirrored or turned image is the mirrored or turned contour, for every way to resolve ambiguities
+// that is itself symmetric. Facet by facet: the pieces in each tile, which edges each meets, and the Euler
+// characteristic of each. With the barycentric tables simplex by simplex as well; all others choose diagonals by the
+// numbers of corners, which no symmetry keeps.
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "compare.hpp"
+#include "estimators.hpp"
+#include "grid_symmetries.hpp"
+#include "random_fields.hpp"
+#include "tegl/extract.hpp"
+#include "tile_pieces.hpp"
+
+namespace tegl::test {
+namespace {
+
+/// With coordinates in units of 2^-20: mirrored places are rounded otherwise.
+template <int N, class Real>
+Contour<N, double> rounded(const Contour<N, Real>& contour) {
+  Contour<N, double> result;
+  result.simplices = contour.simplices;
+  for (const auto& vertex : contour.vertices) {
+    const auto units = in_small_units<N>(vertex);
+    auto& place = result.vertices.emplace_back();
+    for (int a = 0; a < N; ++a) place[a] = static_cast<double>(units[a]);
+  }
+  return result;
+}
+
+template <int N>
+SampledField<N> random_box(std::mt19937_64& bits, const std::array<std::size_t, N>& sizes, std::int64_t bound) {
+  SampledField<N> field{sizes, {}};
+  std::size_t count = 1;
+  for (const std::size_t size : sizes) count *= size;
+  while (field.values.size() < count)
+    field.values.push_back(static_cast<std::int64_t>(random_below(bits, 2 * static_cast<std::uint64_t>(bound) + 1)) -
+                           bound);
+  return field;
+}
+
+/// `every`: one of how many symmetries is looked at. Small bounds make ties; epsilon keeps the vertices on their edges.
+template <int N>
+void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t seed, std::size_t every) {
+  std::mt19937_64 bits(seed);
+  const auto symmetries = grid_symmetries<N>();
+  for (const std::int64_t bound : {2, 1 << 20}) {
+    const auto image = image_of<float>(random_box<N>(bits, sizes, bound));
+    for (auto [name, options] : all_ways()) {
+      if (name.starts_with("random")) continue;
+      SCOPED_TRACE(name + ", bound " + std::to_string(bound));
+      options.epsilon = 0.01;
+      const auto contour = extract<double>(image.view(), 0.0, options);
+      EXPECT_GT(contour.simplices.size(), 0u);
+      for (std::size_t s = seed % every; s < symmetries.size(); s += every) {
+        const auto expected = moved<N>(contour, symmetries[s], sizes);
+        const auto found = extract<double>(moved(image, symmetries[s]).view(), 0.0, options);
+        ASSERT_EQ(tile_pieces(found), tile_pieces(expected)) << "symmetry " << s;
+        if (name == "low, barycentric" || name == "high, barycentric") {
+          ASSERT_TRUE(same_surface(rounded(found), rounded(expected))) << "symmetry " << s;
+        }
+      }
+    }
+  }
+}
+
+TEST(Symmetry, OfImagesIsThatOfContoursIn2d) { expect_equivariant<2>({9, 6}, 1, 1); }
+TEST(Symmetry, OfImagesIsThatOfContoursIn3d) { expect_equivariant<3>({5, 4, 6}, 2, 1); }
+
+}  // namespace
+}  // namespace tegl::test
