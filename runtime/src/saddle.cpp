@@ -8,30 +8,35 @@
 // (A C - B D) / (A + C - B - D), whose denominator is positive: A and C are joined iff A C >= B D.
 //
 // Cubes. Cut the cube by the planes across one axis, at t in [0, 1]. In each, f is bilinear, with values A(t), B(t),
-// C(t), D(t) at the corners, linear in t. (1) From any point of H in a plane a path along the plane's two axes leads to
-// a high corner of the plane and stays in H: f
-//     is linear along each, so it does not decrease one way. The same holds for L. So the pieces of H in the cube are
-//     what arises from the high parts of the four edges along the axis, where two are joined if they are in one plane:
-//     both being neighbours (then the cube's surface joins them), or being diagonal in an ambiguous plane, with
-//     A C >= B D. (The pieces of these sets are closed, as H is; those of L, alike with A C > B D, are open, as L is.)
-// (2) The high part of an edge hangs on a high corner of the cube, so it belongs to one region of H on the cube's
-// surface
-//     (as the squares join corners). Two regions are joined inside the cube only by diagonal edges as in (1), inside
-//     the interval I of t where A and C are high and B and D are low. So are regions of L.
-// (3) This must come out the same along every axis. Of all 656 signatures with decided squares there are 98 where joins
-//     of H along all three axes could lead to the same regions (and 98 for L, of which 8 are the same). In all of
-//     these H has two regions, so that three or four are never joined, and along one axis at least there is just one
-//     pair of diagonal edges that can do it. A test enumerates them.
-// (4) q(t) = A C - B D is a quadratic. Let A and C be high on different regions that could be joined. At an end of I at
-// which B or D
-//     becomes high, the surface joins A and C: so there is none. At an end where A or C becomes low, or at 0 or 1,
-//     q <= 0 (a square that is not joined), strictly for H. So if A and C are joined, q has a maximum inside of
-//     I. With q(t) = q0 (1 - t)^2 + m t (1 - t) + q1 t^2 that is where t : 1 - t = u0 : u1, u0 = m - 2 q0, u1 =
-//     m - 2 q1, if u0, u1 > 0, and q is not negative there iff m^2 >= 4 q0 q1 (the hyperdeterminant of the eight
-//     values, which is the same along every axis). If moreover A and C are high there, B and D are low, or else the
-//     surface would join A and C. So the regions are joined iff
-//         u0 > 0,  u1 > 0,  m^2 >= 4 q0 q1,  A0 u1 + A1 u0 >= 0,  C0 u1 + C1 u0 >= 0,
-//     and for L, with the low diagonal as A and C, iff u0, u1 > 0, m^2 > 4 q0 q1, A0 u1 + A1 u0 < 0, C0 u1 + C1 u0 < 0.
+// C(t), D(t) at the corners, linear in t.
+//
+// First: from any point of H in a plane a path along the plane's two axes leads to a high corner of the plane and stays
+// in H, since f is linear along each and so does not decrease one way. The same holds for L. So the pieces of H in the
+// cube are what arises from the high parts of the four edges along the axis, two of which are joined where they are
+// high in one plane and either neighbours (then the cube's surface joins them) or diagonal in an ambiguous plane with
+// A C >= B D. (These pieces are closed, as H is; those of L, alike with A C > B D, are open, as L is.)
+//
+// Second: the high part of an edge hangs on a high corner of the cube, so it belongs to one region of H on the cube's
+// surface (as the squares join corners). Two regions are joined inside the cube only by diagonal edges, inside the
+// interval I of t where A and C are high and B and D are low. So are regions of L.
+//
+// Third: this must come out the same along every axis. Of all 656 signatures with decided squares there are 98 where
+// joins of H along each of the three axes could lead to the same regions (and 98 for L, of which 8 are the same). In
+// all of these H has two regions: three or four are never joined. Along one axis at least, just one pair of diagonal
+// edges can do it. A test enumerates them. As the cube is a ball, the contour has as many pieces as H and L together,
+// less one. That pieces with one loop are discs and those with two annuli is known (G. M. Nielson, On marching cubes,
+// 2003); tests compare Euler characteristics.
+//
+// Fourth: q(t) = A C - B D is a quadratic. Let A and C be on different regions. At an end of I at which B or D becomes
+// high the surface would join A and C: so there is none. At one where A or C becomes low, and at 0 and 1, where a
+// square does not join them, q <= 0. So if they are joined, q has a maximum inside of I. With q(t) = q0 (1 - t)^2 + m t
+// (1 - t) + q1 t^2, u0 = m - 2 q0 and u1 = m - 2 q1, it is at t : 1 - t = u0 : u1, if u0 and u1 are positive, and q >=
+// 0 there iff m^2 >= 4 q0 q1 (the difference is the hyperdeterminant of the eight values, the same along every axis).
+// If moreover A and C are high there, then B and D are low, or else the surface would join A and C. So the regions are
+// joined iff
+//     u0 > 0,  u1 > 0,  m^2 >= 4 q0 q1,  A0 u1 + A1 u0 >= 0,  C0 u1 + C1 u0 >= 0,
+// where A0 and A1 are A at t = 0 and 1. For L, A and C being the low diagonal:
+//     u0 > 0,  u1 > 0,  m^2 > 4 q0 q1,  A0 u1 + A1 u0 < 0,  C0 u1 + C1 u0 < 0.
 #include "tegl/saddle.hpp"
 
 #include <bit>
@@ -295,7 +300,7 @@ bool could_join(const Pair& pair, unsigned corners, const Regions& regions) {
   return has(a) && has(c) && !stays(pair.b) && !stays(pair.d) && regions[a] != regions[c];
 }
 
-/// The pair that decides whether regions are joined, + 1; 0: none are. See (3) above.
+/// The pair that decides whether regions are joined, + 1; 0: none are. Third, above.
 std::uint8_t deciding_pair(unsigned corners, unsigned ambiguous, unsigned joined_squares) {
   const Regions regions(corners, ambiguous, joined_squares);
   if (regions.count(corners) != 2) return 0;
@@ -329,7 +334,7 @@ const Joins& joins_of(unsigned entry) noexcept {
   return table.of[entry];
 }
 
-/// Whether A and C of a pair of edges are joined inside the cube: (4) above.
+/// Whether A and C of a pair of edges are joined inside the cube: fourth, above.
 struct PairQuestion {
   Pair pair;
   bool high;

@@ -412,6 +412,18 @@ std::pair<int, int> contour_of(const Values& values) {
   return {loops - joined, loops - 2 * joined};
 }
 
+TEST(Saddle, ContoursOfRandomCubesAreDiscsAndAtMostOneTunnel) {
+  std::mt19937_64 random(9);
+  for (int i = 0; i < 40000; ++i) {
+    const Cube cube = random_cube(random, i % 2 == 0 ? 100 : 100000000);
+    const auto expected = test::interpolant_topology<3>({{2, 2, 2}, {cube.begin(), cube.end()}});
+    if (!expected.regular) continue;
+    const std::pair<std::int64_t, std::int64_t> found = contour_of(as_values(cube));
+    ASSERT_EQ(found, (std::pair{expected.contour.components, expected.contour.euler}))
+        << ::testing::PrintToString(cube);
+  }
+}
+
 TEST(Saddle, NamedCubesHaveTheContoursOfTheLiterature) {
   for (const auto& cell : test::kNamedCubes)
     for (const Symmetry& symmetry : symmetries()) {
