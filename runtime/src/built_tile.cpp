@@ -21,6 +21,7 @@ CubeFaces::CubeFaces(int n) : lattice_(facets::FaceLattice::cube(n)), numbers_(s
     numbers_[least << n | (least ^ most)] = static_cast<std::uint16_t>(cells_.size());
     cells_.push_back({static_cast<std::uint8_t>(least), static_cast<std::uint8_t>(least ^ most),
                       static_cast<std::uint8_t>(face.dim)});
+    if (face.dim < 2) first_choice_ = cells_.size();
   }
 }
 
@@ -109,6 +110,7 @@ BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
     const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
     vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size()), 0, 0});
   }
+  is_settled = tile.facets.size() == 1 && tile.facets[0].filling != facets::Filling::side;
   for (const facets::Facet& facet : tile.facets)
     for (const facets::Simplex& s : facet.simplices)
       for (int j = 0; j < facets::size(s); ++j) simplices.push_back(number[s[j]]);
@@ -152,10 +154,17 @@ BuiltTiles::BuilderLoan::~BuilderLoan() {
   from_.builders_.push_back(std::move(builder_));
 }
 
-BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(std::uint64_t signature) const {
+BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(const TileKey& key) const {
+  std::vector<facets::Choice> choices;
+  if (key.has_choices()) {
+    const auto& cells = from_.cube_.cells();
+    choices.assign(cells.size(), facets::Choice::separate);
+    for (std::size_t face = from_.cube_.first_choice(); face < cells.size(); ++face)
+      choices[face] = key.choice(face - from_.cube_.first_choice());
+  }
   return too_large_as_error([&] {
     return std::make_shared<const BuiltTile>(
-        from_.cube_, builder_->build(signature, {.choices = {}, .alternative = from_.alternative_}));
+        from_.cube_, builder_->build(key.signature, {.choices = choices, .alternative = from_.alternative_}));
   });
 }
 
@@ -166,7 +175,7 @@ std::size_t BuiltTiles::kept_bytes() {
   return bytes;
 }
 
-void BuiltTiles::keep(std::uint64_t signature, const Pointer& tile) {
+void BuiltTiles::keep(const TileKey& key, const Pointer& tile) {
   const std::size_t bytes = tile->bytes();
   if (bytes_ + bytes > max_bytes_) {
     known_.clear();  // the most frequent ones are soon back
@@ -174,7 +183,7 @@ void BuiltTiles::keep(std::uint64_t signature, const Pointer& tile) {
   }
   if (bytes > max_bytes_) return;
   bytes_ += bytes;
-  known_.emplace(signature, tile);
+  known_.emplace(key, tile);
 }
 
 }  // namespace tegl::detail

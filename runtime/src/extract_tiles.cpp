@@ -232,24 +232,37 @@ class TileExtraction {
   }
 
   void build_tiles(TileSlab& here) {
-    std::vector<std::uint64_t> signatures(here.cells.size());
-    std::transform(here.cells.begin(), here.cells.end(), signatures.begin(), [](const Cell& c) { return c.signature; });
-    std::sort(signatures.begin(), signatures.end());
-    signatures.erase(std::unique(signatures.begin(), signatures.end()), signatures.end());
-    here.tiles =
-        built_.get(signatures, [this](std::size_t count, const auto& work) { this->pass_over(count, 16, work); });
+    assign_tiles(here, [&](std::size_t c) { return TileKey{here.cells[c].signature, {}}; });
     here.simplices.resize(here.cells.size() + 1);
     for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
-      for (std::size_t c = from; c < to; ++c) {
-        Cell& cell = here.cells[c];
-        cell.tile = static_cast<std::uint32_t>(std::lower_bound(signatures.begin(), signatures.end(), cell.signature) -
-                                               signatures.begin());
-        here.simplices[c + 1] = here.tiles[cell.tile].tile->simplices.size() / N;
-      }
+      for (std::size_t c = from; c < to; ++c)
+        here.simplices[c + 1] = here.tiles[here.cells[c].tile].tile->simplices.size() / N;
     });
     here.simplices[0] = simplices_;
     std::partial_sum(here.simplices.begin(), here.simplices.end(), here.simplices.begin());
     simplices_ = here.simplices.back();
+  }
+
+  /// The tiles of all cells, by the keys that these have.
+  template <class KeyOf>
+  void assign_tiles(TileSlab& here, const KeyOf& key_of) {
+    std::vector<TileKey> keys;
+    for (std::size_t c = 0; c < here.cells.size(); ++c) {
+      keys.push_back(key_of(c));
+      if (keys.size() == keys.capacity()) make_unique(keys);
+    }
+    make_unique(keys);
+    here.tiles = built_.get(keys, [this](std::size_t count, const auto& work) { this->pass_over(count, 16, work); });
+    for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
+      for (std::size_t c = from; c < to; ++c)
+        here.cells[c].tile =
+            static_cast<std::uint32_t>(std::lower_bound(keys.begin(), keys.end(), key_of(c)) - keys.begin());
+    });
+  }
+  static void make_unique(std::vector<TileKey>& keys) {
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    keys.reserve(2 * keys.size() + 1024);
   }
 
   /// Calls visit(faces, word, bit, vertices, cell number, face) for the faces of a cell with vertices.

@@ -117,8 +117,8 @@ TEST(BuiltTiles, KeepNoMoreThanTheyMayWhateverTheNumberOfBuilders) {
   constexpr std::size_t kLimit = std::size_t{1} << 20;
   const detail::CubeFaces cube(5);
   std::mt19937_64 bits(4);
-  std::vector<std::uint64_t> signatures(60);
-  for (std::uint64_t& s : signatures) s = bits() & 0xffffffff;
+  std::vector<detail::TileKey> keys(60);
+  for (detail::TileKey& key : keys) key.signature = bits() & 0xffffffff;
   for (const std::size_t builders : {1, 4}) {
     detail::BuiltTiles limited(cube, facets::Alternative::low, kLimit, builders);
     detail::BuiltTiles roomy(cube, facets::Alternative::low, std::size_t{1} << 28, builders);
@@ -128,11 +128,11 @@ TEST(BuiltTiles, KeepNoMoreThanTheyMayWhateverTheNumberOfBuilders) {
         threads.emplace_back([&, i] { work(i * count / builders, (i + 1) * count / builders); });
       for (std::thread& thread : threads) thread.join();
     };
-    const auto tiles = limited.get(signatures, side_by_side), same = roomy.get(signatures, side_by_side);
+    const auto tiles = limited.get(keys, side_by_side), same = roomy.get(keys, side_by_side);
     EXPECT_LE(limited.kept_bytes(), kLimit);
     EXPECT_GT(roomy.kept_bytes(), kLimit);
-    for (std::size_t i = 0; i < signatures.size(); ++i)
-      EXPECT_EQ(tiles[i].tile->simplices, same[i].tile->simplices) << signatures[i];
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      EXPECT_EQ(tiles[i].tile->simplices, same[i].tile->simplices) << keys[i].signature;
   }
 }
 
