@@ -96,26 +96,26 @@ void ResolvedTesseract::find_cubes(const ResolvedKey& key) {
 
 void ResolvedTesseract::find_components() {
   component_count_ = 0;
-  for (unsigned p = 0; p < part_count_; ++p) {
-    const ResolvedCubes::Part& part = *parts_[p];
-    Component joined;
-    joined.vertices = part.vertices, joined.apexes = part.apexes, joined.parts = 1u << p;
-    joined.triangles = part.triangle_count, joined.cubes = static_cast<std::uint8_t>(1u << part.cube);
-    unsigned kept = 0;
-    for (unsigned c = 0; c < component_count_; ++c) {
-      const Component& other = components_[c];
-      if ((other.vertices & joined.vertices) == 0) {
-        if (kept != c) components_[kept] = other;
-        ++kept;
-        continue;
+  for (auto left = static_cast<std::uint32_t>((std::uint64_t{1} << part_count_) - 1); left != 0;) {
+    const std::uint32_t first = left & (0 - left);
+    std::uint64_t vertices = parts_[std::countr_zero(first)]->vertices;
+    std::uint32_t parts = first;
+    left ^= first;
+    for (std::uint32_t before = 0; parts != before;) {
+      before = parts;
+      for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
+        const std::uint64_t of_part = parts_[std::countr_zero(rest)]->vertices;
+        if ((of_part & vertices) == 0) continue;
+        vertices |= of_part;
+        parts |= rest & (0 - rest);
       }
-      joined.cubes_twice |= static_cast<std::uint8_t>(other.cubes_twice | (joined.cubes & other.cubes));
-      joined.cubes |= other.cubes;
-      joined.vertices |= other.vertices, joined.apexes &= other.apexes;
-      joined.parts |= other.parts, joined.triangles += other.triangles;
+      left &= ~parts;
     }
-    components_[kept] = joined;
-    component_count_ = kept + 1;
+    Component& component = components_[component_count_++];
+    component = {};
+    component.vertices = vertices, component.parts = parts;
+    for (std::uint32_t rest = parts; rest != 0; rest &= rest - 1)
+      component.triangles += parts_[std::countr_zero(rest)]->triangle_count;
   }
 }
 
@@ -162,8 +162,8 @@ std::uint32_t ResolvedTesseract::region_of(const ResolvedKey& key, const Compone
   std::uint32_t reached = (corners & from) != 0 ? from : from << (1u << edge / 8);
   const std::uint8_t joining = high ? key.high_cubes & static_cast<std::uint8_t>(~key.low_cubes) : key.low_cubes;
   for (std::uint32_t before = 0; reached != before;) {
-    before = reached;
-    reached = grown(reached) & corners;
+    for (; reached != before; reached = grown(reached) & corners) before = reached;
+    if (reached == corners) break;
     for (unsigned f = 0; f < kCubes; ++f)
       if ((joining >> f & 1u) != 0 && (reached & kCornersOfCubes[f]) != 0) reached |= corners & kCornersOfCubes[f];
     for (unsigned q = 0; q < kCornersOfSquares.size(); ++q)
@@ -212,20 +212,25 @@ bool ResolvedTesseract::is_alone(unsigned component) const {
 }
 
 void ResolvedTesseract::cone(Component& component) {
-  for (unsigned twice = component.cubes_twice; twice != 0; twice &= twice - 1)
-    component.apexes &= ~cubes_.edges_of(static_cast<unsigned>(std::countr_zero(twice)));
+  auto apexes = static_cast<std::uint32_t>(component.vertices);
+  unsigned cubes = 0;
+  for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
+    const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
+    // Points of one of its parts in a cube are not joined with those of another one there.
+    apexes &= (cubes >> part.cube & 1u) != 0 ? ~cubes_.edges_of(part.cube) : part.apexes;
+    cubes |= 1u << part.cube;
+  }
   // From the point of most triangles; all its neighbours are beside it, and there is nothing else beside it.
   unsigned apex = kFirstOwn + static_cast<unsigned>(masks_.size());
   int most = 0;
-  for (auto rest = component.apexes & static_cast<std::uint32_t>(component.vertices); rest != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = apexes; rest != 0; rest &= rest - 1) {
     const auto e = static_cast<unsigned>(std::countr_zero(rest));
     const int around = std::popcount(component.vertices & cubes_.beside(e));
     if (around > most) most = around, apex = e;
   }
   if (apex >= kFirstOwn) add_own((component.vertices & 0xffffffffu) << kMaskEdge);
-  const std::uint32_t first = ResolvedCubes::apex_word(apex);
+  const std::uint32_t first = ResolvedCubes::apex_word(apex), repeated = apex * 0x01010101u;
   Word* out = simplices_.data() + simplex_count_;
-  const std::uint32_t repeated = apex * 0x01010101u;
   for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
     const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
     const std::uint32_t* const triangles = cubes_.triangles(part);
@@ -320,12 +325,12 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
       local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
     }
     const auto tetrahedra = all.tetrahedra(region);
-    if (cubes_.is_reversed(cube))
-      for (const CubeRegions::Tetrahedron& t : tetrahedra)
-        add_simplex({local[t[0]], local[t[1]], local[t[3]], local[t[2]]});
-    else
-      for (const CubeRegions::Tetrahedron& t : tetrahedra)
-        add_simplex({local[t[0]], local[t[1]], local[t[2]], local[t[3]]});
+    if (simplices_.size() < simplex_count_ + tetrahedra.size()) simplices_.resize(2 * simplex_count_ + 256);
+    const unsigned third = cubes_.is_reversed(cube) ? 3 : 2;
+    Word* out = simplices_.data() + simplex_count_;
+    simplex_count_ += tetrahedra.size();
+    for (const CubeRegions::Tetrahedron& t : tetrahedra)
+      *out++ = word({local[t[0]], local[t[1]], local[t[third]], local[t[5 - third]]});
   }
 }
 

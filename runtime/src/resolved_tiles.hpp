@@ -76,10 +76,8 @@ class ResolvedTesseract {
   using Word = std::uint32_t;  ///< four vertices
   struct Component {
     std::uint64_t vertices = 0;
-    std::uint32_t apexes = ~std::uint32_t{0};  ///< edges whose points may be a cone's apex
-    std::uint32_t parts = 0;                   ///< set of parts
+    std::uint32_t parts = 0;  ///< set of parts
     std::uint32_t triangles = 0;
-    std::uint8_t cubes = 0, cubes_twice = 0;  ///< with any, with several of its parts
     bool is_coned = false;
     std::uint32_t region = 0;  ///< corners of the side that is copied, beside it
     [[nodiscard]] bool is_sphere() const noexcept;
