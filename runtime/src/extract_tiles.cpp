@@ -10,6 +10,7 @@
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@
 #include "face_ranks.hpp"
 #include "grid_cells.hpp"
 #include "stopwatch.hpp"
+#include "tile_choices.hpp"
 #include "tile_places.hpp"
 #include "workers.hpp"
 
@@ -136,6 +138,10 @@ class TileExtraction {
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
                tile_bytes, workers_.count()) {
     if (options.normals) placement_.want_normals(source, grid, options);
+    if (is_estimated(options.ambiguity)) {
+      estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
+      choices_.emplace(cube_, *estimator_);
+    }
   }
 
   ContourSize run(ExtractStats& stats) {
@@ -143,7 +149,7 @@ class TileExtraction {
     source_.keep(3);
     Stopwatch watch;
     for (std::size_t k = 0; k <= slabs; ++k) {
-      reporter_.begin_batch(k == 0 ? 0 : k - 1, k, kPasses);
+      reporter_.begin_batch(k == 0 ? 0 : k - 1, k, passes());
       reporter_.tell(k == 0 ? 0.0 : static_cast<double>(k - 1));
       if (k == 0) classify(0);
       if (k < slabs) classify(k + 1);
@@ -162,7 +168,10 @@ class TileExtraction {
   using Vertex = typename Contour<N, Real>::Vertex;
   struct Nothing {};                             ///< that threads keep
   static constexpr std::size_t kMostWork = 256;  ///< cells or tiles between two questions whether to go on
-  static constexpr unsigned kPasses = 3;         ///< over a slab: build the next one's tiles, perhaps twice; write
+  /// Over a slab: build the next one's tiles, perhaps twice, and twice those whose own choice turns out to matter;
+  /// write.
+  [[nodiscard]] unsigned passes() const noexcept { return choices_ ? 5 : 3; }
+  static constexpr std::size_t kNoCell = ~std::size_t{0};
   static constexpr std::uint32_t kSlabAbove = std::uint32_t{1} << 31;  ///< for cells of the slab above a layer
 
   TileLayer& layer(std::size_t k) { return layers_[k % layers_.size()]; }
@@ -224,15 +233,23 @@ class TileExtraction {
     if (here.cells.size() >= kSlabAbove)
       throw Error(ErrorCode::TooLarge, fmt::format("{} active tiles between two layers; expected less than {}",
                                                    here.cells.size(), kSlabAbove));
-    build_tiles(here);
+    build_tiles(k);
     for (const Cell& cell : here.cells)
       if (!CellKind<N>(cell.kind).is_cap()) ++stats.active_tiles;
     for_faces(k, [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices&, std::size_t,
                      std::uint16_t) { faces.mark(word, bit); });
   }
 
-  void build_tiles(TileSlab& here) {
-    assign_tiles(here, [&](std::size_t c) { return TileKey{here.cells[c].signature, {}}; });
+  void build_tiles(std::size_t k) {
+    TileSlab& here = slab(k);
+    here.tiles.clear();
+    if (choices_) {
+      find_choices(k);
+      assign_tiles(here, all_cells(here), [&](std::size_t c) { return keys_[c]; });
+      choose_own(k);
+    } else {
+      assign_tiles(here, all_cells(here), [&](std::size_t c) { return TileKey{here.cells[c].signature, {}}; });
+    }
     here.simplices.resize(here.cells.size() + 1);
     for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
       for (std::size_t c = from; c < to; ++c)
@@ -243,26 +260,76 @@ class TileExtraction {
     simplices_ = here.simplices.back();
   }
 
-  /// The tiles of all cells, by the keys that these have.
-  template <class KeyOf>
-  void assign_tiles(TileSlab& here, const KeyOf& key_of) {
+  static auto all_cells(const TileSlab& slab) {
+    return [&slab](std::size_t i) { return i < slab.cells.size() ? i : kNoCell; };
+  }
+
+  /// The tiles of some cells, by the keys that these have. `cell(i)`: the i-th of them; kNoCell behind the last.
+  template <class Cells, class KeyOf>
+  void assign_tiles(TileSlab& here, const Cells& cell, const KeyOf& key_of) {
     std::vector<TileKey> keys;
-    for (std::size_t c = 0; c < here.cells.size(); ++c) {
-      keys.push_back(key_of(c));
+    std::size_t count = 0;
+    for (; cell(count) != kNoCell; ++count) {
+      keys.push_back(key_of(cell(count)));
       if (keys.size() == keys.capacity()) make_unique(keys);
     }
     make_unique(keys);
-    here.tiles = built_.get(keys, [this](std::size_t count, const auto& work) { this->pass_over(count, 16, work); });
-    for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
-      for (std::size_t c = from; c < to; ++c)
-        here.cells[c].tile =
-            static_cast<std::uint32_t>(std::lower_bound(keys.begin(), keys.end(), key_of(c)) - keys.begin());
+    const std::size_t before = here.tiles.size();
+    auto tiles = built_.get(keys, [this](std::size_t n, const auto& work) { this->pass_over(n, 16, work); });
+    here.tiles.insert(here.tiles.end(), tiles.begin(), tiles.end());
+    for_range(count, 256, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i)
+        here.cells[cell(i)].tile = static_cast<std::uint32_t>(
+            before +
+            static_cast<std::size_t>(std::lower_bound(keys.begin(), keys.end(), key_of(cell(i))) - keys.begin()));
     });
   }
   static void make_unique(std::vector<TileKey>& keys) {
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     keys.reserve(2 * keys.size() + 1024);
+  }
+
+  /// What the data say of the cells' faces, and of tiles with ambiguous faces.
+  void find_choices(std::size_t k) {
+    const TileSlab& here = slab(k);
+    keys_.resize(here.cells.size());
+    for_range(here.cells.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t c = from; c < to; ++c) {
+        const CellKind<N> kind(here.cells[c].kind);
+        const auto base = base_of(here.cells[c], k);
+        keys_[c] = choices_->of_faces(kind, base, here.cells[c].signature);
+        if (keys_[c].has_choices() && !kind.is_cap()) choices_->choose_own(keys_[c], base);
+      }
+    });
+    estimator_->rethrow();
+  }
+
+  /// The same of tiles that turn out to have something to choose though none of their faces has.
+  void choose_own(std::size_t k) {
+    TileSlab& here = slab(k);
+    std::vector<std::size_t> open;
+    for (std::size_t c = 0; c < here.cells.size(); ++c)
+      if (!keys_[c].has_choices() && !CellKind<N>(here.cells[c].kind).is_cap() &&
+          !here.tiles[here.cells[c].tile].tile->is_settled)
+        open.push_back(c);
+    for_range(open.size(), 64, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i) choices_->choose_own(keys_[open[i]], base_of(here.cells[open[i]], k));
+    });
+    estimator_->rethrow();
+    if (open.empty()) return;
+    assign_tiles(
+        here, [&](std::size_t i) { return i < open.size() ? open[i] : kNoCell; },
+        [&](std::size_t c) { return keys_[c]; });
+  }
+
+  /// The sample that a cell of slab k starts from.
+  typename RowShape<N>::Index base_of(const Cell& cell, std::size_t k) const noexcept {
+    const CellKind<N> kind(cell.kind);
+    auto base = shape_.index_of(cell.row);
+    base[0] = cell.i;
+    base[N - 1] = k + (kind.across() == N - 1 ? kind.side() : 0);
+    return base;
   }
 
   /// Calls visit(faces, word, bit, vertices, cell number, face) for the faces of a cell with vertices.
@@ -338,9 +405,7 @@ class TileExtraction {
     const Cell& cell = slab(k).cells[c];
     const SeenTile& seen = slab(k).tiles[cell.tile];
     const CellKind<N> kind(cell.kind);
-    auto base = shape_.index_of(cell.row);
-    base[0] = cell.i;
-    base[N - 1] = k + (kind.across() == N - 1 ? kind.side() : 0);
+    const auto base = base_of(cell, k);
     places.begin(seen, kind.is_cap() ? N - 1 : -1);
     ids.resize(seen.tile->vertices.size());
     for_faces_of(k, c,
@@ -440,6 +505,9 @@ class TileExtraction {
   std::array<TileLayer, 3> layers_;  ///< by k modulo their number
   std::array<TileSlab, 2> slabs_;
   std::vector<std::vector<Cell>> by_row_;
+  std::optional<FaceEstimator<N>> estimator_;  ///< where the data decide
+  std::optional<TileChoices<N>> choices_;
+  std::vector<TileKey> keys_;  ///< of the cells of the slab at hand, where the data decide
   std::uint64_t vertices_ = 0;
   std::uint64_t simplices_ = 0;
 };
@@ -449,7 +517,6 @@ class TileExtraction {
 template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
                           Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes) {
-  require_consistent_method(options, "contours of 5D images");
   if (contour != nullptr) {
     for (int a = 0; a < N; ++a) {
       contour->axis_names[a] = grid.axes[a].name;

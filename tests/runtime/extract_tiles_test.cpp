@@ -154,6 +154,30 @@ TEST(ExtractTiles, VolumesHaveTheContoursOfTheTables) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(noise<float, 3>(12, seed).view(), 0.5);
 }
 
+TEST(ExtractTiles, ResolvedFromTheDataPlaneImagesHaveTheContoursOfTheTables) {
+  ExtractOptions options;
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+    options.ambiguity = ambiguity;
+    const auto image = noise<float, 2>(70, 5);
+    EXPECT_TRUE(same_surface(rounded(extract_tile_by_tile(image.view(), 0.5, options)),
+                             rounded(extract<double>(image.view(), 0.5, options))));
+  }
+}
+
+TEST(ExtractTiles, ResolvedFromTheDataVolumesHaveTheTopologyOfTheTables) {
+  ExtractOptions options;
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      options.ambiguity = ambiguity;
+      options.close = seed % 2 == 0;
+      const auto image = noise<float, 3>(9, seed);
+      const MeshReport built = expect_oriented_manifold(extract_tile_by_tile(image.view(), 0.5, options));
+      const MeshReport found = expect_oriented_manifold(extract<double>(image.view(), 0.5, options));
+      EXPECT_EQ(built.components, found.components);
+      EXPECT_EQ(built.euler, found.euler);
+    }
+}
+
 TEST(ExtractTiles, AnyGridDirectionAndEpsilonHaveTheContoursOfTheTables) {
   ExtractOptions options;
   options.direction = GradientDirection::ascent;
@@ -250,7 +274,7 @@ TEST(Extract5d, TubesAroundACircleAndASphereHaveTheirEulerCharacteristics) {
 TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
   const auto image = noise<float, 5>(3, 5);
   ExtractOptions options;
-  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high}) {
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle}) {
     options.ambiguity = ambiguity;
     const auto contour = extract<double>(image.view(), 0.5, options);
     EXPECT_EQ(expect_oriented_manifold(contour).degenerate_simplices, 0u);
@@ -274,9 +298,17 @@ TEST(Extract5d, ClosedNoiseIsAClosedManifoldAndEnclosesTheHighSide) {
   EXPECT_NEAR(content + enclosed_content(low), 3.0 * 2 * 3 * 2 * 2, 1e-9);
 }
 
-TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
+template <class Real>
+bool same_bytes(const Contour<5, Real>& a, const Contour<5, Real>& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+  };
+  return same(a.vertices, b.vertices) && same(a.simplices, b.simplices) && same(a.normals, b.normals);
+}
+
+void expect_contour_of_layer(const ExtractOptions& options) {
   const auto image = noise<float, 5>({3, 4, 3, 3, 3}, 7);
-  const auto contour = extract<double>(image.view(), 0.5);
+  const auto contour = extract<double>(image.view(), 0.5, options);
   // In layer 1, which is inside: faces with all vertices in it. Each is in two simplices, below and above.
   std::vector<std::array<std::array<double, 4>, 4>> found;
   for (const auto& simplex : contour.simplices) {
@@ -293,7 +325,7 @@ TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
   std::vector<std::array<std::array<double, 4>, 4>> expected;
   const std::size_t layer = 3 * 4 * 3 * 3;
   const Image<float, 4> of_layer(image.values.data() + layer, Grid<4>::unit({3, 4, 3, 3}));
-  const auto in_layer = extract_tile_by_tile(of_layer, 0.5);
+  const auto in_layer = extract_tile_by_tile(of_layer, 0.5, options);
   for (const auto& simplex : in_layer.simplices) {
     std::array<std::array<double, 4>, 4> face;
     for (std::size_t j = 0; j < 4; ++j) face[j] = in_layer.vertices[simplex[j]];
@@ -307,12 +339,39 @@ TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
   EXPECT_TRUE(found == expected);  // bit by bit
 }
 
-template <class Real>
-bool same_bytes(const Contour<5, Real>& a, const Contour<5, Real>& b) {
-  const auto same = [](const auto& x, const auto& y) {
-    return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+TEST(Extract5d, ALayerHasTheContourOfItsOwnImage) {
+  ExtractOptions options;
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle}) {
+    options.ambiguity = ambiguity;
+    expect_contour_of_layer(options);
+  }
+}
+
+TEST(Extract5d, ResolvedFromTheDataNoiseIsClosedByCapsAndTheSameForAnyNumberOfThreads) {
+  const auto image = noise<std::int16_t, 5>({3, 4, 3, 3, 3}, 11);
+  ExtractOptions options;
+  options.close = true;
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+    options.ambiguity = ambiguity;
+    options.threads = 1;
+    const auto one = extract<float>(image.view(), 0.5, options);
+    expect_closed_manifold(one);
+    options.threads = 3;
+    EXPECT_TRUE(same_bytes(one, extract_tile_by_tile<float>(image.view(), 0.5, options, 20'000)));
+  }
+}
+
+TEST(Extract5d, AnEstimatorThatAlwaysSaysLowGivesTheLowConnectedContour) {
+  const auto image = noise<float, 5>(3, 12);
+  ExtractOptions options;
+  const auto low = extract<double>(image.view(), 0.5, options);
+  options.ambiguity = Ambiguity::custom;
+  options.estimator.choose = [](const AmbiguousFace& face) {
+    return face.dim() == 2 ? facets::Choice::low : facets::Choice::separate;
   };
-  return same(a.vertices, b.vertices) && same(a.simplices, b.simplices) && same(a.normals, b.normals);
+  EXPECT_TRUE(same_surface(rounded(low), rounded(extract<double>(image.view(), 0.5, options))));
+  options.estimator.choose = [](const AmbiguousFace&) -> facets::Choice { throw std::runtime_error("no idea"); };
+  EXPECT_THROW(extract<double>(image.view(), 0.5, options), std::runtime_error);
 }
 
 TEST(Extract5d, IsTheSameForAnyNumberOfThreadsAndAnyMemoryForTiles) {
