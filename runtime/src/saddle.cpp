@@ -75,9 +75,12 @@ Exact product(const Exact& x, const Exact& y) noexcept {
   return y.sign() < 0 ? Exact(-result) : result;
 }
 
-/// For differences of up to 31 bits with their sign: the polynomials then have 4 * 30 + 5 at most.
-using Short = boost::multiprecision::int128_t;
-inline constexpr int kShortBits = 30;
+/// Differences of at most 14 bits beside the sign, and of at most 30: the polynomials have four times as many and 5
+/// more.
+using Short = std::int64_t;
+inline constexpr int kShortBits = 14;
+using Middle = boost::multiprecision::int128_t;
+inline constexpr int kMiddleBits = 30;
 
 /// x = integer * 2^exponent; infinite as 2^1024.
 struct Dyadic {
@@ -111,10 +114,11 @@ std::array<Exact, kCorners> exact_differences(const std::array<double, kCorners>
   return result;
 }
 
-/// The same as 31-bit integers, if they are: whole numbers of few bits and floats of similar size mostly are.
+/// The same as integers of kMiddleBits, the largest of just as many, if that is possible: whole numbers of few bits,
+/// and floats of similar size.
 template <std::size_t kCorners>
-bool short_differences(const std::array<double, kCorners>& values, double isovalue,
-                       std::array<Short, kCorners>& result) noexcept {
+bool middle_differences(const std::array<double, kCorners>& values, double isovalue,
+                        std::array<std::int64_t, kCorners>& result) noexcept {
   std::array<double, kCorners> differences;
   double most = 0.0;
   for (std::size_t v = 0; v < kCorners; ++v) {
@@ -127,14 +131,11 @@ bool short_differences(const std::array<double, kCorners>& values, double isoval
   }
   constexpr double kLeast = 0x1p-900, kMost = 0x1p+900;
   if (!(most >= kLeast && most <= kMost)) return false;
-  int exponent = 0;
-  std::frexp(most, &exponent);
-  const double scale = std::ldexp(1.0, kShortBits - exponent);
+  const double scale = std::ldexp(1.0, kMiddleBits - 1 - std::ilogb(most));
   for (std::size_t v = 0; v < kCorners; ++v) {
     const double scaled = differences[v] * scale;
-    const auto integer = static_cast<std::int64_t>(scaled);
-    if (static_cast<double>(integer) != scaled || (integer == 0 && differences[v] != 0.0)) return false;
-    result[v] = integer;
+    result[v] = static_cast<std::int64_t>(scaled);
+    if (static_cast<double>(result[v]) != scaled || (result[v] == 0 && differences[v] != 0.0)) return false;
   }
   return true;
 }
@@ -176,17 +177,22 @@ Answer is_negative(const Rounded& x) noexcept { return is_positive({-x.value, x.
 Answer is_not_negative(const Rounded& x) noexcept { return is_positive(x); }
 
 Answer answer_of(bool is_so) noexcept { return is_so ? Answer::yes : Answer::no; }
+int sign_of(Short x) noexcept { return (x > 0) - (x < 0); }
+template <class Integer>
+int sign_of(const Integer& x) noexcept {
+  return x.sign();
+}
 template <class Integer>
 Answer is_positive(const Integer& x) noexcept {
-  return answer_of(x.sign() > 0);
+  return answer_of(sign_of(x) > 0);
 }
 template <class Integer>
 Answer is_negative(const Integer& x) noexcept {
-  return answer_of(x.sign() < 0);
+  return answer_of(sign_of(x) < 0);
 }
 template <class Integer>
 Answer is_not_negative(const Integer& x) noexcept {
-  return answer_of(x.sign() >= 0);
+  return answer_of(sign_of(x) >= 0);
 }
 
 /// One `no` is enough for no; all `yes` for yes.
@@ -197,30 +203,6 @@ Answer all_of(std::initializer_list<Answer> answers) noexcept {
     if (answer == Answer::unsure) result = answer;
   }
   return result;
-}
-
-/// What a question asked of integers is answered with.
-template <std::size_t kCorners, class Question>
-bool ask_exactly(const std::array<double, kCorners>& values, double isovalue, const Question& question) noexcept {
-  const auto integers = exact_differences(values, isovalue);
-  return question([&](unsigned v) -> const Exact& { return integers[v]; }) == Answer::yes;
-}
-
-/// Where rounding could decide.
-template <std::size_t kCorners, class Question>
-[[gnu::noinline, gnu::cold]] bool ask_again(const std::array<double, kCorners>& values, double isovalue,
-                                            const Question& question) noexcept {
-  std::array<Short, kCorners> few_bits;
-  if (!short_differences(values, isovalue, few_bits)) return ask_exactly(values, isovalue, question);
-  return question([&](unsigned v) -> const Short& { return few_bits[v]; }) == Answer::yes;
-}
-
-/// Asks a question of rounded numbers first: `differences` are the values' minus the isovalue.
-template <std::size_t kCorners, class Question>
-bool ask(const std::array<double, kCorners>& values, const std::array<double, kCorners>& differences, double isovalue,
-         const Question& question) noexcept {
-  const Answer answer = question([&](unsigned v) { return Difference{differences[v]}; });
-  return answer == Answer::unsure ? ask_again(values, isovalue, question) : answer == Answer::yes;
 }
 
 /// The corners of a square, by their numbers in the tile.
@@ -355,53 +337,97 @@ struct PairQuestion {
   }
 };
 
-/// A cube, by the answers to questions about it.
-template <class Ask>
-CubeDecision decide(unsigned signature, const Ask& is_so) noexcept {
-  CubeDecision result;
-  unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
-  for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1, bit *= 2) {
-    const auto q = static_cast<unsigned>(std::countr_zero(rest));
-    if (!is_so(SquareQuestion{kSquares[q], (signature >> kSquares[q][0] & 1u) != 0})) continue;
-    result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
-    entry += bit;
+/// A cube, by the answers to questions about it; nothing if one of them is unsure.
+struct CubeDecider {
+  unsigned signature;
+
+  template <class Values>
+  bool operator()(const Values& f, CubeDecision& result) const noexcept {
+    result = {};
+    unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
+    for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1, bit *= 2) {
+      const auto q = static_cast<unsigned>(std::countr_zero(rest));
+      const Answer is_high = SquareQuestion{kSquares[q], (signature >> kSquares[q][0] & 1u) != 0}(f);
+      if (is_high == Answer::unsure) return false;
+      if (is_high == Answer::no) continue;
+      result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
+      entry += bit;
+    }
+    const Joins& joins = joins_of(entry);
+    for (const bool high : {true, false}) {
+      const std::uint8_t pair = high ? joins.high : joins.low;
+      if (pair == 0) continue;
+      const Answer is_joined = PairQuestion{kPairs[pair - 1u], high}(f);
+      if (is_joined == Answer::unsure) return false;
+      if (is_joined == Answer::no) continue;
+      result.centre = high ? Choice::high : Choice::low;
+      break;
+    }
+    return true;
   }
-  const Joins& joins = joins_of(entry);
-  if (joins.high != 0 && is_so(PairQuestion{kPairs[joins.high - 1u], true}))
-    result.centre = Choice::high;
-  else if (joins.low != 0 && is_so(PairQuestion{kPairs[joins.low - 1u], false}))
-    result.centre = Choice::low;
+};
+
+struct SquareDecider {
+  bool first_is_high;
+
+  template <class Values>
+  bool operator()(const Values& f, bool& result) const noexcept {
+    const Answer answer = SquareQuestion{{0, 1, 2, 3}, first_is_high}(f);
+    result = answer == Answer::yes;
+    return answer != Answer::unsure;
+  }
+};
+
+template <class Result, std::size_t kCorners, class Decider>
+Result decide_exactly(const std::array<double, kCorners>& values, double isovalue, const Decider& decider) noexcept {
+  const auto differences = exact_differences(values, isovalue);
+  Result result{};
+  decider([&](unsigned v) -> const Exact& { return differences[v]; }, result);
   return result;
 }
 
-template <std::size_t kCorners>
-std::array<double, kCorners> rounded_differences(const std::array<double, kCorners>& values, double isovalue) noexcept {
-  std::array<double, kCorners> result;
-  for (std::size_t v = 0; v < kCorners; ++v) result[v] = values[v] - isovalue;
+/// Where rounding could decide: by the shortest integers that will do.
+template <class Result, std::size_t kCorners, class Decider>
+[[gnu::noinline, gnu::cold]] Result decide_by_integers(const std::array<double, kCorners>& values, double isovalue,
+                                                       const Decider& decider) noexcept {
+  std::array<std::int64_t, kCorners> differences;
+  if (!middle_differences(values, isovalue, differences)) return decide_exactly<Result>(values, isovalue, decider);
+  constexpr int kSpare = kMiddleBits - kShortBits;
+  std::int64_t bits = 0;
+  for (const std::int64_t difference : differences) bits |= difference;
+  Result result{};
+  if (bits % (std::int64_t{1} << kSpare) == 0)
+    decider([&](unsigned v) { return Short{differences[v] / (std::int64_t{1} << kSpare)}; }, result);
+  else
+    decider([&](unsigned v) { return Middle(differences[v]); }, result);
   return result;
 }
 
-constexpr Square kWhole = {0, 1, 2, 3};
+template <class Result, std::size_t kCorners, class Decider>
+Result decide(const std::array<double, kCorners>& values, double isovalue, const Decider& decider) noexcept {
+  std::array<double, kCorners> differences;
+  for (std::size_t v = 0; v < kCorners; ++v) differences[v] = values[v] - isovalue;
+  Result result{};
+  if (decider([&](unsigned v) { return Difference{differences[v]}; }, result)) return result;
+  return decide_by_integers<Result>(values, isovalue, decider);
+}
 
 }  // namespace
 
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept {
-  const SquareQuestion question{kWhole, values[0] >= isovalue};
-  return ask(values, rounded_differences(values, isovalue), isovalue, question);
+  return decide<bool>(values, isovalue, SquareDecider{values[0] >= isovalue});
 }
 
 bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept {
-  return ask_exactly(values, isovalue, SquareQuestion{kWhole, values[0] >= isovalue});
+  return decide_exactly<bool>(values, isovalue, SquareDecider{values[0] >= isovalue});
 }
 
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept {
-  const std::array<double, 8> differences = rounded_differences(values, isovalue);
-  return decide(signature, [&](const auto& question) { return ask(values, differences, isovalue, question); });
+  return decide<CubeDecision>(values, isovalue, CubeDecider{signature});
 }
 
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {
-  return decide(signature_of(values, isovalue),
-                [&](const auto& question) { return ask_exactly(values, isovalue, question); });
+  return decide_exactly<CubeDecision>(values, isovalue, CubeDecider{signature_of(values, isovalue)});
 }
 
 }  // namespace tegl::detail
