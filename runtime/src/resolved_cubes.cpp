@@ -125,6 +125,8 @@ ResolvedCubes::ResolvedCubes() {
 
 void ResolvedCubes::number_lists() {
   list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
+  for (unsigned s = 0; s < 256; ++s)
+    of_signatures_[s] = {kTile3Resolved.first_entry[s], kTile3Resolved.ambiguous_squares[s]};
   for (unsigned s = 1; s < 255; ++s) {
     const unsigned ambiguous = kTile3Resolved.ambiguous_squares[s];
     for (unsigned high = 0, entry = kTile3Resolved.first_entry[s];; ++entry) {

@@ -55,10 +55,11 @@ class ResolvedCubes {
     for (unsigned pair = 0; pair < 6; ++pair) result |= squares_[pair][tile >> (4 * pair) & 15u];
     return result;
   }
-  /// The number of a list, less than lists().size(). `high_squares`: those not ambiguous are ignored.
+  /// The number of a list, less than lists().size(), or kNone for a cube of one sign. `high_squares`: those not
+  /// ambiguous are ignored.
   [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, facets::Choice choice) const noexcept {
-    const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[signature];
-    const unsigned entry = tables::kTile3Resolved.first_entry[signature] + compressed_[ambiguous << 6 | high_squares];
+    const Signature of = of_signatures_[signature];
+    const unsigned entry = of.first_entry + compressed_[of.ambiguous << 6 | high_squares];
     return list_of_[3 * entry + static_cast<unsigned>(choice)];
   }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
@@ -92,6 +93,11 @@ class ResolvedCubes {
 
   std::array<std::array<std::uint64_t, 256>, 2> signatures_{};
   std::array<std::array<std::uint64_t, 16>, 6> squares_{};
+  struct Signature {
+    std::uint16_t first_entry;
+    std::uint16_t ambiguous;  ///< squares
+  };
+  std::array<Signature, 256> of_signatures_{};
   std::array<std::uint8_t, 64 * 64> compressed_{};
   std::vector<CubeList> lists_;
   std::vector<std::uint16_t> list_of_;

@@ -67,7 +67,6 @@ ResolvedTesseract::ResolvedTesseract() : cubes_(ResolvedCubes::instance()) {}
 
 const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key) {
   find_cubes(key);
-  find_components();
   simplex_count_ = 0;
   masks_.clear();
   if (is_in_table(key))
@@ -79,43 +78,80 @@ const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key) {
   return view_;
 }
 
-void ResolvedTesseract::find_cubes(const ResolvedKey& key) {
-  const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
-  part_count_ = 0;
-  as_low_ = true;
-  for (unsigned f = 0; f < kCubes; ++f) {
-    const auto signature = static_cast<unsigned>(signatures >> (8 * f) & 255u);
-    lists_[f] = ResolvedCubes::kNone;
-    if (signature == 0 || signature == 255) continue;
-    const std::uint16_t list = cubes_.list(signature, squares >> (8 * f) & 63u, choice_of(key, f));
-    lists_[f] = list;
-    as_low_ = as_low_ && cubes_.is_low(list);
-    for (const ResolvedCubes::Part& part : cubes_.parts(f, list)) parts_[part_count_++] = &part;
+ResolvedSize ResolvedTesseract::size(const ResolvedKey& key) {
+  find_cubes(key);
+  if (is_in_table(key)) {
+    const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[key.signature]];
+    return {list.simplex_count, std::uint32_t{list.cone_vertices} + list.side_vertices};
   }
+  const bool high = choose_cones(key);
+  ResolvedSize size{0, 0};
+  for (unsigned c = 0; c < component_count_; ++c) {
+    const Component& component = components_[c];
+    if (component.is_coned) {
+      const unsigned apex = apex_of(component);
+      size.simplices += component.triangles;
+      if (apex < kFirstOwn)
+        size.simplices -= static_cast<std::uint32_t>(std::popcount(component.vertices & cubes_.beside(apex))) - 1;
+      else
+        ++size.own_vertices;
+    } else if (is_first_of_region(c)) {
+      add_region_size(component.region, high, size);
+    }
+  }
+  return size;
 }
 
-void ResolvedTesseract::find_components() {
+void ResolvedTesseract::find_cubes(const ResolvedKey& key) {
+  const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
+  const ResolvedCubes::Part** out = parts_.data();
+  std::uint64_t vertices = 0;  // of what hangs together with the first part
+  std::uint32_t connected = 0, part_bit = 1;
+  bool as_low = true;
+  triangle_count_ = 0;
+  for (unsigned f = 0; f < kCubes; ++f) {
+    const std::uint16_t list = cubes_.list(signatures >> (8 * f) & 255u, squares >> (8 * f) & 63u, choice_of(key, f));
+    lists_[f] = list;
+    if (list == ResolvedCubes::kNone) continue;
+    as_low = as_low && cubes_.is_low(list);
+    for (const ResolvedCubes::Part& part : cubes_.parts(f, list)) {
+      *out++ = &part;
+      triangle_count_ += part.triangle_count;
+      if (vertices == 0 || (part.vertices & vertices) != 0) vertices |= part.vertices, connected |= part_bit;
+      part_bit <<= 1;
+    }
+  }
+  part_count_ = static_cast<unsigned>(out - parts_.data());
+  as_low_ = as_low;
+  find_components(vertices, connected);
+}
+
+/// `vertices`, `connected`: of parts that hang together with the first one.
+void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t connected) {
   component_count_ = 0;
-  for (auto left = static_cast<std::uint32_t>((std::uint64_t{1} << part_count_) - 1); left != 0;) {
-    const std::uint32_t first = left & (0 - left);
-    std::uint64_t vertices = parts_[std::countr_zero(first)]->vertices;
-    std::uint32_t parts = first;
-    left ^= first;
-    for (std::uint32_t before = 0; parts != before;) {
-      before = parts;
+  auto left = static_cast<std::uint32_t>((std::uint64_t{1} << part_count_) - 1) & ~connected;
+  while (connected != 0) {
+    std::uint32_t triangles = triangle_count_;
+    for (bool grown = left != 0; grown;) {
+      grown = false;
       for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
         const std::uint64_t of_part = parts_[std::countr_zero(rest)]->vertices;
         if ((of_part & vertices) == 0) continue;
         vertices |= of_part;
-        parts |= rest & (0 - rest);
+        connected |= rest & (0 - rest);
+        grown = true;
       }
-      left &= ~parts;
+      left &= ~connected;
     }
-    Component& component = components_[component_count_++];
-    component = {};
-    component.vertices = vertices, component.parts = parts;
-    for (std::uint32_t rest = parts; rest != 0; rest &= rest - 1)
-      component.triangles += parts_[std::countr_zero(rest)]->triangle_count;
+    if (left != 0 || component_count_ != 0) {
+      triangles = 0;
+      for (std::uint32_t rest = connected; rest != 0; rest &= rest - 1)
+        triangles += parts_[std::countr_zero(rest)]->triangle_count;
+    }
+    components_[component_count_++] = {vertices, connected, triangles, 0, false};
+    connected = left & (0 - left);
+    left ^= connected;
+    if (connected != 0) vertices = parts_[std::countr_zero(connected)]->vertices;
   }
 }
 
@@ -158,6 +194,7 @@ void ResolvedTesseract::take_from_table(const ResolvedKey& key) {
 std::uint32_t ResolvedTesseract::region_of(const ResolvedKey& key, const Component& component, bool high) const {
   const auto edge = static_cast<unsigned>(std::countr_zero(component.vertices));
   const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
+  if (component_count_ == 1) return corners;  // it has one region on either side
   const std::uint32_t from = 1u << edge_base(4, edge);
   std::uint32_t reached = (corners & from) != 0 ? from : from << (1u << edge / 8);
   const std::uint8_t joining = high ? key.high_cubes & static_cast<std::uint8_t>(~key.low_cubes) : key.low_cubes;
@@ -173,32 +210,35 @@ std::uint32_t ResolvedTesseract::region_of(const ResolvedKey& key, const Compone
   return reached;
 }
 
-void ResolvedTesseract::fill(const ResolvedKey& key) {
-  std::size_t triangles = 0;
-  for (unsigned p = 0; p < part_count_; ++p) triangles += parts_[p]->triangle_count;
-  if (simplices_.size() < triangles + 1) simplices_.resize(triangles + 1);
-  const bool high = key.tile != Choice::high;  // the side that is copied
-  // Cones first: of what is a sphere, and alone around its region if the tile's centre may join.
+/// Of what is a sphere, and alone around its region if the tile's centre may join. Returns which side is copied for the
+/// rest; then regions are known.
+bool ResolvedTesseract::choose_cones(const ResolvedKey& key) {
+  const bool high = key.tile != Choice::high;
   const bool joins = key.tile != Choice::separate && component_count_ > 1;
-  bool regions_known = joins;
   if (joins) find_regions(key, high);
+  bool all = true;
   for (unsigned c = 0; c < component_count_; ++c) {
-    Component& component = components_[c];
-    component.is_coned = component.is_sphere() && (!joins || is_alone(c));
-    if (component.is_coned) {
-      cone(component);
-    } else if (!regions_known) {
-      regions_known = true;
-      find_regions(key, high);
-    }
+    components_[c].is_coned = components_[c].is_sphere() && (!joins || is_alone(c));
+    all = all && components_[c].is_coned;
   }
-  for (unsigned c = 0; c < component_count_; ++c) {
-    if (components_[c].is_coned) continue;
-    bool is_first = true;
-    for (unsigned d = 0; d < c; ++d)
-      is_first = is_first && (components_[d].is_coned || components_[d].region != components_[c].region);
-    if (is_first) fill_region(components_[c].region, high);
-  }
+  if (!all && !joins) find_regions(key, high);
+  return high;
+}
+
+/// Whether it is the first of those around its region that are not coned.
+bool ResolvedTesseract::is_first_of_region(unsigned component) const {
+  for (unsigned d = 0; d < component; ++d)
+    if (!components_[d].is_coned && components_[d].region == components_[component].region) return false;
+  return true;
+}
+
+void ResolvedTesseract::fill(const ResolvedKey& key) {
+  if (simplices_.size() <= triangle_count_) simplices_.resize(triangle_count_ + std::size_t{1});
+  const bool high = choose_cones(key);
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (components_[c].is_coned) cone(components_[c]);
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (!components_[c].is_coned && is_first_of_region(c)) fill_region(components_[c].region, high);
 }
 
 void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
@@ -211,24 +251,30 @@ bool ResolvedTesseract::is_alone(unsigned component) const {
   return true;
 }
 
-void ResolvedTesseract::cone(Component& component) {
+/// The point of most triangles, of those that may be a cone's apex; if there is none, a number of own vertices. All its
+/// neighbours are beside it, and of the component there is nothing else beside it.
+unsigned ResolvedTesseract::apex_of(const Component& component) const {
   auto apexes = static_cast<std::uint32_t>(component.vertices);
   unsigned cubes = 0;
-  for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = component.parts; rest != 0 && apexes != 0; rest &= rest - 1) {
     const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
     // Points of one of its parts in a cube are not joined with those of another one there.
     apexes &= (cubes >> part.cube & 1u) != 0 ? ~cubes_.edges_of(part.cube) : part.apexes;
     cubes |= 1u << part.cube;
   }
-  // From the point of most triangles; all its neighbours are beside it, and there is nothing else beside it.
-  unsigned apex = kFirstOwn + static_cast<unsigned>(masks_.size());
+  unsigned apex = kFirstOwn;
   int most = 0;
-  for (std::uint32_t rest = apexes; rest != 0; rest &= rest - 1) {
-    const auto e = static_cast<unsigned>(std::countr_zero(rest));
+  for (; apexes != 0; apexes &= apexes - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(apexes));
     const int around = std::popcount(component.vertices & cubes_.beside(e));
     if (around > most) most = around, apex = e;
   }
-  if (apex >= kFirstOwn) add_own((component.vertices & 0xffffffffu) << kMaskEdge);
+  return apex;
+}
+
+void ResolvedTesseract::cone(const Component& component) {
+  unsigned apex = apex_of(component);
+  if (apex == kFirstOwn) apex = add_own((component.vertices & 0xffffffffu) << kMaskEdge);
   const std::uint32_t first = ResolvedCubes::apex_word(apex), repeated = apex * 0x01010101u;
   Word* out = simplices_.data() + simplex_count_;
   for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
@@ -259,6 +305,26 @@ void ResolvedTesseract::fill_region(unsigned corners, bool high) {
   for (unsigned c = 0; c < component_count_; ++c)
     if (components_[c].is_coned && components_[c].region == corners) cap(components_[c], corners, sigma);
   for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, copy, sigma);
+}
+
+void ResolvedTesseract::add_region_size(unsigned corners, bool high, ResolvedSize& size) const {
+  const CubeRegions& all = CubeRegions::instance();
+  size.own_vertices += static_cast<std::uint32_t>(std::popcount(corners));
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (components_[c].is_coned && components_[c].region == corners) {
+      size.own_vertices += static_cast<std::uint32_t>(std::popcount(components_[c].vertices)) + 1;
+      size.simplices += components_[c].triangles;
+    }
+  for (unsigned f = 0; f < kCubes; ++f)
+    for (const CubeRegions::Region& region : all.regions(lists_[f], high))
+      if (is_in(f, region, corners)) {
+        size.own_vertices += region.centre_count;
+        size.simplices += region.tetrahedron_count;
+      }
+}
+
+bool ResolvedTesseract::is_in(unsigned cube, const CubeRegions::Region& region, unsigned corners) noexcept {
+  return (corners >> lifted_corner(cube, static_cast<unsigned>(std::countr_zero(unsigned{region.corners}))) & 1u) != 0;
 }
 
 /// Copies the vertices of a component, and closes the copy.
@@ -313,8 +379,7 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
   for (unsigned v = 0; v < 12 + ResolvedCubes::kMostOwn; ++v)
     local[CubeRegions::kFirstEdge + v] = sigma[cubes_.lifted(cube, v)];
   for (const CubeRegions::Region& region : all.regions(lists_[cube], high)) {
-    const auto corner = static_cast<unsigned>(std::countr_zero(unsigned{region.corners}));
-    if ((corners >> lifted_corner(cube, corner) & 1u) == 0) continue;
+    if (!is_in(cube, region, corners)) continue;
     unsigned centre = CubeRegions::kFirstCentre;
     for (const std::uint32_t mask : all.centres(region)) {
       std::uint64_t lifted = 0;
@@ -327,10 +392,12 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
     const auto tetrahedra = all.tetrahedra(region);
     if (simplices_.size() < simplex_count_ + tetrahedra.size()) simplices_.resize(2 * simplex_count_ + 256);
     const unsigned third = cubes_.is_reversed(cube) ? 3 : 2;
-    Word* out = simplices_.data() + simplex_count_;
+    auto* out = reinterpret_cast<std::uint8_t*>(simplices_.data() + simplex_count_);
     simplex_count_ += tetrahedra.size();
-    for (const CubeRegions::Tetrahedron& t : tetrahedra)
-      *out++ = word({local[t[0]], local[t[1]], local[t[third]], local[t[5 - third]]});
+    for (const CubeRegions::Tetrahedron& t : tetrahedra) {
+      out[0] = local[t[0]], out[1] = local[t[1]], out[2] = local[t[third]], out[3] = local[t[5 - third]];
+      out += 4;
+    }
   }
 }
 
@@ -360,7 +427,6 @@ bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
       ResolvedKey key;
       key.signature = static_cast<std::uint16_t>(s);
       tile.find_cubes(key);
-      tile.find_components();
       result[s] = tile.component_count_ == 0 || (tile.component_count_ == 1 && tile.components_[0].is_sphere());
     }
     return result;

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "cube_regions.hpp"
 #include "resolved_cubes.hpp"
 #include "tegl/facets/facets.hpp"
 
@@ -57,6 +58,11 @@ struct ResolvedView {
   const std::uint64_t* masks;
 };
 
+/// How much a contour has of each.
+struct ResolvedSize {
+  std::uint32_t simplices, own_vertices;
+};
+
 /// Looks tiles up, one after the other: an object for each thread. It holds the last tile alone, less than 100 kB; the
 /// tables behind it, 1 MB, are made once, of the generated one, and shared. Time: 0.1 to 0.3 us a tile.
 class ResolvedTesseract {
@@ -68,6 +74,9 @@ class ResolvedTesseract {
   /// Valid until the next call.
   const ResolvedView& find(const ResolvedKey& key);
 
+  /// The size of what `find` finds, in about half the time. What `find` returned is as it was.
+  [[nodiscard]] ResolvedSize size(const ResolvedKey& key);
+
   /// Whether neither signs nor choices matter: no square is ambiguous, no cube has several polygons, and Sigma is one
   /// sphere (or there is none). Then the contour is that of the compact table.
   static bool is_settled(std::uint16_t signature) noexcept;
@@ -78,17 +87,22 @@ class ResolvedTesseract {
     std::uint64_t vertices = 0;
     std::uint32_t parts = 0;  ///< set of parts
     std::uint32_t triangles = 0;
-    bool is_coned = false;
     std::uint32_t region = 0;  ///< corners of the side that is copied, beside it
+    bool is_coned = false;
     [[nodiscard]] bool is_sphere() const noexcept;
   };
 
   void find_cubes(const ResolvedKey& key);
-  void find_components();
+  void find_components(std::uint64_t vertices, std::uint32_t connected);
   void take_from_table(const ResolvedKey& key);
   [[nodiscard]] bool is_in_table(const ResolvedKey& key) const;
+  [[nodiscard]] bool choose_cones(const ResolvedKey& key);
+  [[nodiscard]] bool is_first_of_region(unsigned component) const;
   void fill(const ResolvedKey& key);
-  void cone(Component& component);
+  [[nodiscard]] unsigned apex_of(const Component& component) const;
+  void cone(const Component& component);
+  void add_region_size(unsigned corners, bool high, ResolvedSize& size) const;
+  [[nodiscard]] static bool is_in(unsigned cube, const CubeRegions::Region& region, unsigned corners) noexcept;
   void find_regions(const ResolvedKey& key, bool high);
   [[nodiscard]] bool is_alone(unsigned component) const;
   void fill_region(unsigned corners, bool high);
@@ -106,7 +120,8 @@ class ResolvedTesseract {
   std::array<const ResolvedCubes::Part*, 32> parts_{};
   std::array<Component, 32> components_{};
   unsigned part_count_ = 0, component_count_ = 0;
-  bool as_low_ = false;  ///< whether all cubes are those of the low-connected contour
+  std::uint32_t triangle_count_ = 0;  ///< of Sigma
+  bool as_low_ = false;               ///< whether all cubes are those of the low-connected contour
   std::vector<Word> simplices_;
   std::size_t simplex_count_ = 0;
   std::vector<std::uint64_t> masks_;

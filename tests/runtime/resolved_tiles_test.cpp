@@ -278,7 +278,10 @@ TEST(ResolvedTiles, RandomKeysPassTheCertificate) {
   facets::Certifier certifier;
   for (int i = 0; i < 50000; ++i) {
     const ResolvedKey key = i % 2 == 0 ? keys.uniform() : keys.of_means();
+    const ResolvedSize size = tile.size(key);
     const ResolvedView& view = tile.find(key);
+    ASSERT_EQ(size.simplices, view.simplex_count);
+    ASSERT_EQ(size.own_vertices, view.own_vertices);
     ASSERT_LT(kFirstOwn + view.own_vertices, 256u);
     const facets::Fault fault = certifier.certify(as_built.lattice(), as_built(key, view));
     ASSERT_EQ(fault, facets::Fault::none)
