@@ -252,9 +252,10 @@ PointN<N> Shrinker<N>::normal_around(const Edge& edge) const {
   return sum;
 }
 
-/// Whether simplex s stays on its side, and sound, when its vertex moves.
+/// Whether simplex s stays on its side, and sound, when its vertex moves. `worst`: worst_shape(edge), once it is known.
 template <int N>
-bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edge& edge) const {
+bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edge& edge,
+                        std::optional<double>& worst) const {
   const CornersN<N> before = corners(s);
   CornersN<N> after = before;
   for (int i = 0; i < N; ++i)
@@ -270,17 +271,20 @@ bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edg
   } else if (!(dot(new_normal, old_normal) > kLeastCosine * old_length * new_length)) {
     return false;
   }
-  return new_shape >= kGoodShape<N> || new_shape >= worst_shape(edge);
+  if (new_shape >= kGoodShape<N>) return true;
+  if (!worst) worst = worst_shape(edge);
+  return new_shape >= *worst;
 }
 
 template <int N>
 bool Shrinker<N>::keeps_shapes(const Edge& edge, const PointN<N>& place) const {
+  std::optional<double> worst;
   if (place != scaled_[edge.u])
     for (const Index s : edge.only_u)
-      if (!bears(s, edge.u, place, edge)) return false;
+      if (!bears(s, edge.u, place, edge, worst)) return false;
   if (place != scaled_[edge.v])
     for (const Index s : edge.only_v)
-      if (!bears(s, edge.v, place, edge)) return false;
+      if (!bears(s, edge.v, place, edge, worst)) return false;
   return true;
 }
 

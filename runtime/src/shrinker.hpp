@@ -85,7 +85,8 @@ class Shrinker {
   void add_border_quadrics(Index s, const CornersN<N>& corners, double weight);
   [[nodiscard]] bool within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const;
   [[nodiscard]] bool keeps_shapes(const Edge& edge, const PointN<N>& scaled_place) const;
-  [[nodiscard]] bool bears(Index s, Index moving, const PointN<N>& place, const Edge& edge) const;
+  [[nodiscard]] bool bears(Index s, Index moving, const PointN<N>& place, const Edge& edge,
+                           std::optional<double>& worst) const;
   [[nodiscard]] double worst_shape(const Edge& edge) const;
   [[nodiscard]] PointN<N> normal_around(const Edge& edge) const;
   [[nodiscard]] PointN<N> to_scaled(const PointN<N>& point) const;

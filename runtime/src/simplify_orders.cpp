@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Queues of candidates. What changes near a contraction is put into the queue anew, with a stamp; what was there before
-// is known by its old stamp, and skipped.
+// Queues of candidates. What changes near a contraction gets a new key. Edges have no number by which to find them in
+// their queue, so they are put into it anew, with a stamp; what was there before is known by its old stamp, and
+// skipped.
 //
 // Based on: M. G. Liversage's thesis of 1994, sections 8.3.8 to 8.3.14 (facets by curvature, vertices by distance); G.
 // Turk, Re-tiling polygonal surfaces, 1992 (curvature); W. Schroeder, J. Zarge and W. Lorensen, Decimation of triangle
@@ -18,6 +19,8 @@
 
 #include <fmt/format.h>
 
+#include "keyed_queue.hpp"
+
 namespace tegl::detail {
 namespace {
 
@@ -27,29 +30,15 @@ constexpr std::size_t kTellEvery = 1024;
 constexpr int kMostPasses = 20;
 constexpr double kLeastGain = 0.02;
 
-/// An edge (a, b), a simplex a or a vertex a.
-struct Candidate {
-  double key;
-  Index a;
-  Index b;
-  std::uint64_t stamp;
-  bool operator<(const Candidate& other) const {  // the least is on top
-    return std::tie(other.key, other.a, other.b, other.stamp) < std::tie(key, a, b, stamp);
-  }
-};
-
-/// Candidates, the least first, and how far the work is.
-class Queue {
+/// How far the work is, told now and then.
+class Teller {
  public:
-  Queue(const ShrinkGoal& goal, std::size_t before) : goal_(goal), before_(before) {}
+  Teller(const ShrinkGoal& goal, std::size_t before) : goal_(goal), before_(before) {}
 
-  void push(const Candidate& candidate) { heap_.push(candidate); }
-  /// False when there is none left, or the goal is reached with `alive` simplices. Throws Cancelled.
-  bool pop(std::size_t alive, Candidate& candidate) {
-    if (alive <= goal_.count || heap_.empty()) return false;
-    if (pops_++ % kTellEvery == 0) tell(alive);
-    candidate = heap_.top();
-    heap_.pop();
+  /// Whether there is more to do with `alive` simplices. Throws Cancelled.
+  bool goes_on(std::size_t alive) {
+    if (alive <= goal_.count) return false;
+    if (calls_++ % kTellEvery == 0) tell(alive);
     return true;
   }
 
@@ -64,18 +53,27 @@ class Queue {
 
   const ShrinkGoal& goal_;
   std::size_t before_;
-  std::size_t pops_ = 0;
+  std::size_t calls_ = 0;
   double last_ = 0.0;
-  std::priority_queue<Candidate> heap_;
 };
 
 // ---- edges by quadrics ----
+
+struct EdgeCandidate {
+  double key;
+  Index a;
+  Index b;
+  std::uint64_t stamp;
+  bool operator<(const EdgeCandidate& other) const {  // the least is on top
+    return std::tie(other.key, other.a, other.b, other.stamp) < std::tie(key, a, b, stamp);
+  }
+};
 
 template <int N>
 class QuadricOrder {
  public:
   QuadricOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
-      : shrinker_(shrinker), queue_(goal, shrinker.complex().alive()) {}
+      : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()) {}
 
   void fill() {
     for (Index v = 0; v < shrinker_.points().size(); ++v) {
@@ -85,7 +83,9 @@ class QuadricOrder {
     }
   }
   void empty() {
-    for (Candidate next; queue_.pop(shrinker_.complex().alive(), next);) {
+    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+      const EdgeCandidate next = queue_.top();
+      queue_.pop();
       if (next.stamp != stamp(next.a, next.b) || !contract(next.a, next.b)) continue;
       shrinker_.complex().neighbours(next.a, around_);
       for (const Index a : around_) push(std::min(next.a, a), std::max(next.a, a));
@@ -118,7 +118,8 @@ class QuadricOrder {
   }
 
   Shrinker<N>& shrinker_;
-  Queue queue_;
+  Teller teller_;
+  std::priority_queue<EdgeCandidate> queue_;
   std::vector<Index> around_;
 };
 
@@ -130,9 +131,9 @@ class CurvatureOrder {
   CurvatureOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
       : shrinker_(shrinker),
         max_curvature_(goal.max_curvature),
-        queue_(goal, shrinker.complex().alive()),
-        curvature_(shrinker.points().size()),
-        stamp_(shrinker.points().size(), 0) {}
+        teller_(goal, shrinker.complex().alive()),
+        queue_(shrinker.complex().simplex_count()),
+        curvature_(shrinker.points().size()) {}
 
   void fill() {
     for (Index v = 0; v < curvature_.size(); ++v) curvature_[v] = curvature(v);
@@ -140,10 +141,10 @@ class CurvatureOrder {
       if (shrinker_.complex().is_alive(s)) push(s);
   }
   void empty() {
-    for (Candidate next; queue_.pop(shrinker_.complex().alive(), next);) {
-      if (!shrinker_.complex().is_alive(next.a) || next.stamp != stamp(next.a)) continue;
-      if (curvature_of(next.a) > max_curvature_) continue;
-      const Index left = remove(shrinker_.complex().simplex(next.a));
+    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+      const Index next = queue_.pop();
+      if (!shrinker_.complex().is_alive(next) || curvature_of(next) > max_curvature_) continue;
+      const Index left = remove(shrinker_.complex().simplex(next));
       if (left != ShrinkingComplex<N>::kNone) update(left);
     }
   }
@@ -155,24 +156,17 @@ class CurvatureOrder {
     const PointN<N> normal = shrinker_.mean_normal(v, star_);
     const double length = norm(normal);
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
-    double largest = 0.0;
+    double largest = 0.0;  // a quarter of the square
     for (const Index s : star_)
       for (const Index a : shrinker_.complex().simplex(s)) {
         if (a == v) continue;
         const PointN<N> edge = minus(shrinker_.scaled()[a], shrinker_.scaled()[v]);
         const double square = dot(edge, edge);
         if (!(square > 0.0)) continue;
-        const double along = std::abs(dot(edge, normal)) / length;
-        const double across = std::sqrt(std::max(0.0, square - along * along));
-        largest = std::max(largest, 2.0 * along / (across * std::sqrt(square)));
+        const double way = dot(edge, normal) / length, along = way * way;
+        largest = std::max(largest, along / (std::max(0.0, square - along) * square));
       }
-    return largest;
-  }
-
-  [[nodiscard]] std::uint64_t stamp(Index s) const {
-    std::uint64_t sum = 0;
-    for (const Index v : shrinker_.complex().simplex(s)) sum += stamp_[v];
-    return sum;
+    return 2.0 * std::sqrt(largest);
   }
 
   /// The mean of its vertices'.
@@ -187,7 +181,7 @@ class CurvatureOrder {
   /// alone, facets that have grown in even parts would go on growing whatever that costs.
   void push(Index s) {
     const double edge = longest_edge<N>(shrinker_.corners(s));
-    queue_.push({curvature_of(s) * edge * edge, s, 0, stamp(s)});
+    queue_.set(s, curvature_of(s) * edge * edge);
   }
 
   /// Draws the facet together to one point, edge by edge. The vertex that is left; none if no edge could go.
@@ -214,15 +208,14 @@ class CurvatureOrder {
     shrinker_.complex().neighbours(left, around_);
     for (const Index v : around_) curvature_[v] = curvature(v);
     curvature_[left] = curvature(left);  // leaves its star
-    ++stamp_[left];
     for (const Index s : star_) push(s);
   }
 
   Shrinker<N>& shrinker_;
   double max_curvature_;
-  Queue queue_;
+  Teller teller_;
+  KeyedQueue queue_;
   std::vector<double> curvature_;
-  std::vector<std::uint32_t> stamp_;
   std::vector<Index> star_, around_;
 };
 
@@ -232,47 +225,48 @@ template <int N>
 class DistanceOrder {
  public:
   DistanceOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
-      : shrinker_(shrinker), queue_(goal, shrinker.complex().alive()), stamp_(shrinker.points().size(), 0) {}
+      : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()), queue_(shrinker.points().size()) {}
 
   void fill() {
-    for (Index v = 0; v < stamp_.size(); ++v) push(v);
+    for (Index v = 0; v < shrinker_.points().size(); ++v) push(v);
   }
   void empty() {
-    for (Candidate next; queue_.pop(shrinker_.complex().alive(), next);) {
-      if (next.stamp != stamp_[next.a]) continue;
-      const Index left = remove(next.a);
+    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+      const Index left = remove(queue_.pop());
       if (left == ShrinkingComplex<N>::kNone) continue;
-      ++stamp_[next.a];
       shrinker_.complex().neighbours(left, around_);
       around_.push_back(left);
-      for (const Index v : around_) {
-        ++stamp_[v];
-        push(v);
-      }
+      for (const Index v : around_) push(v);
     }
   }
 
  private:
-  /// From the hyperplane through the middle of what surrounds v, at right angles to the mean normal.
+  /// From the hyperplane through the middle of what surrounds v, at right angles to the mean normal: the mean, weighted
+  /// by measure, of how far the middles of the faces opposite to v are along it.
   double distance(Index v) {
-    const PointN<N> normal = shrinker_.mean_normal(v, star_);
+    shrinker_.complex().star(v, star_);
+    PointN<N> normal{}, middle{};
+    double weight = 0.0;
+    for (const Index s : star_) {
+      const CornersN<N> corners = shrinker_.corners(s);
+      const PointN<N> of_simplex = normal_of<N>(corners);
+      const double measure = norm(of_simplex);
+      weight += measure;
+      for (int a = 0; a < N; ++a) {
+        normal[a] += of_simplex[a];
+        double sum = -N * shrinker_.scaled()[v][a];  // v is one of the corners
+        for (const PointN<N>& corner : corners) sum += corner[a];
+        middle[a] += measure * sum / (N - 1);
+      }
+    }
     const double length = norm(normal);
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
-    double sum = 0.0, weight = 0.0;
-    for (const Index s : star_) {
-      const double measure = norm(normal_of<N>(shrinker_.corners(s)));
-      double of_face = 0.0;
-      for (const Index a : shrinker_.complex().simplex(s))
-        if (a != v) of_face += dot(normal, minus(shrinker_.scaled()[v], shrinker_.scaled()[a])) / (N - 1);
-      sum += measure * of_face;
-      weight += measure;
-    }
-    return std::abs(sum / (weight * length));
+    return std::abs(dot(normal, middle) / (weight * length));
   }
 
   void push(Index v) {
     const double key = distance(v);
-    if (!star_.empty()) queue_.push({key, v, 0, stamp_[v]});
+    if (!star_.empty()) queue_.set(v, key);
   }
 
   /// Fills the hole that v leaves from the neighbour that lies best in the planes around. That neighbour; or none.
@@ -289,8 +283,8 @@ class DistanceOrder {
   }
 
   Shrinker<N>& shrinker_;
-  Queue queue_;
-  std::vector<std::uint32_t> stamp_;
+  Teller teller_;
+  KeyedQueue queue_;
   std::vector<Index> star_, around_;
   std::vector<std::pair<double, Index>> targets_;
 };
