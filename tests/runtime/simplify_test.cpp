@@ -15,19 +15,13 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
+#include "simplified.hpp"
 #include "tegl/deviation.hpp"
 #include "tegl/extract.hpp"
 #include "variants.hpp"
 
 namespace tegl::test {
 namespace {
-
-constexpr std::array kMethods = {SimplifyMethod::quadric, SimplifyMethod::facets, SimplifyMethod::vertices};
-
-std::string name(SimplifyMethod method) {
-  constexpr std::array kNames = {"quadric", "facets", "vertices", "fast"};
-  return kNames[static_cast<std::size_t>(method)];
-}
 
 template <class T>
 class Simplify : public ::testing::Test {};
@@ -57,26 +51,6 @@ SimplifyOptions<N> with_ratio(SimplifyMethod method, double ratio) {
   options.method = method;
   options.ratio = ratio;
   return options;
-}
-
-void expect_same_topology(const MeshReport& before, const MeshReport& after) {
-  EXPECT_TRUE(is_oriented_manifold(after));
-  EXPECT_EQ(after.components, before.components);
-  EXPECT_EQ(after.euler, before.euler);
-  EXPECT_LE(after.degenerate_simplices, before.degenerate_simplices);
-  EXPECT_EQ(after.boundary_simplices == 0, before.boundary_simplices == 0);
-}
-
-/// The border as sets of points, so that numbering does not matter.
-template <int N, class Real>
-auto border_points(const Contour<N, Real>& contour) {
-  std::set<std::set<std::array<Real, N>>> result;
-  for (const auto& face : boundary_faces(contour)) {
-    std::set<std::array<Real, N>> points;
-    for (const Index v : face) points.insert(contour.vertices[v]);
-    result.insert(points);
-  }
-  return result;
 }
 
 TYPED_TEST(Simplify, KeepsTheManifoldAndItsBorderInNoise) {
