@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// operations [--threads T] [--repetitions R] FILE ISO [FILE ISO ...]: what each operation on a 4D contour costs: the
+// operations [--threads T] [--repetitions R] [--only TEXT] FILE ISO [FILE ISO ...]: what each operation on a 4D contour
+// costs (of those with TEXT in their names): the
 // least time of R (5) repetitions, the least processor time of all threads together (which other work on the machine
 // hardly changes), and the most memory that it had beside what was there before (image, contour, and what it works on).
 // A Markdown table for each file; docs/operations.md has the figures.
@@ -24,6 +25,7 @@
 #include "memory.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/deviation.hpp"
 #include "tegl/elements.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
@@ -31,6 +33,7 @@
 #include "tegl/measure.hpp"
 #include "tegl/sample.hpp"
 #include "tegl/scrubber.hpp"
+#include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/track.hpp"
 
@@ -54,6 +57,7 @@ struct Subject {
   double last;
   std::unique_ptr<Scrubber<4, double>> scrubber;  ///< made by the operation that builds it
   ComponentLabels labels;                         ///< likewise
+  Contour<4, double> simplified;                  ///< likewise
 
   [[nodiscard]] WorkOptions work_options() const { return {threads, {}}; }
   [[nodiscard]] double time(double share) const { return first + share * (last - first); }
@@ -156,6 +160,49 @@ void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
                   }});
 }
 
+/// What makes axes of different units count alike: the mean extent of a tetrahedron along them.
+std::array<double, 4> scale_of(const Contour<4, double>& contour) {
+  std::array<double, 4> extent{}, scale{1.0, 1.0, 1.0, 1.0};
+  for (const auto& simplex : contour.simplices)
+    for (std::size_t a = 0; a < 4; ++a) {
+      double low = contour.vertices[simplex[0]][a], high = low;
+      for (const Index v : simplex) {
+        low = std::min(low, contour.vertices[v][a]);
+        high = std::max(high, contour.vertices[v][a]);
+      }
+      extent[a] += high - low;
+    }
+  for (std::size_t a = 1; a < 4; ++a)
+    if (contour.axis_units[a] != contour.axis_units[0] && extent[a] > 0) scale[a] = extent[0] / extent[a];
+  return scale;
+}
+
+template <Value T>
+void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
+  const auto simplified = [&](SimplifyMethod method) {
+    SimplifyOptions<4> options;
+    options.method = method;
+    options.ratio = 0.2;
+    options.measure = false;
+    options.threads = subject.threads;
+    options.scale = scale_of(subject.contour);
+    subject.simplified = simplify(subject.contour, options);
+    return counted(subject.simplified.simplices.size(), "tetrahedra");
+  };
+  list.push_back({"`simplify` to a fifth, facets", [simplified] { return simplified(SimplifyMethod::facets); }});
+  list.push_back({"`simplify` to a fifth, vertices", [simplified] { return simplified(SimplifyMethod::vertices); }});
+  list.push_back({"`simplify` to a fifth, quadric", [simplified] { return simplified(SimplifyMethod::quadric); }});
+  list.push_back({"`deviation` from it (simplify), and back", [&] {
+                    DeviationOptions<4> options;
+                    options.threads = subject.threads;
+                    options.scale = scale_of(subject.contour);
+                    const Deviation from = deviation(subject.contour, subject.simplified, options);
+                    const Deviation back = deviation(subject.simplified, subject.contour, options);
+                    return fmt::format("at most {:.3g} and {:.3g}, at least {:.3g} and {:.3g}", from.bound, back.bound,
+                                       from.least, back.least);
+                  }});
+}
+
 template <Value T>
 std::vector<Operation> operations_on(Subject<T>& subject) {
   std::vector<Operation> list;
@@ -177,6 +224,7 @@ std::vector<Operation> operations_on(Subject<T>& subject) {
   add_parts(subject, list);
   add_tracks(subject, list);
   add_fields(subject, list);
+  add_simplification(subject, list);
   return list;
 }
 
@@ -186,9 +234,10 @@ std::string milliseconds(double seconds) {
 
 /// Runs the operations and prints their table.
 template <Value T>
-void run(Subject<T>& subject, int repetitions) {
+void run(Subject<T>& subject, int repetitions, const std::string& only) {
   fmt::print("| operation | time | processor time | memory | result |\n|---|---|---|---|---|\n");
   for (const Operation& operation : operations_on(subject)) {
+    if (operation.name.find(only) == std::string::npos) continue;
     double least = 0;
     double least_cpu = 0;
     double most_memory = 0;
@@ -214,10 +263,10 @@ void run(Subject<T>& subject, int repetitions) {
 }
 
 template <Value T>
-void run_file(const Image<T, 4>& image, double isovalue, unsigned threads, int repetitions) {
+void run_file(const Image<T, 4>& image, double isovalue, unsigned threads, int repetitions, const std::string& only) {
   ExtractOptions options;
   options.threads = threads;
-  Subject<T> subject{image, isovalue, threads, extract<double>(image, isovalue, options), 0, 0, nullptr, {}};
+  Subject<T> subject{image, isovalue, threads, extract<double>(image, isovalue, options), 0, 0, nullptr, {}, {}};
   if (subject.contour.vertices.empty()) throw Error(ErrorCode::EmptyResult, "the contour is empty");
   const auto [least, most] = std::minmax_element(subject.contour.vertices.begin(), subject.contour.vertices.end(),
                                                  [](const auto& a, const auto& b) { return a[3] < b[3]; });
@@ -228,23 +277,26 @@ void run_file(const Image<T, 4>& image, double isovalue, unsigned threads, int r
              static_cast<double>(subject.contour.simplices.size() * sizeof(subject.contour.simplices[0]) +
                                  subject.contour.vertices.size() * sizeof(subject.contour.vertices[0])) *
                  1e-6);
-  run(subject, repetitions);
+  run(subject, repetitions, only);
 }
 
 int run_all(std::vector<std::string> arguments) {
   unsigned threads = 0;
   int repetitions = 5;
+  std::string only;
   std::vector<std::string> rest;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--threads" && i + 1 < arguments.size())
       threads = static_cast<unsigned>(std::stoul(arguments[++i]));
     else if (arguments[i] == "--repetitions" && i + 1 < arguments.size())
       repetitions = std::stoi(arguments[++i]);
+    else if (arguments[i] == "--only" && i + 1 < arguments.size())
+      only = arguments[++i];
     else
       rest.push_back(arguments[i]);
   }
   if (rest.empty() || rest.size() % 2 != 0 || repetitions < 1) {
-    fmt::print(stderr, "operations [--threads T] [--repetitions R] FILE ISO [FILE ISO ...]\n");
+    fmt::print(stderr, "operations [--threads T] [--repetitions R] [--only TEXT] FILE ISO [FILE ISO ...]\n");
     return 2;
   }
   for (std::size_t i = 0; i < rest.size(); i += 2) {
@@ -253,7 +305,7 @@ int run_all(std::vector<std::string> arguments) {
     fmt::print("\n### {} at {}\n\n", std::filesystem::path(rest[i]).filename().string(), rest[i + 1]);
     const auto of_image = [&]<Value T, int N>(const OwnedImage<T, N>& image) {
       if constexpr (N == 4)
-        run_file(image.view(), isovalue, threads, repetitions);
+        run_file(image.view(), isovalue, threads, repetitions, only);
       else
         throw Error(ErrorCode::UnsupportedData, fmt::format("{}: a {}D image; expected a 4D one", rest[i], N));
     };
