@@ -29,7 +29,8 @@ constexpr const char* kExamples =
     "  tegl simplify ocean.vtkhdf --count 20000 --scale auto -o small.vtkhdf\n"
     "  tegl simplify head.ply --method fast --ratio 0.05 -o preview.glb\n"
     "Error and bound are distances: no point of either contour is farther from the other. The result has the bound of\n"
-    "each vertex as the attribute 'error'. Where axes differ in their units, --scale says what is as long as what.";
+    "each vertex as the attribute 'simplification_error'. Where axes differ in their units, --scale says what is as "
+    "long as what.";
 
 const std::map<std::string, SimplifyMethod> kMethods = {{"quadric", SimplifyMethod::quadric},
                                                         {"facets", SimplifyMethod::facets},

@@ -47,6 +47,8 @@ constexpr std::size_t kMostParts = 24;
 constexpr std::size_t kMostRefined = 64;
 constexpr std::size_t kRefinedShare = 4000;
 constexpr std::size_t kRefinedParts = 400;
+/// The middle of each of so many simplices tells beforehand how large distances are.
+constexpr std::size_t kSampled = 8;
 constexpr std::size_t kGrain = 256;
 
 void raise(double& value, double candidate) {
@@ -54,6 +56,14 @@ void raise(double& value, double candidate) {
   double old = shared.load(std::memory_order_relaxed);
   while (candidate > old && !shared.compare_exchange_weak(old, candidate, std::memory_order_relaxed)) {
   }
+}
+
+template <int N>
+PointN<N> middle_of(const CornersN<N>& corners) {
+  PointN<N> middle{};
+  for (const PointN<N>& corner : corners)
+    for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
+  return middle;
 }
 
 /// The simplices of a contour, scaled.
@@ -152,7 +162,7 @@ struct Measure {
   const BoxTree<N>& tree;
   const OpenFaces<N>& open;
   const std::vector<double>& of_vertices;  ///< how far each vertex of `from` is from the nearest of `to`
-  double least;                            ///< the largest of these
+  double enough;                           ///< no bound needs to be less
   std::vector<double>& of_to;
 };
 
@@ -167,7 +177,7 @@ class Matcher {
   /// No point of simplex s is farther than that; `least` is raised to a distance that is reached.
   double bound(Index s, double& least) {
     load(s);
-    const double enough = std::max(kLeastShare * m_.least, kEdgeShare * edge_);
+    const double enough = std::max(m_.enough, kEdgeShare * edge_);
     const double result = in_parts(enough, kMostParts, least);
     for (const Part& part : parts_)
       for (const auto& [t, distance] : part.matches) raise(m_.of_to[t], distance);
@@ -211,7 +221,7 @@ class Matcher {
     PointN<N> normal = normal_of<N>(corners);
     double length = norm(normal);
     if (!(shape_of_simplex<N>(corners, length) > kFlat)) {
-      const PointN<N> next = normal_of<N>(m_.to.corners[m_.tree.nearest(middle_of(corners)).simplex]);
+      const PointN<N> next = normal_of<N>(m_.to.corners[m_.tree.nearest(middle_of<N>(corners)).simplex]);
       if (norm(next) > 0.0) {
         normal = next;
         length = norm(next);
@@ -226,11 +236,9 @@ class Matcher {
     for (int i = 0; i < N; ++i) whole_[i] = frame_.to_frame(corners[i]);
   }
 
-  static PointN<N> middle_of(const CornersN<N>& corners) {
-    PointN<N> middle{};
-    for (const PointN<N>& corner : corners)
-      for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
-    return middle;
+  /// Whether a closer bound is of no use.
+  [[nodiscard]] bool is_enough(const Part& part, double enough) const {
+    return part.bound <= std::max(enough, kLooseness * nearest_);
   }
 
   /// The largest bound of the parts; they are left in parts_.
@@ -238,20 +246,17 @@ class Matcher {
     parts_.clear();
     Part whole;
     whole.corners = whole_;
-    const auto enough_now = [&] { return std::max(enough, kLooseness * nearest_); };
     for (const double wider : {1.0, kWider}) {
       gather_near(wider * (kSlack * nearest_ + kReachShare * edge_));
       whole.near.resize(near_.size());
       std::iota(whole.near.begin(), whole.near.end(), 0u);
       if (nearest_ > kFarAway * edge_) break;
-      measure(whole, enough_now());
-      if (whole.bound <= enough_now()) break;
+      measure(whole, enough);
+      if (is_enough(whole, enough)) break;
     }
-    if (!(whole.bound <= enough_now())) {
-      measure_by_distances(whole);
-    }
+    if (!is_enough(whole, enough)) measure_by_distances(whole);
     parts_.push_back(std::move(whole));
-    while (parts_.front().bound > enough_now() && parts_.size() < most) {
+    while (!is_enough(parts_.front(), enough) && parts_.size() < most) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part worst = std::move(parts_.back());
       parts_.pop_back();
@@ -260,8 +265,8 @@ class Matcher {
         part.corners = half;
         part.near = worst.near;
         part.next = worst.next;
-        measure(part, enough_now());
-        if (!(part.bound <= enough_now())) measure_by_distances(part);
+        measure(part, enough);
+        if (!is_enough(part, enough)) measure_by_distances(part);
         part.bound = std::min(part.bound, worst.bound);
         parts_.push_back(std::move(part));
         std::push_heap(parts_.begin(), parts_.end());
@@ -317,19 +322,23 @@ class Matcher {
     // If all of each simplex is near enough, none needs to be cut.
     gather_sheets(prism, part, false);
     take_best_sheet(prism, part, 0.0);
-    if (part.bound <= std::max(kLeastShare * m_.least, kLooseness * nearest_)) return;
+    if (is_enough(part, m_.enough)) return;
     gather_sheets(prism, part, true);
     take_best_sheet(prism, part, 0.0);
-    if (part.bound <= enough) return;
+    if (is_enough(part, enough)) return;
+    if (part.bound < kInfinity && !prism.thin()) {
+      probe(prism, part);
+      if (is_enough(part, enough)) return;
+    }
     // All but a rim, every point of which is nearer than that to the rest: borders and walls that begin at the edge of
     // the part are not over it then.
     CornersN<N> inner = part.corners;
-    const PointN<N> middle = middle_of(part.corners);
+    const PointN<N> middle = middle_of<N>(part.corners);
     for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
     const Prism<N> inner_prism(inner, edge_);
     gather_sheets(inner_prism, part, true);
     take_best_sheet(inner_prism, part, kRim * edge_);
-    if (part.bound > enough && part.bound < kInfinity && !prism.thin()) probe(prism, part);
+    if (!is_enough(part, enough) && part.bound < kInfinity && !prism.thin()) probe(inner_prism, part);
   }
 
   /// `cut`: what is left of them over the part; else what their corners and hyperplanes tell of that.
@@ -420,7 +429,7 @@ class Matcher {
   void measure_by_distances(Part& part) {
     CornersN<N> corners;
     for (int i = 0; i < N; ++i) corners[i] = frame_.to_space(part.corners[i]);
-    const PointN<N> middle = middle_of(corners);
+    const PointN<N> middle = middle_of<N>(corners);
     const auto [distance, t] = m_.tree.nearest(middle, part.next);
     part.next = t;
     nearest_ = std::max(nearest_, distance);
@@ -499,7 +508,7 @@ void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threa
 }
 
 template <int N>
-void measure_all(const Pieces<N>& from, const Pieces<N>& to, unsigned threads, const Progress& progress,
+void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsigned threads, const Progress& progress,
                  Deviation& result) {
   const OpenFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
   const BoxTree<N> tree(to.corners);
@@ -512,13 +521,19 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, unsigned threads, c
                      of_vertices[v] = nearest.distance;
                    }
                  });
-  double least = 0.0;
   for (const auto& simplex : from.simplices)
-    for (const Index v : simplex) least = std::max(least, of_vertices[v]);
-  const Measure<N> measure{from, to, tree, open, of_vertices, least, result.of_to};
-  result.least = least;
+    for (const Index v : simplex) result.least = std::max(result.least, of_vertices[v]);
+  for_each_block(from.simplices.size() / kSampled, kGrain, threads, part_of(progress, 0.2, 0.25),
+                 [&](std::size_t, std::size_t first, std::size_t end) {
+                   double farthest = 0.0;
+                   for (std::size_t s = first; s < end; ++s)
+                     farthest = std::max(farthest, tree.nearest(middle_of<N>(from.corners[s * kSampled])).distance);
+                   raise(result.least, farthest);
+                 });
+  const Measure<N> measure{from,        to, tree, open, of_vertices, std::max(enough, kLeastShare * result.least),
+                           result.of_to};
   for_each_block(
-      from.simplices.size(), kGrain, threads, part_of(progress, 0.2, 0.9), [&] { return Matcher<N>(measure); },
+      from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9), [&] { return Matcher<N>(measure); },
       [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
         double reached = 0.0;
         for (std::size_t s = first; s < end; ++s) result.of_from[s] = matcher.bound(static_cast<Index>(s), reached);
@@ -534,6 +549,8 @@ template <int N, class Real>
 Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, const DeviationOptions<N>& options) {
   using namespace detail;
   require_scale<N>(options.scale);
+  if (!(options.enough >= 0.0))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("enough is {}; expected 0 or more", options.enough));
   require_vertices(from);
   require_vertices(to);
   Deviation result;
@@ -546,7 +563,7 @@ Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, co
     return result;
   }
   const Pieces<N> from_pieces(from, options.scale), to_pieces(to, options.scale);
-  measure_all(from_pieces, to_pieces, options.threads, options.progress, result);
+  measure_all(from_pieces, to_pieces, options.enough, options.threads, options.progress, result);
   return result;
 }
 

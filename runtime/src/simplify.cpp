@@ -28,7 +28,7 @@ namespace detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr const char* kErrorName = "error";
+constexpr const char* kErrorName = "simplification_error";
 constexpr std::size_t kMostPlanes = 20;
 /// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
 constexpr unsigned kGentleRounds = 6;
@@ -274,8 +274,11 @@ class Simplifier {
     options.scale = options_.scale;
     options.threads = options_.threads;
     options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
+    // Closer bounds than half of what decides are of no use to anyone.
+    if (options_.max_error) options.enough = 0.5 * *options_.max_error;
     Deviation of_original = deviation(contour_, result, options);
     options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
+    if (!options_.max_error) options.enough = 0.5 * of_original.least;
     const Deviation of_result = deviation(result, contour_, options);
     std::vector<double> errors = std::move(of_original.of_to);
     for (std::size_t s = 0; s < errors.size(); ++s) errors[s] = std::max(errors[s], of_result.of_from[s]);

@@ -60,7 +60,7 @@ TEST_F(SimplifyCommand, LeavesTheShareThatWasAskedForAndAManifold) {
     // The largest error is in the file.
     const Mesh mesh = read_mesh(path("tenth.vtkhdf"));
     ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
-    EXPECT_EQ(mesh.vertex_attributes[0].name, "error");
+    EXPECT_EQ(mesh.vertex_attributes[0].name, "simplification_error");
     EXPECT_EQ(*std::max_element(mesh.vertex_attributes[0].values.begin(), mesh.vertex_attributes[0].values.end()),
               report["error"]);
   }

@@ -168,7 +168,7 @@ TYPED_TEST(Simplify, ErrorsAreBoundedAsSamplesShow) {
     // The attribute: its largest value is the bound.
     ASSERT_EQ(result.vertex_attributes.size(), 1u);
     const Attribute& attribute = result.vertex_attributes[0];
-    EXPECT_EQ(attribute.name, "error");
+    EXPECT_EQ(attribute.name, "simplification_error");
     ASSERT_EQ(attribute.values.size(), result.vertices.size());
     EXPECT_EQ(*std::max_element(attribute.values.begin(), attribute.values.end()), *stats.error());
   }

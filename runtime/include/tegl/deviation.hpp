@@ -15,6 +15,8 @@ template <int N>
 struct DeviationOptions {
   /// Distances are taken after coordinates were multiplied by these: what makes axes of different units comparable.
   std::array<double, N> scale = all_one();
+  /// No bound of a simplex has to be less than that: where it is, closer ones cost time. They hold all the same.
+  double enough = 0.0;
   unsigned threads = 0;  ///< 0: all that the machine has. The result is the same, byte by byte.
   Progress progress;
 
@@ -43,9 +45,9 @@ struct Deviation {
 /// A simplex for which that tells too little is halved, up to 24 times, and those with the largest bounds up to 400
 /// times. So the bound holds up to the rounding of coordinates, whatever the gaps, folds or flat simplices; 1e-11 of an
 /// edge is added where the rim of a simplex has to be left out. It is at most 1.25 times the distance of some point of
-/// its simplex, or half of `least`, or a fiftieth of the longest edge, unless the parts did not suffice: that is so in
-/// contours that are rough as finely as they are divided. Sheets are seen where orientations are consistent; vertices
-/// at the same place count as one.
+/// its simplex, or half of `least` (or `enough`), or a fiftieth of the longest edge, unless the parts did not suffice:
+/// that is so in contours that are rough as finely as they are divided. Sheets are seen where orientations are
+/// consistent; vertices at the same place count as one.
 ///
 /// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range), Cancelled. Time: about
 /// O(S log S) for contours that are close to each other. Memory: about 300 bytes for each simplex of either.

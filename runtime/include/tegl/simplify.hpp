@@ -65,7 +65,8 @@ struct SimplifyOptions {
   /// Distances and curvatures are those after coordinates were multiplied by these: what makes axes of different units
   /// comparable (a month and a degree).
   std::array<double, N> scale = all_one();
-  /// Whether the result gets its error bounds: the vertex attribute "error". Is done anyway if max_error is given.
+  /// Whether the result gets its error bounds: the vertex attribute "simplification_error". Is done anyway if
+  /// max_error is given.
   bool measure = true;
   /// fast: hand out what is no manifold, too.
   bool allow_nonmanifold = false;
@@ -107,10 +108,10 @@ struct SimplifyStats {
 /// to each other than the error may come to intersect. N = 2, 3, 4; Real: float or double.
 ///
 /// Normals and vertex attributes are interpolated where vertices move; simplex attributes are those of the simplices
-/// that are left. The attribute "error" of a vertex: every point of the original that was matched with a simplex is
-/// within the largest "error" of that simplex's vertices, and every point of the simplex is so near to the original. If
-/// the contour has such an attribute, from an earlier simplification, its largest value is added; that is a bound if
-/// `scale` is what it was then. So fields of one's own have to have another name.
+/// that are left. The attribute "simplification_error" of a vertex: every point of the original that was matched with a
+/// simplex is within the largest one of that simplex's vertices, and every point of the simplex is so near to the
+/// original. If the contour has this attribute, from an earlier simplification, its largest value is added; that is a
+/// bound if `scale` is what it was then.
 ///
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
 /// stays. It is the same for any number of threads. Errors: InvalidArgument (options; no manifold: a face in three
