@@ -25,10 +25,9 @@ enum class SimplifyMethod {
   /// thesis, sections 8.3.8 to 8.3.13; the curvature of a vertex after G. Turk, Re-tiling polygonal surfaces, 1992.)
   facets,
   /// Vertices, ordered by their distance from the hyperplane of their neighbourhood; the hole is filled from a
-  /// neighbour.
-  /// The vertices that are left are vertices of the original. (1994 thesis, section 8.3.14, after W. Schroeder, J.
-  /// Zarge
-  /// and W. Lorensen, Decimation of triangle meshes, 1992.)
+  /// neighbour. The vertices that are left are vertices of the original. (1994 thesis, section 8.3.14, after W.
+  /// Schroeder,
+  /// J. Zarge and W. Lorensen, Decimation of triangle meshes, 1992.)
   vertices,
   /// Triangles alone, by the library meshoptimizer, where tegl was built with it: several times as fast. May leave a
   /// manifold or may not: its result is checked.
@@ -46,8 +45,8 @@ enum class SimplifyBorder {
 template <int N>
 std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
 
-/// At least one of `count`, `ratio` and `max_error` has to be given (or, for facets, `max_curvature`); with several, the
-/// first that is reached ends it.
+/// At least one of `count`, `ratio` and `max_error` has to be given (or, for facets, `max_curvature`); with several,
+/// the first that is reached ends it.
 template <int N>
 struct SimplifyOptions {
   SimplifyMethod method = SimplifyMethod::quadric;
@@ -117,8 +116,8 @@ struct SimplifyStats {
 /// stays. It is the same for any number of threads. Errors: InvalidArgument (options; no manifold: a face in three
 /// simplices, a repeated vertex; `fast` for other than triangles, or without meshoptimizer), UnsupportedData (the
 /// result of `fast` is no manifold), Cancelled. Time: O(S log S), about 5 microseconds for each triangle and 10 for
-/// each tetrahedron (facets, vertices: up to five times that); the error as long for triangles, ten times as long for
-/// tetrahedra, and in noise a hundred times, in each of up to 12 rounds if there is a `max_error`. If no round keeps
+/// each tetrahedron (facets, vertices: two to three times that); the error as long for triangles, 15 to 50 microseconds
+/// for each tetrahedron, in each of up to 12 rounds if there is a `max_error`. If no round keeps
 /// that, the result is the contour itself. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
