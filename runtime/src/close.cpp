@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cube_regions.hpp"
 #include "extract_generate.hpp"
 #include "extract_kernel.hpp"
 #include "tile_variants.hpp"
@@ -145,6 +146,7 @@ void Caps<N, Real>::add_layer(std::size_t k, const Layer<N>& layer, const Slab<N
     const Row at{row, k, below, above};
     add_corners(planes.corners, layer, at);
     if constexpr (N == 4) {
+      if (estimator_ != nullptr) continue;
       const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr};
       add_squares<3>(planes.squares[square_plane(3)], view, at);
       add_squares<5>(planes.squares[square_plane(5)], view, at);
@@ -218,6 +220,12 @@ void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, s
       const unsigned signature = original(cells.signature(bit), kCorners);
       if (tables_.face->lists[signature].simplex_count == 0) continue;
       index[0] = w * kWordBits + bit;
+      if constexpr (N == 4)
+        if (estimator_ != nullptr) {
+          edges.ids(bit, ids.data() + kCorners);
+          add_resolved<Omitted>(face, row, layer, index, signature, ids, !flip);
+          continue;
+        }
       const tables::RegionTable& table = table_of<kAxes>(signature, index);
       edges.ids(bit, ids.data() + kCorners);
       shared_ids<Omitted>(face, row, layer, index[0], signature, ids);
@@ -285,6 +293,40 @@ void Caps<N, Real>::add_simplices(const tables::RegionTable& table, unsigned sig
   }
 }
 
+/// By the regions of the cube with every ambiguity resolved freely: all cubes of the border, so that they fit together.
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::size_t layer,
+                                 const typename RowShape<N>::Index& index, unsigned signature, Ids& ids, bool flip) {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  using Regions = CubeRegions;
+  const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
+  corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
+  if (const unsigned own = cube_vertices(key); own != 0) {
+    const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);
+    for (unsigned j = 0; j < own; ++j) ids[Regions::kFirstOwn + j] = first + j;
+  }
+  const auto number = [&](unsigned v) {
+    if (v < Regions::kFirstEdge || v >= Regions::kFirstCentre) return kCapVertex | ids[v];
+    return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
+  };
+  const EdgePlaces<N, kAxes> places(source_, index, signature);
+  const Regions& regions = Regions::instance();
+  for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
+    unsigned centre = Regions::kFirstCentre;
+    for (const std::uint32_t mask : regions.centres(region)) {
+      ids[centre++] = static_cast<Index>(vertices_.size());
+      add_vertex<kAxes>(index, region_place<N, kAxes>(places, mask));
+    }
+    for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region)) {
+      Simplex simplex;
+      for (int j = 0; j < N; ++j) simplex[j] = number(tetrahedron[j]);
+      if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
+      simplices_.push_back(simplex);
+    }
+  }
+}
+
 template <int N, class Real>
 template <int Omitted>
 void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned side) {
@@ -306,7 +348,7 @@ void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned si
 template <int N, class Real>
 void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
   if constexpr (N == 4)
-    for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    for (std::size_t row = 0; row < shape_.rows() && estimator_ == nullptr; ++row) {
       const Row at{row, k, nullptr, view.slab};
       add_squares<9>(slab_.squares[square_plane(9)], view, at);
       add_squares<10>(slab_.squares[square_plane(10)], view, at);

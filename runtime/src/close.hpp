@@ -91,6 +91,9 @@ class Caps {
                Ids& ids);
   void add_simplices(const tables::RegionTable& table, unsigned signature, const Ids& ids, bool flip);
   template <int Omitted>
+  void add_resolved(const SlabView<N>& face, std::size_t row, std::size_t layer,
+                    const typename RowShape<N>::Index& index, unsigned signature, Ids& ids, bool flip);
+  template <int Omitted>
   void corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature, Index* out) const;
   template <int Omitted>
   void square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const;

@@ -22,7 +22,9 @@ Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const R
       cube_vertices_[s] = tables.cube->lists[tables.cube->list_of[s]].cone_vertices;
       has_cubes_ = has_cubes_ || cube_vertices_[s] != 0;
     }
+  lists_cubes_ = N == 4 && estimator_ != nullptr;
   quick_ = rows_ != nullptr && !has_cubes_ && shape_.size(0) <= kMostListed;
+  has_cubes_ = has_cubes_ || lists_cubes_;
 }
 
 template <int N>
@@ -37,7 +39,10 @@ template <int N>
 void Counter<N>::allocate(LayerPlanes<N>& planes) const {
   for (EdgePlane& plane : planes.edges) plane.allocate(shape_.rows(), shape_.words());
   planes.chunk_vertices.assign(shape_.chunks(), 0);
-  if (has_cubes_) planes.cubes.allocate(shape_.rows(), shape_.words());
+  if (lists_cubes_)
+    planes.cubes.allocate_lists(shape_.rows());
+  else if (has_cubes_)
+    planes.cubes.allocate(shape_.rows(), shape_.words());
 }
 
 template <int N>
@@ -50,7 +55,12 @@ void Counter<N>::allocate(SlabPlanes<N>& planes) const {
   }
   planes.edges.allocate(shape_.rows(), shape_.words());
   if (has_cubes_)
-    for (CubePlane& plane : planes.cubes) plane.allocate(shape_.rows(), shape_.words());
+    for (CubePlane& plane : planes.cubes) {
+      if (lists_cubes_)
+        plane.allocate_lists(shape_.rows());
+      else
+        plane.allocate(shape_.rows(), shape_.words());
+    }
   planes.own_offset.assign(shape_.rows(), 0);
   planes.simplex_offset.assign(shape_.rows(), 0);
   planes.chunks.assign(shape_.chunks(), {});
@@ -73,8 +83,13 @@ std::size_t Counter<N>::layer_bytes() const noexcept {
 
 template <int N>
 std::size_t Counter<N>::layer_planes_bytes() const noexcept {
-  return shape_.rows() *
-         ((N - 1) * EdgePlane::row_bytes(shape_.words()) + (has_cubes_ ? CubePlane::row_bytes(shape_.words()) : 0));
+  return shape_.rows() * ((N - 1) * EdgePlane::row_bytes(shape_.words()) + cube_row_bytes());
+}
+
+template <int N>
+std::size_t Counter<N>::cube_row_bytes() const noexcept {
+  if (lists_cubes_) return CubePlane::list_bytes();
+  return has_cubes_ ? CubePlane::row_bytes(shape_.words()) : 0;
 }
 
 template <int N>
@@ -82,7 +97,7 @@ std::size_t Counter<N>::slab_planes_bytes() const noexcept {
   constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
   const std::size_t tiles = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + sizeof(std::size_t) : 0;
   return shape_.rows() * (shape_.words() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.words()) +
-                          (has_cubes_ ? (N - 1) * CubePlane::row_bytes(shape_.words()) : 0));
+                          (N - 1) * cube_row_bytes());
 }
 
 template <int N>
@@ -268,8 +283,31 @@ void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::siz
 }
 
 template <int N>
-void Counter<N>::count_layer_row(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row,
-                                 Word* buffer) const {
+template <unsigned Axes>
+void Counter<N>::list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
+  if constexpr (N == 4) {
+    plane.begin_row(row);
+    auto base = shape_.index_of(row);
+    if (!shape_.has_cells(base, Axes)) return;
+    base[N - 1] = view.k;
+    CellBits<N, Axes> cells(view, row);
+    for (std::size_t w = 0; w < shape_.words(); ++w) {
+      cells.load(w);
+      Word mixed = cells.mixed() & shape_.mask(w, (Axes & 1u) != 0);
+      if (valid != nullptr) mixed &= valid[w];
+      for (; mixed != 0; mixed &= mixed - 1) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+        base[0] = w * kWordBits + bit;
+        const unsigned key = cube_key<N>(*estimator_, base, Axes, cells.signature(bit));
+        if (const unsigned own = detail::cube_vertices(key); own != 0) plane.add(row, base[0], key, own);
+      }
+    }
+  }
+}
+
+template <int N>
+void Counter<N>::count_layer_row(Layer<N>& layer, std::size_t k, const Slab<N>* below, const Slab<N>* above,
+                                 std::size_t row, Word* buffer) const {
   const auto index = shape_.index_of(row);
   const Word* const high = layer.high.data() + row * shape_.pitch();
   for (int axis = 0; axis < N - 1; ++axis) {
@@ -285,7 +323,11 @@ void Counter<N>::count_layer_row(Layer<N>& layer, const Slab<N>* below, const Sl
   if constexpr (N == 4)
     if (has_cubes_) {
       const bool masked = cells_of_valid_tiles(7u, row, below, above, buffer);
-      count_cubes<7u>(layer.cubes, {&shape_, {&layer, nullptr}, nullptr}, row, masked ? buffer : nullptr);
+      const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr, k};
+      if (lists_cubes_)
+        list_cubes<7u>(layer.cubes, view, row, masked ? buffer : nullptr);
+      else
+        count_cubes<7u>(layer.cubes, view, row, masked ? buffer : nullptr);
     }
 }
 
@@ -352,8 +394,41 @@ void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const T
 }
 
 template <int N>
+void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
+                                    ResolvedTesseract& tesseract, const FoundCubes* found) const {
+  if constexpr (N == 4) {
+    const auto& ambiguous = ambiguous_signatures<N>();
+    const bool is_listed = shape_.size(0) <= kMostListed;
+    BitWalk walk(room.active);
+    auto base = shape_.index_of(row);
+    base[N - 1] = view.k;
+    for (std::uint32_t i = 0; i < count.active; ++i) {
+      const unsigned signature = room.signatures[i];
+      if (!ambiguous[signature]) continue;
+      base[0] = is_listed ? room.at[i] : walk.place_of(i);
+      const ResolvedTile tile = resolved_tile(*estimator_, base, signature);
+      const ResolvedView& filling = tesseract.find(tile.key);
+      count.simplices += filling.simplex_count;
+      count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
+      count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
+      if (found == nullptr) continue;
+      const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
+        if (const unsigned own = detail::cube_vertices(tile.cubes[cube]); own != 0)
+          plane.add(row, at, tile.cubes[cube], own);
+      };
+      take(found->in_slab[0], 0, base[0]);
+      if (base[0] + 2 == shape_.size(0)) take(found->in_slab[0], 1, base[0] + 1);
+      take(found->in_slab[1], 2, base[0]);
+      take(found->in_slab[2], 4, base[0]);
+      take(found->in_layer, 7, base[0]);
+    }
+  }
+}
+
+template <int N>
 CountScratch Counter<N>::make_scratch() const {
-  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}};
+  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr};
+  if (lists_cubes_) scratch.tesseract = std::make_unique<ResolvedTesseract>();
   if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
   return scratch;
 }
@@ -369,7 +444,7 @@ template <int N>
 ActiveTiles Counter<N>::tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const {
   const Slab<N>& slab = *view.slab;
   // Signatures are of use in rows of any length, places along the row only where it goes by tiles.
-  if (slab.active_count[row] == 0 || rows_ == nullptr || has_cubes_ || !slab.all_valid) return {};
+  if (slab.active_count[row] == 0 || rows_ == nullptr || (has_cubes_ && !lists_cubes_) || !slab.all_valid) return {};
   if (keeps_tiles()) {
     const std::size_t first = slab.first_tile[row];
     return {slab.tiles.signatures.data() + first, slab.tiles.at.data() + first, slab.active_count[row]};
@@ -389,7 +464,10 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   if (!shape_.has_cells(shape_.index_of(row), kAll)) return;
   if (is_uniform(view, row)) return;
   if (rows_ != nullptr) {
-    keep_count(find_tiles(view, row, tile_room(slab, row, scratch)), slab, row);
+    const TileRoom room = tile_room(slab, row, scratch);
+    TileCount count = find_tiles(view, row, room);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, nullptr);
+    keep_count(count, slab, row);
     return;
   }
   CellBits<N, kAll> cells(view, row);
@@ -424,9 +502,15 @@ void Counter<N>::count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::siz
       const auto valid = [&](unsigned axes) {
         return cells_of_valid_tiles(axes, row, nullptr, &slab, buffer) ? buffer : nullptr;
       };
-      count_cubes<14u>(slab.cubes[0], view, row, valid(14u));
-      count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
-      count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+      if (lists_cubes_) {
+        list_cubes<14u>(slab.cubes[0], view, row, valid(14u));
+        list_cubes<13u>(slab.cubes[1], view, row, valid(13u));
+        list_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+      } else {
+        count_cubes<14u>(slab.cubes[0], view, row, valid(14u));
+        count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
+        count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+      }
     }
   count_tiles(view, slab, row, scratch);
 }
@@ -435,7 +519,16 @@ template <int N>
 void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
                                CountScratch& scratch) const {
   TileCount count;
-  if (!is_uniform(view, row)) count = find_tiles(view, row, tile_room(slab, row, scratch));
+  if (lists_cubes_) {
+    upper.cubes.begin_row(row);
+    for (CubePlane& plane : slab.cubes) plane.begin_row(row);
+  }
+  if (!is_uniform(view, row)) {
+    const TileRoom room = tile_room(slab, row, scratch);
+    count = find_tiles(view, row, room);
+    const FoundCubes found{upper.cubes, slab.cubes};
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, &found);
+  }
   keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];
   slab.edges.count[row] = count.edges[N - 1];
@@ -513,7 +606,7 @@ template <int N>
 void Counter<N>::count_first_layer(Layer<N>& layer, const Slab<N>& above, std::size_t chunk, Word* buffer) const {
   std::uint64_t vertices = 0;
   for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
-    count_layer_row(layer, nullptr, &above, row, buffer);
+    count_layer_row(layer, 0, nullptr, &above, row, buffer);
     vertices += offset_layer_row(layer, row, vertices);
   }
   layer.chunk_vertices[chunk] = vertices;
@@ -532,7 +625,7 @@ void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& s
     if (!ranks && goes_by_tiles(slab, row)) {
       count_quickly(view, upper, slab, row, scratch);
     } else {
-      count_layer_row(upper, &slab, above, row, scratch.words.data());
+      count_layer_row(upper, view.k + 1, &slab, above, row, scratch.words.data());
       count_slab_row(view, slab, row, scratch);
     }
     const std::uint64_t vertices = offset_layer_row(upper, row, in_layer);

@@ -6,12 +6,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "extract_cell.hpp"
 #include "extract_layers.hpp"
 #include "extract_rows.hpp"
 #include "face_estimator.hpp"
+#include "resolved_tiles.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
@@ -30,8 +32,9 @@ struct TableSet {
 
 /// What a thread keeps while it counts and lists tiles.
 struct CountScratch {
-  std::vector<Word> words;  ///< of a row
-  TileLists tiles;          ///< of a row, where slabs do not keep them
+  std::vector<Word> words;                       ///< of a row
+  TileLists tiles;                               ///< of a row, where slabs do not keep them
+  std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, where data decide
 };
 
 class TileSelection;
@@ -58,6 +61,7 @@ class Counter {
   [[nodiscard]] std::size_t layer_bytes() const noexcept;
   [[nodiscard]] std::size_t layer_planes_bytes() const noexcept;
   [[nodiscard]] std::size_t slab_planes_bytes() const noexcept;
+  [[nodiscard]] std::size_t cube_row_bytes() const noexcept;
 
   // By chunks of rows, which may be done in any order and side by side. A pass needs the passes before it on all rows
   // of what it looks at.
@@ -95,6 +99,8 @@ class Counter {
 
   /// Whether any cube has vertices of its own.
   [[nodiscard]] bool has_cubes() const noexcept { return has_cubes_; }
+  /// Whether data decide on cubes, N = 4: those with vertices of their own are listed, in place of bits.
+  [[nodiscard]] bool lists_cubes() const noexcept { return lists_cubes_; }
 
   /// In `out` (words): the cells along `axes` based in this row that belong to a valid tile of one of
   /// the slabs (null: none). Returns false, and writes nothing, if that is all of them.
@@ -113,7 +119,7 @@ class Counter {
   /// Brings a classified row's bits into their last form, and says what they have in common.
   RowState finish_row(Word* high, bool invert, bool any_missing) const;
   void find_valid_row(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;
-  void count_layer_row(Layer<N>& layer, const Slab<N>* below, const Slab<N>* above, std::size_t row,
+  void count_layer_row(Layer<N>& layer, std::size_t k, const Slab<N>* below, const Slab<N>* above, std::size_t row,
                        Word* buffer) const;
   void count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
   /// All of the slab's row and of the upper layer's at once, if the row goes by tiles.
@@ -130,9 +136,18 @@ class Counter {
   template <unsigned Axes>
   void count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
   void count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
-  /// Finds the active tiles of a row, ambiguous ones by their keys.
+  /// Finds the active tiles of a row, ambiguous ones by their keys (N < 4).
   [[nodiscard]] TileCount find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const;
   void resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const;
+  /// Of the tiles that are found, N = 4, what data decide on. `found`: takes the cubes, or null.
+  struct FoundCubes {
+    CubePlane& in_layer;
+    std::array<CubePlane, N - 1>& in_slab;
+  };
+  void resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
+                          ResolvedTesseract& tesseract, const FoundCubes* found) const;
+  template <unsigned Axes>
+  void list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
   [[nodiscard]] bool keeps_tiles() const noexcept { return keeps_tiles_ && quick_; }
   [[nodiscard]] TileRoom tile_room(Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
 
@@ -145,6 +160,7 @@ class Counter {
   bool keeps_tiles_ = true;
   std::array<std::uint8_t, 256> cube_vertices_{};  ///< by signature
   bool has_cubes_ = false;
+  bool lists_cubes_ = false;
 };
 
 }  // namespace tegl::detail

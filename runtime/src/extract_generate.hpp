@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <type_traits>
 
@@ -54,6 +55,30 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
   }
 }
 
+/// The same of cubes that are listed.
+template <unsigned Axes, class Real>
+void generate_listed_cubes(const SampleSource<4>& source, const Placement<4, Real>& placement, const SlabView<4>& view,
+                           const CubePlane& plane, std::size_t row, std::size_t layer,
+                           VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
+  if (plane.count[row] == 0) return;
+  auto index = view.shape->index_of(row);
+  index[3] = layer;
+  const tables::TileTable& table = variant_table<3>(1).tile();
+  std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points;
+  Index next = plane.first(row);
+  for (const ListedCube& cube : plane.lists.row(row)) {
+    index[0] = cube.at;
+    const SimplexList<3> list(table, cube.key);
+    const EdgePlaces<4, Axes> places(source, index, signature_of<3>(cube.key));
+    own_places<3>(list, false, places, points.data());
+    for (unsigned j = 0; j < list.own_vertices(); ++j, ++next) {
+      vertices[next] = placement.template in_cell<CellFrame<4, Axes>>(index, points[j]);
+      if (placement.normals() != nullptr)
+        vertices.normal(next) = placement.normals()->template in_cell<CellFrame<4, Axes>>(index, points[j]);
+    }
+  }
+}
+
 /// Writes the tiles of a row: their own vertices and their simplices.
 template <int N, class Real>
 class TileWriter {
@@ -77,17 +102,19 @@ class TileWriter {
         has_cubes_(has_cubes) {}
 
   /// `tiles`: those of the row (Counter::tiles). `simplices`: where simplex `first_simplex` goes.
+  /// `tesseract`: the thread's, or null where data decide on nothing.
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const ActiveTiles& tiles,
-             VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex) const noexcept {
+             VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex,
+             ResolvedTesseract* tesseract) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
     if (view.slab->active_count[row] == 0) return;
     index[N - 1] = layer;
     Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
     if (rows_ != nullptr && view.slab->all_valid)
-      write_quickly(view, row, index, tiles, vertices, out);
+      write_quickly(view, row, index, tiles, vertices, out, tesseract);
     else
-      write_one_by_one(view, row, index, vertices, out);
+      write_one_by_one(view, row, index, vertices, out, tesseract);
   }
 
   /// Whether the barycentres of cubes in a slab, and in the layer above it (and layer 0), are written along with its
@@ -99,12 +126,16 @@ class TileWriter {
 
   /// Of rows whose tiles are all valid: then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
-                     const ActiveTiles& tiles, VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+                     const ActiveTiles& tiles, VertexRun<Vertex> vertices, Simplex* out,
+                     ResolvedTesseract* tesseract) const noexcept {
     TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
     // The tiles with vertices of their own come in order: their places are found by walking along.
     struct Own {
       const TileWriter& writer;
+      const SlabView<N>& view;
+      std::size_t row;
+      ResolvedTesseract* tesseract;
       typename RowShape<N>::Index index;
       VertexRun<Vertex> vertices;
       BitWalk active;
@@ -116,6 +147,10 @@ class TileWriter {
         own.index[0] = own.active.place_of(ordinal);
         Ids ids;
         std::copy_n(edge_ids, tables::edge_count(N), ids.data());
+        if constexpr (N == 4)
+          if (own.writer.is_estimated_tile(key))
+            return own.writer.write_resolved(own.view, own.row, own.index, key, ids, own.next, own.vertices,
+                                             *own.tesseract, out);
         const SimplexList<N> list(own.writer.table_, key);
         SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
         own.writer.write_own(list, places, own.index, own.next, own.vertices);
@@ -124,13 +159,19 @@ class TileWriter {
         return out;
       }
     };
-    Own own{*this, start, vertices, BitWalk(view.slab->active.data() + row * view.shape->words()),
+    Own own{*this,
+            view,
+            row,
+            tesseract,
+            start,
+            vertices,
+            BitWalk(view.slab->active.data() + row * view.shape->words()),
             view.slab->first_own(row)};
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
   void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
-                        VertexRun<Vertex> vertices, Simplex* out) const noexcept {
+                        VertexRun<Vertex> vertices, Simplex* out, ResolvedTesseract* tesseract) const noexcept {
     const RowShape<N>& shape = *view.shape;
     const Word* const active = view.slab->active.data() + row * shape.words();
     CellBits<N, kAll> cells(view, row);
@@ -150,8 +191,13 @@ class TileWriter {
         const auto bit = static_cast<unsigned>(std::countr_zero(rest));
         const unsigned signature = cells.signature(bit);
         index[0] = w * kWordBits + bit;
-        const SimplexList<N> list(table_, key_of(index, signature));
         edges.ids(bit, ids.data());
+        if constexpr (N == 4)
+          if (is_estimated_tile(signature)) {
+            out = write_resolved(view, row, index, signature, ids, own, vertices, *tesseract, out);
+            continue;
+          }
+        const SimplexList<N> list(table_, key_of(index, signature));
         if constexpr (N == 4)
           if (cubes) cube_ids(*cubes, bit, ids);
         if (has_cubes_ || list.own_vertices() != 0) {
@@ -172,6 +218,45 @@ class TileWriter {
       if (estimator_ != nullptr && ambiguous_signatures<N>()[signature])
         return resolved_key<N>(*estimator_, index, signature);
     return signature;
+  }
+
+  [[nodiscard]] bool is_estimated_tile(unsigned signature) const noexcept {
+    return N == 4 && estimator_ != nullptr && ambiguous_signatures<4>()[signature];
+  }
+
+  /// A tile of four dimensions that data decide on; its own vertices are numbered from `own` on, which moves on. `ids`:
+  /// those of its edges.
+  Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
+                          unsigned signature, Ids& ids, Index& own, VertexRun<Vertex> vertices,
+                          ResolvedTesseract& tesseract, Simplex* out) const noexcept {
+    const ResolvedTile tile = resolved_tile(*estimator_, index, signature);
+    const ResolvedView& filling = tesseract.find(tile.key);
+    for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
+      const unsigned count = detail::cube_vertices(tile.cubes[cube]);
+      if (count == 0) continue;
+      const unsigned axis = cube / 2, side = cube % 2;
+      const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
+      const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));
+      for (unsigned j = 0; j < count; ++j) ids[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] = first + j;
+    }
+    if (filling.own_vertices != 0) {
+      const EdgePlaces<N, kAll> places(source_, index, signature);
+      for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
+        ids[ResolvedTesseract::kFirstOwn + j] = own;
+        const TilePoint<N> place = mask_place<N>(filling.masks[j], std::identity(), places);
+        vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
+        if (placement_.normals() != nullptr)
+          vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
+      }
+    }
+    const std::uint8_t* local = filling.simplices;
+    const unsigned last = flip_ ? N - 2 : N - 1;
+    for (unsigned q = 0; q < filling.simplex_count; ++q, ++out, local += N) {
+      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = ids[local[j]];
+      (*out)[(N - 2) + (N - 1) - last] = ids[local[N - 2]];
+      (*out)[last] = ids[local[N - 1]];
+    }
+    return out;
   }
 
   /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per

@@ -100,7 +100,7 @@ class Extraction {
         estimator_(make_estimator(source, grid, options, plan)),
         counter_(shape_, tables, row_table_, options.close, estimator_.get()),
         tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
-               counter_.has_cubes()),
+               counter_.has_cubes() && !counter_.lists_cubes()),
         pinches_(shape_, counter_),
         workers_(options.threads,
                  [this] {
@@ -397,7 +397,7 @@ class Extraction {
         edges.add_by_bits(&layer(k + 1), &here, row);
       generate_layer_cubes(k + 1, row, vertices);
       generate_slab_cubes(around, k, row, vertices);
-      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex);
+      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting.tesseract.get());
     }
     edges.finish();
   }
@@ -407,6 +407,9 @@ class Extraction {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
         const Layer<N>& here = layer(k);
+        if (counter_.lists_cubes())
+          return generate_listed_cubes<7u>(source_, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row,
+                                           k, vertices);
         generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
                            vertices);
       }
@@ -417,6 +420,12 @@ class Extraction {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
         const auto& cubes = around.slab->cubes;
+        if (counter_.lists_cubes()) {
+          generate_listed_cubes<14u>(source_, placement_, around, cubes[0], row, k, vertices);
+          generate_listed_cubes<13u>(source_, placement_, around, cubes[1], row, k, vertices);
+          generate_listed_cubes<11u>(source_, placement_, around, cubes[2], row, k, vertices);
+          return;
+        }
         generate_cubes<14u>(source_, *tables_.cube, placement_, around, cubes[0], row, k, vertices);
         generate_cubes<13u>(source_, *tables_.cube, placement_, around, cubes[1], row, k, vertices);
         generate_cubes<11u>(source_, *tables_.cube, placement_, around, cubes[2], row, k, vertices);

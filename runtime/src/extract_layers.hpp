@@ -16,6 +16,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bitplanes.hpp"
@@ -122,7 +123,68 @@ struct RankPlane {
   }
 };
 using EdgePlane = RankPlane<1>;
-using CubePlane = RankPlane<tables::kFaceSlots>;
+
+/// A cube with vertices of its own.
+struct ListedCube {
+  std::uint32_t at;      ///< along the row
+  std::uint32_t before;  ///< vertices of the row before it
+  std::uint16_t key;     ///< of its filling (tile_variants.hpp)
+};
+
+/// Cubes of one kind that own vertices, where data decide: they are few, and found along with their tiles. Lists of
+/// rows, in order; a chunk's rows have theirs one behind the other.
+class CubeLists {
+ public:
+  void allocate(std::size_t rows) {
+    chunks_.resize(chunk_of(rows - 1) + 1);
+    first_.assign(rows, 0);
+    size_.assign(rows, 0);
+  }
+  /// Rows of a chunk come in order.
+  void begin_row(std::size_t row) noexcept {
+    std::vector<ListedCube>& chunk = chunks_[chunk_of(row)];
+    if (row % kChunkRows == 0) chunk.clear();
+    first_[row] = static_cast<std::uint32_t>(chunk.size());
+    size_[row] = 0;
+  }
+  void add(std::size_t row, const ListedCube& cube) {
+    chunks_[chunk_of(row)].push_back(cube);
+    ++size_[row];
+  }
+  [[nodiscard]] std::span<const ListedCube> row(std::size_t row) const noexcept {
+    return {chunks_[chunk_of(row)].data() + first_[row], size_[row]};
+  }
+
+ private:
+  std::vector<std::vector<ListedCube>> chunks_;
+  std::vector<std::uint32_t> first_, size_;  ///< by row
+};
+
+struct CubePlane : RankPlane<tables::kFaceSlots> {
+  CubeLists lists;  ///< in place of the bits, where data decide
+
+  /// Without bits.
+  void allocate_lists(std::size_t rows) {
+    allocate(rows, 0);
+    lists.allocate(rows);
+  }
+  static constexpr std::size_t list_bytes() noexcept { return row_bytes(0) + 2 * sizeof(std::uint32_t); }
+  void begin_row(std::size_t row) noexcept {
+    count[row] = 0;
+    lists.begin_row(row);
+  }
+  void add(std::size_t row, std::size_t at, unsigned key, unsigned vertices) {
+    lists.add(row, {static_cast<std::uint32_t>(at), count[row], static_cast<std::uint16_t>(key)});
+    count[row] += vertices;
+  }
+  /// The first vertex of a cube that is listed.
+  [[nodiscard]] Index listed_id(std::size_t row, std::size_t at) const noexcept {
+    const auto of_row = lists.row(row);
+    const auto found = std::lower_bound(of_row.begin(), of_row.end(), at,
+                                        [](const ListedCube& cube, std::size_t place) { return cube.at < place; });
+    return first(row) + found->before;
+  }
+};
 
 /// What all samples of a row have in common.
 enum class RowState : std::uint8_t { low, high, mixed };

@@ -49,6 +49,8 @@ class RowTable {
   /// Of a table whose lists go by `keys` keys (tile_variants.hpp). Where it says "signature", keys do as well.
   RowTable(const tables::TileTable& table, std::size_t keys);
 
+  /// Treats the tiles of a signature as if they had vertices of their own.
+  void mark_as_own(unsigned signature) noexcept { entries_[signature] |= kOwnFlag; }
   /// Whether there are more keys than signatures.
   [[nodiscard]] bool has_variants() const noexcept { return entries_.size() > std::size_t{1} << (1u << table_->dim); }
   /// By signature.

@@ -31,7 +31,12 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   set.tile = &tables::tile_table(N, triangulation);
   set.rows = triangulation == 0 ? row_table<N, 0>() : row_table<N, 1>();
   set.compact = options.triangulation == Triangulation::compact;
-  if constexpr (N == 4) require_consistent_method(options, "contours of 4D images");
+  if constexpr (N == 4)
+    if (is_estimated(options.ambiguity)) {
+      if (triangulation == 0)
+        require_consistent_method(options, "barycentric contours of 4D images (compact ones take it)");
+      set.rows = &estimated_tesseracts();
+    }
   if constexpr (N < 4)
     if (is_estimated(options.ambiguity)) {
       const VariantTable<N>& variants = variant_table<N>(triangulation);

@@ -200,6 +200,24 @@ TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& 
   return sum.point;
 }
 
+/// The place of an own vertex by its mask (bit v: corner v, bit 2^K + e: edge e): of edges alone their mean, with
+/// corners half way from the tile's centre to the mean of all. `corner(v)`: that corner in the frame at hand.
+template <int K, class Corner, class Place>
+TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place) noexcept {
+  Weighted<K> sum;
+  for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    sum.add(v < (1u << K) ? corner_point<K>(corner(v)) : place(v - (1u << K)), 1.0);
+  }
+  const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) {
+    const double mean = sum.point[a] / sum.weight;
+    point[a] = has_corners ? 0.5 * (0.5 + mean) : mean;
+  }
+  return point;
+}
+
 /// The places of a tile's cone vertices and side vertices, in the unit tile: so they don't depend on the
 /// units of the axes. `place(v)` is the place of the stored vertex v < first_tile_vertex(K), in the frame
 /// of the signature. out: list.own_vertices() points.
@@ -218,19 +236,9 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
       out[j] = cone_place(list, apex, place);  // compact polygons have none
     }
   }
-  for (unsigned j = 0; j < list.list().side_vertices; ++j) {
-    Weighted<K> sum;
-    for (std::uint64_t rest = list.side_mask(j); rest != 0; rest &= rest - 1) {
-      const auto v = static_cast<unsigned>(std::countr_zero(rest));
-      sum.add(v < (1u << K) ? corner_point<K>(list.mapped_corner(v)) : place(v - (1u << K)), 1.0);
-    }
-    // Of edges alone (cubes resolved from the data): their mean itself.
-    const bool has_corners = (list.side_mask(j) & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
-    for (int a = 0; a < K; ++a) {
-      const double mean = sum.point[a] / sum.weight;
-      out[cones + j][a] = has_corners ? 0.5 * (0.5 + mean) : mean;
-    }
-  }
+  const auto corner = [&](unsigned v) { return list.mapped_corner(v); };
+  for (unsigned j = 0; j < list.list().side_vertices; ++j)
+    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place);
 }
 
 }  // namespace tegl::detail

@@ -216,6 +216,15 @@ unsigned resolved_key<2>(const FaceEstimator<2>& estimator, const std::array<std
   return signature | (estimator.is_square_high(base, 3, values) ? 16u : 0u);
 }
 
+namespace {
+
+/// The axis of the image that is number `axis` of a face along `axes`.
+unsigned axis_of(unsigned axes, unsigned axis) noexcept {
+  for (; axis != 0; --axis) axes &= axes - 1;
+  return static_cast<unsigned>(std::countr_zero(axes));
+}
+
+/// The squares and the inside of a cube whose signature is ambiguous.
 template <int N>
 CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
                     std::span<const double, 8> values, unsigned signature) noexcept {
@@ -228,10 +237,7 @@ CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::siz
     const unsigned across = square / 2;
     std::array<double, 4> corners;
     for (unsigned c = 0; c < 4; ++c) corners[c] = values[unsqueeze(c, across) | square % 2 << across];
-    // The axis of the image, the one number `across` of the cube's.
-    unsigned rest_of_axes = axes;
-    for (unsigned a = 0; a < across; ++a) rest_of_axes &= rest_of_axes - 1;
-    const auto axis = static_cast<unsigned>(std::countr_zero(rest_of_axes));
+    const unsigned axis = axis_of(axes, across);
     auto at = base;
     at[axis] += square % 2;
     if (estimator.is_square_high(at, axes ^ 1u << axis, corners))
@@ -243,15 +249,135 @@ CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::siz
   return decision;
 }
 
+unsigned key_of(unsigned signature, const CubeDecision& decision) noexcept {
+  const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[signature];
+  const unsigned r = packed_squares(decision.high_squares, ambiguous);
+  return signature | (1 + 3 * r + static_cast<unsigned>(decision.centre)) << 8;
+}
+
+/// The squares of the tesseract that are squares of its cube f, by set of those.
+constexpr auto kSquaresOfCubes = [] {
+  std::array<std::array<std::uint32_t, 64>, 8> result{};
+  for (unsigned f = 0; f < 8; ++f)
+    for (unsigned square = 0; square < 6; ++square) {
+      const unsigned axis = square / 2 < f / 2 ? square / 2 : square / 2 + 1;
+      const unsigned base = (f % 2) << (f / 2) | (square % 2) << axis;
+      const unsigned axes = 15u ^ 1u << (f / 2) ^ 1u << axis;
+      for (unsigned q = 0; q < 24; ++q)
+        if (kTesseractSquares[q].base == base && kTesseractSquares[q].axes == axes)
+          for (unsigned set = 0; set < 64; ++set)
+            if ((set >> square & 1u) != 0) result[f][set] |= 1u << q;
+    }
+  return result;
+}();
+
+/// The corners of a face of the tesseract, in its own order.
+template <std::size_t Count>
+std::array<double, Count> values_in(const std::array<double, 16>& values, unsigned base, unsigned axes) noexcept {
+  std::array<double, Count> result;
+  unsigned corner = base;
+  for (double& value : result) {
+    value = values[corner];
+    corner = base | (((corner | ~axes) + 1) & axes);  // the next subset of the axes
+  }
+  return result;
+}
+
+std::array<std::size_t, 4> moved(std::array<std::size_t, 4> base, unsigned corner) noexcept {
+  for (unsigned a = 0; a < 4; ++a) base[a] += corner >> a & 1u;
+  return base;
+}
+
+}  // namespace
+
+template <int N>
+unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                  unsigned signature) noexcept {
+  if (!ambiguous_signatures<3>()[signature]) return signature;
+  std::array<double, 8> values;
+  estimator.source().corner_values(base, axes, values.data());
+  return key_of(signature, decide<N>(estimator, base, axes, values, signature));
+}
+template unsigned cube_key<3>(const FaceEstimator<3>&, const std::array<std::size_t, 3>&, unsigned, unsigned) noexcept;
+template unsigned cube_key<4>(const FaceEstimator<4>&, const std::array<std::size_t, 4>&, unsigned, unsigned) noexcept;
+
 template <>
 unsigned resolved_key<3>(const FaceEstimator<3>& estimator, const std::array<std::size_t, 3>& base,
                          unsigned signature) noexcept {
+  return cube_key<3>(estimator, base, 7, signature);
+}
+
+ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
+                           unsigned signature) noexcept {
   const auto& table = tables::kTile3Resolved;
-  std::array<double, 8> values;
-  estimator.source().corner_values(base, 7, values.data());
-  const CubeDecision decision = decide<3>(estimator, base, 7, values, signature);
-  const unsigned r = packed_squares(decision.high_squares, table.ambiguous_squares[signature]);
-  return signature | (1 + 3 * r + static_cast<unsigned>(decision.centre)) << 8;
+  const ResolvedCubes& cubes = ResolvedCubes::instance();
+  std::array<double, 16> values;
+  estimator.source().corner_values(base, 15, values.data());
+  const std::uint64_t signatures = cubes.signatures(static_cast<std::uint16_t>(signature));
+  std::uint32_t ambiguous = 0;
+  for (unsigned f = 0; f < 8; ++f)
+    ambiguous |= kSquaresOfCubes[f][table.ambiguous_squares[signatures >> (8 * f) & 255]];
+  ResolvedTile tile;
+  tile.key.signature = static_cast<std::uint16_t>(signature);
+  for (; ambiguous != 0; ambiguous &= ambiguous - 1) {
+    const auto q = static_cast<unsigned>(std::countr_zero(ambiguous));
+    const auto [corner, axes] = kTesseractSquares[q];
+    if (estimator.is_square_high(moved(base, corner), axes, values_in<4>(values, corner, axes)))
+      tile.key.squares |= 1u << q;
+  }
+  const std::uint64_t squares = cubes.squares(tile.key.squares);
+  for (unsigned f = 0; f < 8; ++f) {
+    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
+    tile.cubes[f] = static_cast<std::uint16_t>(in_cube);
+    if (!ambiguous_signatures<3>()[in_cube]) continue;
+    const unsigned r =
+        packed_squares(static_cast<unsigned>(squares >> (8 * f) & 255), table.ambiguous_squares[in_cube]);
+    auto choice = facets::Choice::separate;
+    if (table.entries[table.first_entry[in_cube] + r].components > 1) {
+      const unsigned corner = (f % 2) << (f / 2);
+      const unsigned axes = 15u ^ 1u << (f / 2);
+      choice = estimator.choice(moved(base, corner), axes, values_in<8>(values, corner, axes));
+    }
+    tile.cubes[f] = static_cast<std::uint16_t>(in_cube | (1 + 3 * r + static_cast<unsigned>(choice)) << 8);
+    if (choice == facets::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
+    if (choice == facets::Choice::high) tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | 1u << f);
+  }
+  tile.key.tile = estimator.choice(base, 15, values);
+  return tile;
+}
+
+unsigned list_of_key(unsigned key) noexcept {
+  const unsigned signature = signature_of<3>(key);
+  if (signature == 0 || signature == 255) return ResolvedCubes::kNone;
+  const unsigned variant = key >> 8;
+  const unsigned r = variant == 0 ? 0 : (variant - 1) / 3;
+  unsigned squares = 0;
+  unsigned bit = 0;
+  for (unsigned rest = tables::kTile3Resolved.ambiguous_squares[signature]; rest != 0; rest &= rest - 1, ++bit)
+    if ((r >> bit & 1u) != 0) squares |= rest & (~rest + 1);
+  const auto choice = variant == 0 ? facets::Choice::separate : static_cast<facets::Choice>((variant - 1) % 3);
+  return ResolvedCubes::instance().list(signature, squares, choice);
+}
+
+const RowTable& estimated_tesseracts() {
+  static const RowTable table = [] {
+    RowTable result(tables::tile_table(4, 1));
+    for (unsigned s = 0; s < 65536; ++s)
+      if (ambiguous_signatures<4>()[s]) result.mark_as_own(s);
+    return result;
+  }();
+  return table;
+}
+
+template <>
+const std::array<bool, 65536>& ambiguous_signatures<4>() noexcept {
+  static const auto kAmbiguous = [] {
+    std::array<bool, 65536> result{};
+    for (unsigned s = 0; s < result.size(); ++s)
+      result[s] = !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(s));
+    return result;
+  }();
+  return kAmbiguous;
 }
 
 template class VariantTable<2>;

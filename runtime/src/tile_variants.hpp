@@ -13,10 +13,17 @@
 
 #include "extract_rows.hpp"
 #include "face_estimator.hpp"
+#include "resolved_tiles.hpp"
 #include "tegl/saddle.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
+
+/// What a tile of four dimensions is filled with: how it is resolved, and the keys of its cubes.
+struct ResolvedTile {
+  ResolvedKey key;
+  std::array<std::uint16_t, 8> cubes{};
+};
 
 /// The table of all keys, N = 2 or 3. In the barycentric triangulation what is no tunnel is coned from its barycentre.
 template <int N>
@@ -49,18 +56,33 @@ class VariantTable {
 template <int N>
 const VariantTable<N>& variant_table(int triangulation);
 
-/// Whether the data have a say in a tile: a square of it is ambiguous, or it has several polygons. By signature.
+/// Whether the data have a say in a tile: a square of it is ambiguous, or it may have several facets. By signature.
 template <int N>
 const std::array<bool, std::size_t{1} << (1u << N)>& ambiguous_signatures() noexcept;
 template <>
 const std::array<bool, 16>& ambiguous_signatures<2>() noexcept;
 template <>
 const std::array<bool, 256>& ambiguous_signatures<3>() noexcept;
+template <>
+const std::array<bool, 65536>& ambiguous_signatures<4>() noexcept;
 
-/// The squares and the inside of the cube along `axes` based at `base`, whose signature is ambiguous.
+/// The key of the cube along `axes` based at `base` of an image of three or four dimensions.
 template <int N>
-CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
-                    std::span<const double, 8> values, unsigned signature) noexcept;
+unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                  unsigned signature) noexcept;
+
+/// The filling of an ambiguous tile of four dimensions.
+ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
+                           unsigned signature) noexcept;
+
+/// The compact table of four dimensions; all tiles that data decide on are marked as those with vertices of their own.
+const RowTable& estimated_tesseracts();
+
+/// The number of the list (ResolvedCubes) that a cube's key stands for; kNone for a cube without a contour.
+unsigned list_of_key(unsigned key) noexcept;
+
+/// How many vertices of its own a cube has in the compact triangulation, by key.
+inline unsigned cube_vertices(unsigned key) { return variant_table<3>(1).rows().own_vertices(key); }
 
 /// The key of an ambiguous tile.
 template <int N>

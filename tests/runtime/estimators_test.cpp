@@ -59,15 +59,17 @@ struct Kind {
   static constexpr int kDim = N;
 };
 using Kinds = ::testing::Types<Kind<std::uint8_t, 2>, Kind<float, 2>, Kind<std::int8_t, 3>, Kind<std::uint16_t, 3>,
-                               Kind<std::int16_t, 3>, Kind<std::int32_t, 3>, Kind<float, 3>, Kind<double, 3>>;
+                               Kind<std::int16_t, 3>, Kind<std::int32_t, 3>, Kind<float, 3>, Kind<double, 3>,
+                               Kind<std::uint8_t, 4>, Kind<float, 4>>;
 TYPED_TEST_SUITE(Estimators, Kinds);
 
 TYPED_TEST(Estimators, GiveClosedManifoldsOnNoise) {
   constexpr int N = TypeParam::kDim;
-  const auto image = noise<typename TypeParam::Value, N>(odd_grid<N>(N == 2 ? 70 : 17), 5);
+  const auto image = noise<typename TypeParam::Value, N>(odd_grid<N>(N == 2 ? 70 : N == 3 ? 17 : 5), 5);
   for (const Ambiguity ambiguity : kEstimated)
     for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
       for (const bool close : {false, true}) {
+        if (N == 4 && triangulation == Triangulation::barycentric) continue;  // refused
         SCOPED_TRACE(std::string(name_of(ambiguity)) + (close ? ", closed" : "") +
                      (triangulation == Triangulation::compact ? ", compact" : ", barycentric"));
         ExtractOptions options = with(ambiguity);
