@@ -339,7 +339,8 @@ TEST(Saddle, ScalesAndOffsetsThatRoundNothingChangeNothing) {
   for (int i = 0; i < 3000; ++i) {
     const Values values = as_values(random_cube(random, 1 + i % 100));
     const CubeDecision decision = decide_cube<double>(values, 0.0);
-    for (const int exponent : {-1070, -700, -1, 1, 500, 1000}) {
+    // Products of two values near 2^-537 are the least doubles, coarsely rounded.
+    for (const int exponent : {-1070, -700, -539, -538, -537, -1, 1, 500, 1000}) {
       Values scaled, shifted;
       for (unsigned v = 0; v < 8; ++v) {
         scaled[v] = std::ldexp(values[v], exponent);
@@ -382,6 +383,21 @@ TEST(Saddle, TiesOfTheLargestAndLeastIntegersAreExact) {
   EXPECT_FALSE(square_is_high<std::int32_t>(std::array{most, -most, -most, most - 1}, 0.0));
   EXPECT_TRUE(square_is_high<std::int32_t>(std::array{-most, most, most - 1, 2 - most}, 0.0));
   EXPECT_FALSE(square_is_high<std::int32_t>(std::array{-most, most, most - 2, 1 - most}, 0.0));
+}
+
+TEST(Saddle, WhatIsRoundedOffAtTheIsovalueDecides) {
+  const std::array<double, 4> even = {1.0, -1.0, -1.0, 1.0}, odd = {-1.0, 1.0, 1.0, -1.0};
+  for (const auto& square : {even, odd}) {
+    EXPECT_TRUE(square_is_high<double>(square, 0.0));
+    EXPECT_FALSE(square_is_high<double>(square, 0x1p-60));
+    EXPECT_TRUE(square_is_high<double>(square, -0x1p-60));
+    EXPECT_FALSE(square_is_high<double>(square, 5e-324));
+  }
+  // The double cone.
+  const Values cone = {-1.0, -1.0, -1.0, 3.0, 3.0, -1.0, -1.0, -1.0};
+  EXPECT_EQ(cube_choice<double>(cone, 0.0), Choice::high);
+  EXPECT_EQ(cube_choice<double>(cone, 0x1p-60), Choice::separate);
+  EXPECT_EQ(cube_choice<double>(cone, -0x1p-60), Choice::high);
 }
 
 TEST(Saddle, InfiniteValuesAreLargeAndNothingIsUndefined) {
