@@ -243,7 +243,7 @@ class TileWriter {
       const EdgePlaces<N, kAll> places(source_, index, signature);
       for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
         ids[ResolvedTesseract::kFirstOwn + j] = own;
-        const TilePoint<N> place = mask_place<N>(filling.masks[j], std::identity(), places);
+        const TilePoint<N> place = mask_place<N>(filling.masks[j], std::identity(), places, true);
         vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
         if (placement_.normals() != nullptr)
           vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);

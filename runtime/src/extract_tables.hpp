@@ -202,18 +202,22 @@ TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& 
 
 /// The place of an own vertex by its mask (bit v: corner v, bit 2^K + e: edge e): of edges alone their mean, with
 /// corners half way from the tile's centre to the mean of all. `corner(v)`: that corner in the frame at hand.
+///
+/// `uneven`: all a little aside, by unequal weights. Samples of few values, such as masks, put edges' points at few
+/// places, so that the mean itself may lie on the line through two of them, and a triangle of the three has no size.
 template <int K, class Corner, class Place>
-TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place) noexcept {
+TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
   Weighted<K> sum;
   for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(rest));
-    sum.add(v < (1u << K) ? corner_point<K>(corner(v)) : place(v - (1u << K)), 1.0);
+    sum.add(v < (1u << K) ? corner_point<K>(corner(v)) : place(v - (1u << K)), uneven ? 1.0 + 0.01 * v : 1.0);
   }
   const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
   TilePoint<K> point;
   for (int a = 0; a < K; ++a) {
     const double mean = sum.point[a] / sum.weight;
-    point[a] = has_corners ? 0.5 * (0.5 + mean) : mean;
+    const double centre = uneven ? 0.487 + 0.01 * a : 0.5;
+    point[a] = has_corners ? 0.5 * (centre + mean) : mean;
   }
   return point;
 }
@@ -238,7 +242,7 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
   }
   const auto corner = [&](unsigned v) { return list.mapped_corner(v); };
   for (unsigned j = 0; j < list.list().side_vertices; ++j)
-    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place);
+    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, K == 3);  // cubes have them by data alone
 }
 
 }  // namespace tegl::detail

@@ -49,7 +49,7 @@ void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t s
   const auto symmetries = grid_symmetries<N>();
   for (const std::int64_t bound : {2, 1 << 20}) {
     const auto image = image_of<float>(random_box<N>(bits, sizes, bound));
-    for (auto [name, options] : all_ways()) {
+    for (auto [name, options] : all_ways(N)) {
       if (name.starts_with("random")) continue;
       SCOPED_TRACE(name + ", bound " + std::to_string(bound));
       options.epsilon = 0.01;
@@ -69,6 +69,7 @@ void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t s
 
 TEST(Symmetry, OfImagesIsThatOfContoursIn2d) { expect_equivariant<2>({9, 6}, 1, 1); }
 TEST(Symmetry, OfImagesIsThatOfContoursIn3d) { expect_equivariant<3>({5, 4, 6}, 2, 1); }
+TEST(Symmetry, OfImagesIsThatOfContoursIn4d) { expect_equivariant<4>({3, 4, 3, 3}, 3, 23); }
 
 }  // namespace
 }  // namespace tegl::test
