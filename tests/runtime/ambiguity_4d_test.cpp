@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// 4D contours of noise with ambiguities resolved from the data, and at random: closed oriented 3-manifolds, whose cuts
+// are closed oriented surfaces; the cut at a whole t is the contour of that layer.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "compare.hpp"
+#include "estimators.hpp"
+#include "fields.hpp"
+#include "invariants.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/slice.hpp"
+#include "tile_pieces.hpp"
+
+namespace tegl::test {
+namespace {
+
+/// Noise with a border that is low everywhere.
+OwnedImage<float, 4> enclosed_noise(std::size_t samples, std::uint64_t seed) {
+  auto image = noise<float, 4>(samples, seed);
+  for_each_sample<4>(image.grid, [&](std::size_t i, const std::array<std::size_t, 4>& index) {
+    for (const std::size_t at : index)
+      if (at == 0 || at + 1 == samples) image.values[i] = -1;
+  });
+  return image;
+}
+
+TEST(Ambiguity4d, ContoursOfNoiseAreClosedManifolds) {
+  const auto image = noise<float, 4>(9, 1);
+  for (auto [name, options] : all_ways(4)) {
+    SCOPED_TRACE(name);
+    options.close = true;
+    expect_closed_manifold(extract<float>(image.view(), 0.5, options));
+  }
+}
+
+TEST(Ambiguity4d, ContoursOfAnyShareOfHighSamplesAreManifolds) {
+  for (const double isovalue : {0.2, 0.35, 0.65, 0.8}) {
+    const auto image = noise<float, 4>(7, 2);
+    for (const auto& [name, options] : all_ways(4)) {
+      SCOPED_TRACE(name);
+      expect_oriented_manifold(extract<float>(image.view(), isovalue, options));
+    }
+  }
+}
+
+TEST(Ambiguity4d, CutsAtAnyTimeAndObliqueOnesAreClosedSurfaces) {
+  const auto image = enclosed_noise(8, 3);
+  std::mt19937_64 bits(4);
+  for (const auto& [name, options] : all_ways(4)) {
+    SCOPED_TRACE(name);
+    const auto contour = extract<double>(image.view(), 0.5, options);
+    expect_closed_manifold(contour);
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_GT(expect_closed_manifold(slice(contour, 1.0 + 5.0 * unit_random(bits))).simplices, 0u);
+      Hyperplane<4> plane;
+      for (int a = 0; a < 4; ++a) plane.normal[a] = unit_random(bits) - 0.5;
+      plane.offset = plane.normal.sum() * 3.5;
+      EXPECT_GT(expect_closed_manifold(slice(contour, plane)).simplices, 0u);
+    }
+  }
+}
+
+TEST(Ambiguity4d, AtAWholeTimeItIsTheContourOfTheLayer) {
+  const auto image = noise<float, 4>(8, 5);
+  const std::size_t layer = 8 * 8 * 8;
+  for (const auto& [name, options] : all_ways(4)) {
+    SCOPED_TRACE(name);
+    const auto contour = extract<double>(image.view(), 0.5, options);
+    for (std::size_t t = 0; t < 8; ++t) {
+      const Image<float, 3> part(image.values.data() + t * layer, Grid<3>::unit({8, 8, 8}));
+      const auto expected = extract<double>(part, 0.5, options);
+      EXPECT_TRUE(same_surface(slice(contour, static_cast<double>(t)), expected)) << "layer " << t;
+      EXPECT_TRUE(same_surface(slice_image<double>(image.view(), 0.5, static_cast<double>(t), options), expected));
+    }
+  }
+}
+
+/// The samples with index `at` along `axis`.
+Image<float, 3> layer_across(const OwnedImage<float, 4>& image, int axis, std::size_t at) {
+  Grid<3> grid;
+  Image<float, 3>::Strides strides{};
+  std::ptrdiff_t stride = 1, offset = 0;
+  for (int a = 0, b = 0; a < 4; stride *= static_cast<std::ptrdiff_t>(image.grid.axes[a].size()), ++a) {
+    if (a == axis) {
+      offset = static_cast<std::ptrdiff_t>(at) * stride;
+      continue;
+    }
+    grid.axes[b] = image.grid.axes[a];
+    strides[b++] = stride;
+  }
+  return {image.values.data() + offset, grid, strides};
+}
+
+TEST(Ambiguity4d, AtAWholePlaceAlongAnyAxisItIsTheContourOfTheLayer) {
+  const auto image = noise<float, 4>(6, 8);
+  for (const auto& [name, options] : all_ways(4))
+    for (int axis = 0; axis < 4; ++axis)
+      for (const std::size_t at : {1u, 4u}) {
+        const auto expected = extract<double>(layer_across(image, axis, at), 0.5, options);
+        EXPECT_TRUE(same_surface(slice_image_across<double>(image.view(), 0.5, axis, static_cast<double>(at), options),
+                                 expected))
+            << name << ", axis " << axis << ", at " << at;
+      }
+}
+
+/// Between layers the direct cut against that of the contour.
+TEST(Ambiguity4d, DirectCutsAreThoseOfTheContour) {
+  const auto image = noise<float, 4>(6, 6);
+  for (const auto& [name, options] : all_ways(4)) {
+    SCOPED_TRACE(name);
+    const auto contour = extract<double>(image.view(), 0.5, options);
+    for (const double t : {0.3, 2.71, 4.5})
+      EXPECT_TRUE(same_surface(slice_image<double>(image.view(), 0.5, t, options), slice(contour, t))) << "at " << t;
+  }
+}
+
+TEST(Ambiguity5d, ContoursOfNoiseAreClosedManifolds) {
+  const auto image = noise<float, 5>({2, 3, 2, 2, 2}, 7);
+  for (auto [name, options] : all_estimators()) {
+    SCOPED_TRACE(name);
+    options.close = true;
+    expect_closed_manifold(extract<double>(image.view(), 0.5, options));
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
