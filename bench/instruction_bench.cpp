@@ -91,6 +91,11 @@ std::vector<NamedCase> all_cases() {
   barycentric.triangulation = Triangulation::barycentric;
   ExtractOptions closed;
   closed.close = true;
+  const auto by = [](Ambiguity ambiguity) {
+    ExtractOptions options;
+    options.ambiguity = ambiguity;
+    return options;
+  };
   const ExtractOptions normals = with_normals(ExtractOptions{}, true);
   return {
       extract_case<2>("empty", 512),
@@ -110,6 +115,15 @@ std::vector<NamedCase> all_cases() {
       extract_case<3>("gyroid", 64, " normals", normals),
       extract_case<3>("noise", 32, " normals", normals),
       extract_case<4>("balls", 32, " normals", normals),
+      extract_case<2>("noise", 200, " mean", by(Ambiguity::mean)),
+      extract_case<3>("gyroid", 64, " mean", by(Ambiguity::mean)),
+      extract_case<3>("gyroid", 64, " saddle", by(Ambiguity::saddle)),
+      extract_case<3>("noise", 32, " mean", by(Ambiguity::mean)),
+      extract_case<3>("noise", 32, " saddle", by(Ambiguity::saddle)),
+      extract_case<4>("balls", 32, " mean", by(Ambiguity::mean)),
+      extract_case<4>("balls", 32, " saddle", by(Ambiguity::saddle)),
+      extract_case<4>("noise", 10, " mean", by(Ambiguity::mean)),
+      extract_case<4>("noise", 10, " saddle", by(Ambiguity::saddle)),
       {"extract metaballs 96^3 uint8", count_bytes},
       {"slice balls 24^4", count_slice},
       {"slice_image balls 32^4", count_slice_image},

@@ -407,8 +407,8 @@ void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, co
       if (!ambiguous[signature]) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile tile = resolved_tile(*estimator_, base, signature);
-      const ResolvedView& filling = tesseract.find(tile.key);
-      count.simplices += filling.simplex_count;
+      const ResolvedSize filling = tesseract.size(tile.key);
+      count.simplices += filling.simplices;
       count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
       count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
       if (found == nullptr) continue;

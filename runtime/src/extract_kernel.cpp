@@ -121,7 +121,9 @@ class Extraction {
     const std::size_t counted = kPassesPlanesOn ? batch_ + 1 : layers_.size();
     for (std::size_t k = 0; k < counted; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
     for (std::size_t k = 0; k + 1 < counted; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
-    source.keep(layers_.size() + (options.normals ? 1 : 0));  // gradients look back to the layer before
+    if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
+    // Gradients look back to the layer before; estimators as far as they say.
+    source.keep(layers_.size() + std::max<std::size_t>(options.normals ? 1 : 0, 2 * reach_));
   }
 
   void run(ExtractStats& stats) {
@@ -208,7 +210,8 @@ class Extraction {
 
   /// The samples for classify(.., end).
   void prepare(std::size_t end) {
-    for (; prepared_ < std::min(end + 2, shape_.layers()); ++prepared_) {
+    wanted_ = std::min(end + 2, shape_.layers());
+    for (; prepared_ < std::min(end + 2 + reach_, shape_.layers()); ++prepared_) {
       source_.prepare(prepared_);
       reporter_.tell(0);
     }
@@ -216,7 +219,7 @@ class Extraction {
 
   /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
   void classify(std::size_t first, std::size_t end) {
-    pass_over_chunks(classified_, prepared_,
+    pass_over_chunks(classified_, wanted_,
                      [&](std::size_t k, std::size_t chunk, Scratch& scratch) { classify_chunk(k, chunk, scratch); });
     finish_classification(first, end);
   }
@@ -227,7 +230,7 @@ class Extraction {
   /// What is missing in the layers that the slabs first ... end - 1 need, whose samples are classified.
   void finish_classification(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
-    classified_ = prepared_;
+    classified_ = wanted_;
     const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
     const std::size_t valid_from = first == 0 ? 0 : first + 1;
     if (selection_ != nullptr && selection_->only_these()) return select_tiles(valid_from, valid_end);
@@ -337,7 +340,7 @@ class Extraction {
                         const typename ContourOutput<N, Real>::Room& room) {
     prepare(next_end);
     const bool wanted = is_wanted(room);
-    const std::size_t slabs = std::max(end - first, prepared_ - classified_);
+    const std::size_t slabs = std::max(end - first, wanted_ - classified_);
     const std::size_t pieces = output_.pieces_ahead();
     const std::size_t apart = pieces == 0 ? 0 : std::max<std::size_t>(1, slabs * shape_.chunks() / pieces);
     std::atomic<std::int64_t> classifying = 0, generating = 0;
@@ -347,7 +350,7 @@ class Extraction {
       const std::int64_t start = Stopwatch::nanoseconds();
       if (wanted && first + k < end) generate_chunk(first + k, chunk, scratch, room);
       const std::int64_t middle = Stopwatch::nanoseconds();
-      if (classified_ + k < prepared_) classify_chunk(classified_ + k, chunk, scratch);
+      if (classified_ + k < wanted_) classify_chunk(classified_ + k, chunk, scratch);
       generating.fetch_add(middle - start, std::memory_order_relaxed);
       classifying.fetch_add(Stopwatch::nanoseconds() - middle, std::memory_order_relaxed);
     });
@@ -486,7 +489,9 @@ class Extraction {
   std::vector<Layer<N>> layers_;  ///< by k modulo their number
   std::vector<Slab<N>> slabs_;
   std::size_t classified_ = 0;     ///< layers
+  std::size_t wanted_ = 0;         ///< layers, to be classified next
   std::size_t prepared_ = 0;       ///< layers
+  std::size_t reach_ = 0;          ///< layers beyond those at work that an estimator looks at
   ContourPart part_{};             ///< the last batch
   std::uint64_t before_part_ = 0;  ///< first vertex of the batch before
 };

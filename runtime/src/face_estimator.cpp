@@ -29,7 +29,9 @@ AmbiguousFace::AmbiguousFace(std::span<const std::size_t> base, unsigned axes, s
 double AmbiguousFace::sample(std::span<const std::ptrdiff_t> steps) const noexcept {
   std::array<std::ptrdiff_t, 5> index{};
   for (int a = 0; a < image_dim_; ++a) {
-    const auto step = static_cast<std::size_t>(a) < steps.size() ? steps[a] : 0;
+    const std::ptrdiff_t asked = static_cast<std::size_t>(a) < steps.size() ? steps[static_cast<std::size_t>(a)] : 0;
+    const std::ptrdiff_t ahead = axes_ >> a & 1u;
+    const std::ptrdiff_t step = std::clamp(asked, -around_->reach, ahead + around_->reach);
     index[a] = std::clamp(static_cast<std::ptrdiff_t>(base_[a]) - around_->origin[a] + step, around_->first[a],
                           around_->end[a] - 1);
   }
@@ -112,6 +114,7 @@ FaceEstimator<N>::FaceEstimator(const SampleSource<N>& source, const Index& size
     for (int a = 0; a < N; ++a) at[a] = static_cast<std::size_t>(index[a]);
     return static_cast<const SampleSource<N>*>(image)->value(at);
   };
+  around_.reach = static_cast<std::ptrdiff_t>(std::min<std::size_t>(options.estimator.reach, 1u << 30));
   for (int a = 0; a < N; ++a) around_.end[a] = static_cast<std::ptrdiff_t>(sizes[a]);
   if (part.axis >= 0) around_.origin[part.axis] = static_cast<std::ptrdiff_t>(part.first);
   around_.origin[N - 1] += static_cast<std::ptrdiff_t>(source.first_layer());

@@ -68,11 +68,14 @@ std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis,
   return {first, last - first + 1};
 }
 
-/// Across another axis than the last, gradients in the slab need the layers beside it: these are contoured too.
-template <int N>
-std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size) {
-  const std::size_t first = layers.first - (layers.first > 0);
-  return {first, std::min(size, layers.first + layers.second + 1) - first};
+/// Across another axis than the last, gradients in the slab, and estimators that look around, need the layers beside it:
+/// these are contoured too.
+inline std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size,
+                                                           const ExtractOptions& options) {
+  std::size_t beside = options.normals ? 1 : 0;
+  if (options.ambiguity == Ambiguity::custom) beside = std::max(beside, std::min(options.estimator.reach, size));
+  const std::size_t first = layers.first - std::min(layers.first, beside);
+  return {first, std::min(size, layers.first + layers.second + beside) - first};
 }
 
 /// The image with an axis moved to the end, the others in their order.
@@ -109,16 +112,18 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
   detail::check_arguments(isovalue, options);
   auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
   const bool is_last = axis == N - 1;
-  // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis.
-  if (N == 4 && !is_last && detail::is_at_layer<N, Real>(image.grid(), axis, at, layers))
+  // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis. (But a
+  // caller's estimator is to see the image's own axes.)
+  if (N == 4 && !is_last && options.ambiguity != Ambiguity::custom && detail::is_at_layer<N, Real>(image.grid(), axis, at, layers))
     return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, options, stats);
-  if (!is_last && options.normals) layers = detail::with_neighbours<N>(layers, image.size(axis));
+  if (!is_last) layers = detail::with_neighbours(layers, image.size(axis), options);
   const Image<T, N> slab = image.part(axis, layers.first, layers.second);
   // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.
   detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
-  const unsigned across_others = ((1u << N) - 1) & ~(1u << axis);
+  detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
+  if (!is_last) plan.part = {axis, layers.first};
   const Contour<N, Real> contour = detail::extract_source<N, Real>(
-      source, slab.grid(), detail::generated_tables<N>(options), options, stats, {.closed_axes = across_others});
+      source, slab.grid(), detail::generated_tables<N>(options), options, stats, plan);
   return slice(contour, Hyperplane<N>::across(axis, at));
 }
 

@@ -228,7 +228,11 @@ unsigned axis_of(unsigned axes, unsigned axis) noexcept {
 template <int N>
 CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
                     std::span<const double, 8> values, unsigned signature) noexcept {
-  if (estimator.is_by_cubes()) return tegl::decide_cube<double>(values, estimator.isovalue());
+  if (estimator.is_by_cubes()) {
+    std::array<double, 8> corners;
+    std::copy(values.begin(), values.end(), corners.begin());
+    return detail::decide_cube(corners, estimator.isovalue(), static_cast<std::uint8_t>(signature));
+  }
   const auto& table = tables::kTile3Resolved;
   CubeDecision decision;
   const unsigned ambiguous = table.ambiguous_squares[signature];
