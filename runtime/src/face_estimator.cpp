@@ -29,9 +29,7 @@ AmbiguousFace::AmbiguousFace(std::span<const std::size_t> base, unsigned axes, s
 double AmbiguousFace::sample(std::span<const std::ptrdiff_t> steps) const noexcept {
   std::array<std::ptrdiff_t, 5> index{};
   for (int a = 0; a < image_dim_; ++a) {
-    const std::ptrdiff_t asked = static_cast<std::size_t>(a) < steps.size() ? steps[static_cast<std::size_t>(a)] : 0;
-    const std::ptrdiff_t ahead = axes_ >> a & 1u;
-    const std::ptrdiff_t step = std::clamp(asked, -around_->reach, ahead + around_->reach);
+    const std::ptrdiff_t step = static_cast<std::size_t>(a) < steps.size() ? steps[static_cast<std::size_t>(a)] : 0;
     index[a] = std::clamp(static_cast<std::ptrdiff_t>(base_[a]) - around_->origin[a] + step, around_->first[a],
                           around_->end[a] - 1);
   }
@@ -114,7 +112,6 @@ FaceEstimator<N>::FaceEstimator(const SampleSource<N>& source, const Index& size
     for (int a = 0; a < N; ++a) at[a] = static_cast<std::size_t>(index[a]);
     return static_cast<const SampleSource<N>*>(image)->value(at);
   };
-  around_.reach = static_cast<std::ptrdiff_t>(std::min<std::size_t>(options.estimator.reach, 1u << 30));
   for (int a = 0; a < N; ++a) around_.end[a] = static_cast<std::ptrdiff_t>(sizes[a]);
   if (part.axis >= 0) around_.origin[part.axis] = static_cast<std::ptrdiff_t>(part.first);
   around_.origin[N - 1] += static_cast<std::ptrdiff_t>(source.first_layer());
@@ -142,8 +139,16 @@ facets::Choice FaceEstimator<N>::choice(const Index& base, unsigned axes,
 template <int N>
 facets::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
   if (failed_.load(std::memory_order_relaxed)) return facets::Choice::separate;
+  // No farther than the caller said: of streamed images nothing else may be there.
+  AmbiguousFace::Surroundings near = around_;
+  const auto reach = static_cast<std::ptrdiff_t>(std::min<std::size_t>(estimator_.reach, 1u << 30));
+  for (unsigned a = 0; a < N; ++a) {
+    const auto at = static_cast<std::ptrdiff_t>(base[a]);
+    near.first[a] = std::max(near.first[a], at - reach);
+    near.end[a] = std::min(near.end[a], at + static_cast<std::ptrdiff_t>(axes >> a & 1u) + reach + 1);
+  }
   try {
-    const facets::Choice choice = estimator_.choose(AmbiguousFace(base, axes, values, isovalue_, around_));
+    const facets::Choice choice = estimator_.choose(AmbiguousFace(base, axes, values, isovalue_, near));
     return choice <= facets::Choice::high ? choice : facets::Choice::separate;
   } catch (...) {
     const std::lock_guard lock(mutex_);

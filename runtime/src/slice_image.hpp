@@ -68,8 +68,8 @@ std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis,
   return {first, last - first + 1};
 }
 
-/// Across another axis than the last, gradients in the slab, and estimators that look around, need the layers beside it:
-/// these are contoured too.
+/// Across another axis than the last, gradients in the slab, and estimators that look around, need the layers beside
+/// it: these are contoured too.
 inline std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size,
                                                            const ExtractOptions& options) {
   std::size_t beside = options.normals ? 1 : 0;
@@ -114,7 +114,8 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
   const bool is_last = axis == N - 1;
   // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis. (But a
   // caller's estimator is to see the image's own axes.)
-  if (N == 4 && !is_last && options.ambiguity != Ambiguity::custom && detail::is_at_layer<N, Real>(image.grid(), axis, at, layers))
+  if (N == 4 && !is_last && options.ambiguity != Ambiguity::custom &&
+      detail::is_at_layer<N, Real>(image.grid(), axis, at, layers))
     return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, options, stats);
   if (!is_last) layers = detail::with_neighbours(layers, image.size(axis), options);
   const Image<T, N> slab = image.part(axis, layers.first, layers.second);
@@ -122,8 +123,8 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
   detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
   detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
   if (!is_last) plan.part = {axis, layers.first};
-  const Contour<N, Real> contour = detail::extract_source<N, Real>(
-      source, slab.grid(), detail::generated_tables<N>(options), options, stats, plan);
+  const Contour<N, Real> contour =
+      detail::extract_source<N, Real>(source, slab.grid(), detail::generated_tables<N>(options), options, stats, plan);
   return slice(contour, Hyperplane<N>::across(axis, at));
 }
 

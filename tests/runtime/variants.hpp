@@ -24,7 +24,8 @@ inline std::vector<ExtractOptions> variants() {
 
 inline std::string describe(const ExtractOptions& options) {
   std::string text = options.triangulation == Triangulation::compact ? "compact" : "barycentric";
-  text += options.ambiguity == Ambiguity::low ? ", low" : ", high";
+  constexpr const char* kAmbiguities[] = {", low", ", high", ", mean", ", saddle", ", custom"};
+  text += kAmbiguities[static_cast<int>(options.ambiguity)];
   if (options.close) text += ", closed";
   return text;
 }

@@ -43,7 +43,6 @@ class AmbiguousFace {
     const void* image = nullptr;
     Reader read = nullptr;
     std::array<std::ptrdiff_t, 5> origin{}, first{}, end{};
-    std::ptrdiff_t reach = 0;  ///< Estimator::reach
   };
   AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
                 const Surroundings& around);
@@ -60,8 +59,8 @@ class AmbiguousFace {
   /// At its 2^dim corners; corner v is one step along the j-th of its axes where bit j of v is set.
   [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
   [[nodiscard]] double isovalue() const noexcept { return isovalue_; }
-  /// The value at `base` + `steps`, steps by axis of the image (those left out are 0). Beyond the image's border, and
-  /// farther from the face than Estimator::reach, that of the nearest sample that is not. NaN where it is missing.
+  /// The value at `base` + `steps`, steps by axis of the image; beyond the image's border that of the nearest sample
+  /// inside. NaN where it is missing. How far it may go: Estimator::reach.
   [[nodiscard]] double sample(std::span<const std::ptrdiff_t> steps) const noexcept;
 
  private:
@@ -81,8 +80,8 @@ struct Estimator {
   /// time. The answer has to depend on the face alone, not on who asks: a face is asked for once by each tile around
   /// it. For a square, `separate` is as `low`. What it throws ends the extraction and reaches the caller.
   std::function<facets::Choice(const AmbiguousFace& face)> choose;
-  /// How many samples beyond the face `choose` looks at, along any axis, through AmbiguousFace::sample. Streamed
-  /// images keep twice as many layers more.
+  /// How many samples beyond the face `choose` looks at, along any axis, through AmbiguousFace::sample. Layers of
+  /// streamed images are kept for so long; beyond them nothing is known there.
   std::size_t reach = 0;
 };
 
