@@ -83,6 +83,14 @@ bool is_large_mean_high(std::span<const double> values, double isovalue) noexcep
 bool is_mean_high(std::span<const double> values, double isovalue) noexcept {
   const double limit = static_cast<double>(values.size()) * isovalue;  // exact: a power of two
   double sum = 0.0;
+  double size = std::abs(limit);
+  for (const double value : values) {
+    sum += value;
+    size += std::abs(value);
+  }
+  // More than all additions can have rounded off; false for what is not finite.
+  if (std::abs(sum - limit) > 0x1p-46 * size && size < 0x1p1000) return sum > limit;
+  sum = 0.0;
   double rests = 0.0;
   for (const double value : values) {
     const TwoSum two(sum, value);

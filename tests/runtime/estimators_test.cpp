@@ -297,6 +297,7 @@ TYPED_TEST(Estimators, OfTheCallersSeeWhatIsAroundAFace) {
   Neighbourhood<T, N> around{image};
   ExtractOptions options = with(Ambiguity::custom);
   for (const std::size_t reach : {0, 2}) {
+    around.asked = around.wrong = 0;
     options.estimator = around.estimator(reach);
     const auto contour = extract(image.view(), isovalue, options);
     expect_oriented_manifold(contour);
@@ -304,6 +305,9 @@ TYPED_TEST(Estimators, OfTheCallersSeeWhatIsAroundAFace) {
     auto layers = layers_of(image);
     extract_streamed(layers, isovalue, options, collector);
     expect_same_bytes(collector.contour, contour);
+    EXPECT_GT(around.asked, 0u);
+    EXPECT_EQ(around.wrong, 0u);
+    // Of tiles that lie beside the cut, and do not matter, less is seen.
     if constexpr (N > 2)
       for (int axis = 0; axis < N; ++axis) {
         const Axis& across = image.grid.axes[axis];
@@ -312,8 +316,6 @@ TYPED_TEST(Estimators, OfTheCallersSeeWhatIsAroundAFace) {
         EXPECT_EQ(direct.simplices.size(), slice(contour, Hyperplane<N>::across(axis, where)).simplices.size());
       }
   }
-  EXPECT_GT(around.asked, 0u);
-  EXPECT_EQ(around.wrong, 0u);
 }
 
 TYPED_TEST(Estimators, CloseContoursUpToMissingValues) {
