@@ -64,7 +64,10 @@ struct ResolvedSize {
 };
 
 /// Looks tiles up, one after the other: an object for each thread. It holds the last tile alone, less than 100 kB; the
-/// tables behind it, 1 MB, are made once, of the generated one, and shared. Time: 0.1 to 0.3 us a tile.
+/// tables behind it, 1 MB, are made once, of the generated one, and shared: those of lists in 2 ms, those of regions
+/// (cube_regions.hpp), when the first one is asked for, in 0.1 s. Time on noise resolved by means: 0.5 us a tile, of
+/// 33 tetrahedra and 2 own vertices in the mean. 31 % of these tiles are the compact table's; 55 % are coned otherwise,
+/// with 27 tetrahedra; 14 % are copies of a side, with 100.
 class ResolvedTesseract {
  public:
   static constexpr unsigned kFirstOwn = ResolvedCubes::kVertices;
@@ -74,7 +77,7 @@ class ResolvedTesseract {
   /// Valid until the next call.
   const ResolvedView& find(const ResolvedKey& key);
 
-  /// The size of what `find` finds, in about half the time. What `find` returned is as it was.
+  /// The size of what `find` finds, in half the time. What `find` returned is as it was.
   [[nodiscard]] ResolvedSize size(const ResolvedKey& key);
 
   /// Whether neither signs nor choices matter: no square is ambiguous, no cube has several polygons, and Sigma is one

@@ -32,8 +32,6 @@ using facets::Simplex;
 using facets::Simplices;
 using facets::VertexId;
 
-const ResolvedCubes& cubes() { return ResolvedCubes::instance(); }
-
 constexpr unsigned kFirstOwn = ResolvedTesseract::kFirstOwn;
 
 Choice cube_choice(const ResolvedKey& key, unsigned cube) {
@@ -140,7 +138,8 @@ class AsBuilt {
       const std::uint8_t* at = tables::kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
       for (unsigned t = 0; t < list.triangle_count; ++t, at += 3) {
         Simplex triangle = kNoSimplex;
-        for (unsigned i = 0; i < 3; ++i) triangle[i] = static_cast<VertexId>(cubes().lifted(f, at[i]));
+        for (unsigned i = 0; i < 3; ++i)
+          triangle[i] = static_cast<VertexId>(ResolvedCubes::instance().lifted(f, at[i]));
         const int sign = facets::sort_vertices(triangle);
         tile.in_face[g].push_back(triangle), tile.in_face_sign[g].push_back(sign);
         tile.sigma.push_back(triangle), tile.sigma_sign.push_back(sign * lattice_.faces().back().signs[g]);
@@ -271,33 +270,116 @@ class Topology {
   std::vector<Row> bounding_;
 };
 
-TEST(ResolvedTiles, RandomKeysPassTheCertificate) {
-  Keys keys;
-  AsBuilt as_built;
-  ResolvedTesseract tile;
-  facets::Certifier certifier;
-  for (int i = 0; i < 50000; ++i) {
-    const ResolvedKey key = i % 2 == 0 ? keys.uniform() : keys.of_means();
-    const ResolvedSize size = tile.size(key);
-    const ResolvedView& view = tile.find(key);
+/// One signature of each class under the symmetries of the tile, which swaps of axes and one reversal generate.
+std::vector<std::uint16_t> class_representatives() {
+  const auto moved = [](unsigned signature, const auto& to) {
+    unsigned result = 0;
+    for (unsigned v = 0; v < 16; ++v) result |= (signature >> v & 1u) << to(v);
+    return result;
+  };
+  std::vector<bool> seen(65536);
+  std::vector<std::uint16_t> result;
+  for (unsigned first = 0; first < seen.size(); ++first) {
+    if (seen[first]) continue;
+    result.push_back(static_cast<std::uint16_t>(first));
+    std::vector<unsigned> reached{first};
+    seen[first] = true;
+    for (std::size_t i = 0; i < reached.size(); ++i) {
+      std::vector<unsigned> images{moved(reached[i], [](unsigned v) { return v ^ 1u; })};
+      for (unsigned a = 0; a < 3; ++a)
+        images.push_back(moved(reached[i], [a](unsigned v) {
+          const unsigned swapped = (v >> a ^ v >> (a + 1)) & 1u;
+          return v ^ (swapped << a | swapped << (a + 1));
+        }));
+      for (const unsigned image : images)
+        if (!seen[image]) seen[image] = true, reached.push_back(image);
+    }
+  }
+  return result;
+}
+
+/// Notes the genus of each component of Sigma.
+void note_genera(const facets::TileFacets& tile, std::map<int, int>& count) {
+  std::vector<VertexId> root(tile.vertices.size());
+  for (VertexId v = 0; v < root.size(); ++v) root[v] = v;
+  const auto find = [&](VertexId v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const Simplex& t : tile.sigma) root[find(t[1])] = root[find(t[2])] = find(t[0]);
+  std::map<VertexId, std::pair<std::set<VertexId>, int>> parts;
+  for (const Simplex& t : tile.sigma) {
+    auto& [vertices, triangles] = parts[find(t[0])];
+    vertices.insert({t[0], t[1], t[2]});
+    ++triangles;
+  }
+  for (const auto& [v, part] : parts) ++count[(2 - static_cast<int>(part.first.size()) + part.second / 2) / 2];
+}
+
+class ResolvedTiles : public ::testing::Test {
+ protected:
+  void expect_certified(const ResolvedKey& key) {
+    const ResolvedSize size = tile_.size(key);
+    const ResolvedView& view = tile_.find(key);
     ASSERT_EQ(size.simplices, view.simplex_count);
     ASSERT_EQ(size.own_vertices, view.own_vertices);
     ASSERT_LT(kFirstOwn + view.own_vertices, 256u);
-    const facets::Fault fault = certifier.certify(as_built.lattice(), as_built(key, view));
+    const facets::TileFacets tile = as_built_(key, view);
+    note_genera(tile, genera_);
+    const facets::Fault fault = certifier_.certify(as_built_.lattice(), tile);
     ASSERT_EQ(fault, facets::Fault::none)
         << facets::fault_name(fault) << " signature " << key.signature << " squares " << key.squares << " low "
         << int{key.low_cubes} << " high " << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
   }
+
+  Keys keys_;
+  AsBuilt as_built_;
+  ResolvedTesseract tile_;
+  facets::Certifier certifier_;
+  std::map<int, int> genera_;  ///< genus -> components of Sigma
+};
+
+TEST_F(ResolvedTiles, RandomKeysPassTheCertificate) {
+  for (int i = 0; i < 40000; ++i)
+    ASSERT_NO_FATAL_FAILURE(expect_certified(i % 2 == 0 ? keys_.uniform() : keys_.of_means()));
 }
 
-TEST(ResolvedTiles, FillingsAreThoseOfTheEngine) {
-  Keys keys;
-  AsBuilt as_built;
-  ResolvedTesseract tile;
+TEST_F(ResolvedTiles, RandomResolutionsOfEveryClassPassTheCertificateUpToGenus5) {
+  const auto signatures = class_representatives();
+  EXPECT_EQ(signatures.size(), 402u);
+  for (const std::uint16_t signature : signatures)
+    for (int i = 0; i < 150; ++i) {
+      ResolvedKey key = keys_.uniform();
+      key.signature = signature;
+      ASSERT_NO_FATAL_FAILURE(expect_certified(key));
+    }
+  for (int genus = 0; genus <= 5; ++genus) EXPECT_GT(genera_[genus], 0) << "genus " << genus;
+}
+
+TEST_F(ResolvedTiles, WhereNothingIsToBeChosenTheyAreThoseOfTheCompactTable) {
+  std::size_t settled = 0;
+  for (unsigned s = 0; s < 65536; s += 7) {
+    if (!ResolvedTesseract::is_settled(static_cast<std::uint16_t>(s))) continue;
+    ++settled;
+    ResolvedKey key = keys_.uniform();
+    key.signature = static_cast<std::uint16_t>(s);
+    const ResolvedView& view = tile_.find(key);
+    const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[s]];
+    ASSERT_EQ(view.simplex_count, list.simplex_count);
+    ASSERT_EQ(view.own_vertices, std::uint32_t{list.cone_vertices} + list.side_vertices);
+    const std::uint8_t* const stored = tables::kTile4Compact.simplices + 4 * std::size_t{list.first_simplex};
+    if (view.own_vertices == 0) {
+      ASSERT_TRUE(std::equal(stored, stored + 4 * std::size_t{list.simplex_count}, view.simplices)) << s;
+    }
+  }
+  EXPECT_GT(settled, 500u);
+}
+
+TEST_F(ResolvedTiles, FillingsAreThoseOfTheEngine) {
   for (int i = 0; i < 2000; ++i) {
-    const ResolvedKey key = i % 2 == 0 ? keys.uniform() : keys.of_means();
-    const facets::TileFacets found = as_built(key, tile.find(key));
-    ASSERT_EQ(Topology(found), Topology(as_built.built(key)))
+    const ResolvedKey key = i % 2 == 0 ? keys_.uniform() : keys_.of_means();
+    const facets::TileFacets found = as_built_(key, tile_.find(key));
+    ASSERT_EQ(Topology(found), Topology(as_built_.built(key)))
         << " signature " << key.signature << " squares " << key.squares << " low " << int{key.low_cubes} << " high "
         << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
   }
