@@ -11,42 +11,23 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <system_error>
 #include <variant>
 #include <vector>
 
 #include "memory.hpp"
 #include "tegl/active_tiles_io.hpp"
 #include "tegl/io.hpp"
+#include "timing.hpp"
 
 namespace tegl::bench {
 namespace {
-
-constexpr int kRuns = 3;
-
-/// Seconds that this process has worked: other programs on the machine do not count.
-double worked_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-/// The least seconds of several runs.
-template <class Work>
-double least_seconds(const Work& work) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < kRuns; ++run) {
-    const double start = worked_seconds();
-    work();
-    least = std::min(least, worked_seconds() - start);
-  }
-  return least;
-}
 
 struct Query {
   double isovalue;
@@ -54,29 +35,6 @@ struct Query {
   double seconds;          ///< to find them
   double extract_seconds;  ///< to find them and make the contour
 };
-
-/// time = start + each * active, by least squares; and the share of the variance that it explains.
-struct Fit {
-  double start = 0, each = 0, explained = 0;
-};
-
-Fit fit_line(const std::vector<Query>& queries) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  for (const Query& q : queries) {
-    n += 1;
-    x += q.active;
-    y += q.seconds;
-    xx += q.active * q.active;
-    xy += q.active * q.seconds;
-    yy += q.seconds * q.seconds;
-  }
-  const double sxx = xx - x * x / n, sxy = xy - x * y / n, syy = yy - y * y / n;
-  Fit fit;
-  fit.each = sxx > 0 ? sxy / sxx : 0;
-  fit.start = (y - fit.each * x) / n;
-  fit.explained = sxx > 0 && syy > 0 ? sxy * sxy / (sxx * syy) : 0;
-  return fit;
-}
 
 /// Isovalues over the range of the values: for 8 bits and up to 256 queries, one between any two values.
 template <class Owned>
@@ -131,7 +89,12 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
         fmt::print(csv, "{},{},{},{},{},{}\n", name, active_method_name(method), query.isovalue, query.active,
                    query.seconds, query.extract_seconds);
     }
-    const Fit fit = fit_line(done);
+    std::vector<double> active, seconds;
+    for (const Query& query : done) {
+      active.push_back(query.active);
+      seconds.push_back(query.seconds);
+    }
+    const Fit fit = fit_line(active, seconds);
     std::sort(done.begin(), done.end(), [](const Query& a, const Query& b) { return a.seconds < b.seconds; });
     const auto bytes = static_cast<double>(index->memory_bytes());
     fmt::print(
@@ -173,9 +136,10 @@ int run(int argc, char** argv) {
     const bool more = i + 1 < argc;
     if (argument == "--queries" && more)
       queries = std::max(1, std::stoi(argv[++i]));
-    else if (argument == "--csv" && more)
+    else if (argument == "--csv" && more) {
       csv = std::fopen(argv[++i], "w");
-    else
+      if (csv == nullptr) throw std::system_error(errno, std::generic_category(), argv[i]);
+    } else
       files.push_back(argument);
   }
   if (files.empty()) {

@@ -18,6 +18,7 @@
 #include "progress.hpp"
 #include "result.hpp"
 #include "tegl/active_tiles_io.hpp"
+#include "tegl/seed_set.hpp"
 
 namespace tegl::cli {
 
@@ -85,6 +86,18 @@ class IndexCommand final : public Command {
                     "how active tiles are to be found: docs/active-tiles.md says when to use which")
         ->check(CLI::IsMember(names))
         ->capture_default_str();
+    std::vector<std::string> seeds;
+    for (const SeedMethod method : seed_methods()) seeds.emplace_back(seed_method_name(method));
+    app()
+        .add_option("--seeds", seeds_, "with --method seed-set: how seeds are found (docs/seed-sets.md)")
+        ->check(CLI::IsMember(seeds))
+        ->capture_default_str();
+    app()
+        .add_option(
+            "--scan-order", scan_order_,
+            "with --method seed-set: the axes, the one that a scan runs along first, such as 2,0,1; 'cover' and "
+            "'volume-thinning' do not depend on it")
+        ->delimiter(',');
     app()
         .add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
         ->check(CLI::Range(0u, 4096u))
@@ -100,6 +113,10 @@ class IndexCommand final : public Command {
     result.output = output_.empty() ? file() + kIndexExtension : output_;
     result.method = method_;
     require_input(file());
+    if (method_ != active_method_name(ActiveMethod::seed_set) &&
+        (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--seeds and --scan-order are for --method seed-set; the method is {}", method_));
     if (!is_index_file(result.output))
       throw Error(ErrorCode::WriteFailed, fmt::format("{}: expected a file named *{}", result.output, kIndexExtension));
     require_text_output(result.output, file());
@@ -123,7 +140,12 @@ class IndexCommand final : public Command {
     const std::vector<ActiveMethod> methods = active_methods();
     const ActiveMethod method = *std::find_if(methods.begin(), methods.end(),
                                               [&](ActiveMethod each) { return active_method_name(each) == method_; });
-    const auto index = build_active_tiles(owned.view(), method, {.threads = threads_, .progress = bar.stage("build")});
+    const std::vector<SeedMethod> seeds = seed_methods();
+    ActiveTilesOptions options{.threads = threads_, .progress = bar.stage("build")};
+    options.seed_method =
+        *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return seed_method_name(each) == seeds_; });
+    options.scan_order = scan_order_;
+    const auto index = build_active_tiles(owned.view(), method, options);
     result.tiles = index->grid().count();
     result.memory_bytes = index->memory_bytes();
     result.build_seconds = watch.lap();
@@ -136,6 +158,8 @@ class IndexCommand final : public Command {
 
   std::string output_;
   std::string method_{active_method_name(ActiveMethod::span_space)};
+  std::string seeds_{seed_method_name(SeedMethod::cover)};
+  std::vector<int> scan_order_;
   unsigned threads_ = 0;
 };
 

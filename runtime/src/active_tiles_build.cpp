@@ -11,9 +11,14 @@
 
 #include "active_tiles_head.hpp"
 #include "active_tiles_methods.hpp"
+#include "progress.hpp"
 #include "workers.hpp"
 
 namespace tegl {
+
+namespace {
+constexpr double kIdentifyShare = 0.2;  ///< of the progress
+}
 
 namespace detail {
 
@@ -112,8 +117,12 @@ IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progr
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
                                                    const ActiveTilesOptions& options) {
-  const IndexedImage<N> identity = identify(image, options.threads);
-  const detail::IndexTask<T, N> task{image, identity, options};
+  // All of it where nothing is built; otherwise values are read many times more.
+  const double identified = method == ActiveMethod::full_scan ? 1.0 : kIdentifyShare;
+  const IndexedImage<N> identity = identify(image, options.threads, detail::part_of(options.progress, 0, identified));
+  ActiveTilesOptions rest = options;
+  rest.progress = detail::part_of(options.progress, identified, 1);
+  const detail::IndexTask<T, N> task{image, identity, rest};
   task.tell(0);
   detail::ActiveTilesPtr<N> result;
   switch (method) {
@@ -144,9 +153,12 @@ std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<
   const ActiveTilesHead head = detail::read_head(reader);
   IndexedImage<N> identity = detail::known_of(image);
   detail::require_same_image(head, identity.sizes, identity.value_type, head.digest);
-  identity = identify(image, options.threads);
+  constexpr double kReadShare = 0.5;
+  identity = identify(image, options.threads, detail::part_of(options.progress, 0, kReadShare));
   detail::require_same_image(head, identity.sizes, identity.value_type, identity.digest);
-  const detail::IndexTask<T, N> task{image, identity, options};
+  ActiveTilesOptions rest = options;
+  rest.progress = detail::part_of(options.progress, kReadShare, 1);
+  const detail::IndexTask<T, N> task{image, identity, rest};
   task.tell(0);
   detail::ActiveTilesPtr<N> result;
   switch (head.method) {

@@ -181,8 +181,18 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   PickReport<N>& found = report != nullptr ? *report : own;
   found = {};
   const detail::TileFlood<T, N> flood(image, isovalue);
-  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress))
-    return extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, options);  // names, units, no tiles
+  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress)) {
+    if (!options.close)
+      return extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, options);  // names, units, no tiles
+    // All that there is lies in the border: the component of the nearest vertex.
+    const Contour<N, Real> contour = extract<Real>(image, isovalue, options);
+    const ComponentLabels labels = label_components(contour, {options.threads, {}});
+    found.components = labels.count;
+    if (labels.count == 0) return contour;
+    std::vector<bool> keep(labels.count);
+    keep[nearest_component(contour, labels, locator, at, std::vector<bool>(labels.count, true))] = true;
+    return select_components(contour, labels, keep);
+  }
   std::vector<TileNumber> tiles =
       flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads, {});
   std::sort(tiles.begin(), tiles.end());

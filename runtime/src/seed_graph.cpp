@@ -4,96 +4,16 @@
 #include "seed_graph.hpp"
 
 #include "progress.hpp"
+#include "seed_links.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <tuple>
 
 namespace tegl::detail {
 
 namespace {
-
-/// A link whose bounds are keys.
-template <class Key>
-struct KeyLink {
-  std::uint32_t a, b;
-  Key least, greatest;
-};
-
-/// Links come in runs along borders between trees: those that overlap are made one before they are kept.
-template <class Key>
-class LinkCollector {
- public:
-  LinkCollector() : recent_(kRecent, Link{0, 0, 0, 0}) {}
-
-  void add(const KeyLink<Key>& link) {
-    Link& recent = recent_[(link.a * 0x9e3779b1u ^ link.b * 0x85ebca6bu) >> kShift];
-    const bool one = recent.a == link.a && recent.b == link.b && recent.least <= link.greatest &&
-                     link.least <= recent.greatest && recent.least != recent.greatest;
-    if (one) {
-      recent.least = std::min(recent.least, link.least);
-      recent.greatest = std::max(recent.greatest, link.greatest);
-    } else {
-      keep(recent);
-      recent = link;
-    }
-  }
-  std::vector<KeyLink<Key>> take() {
-    for (const Link& link : recent_) keep(link);
-    return std::move(links_);
-  }
-
- private:
-  using Link = KeyLink<Key>;
-  static constexpr std::size_t kRecent = 1u << 16;
-  static constexpr unsigned kShift = 16;
-
-  void keep(const Link& link) {
-    if (link.least == link.greatest) return;
-    if (links_.size() == links_.capacity() && links_.size() >= wanted_) compress();
-    links_.push_back(link);
-  }
-  /// Far more than there are different ones are not kept.
-  void compress() {
-    std::sort(links_.begin(), links_.end(), [](const Link& p, const Link& q) {
-      return std::tie(p.a, p.b, p.least, p.greatest) < std::tie(q.a, q.b, q.least, q.greatest);
-    });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      if (kept > 0 && links_[kept - 1].a == links_[i].a && links_[kept - 1].b == links_[i].b &&
-          links_[i].least <= links_[kept - 1].greatest)
-        links_[kept - 1].greatest = std::max(links_[kept - 1].greatest, links_[i].greatest);
-      else
-        links_[kept++] = links_[i];
-    }
-    links_.resize(kept);
-    wanted_ = std::max<std::size_t>(kMostUnsorted, 2 * kept);
-  }
-
-  static constexpr std::size_t kMostUnsorted = std::size_t{1} << 22;
-  std::vector<Link> recent_;
-  std::vector<Link> links_;
-  std::size_t wanted_ = kMostUnsorted;
-};
-
-/// Keys as levels: their ranks among those that occur.
-template <class Key>
-class Levels {
- public:
-  Levels(std::vector<Key> keys) : keys_(std::move(keys)) {
-    std::sort(keys_.begin(), keys_.end());
-    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
-  }
-  [[nodiscard]] std::uint32_t operator[](Key key) const noexcept {
-    return static_cast<std::uint32_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
-  }
-  [[nodiscard]] std::uint32_t count() const noexcept {
-    return keys_.empty() ? 0 : static_cast<std::uint32_t>(keys_.size() - 1);
-  }
-
- private:
-  std::vector<Key> keys_;
-};
 
 template <class Key>
 class GraphMaker {
@@ -110,10 +30,14 @@ class GraphMaker {
     hang();
     report_progress(options_.progress, 0.5);
     number_roots();
+    if (options_.most_work != ~std::uint64_t{0} && work() > options_.most_work) {
+      graph_.too_much_work = true;
+      return std::move(graph_);
+    }
     std::vector<KeyLink<Key>> links;
     if (options_.with_links) links = collect_links();
     report_progress(options_.progress, 0.8);
-    rank(links);
+    put_in_levels(map_, links, graph_);
     return std::move(graph_);
   }
 
@@ -179,6 +103,15 @@ class GraphMaker {
     });
   }
 
+  [[nodiscard]] std::uint64_t work() const {
+    std::vector<Key> keys;
+    for (const Place root : graph_.roots) {
+      keys.push_back(map_.least[root]);
+      keys.push_back(map_.greatest[root]);
+    }
+    return graph_.roots.size() * static_cast<std::uint64_t>(std::bit_width(Levels<Key>(std::move(keys)).count()));
+  }
+
   std::vector<KeyLink<Key>> collect_links() {
     LinkCollector<Key> collector;
     std::vector<std::ptrdiff_t> ahead;
@@ -206,28 +139,6 @@ class GraphMaker {
       }
     });
     return collector.take();
-  }
-
-  void rank(const std::vector<KeyLink<Key>>& links) {
-    std::vector<Key> keys;
-    keys.reserve(2 * (graph_.roots.size() + links.size()));
-    for (const Place root : graph_.roots) {
-      keys.push_back(map_.least[root]);
-      keys.push_back(map_.greatest[root]);
-    }
-    for (const auto& link : links) {
-      keys.push_back(link.least);
-      keys.push_back(link.greatest);
-    }
-    const Levels<Key> levels(std::move(keys));
-    graph_.levels = levels.count();
-    for (const Place root : graph_.roots) {
-      graph_.first.push_back(levels[map_.least[root]]);
-      graph_.end.push_back(levels[map_.greatest[root]]);
-    }
-    graph_.links.reserve(links.size());
-    for (const auto& link : links) graph_.links.push_back({link.a, link.b, levels[link.least], levels[link.greatest]});
-    merge_links(graph_.links);
   }
 
   const RangeMap<Key>& map_;

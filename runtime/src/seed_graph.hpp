@@ -30,6 +30,7 @@ struct SeedGraph {
   std::vector<Place> roots;
   std::vector<std::uint32_t> first, end;  ///< the root is active at levels first ... end - 1
   std::uint32_t levels = 0;
+  bool too_much_work = false;   ///< see SeedGraphOptions::most_work
   std::vector<SeedLink> links;  ///< a < b, ascending by a, b, first; those of one pair neither overlap nor touch
   std::uint64_t constant_tiles = 0;
   std::uint64_t groups = 0;
@@ -41,6 +42,8 @@ struct SeedGraphOptions {
   /// Links of root groups alone, in both directions where both are: a is the tree whose root's group has the tile.
   bool of_root_groups = false;
   bool with_links = true;
+  /// Of trees times the digits of the number of levels: beyond that neither links nor levels are found.
+  std::uint64_t most_work = ~std::uint64_t{0};
   Progress progress;
 };
 

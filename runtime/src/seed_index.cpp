@@ -49,9 +49,14 @@ class SeedIndex final : public tegl::ActiveTiles<N> {
 template <Value T, int N>
 ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task) {
   SeedSetOptions options;
+  options.method = task.options.seed_method;
+  options.scan_order = task.options.scan_order;
   options.neighbourhood = kNeighbourhood;
   options.threads = task.options.threads;
-  options.progress = task.options.progress;
+  options.progress = [&task](double fraction) {
+    task.tell(fraction);
+    return true;
+  };
   return std::make_unique<SeedIndex<T, N>>(task, find_seeds(task.image, options).tiles);
 }
 

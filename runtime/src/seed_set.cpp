@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "padded_tiles.hpp"
 #include "seed_graph.hpp"
 #include "seed_methods.hpp"
+#include "seed_regions.hpp"
 
 namespace tegl {
 
@@ -34,6 +36,10 @@ Progress after(const Progress& progress, double from, double to) {
   if (!progress) return {};
   return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
 }
+
+/// Up to which trees are covered as they are: see SeedGraphOptions. Of few values most fall to their neighbours later.
+template <class Key>
+constexpr std::uint64_t kMostWork = std::uint64_t{1} << (sizeof(Key) == 1 ? 20 : 18);
 
 /// From ranges to places of seeds.
 template <class Key>
@@ -72,19 +78,30 @@ class SeedFinder {
     options.of_root_groups = of_root_groups;
     options.progress = after(progress_, 0.0, 0.5);
     detail::SeedGraph graph = detail::make_seed_graph(map_, options);
-    stats_.constant_tiles = graph.constant_tiles;
-    stats_.groups = graph.groups;
-    stats_.whole1 = graph.roots.size();
+    count(graph);
     return graph;
   }
 
-  detail::SeedGraph make_small_graph() {
-    auto graph = make_graph(detail::default_order(map_.tiles.dim()), true, false);
+  /// Of all tiles; null if there is too much to be covered.
+  std::optional<detail::SeedGraph> make_small_graph(std::uint64_t most_work) {
+    detail::SeedGraphOptions options;
+    options.neighbourhood = options_.neighbourhood;
+    options.order = detail::default_order(map_.tiles.dim());
+    options.most_work = most_work;
+    options.progress = after(progress_, 0.0, 0.5);
+    detail::SeedGraph graph = detail::make_seed_graph(map_, options);
+    if (graph.too_much_work) return std::nullopt;
+    count(graph);
     detail::contract(graph);
     return graph;
   }
 
  private:
+  void count(const detail::SeedGraph& graph) noexcept {
+    stats_.constant_tiles = graph.constant_tiles;
+    stats_.groups = graph.groups;
+    stats_.whole1 = graph.roots.size();
+  }
   static std::vector<detail::Place> places(const detail::SeedGraph& graph, const std::vector<std::uint32_t>& trees) {
     std::vector<detail::Place> places;
     for (const std::uint32_t tree : trees) places.push_back(graph.roots[tree]);
@@ -95,11 +112,21 @@ class SeedFinder {
     return places(graph, detail::whole2(graph, dependence, after(progress_, 0.5, 1.0)));
   }
   std::vector<detail::Place> of_cover() {
-    const auto graph = make_small_graph();
-    const auto cover = detail::cover_components(graph, after(progress_, 0.5, 1.0));
-    stats_.lower_bound = cover.bound;
-    return places(graph, cover.trees);
+    // Trees of many tiles whose values differ are not even counted: that takes as long as to do without them.
+    if (sizeof(Key) == 1 || stats_.tiles <= kMostTilesCounted)
+      if (const auto graph = make_small_graph(kMostWork<Key>)) {
+        const auto cover = detail::cover_components(*graph, after(progress_, 0.5, 1.0));
+        stats_.lower_bound = cover.bound;
+        return places(*graph, cover.trees);
+      }
+    stats_.reduced = true;
+    const auto graph = detail::make_region_graph(map_, options_.neighbourhood, kMostLinks, after(progress_, 0.0, 0.8));
+    if (graph.links.empty()) return graph.roots;
+    return places(graph, detail::cover_components(graph, after(progress_, 0.8, 1.0)).trees);
   }
+
+  static constexpr std::uint64_t kMostTilesCounted = std::uint64_t{1} << 20;
+  static constexpr std::size_t kMostLinks = std::size_t{1} << 20;
 
   const detail::RangeMap<Key>& map_;
   const SeedSetOptions& options_;
@@ -107,6 +134,31 @@ class SeedFinder {
   Progress progress_;
   SeedSetStats& stats_;
 };
+
+/// Ranges in so many levels at most, from quantiles of the ends of ranges: what is active at a level is active at an
+/// isovalue, and so components at levels are components at some of all isovalues.
+template <class Key>
+detail::RangeMap<std::uint8_t> at_some_levels(const detail::RangeMap<Key>& map, std::size_t levels) {
+  constexpr std::size_t kSample = std::size_t{1} << 16;
+  std::vector<Key> ends;
+  for (std::size_t i = 0; i < map.least.size(); i += 1 + map.least.size() / kSample)
+    if (!map.constant(static_cast<detail::Place>(i))) ends.insert(ends.end(), {map.least[i], map.greatest[i]});
+  std::sort(ends.begin(), ends.end());
+  std::vector<Key> chosen;
+  for (std::size_t i = 1; i <= levels && !ends.empty(); ++i)
+    chosen.push_back(ends[i * (ends.size() - 1) / (levels + 1)]);
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  detail::RangeMap<std::uint8_t> result{map.tiles, {}, {}};
+  const auto level = [&](Key key) {
+    return static_cast<std::uint8_t>(std::upper_bound(chosen.begin(), chosen.end(), key) - chosen.begin());
+  };
+  for (std::size_t i = 0; i < map.least.size(); ++i) {
+    const bool constant = map.constant(static_cast<detail::Place>(i));
+    result.least.push_back(constant ? std::uint8_t{0} : level(map.least[i]));
+    result.greatest.push_back(constant ? std::uint8_t{0} : level(map.greatest[i]));
+  }
+  return result;
+}
 
 template <Value T>
 SeedSet to_seed_set(const detail::RangeMap<detail::KeyOf<T>>& map, const SeedSetOptions& options,
@@ -159,7 +211,14 @@ std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& o
   const auto map = detail::map_ranges(image, options.threads, after(options.progress, 0.0, 0.1));
   SeedSetStats stats;
   SeedFinder<detail::KeyOf<T>> finder(map, options, stats);
-  return detail::pack_components(finder.make_small_graph(), after(options.progress, 0.5, 1.0));
+  if (const auto graph = finder.make_small_graph(kMostWork<detail::KeyOf<T>>))
+    return detail::pack_components(*graph, after(options.progress, 0.5, 1.0));
+  for (std::size_t levels = 255;; levels /= 4) {
+    const auto some = at_some_levels(map, levels);
+    SeedFinder<std::uint8_t> of_some(some, options, stats);
+    if (const auto graph = of_some.make_small_graph(levels > 1 ? 2 * kMostWork<std::uint8_t> : ~std::uint64_t{0}))
+      return detail::pack_components(*graph, after(options.progress, 0.5, 1.0));
+  }
 }
 
 #define TEGL_INSTANTIATE_ONE(T, N)                                                             \

@@ -139,6 +139,28 @@ TEST(Pick, OutsideOfTheImageIsAnError) {
   }
 }
 
+TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
+  // High all over but for a wall of missing values: what there is closes two boxes.
+  OwnedImage<float, 3> image{Grid<3>::unit({9, 5, 5}), std::vector<float>(9 * 5 * 5, 1.0f)};
+  for (std::size_t i = 0; i < image.values.size(); ++i)
+    if (i % 9 == 5) image.values[i] = std::nanf("");
+  ExtractOptions options;
+  options.close = true;
+  const auto whole = extract<double>(image.view(), 0.5, options);
+  const auto parts = split_components(whole, label_components(whole));
+  ASSERT_GE(parts.size(), 2u);
+  PickReport<3> report;
+  const auto left = extract_component<double>(image.view(), 0.5, {0.0, 2.0, 2.0}, options, &report);
+  const auto right = extract_component<double>(image.view(), 0.5, {8.0, 2.0, 2.0}, options);
+  EXPECT_FALSE(report.found);
+  EXPECT_EQ(report.components, parts.size());
+  EXPECT_FALSE(same(left, right));
+  for (const auto& picked : {left, right}) {
+    EXPECT_EQ(expect_closed_manifold(picked).components, 1u);
+    EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return same(part, picked); }));
+  }
+}
+
 TEST(Pick, WithoutAContourIsEmpty) {
   const auto image = noise<float, 3>({9, 8, 7}, 13);
   PickReport<3> report;

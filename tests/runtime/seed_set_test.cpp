@@ -175,6 +175,38 @@ TEST(SeedSet, OfInfiniteValuesMeetsAllComponents) {
   expect_seed_sets(image, 200);
 }
 
+/// At isovalues all over the range; `cover` alone, which has more tiles to choose from than it takes.
+template <Value T, int N>
+void expect_reduced_covers(const OwnedImage<T, N>& image, std::size_t isovalues) {
+  for (const Neighbourhood neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
+    const AllComponents<T, N> all(image, neighbourhood, isovalues);
+    SeedSetOptions options;
+    options.neighbourhood = neighbourhood;
+    SeedSetStats stats;
+    const SeedSet set = find_seeds(image.view(), options, &stats);
+    EXPECT_TRUE(stats.reduced || neighbourhood == Neighbourhood::all);
+    EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
+    EXPECT_LE(seed_lower_bound(image.view(), options), set.tiles.size());
+    options.method = SeedMethod::sweeping;
+    EXPECT_LT(3 * set.tiles.size(), find_seeds(image.view(), options).tiles.size());
+  }
+}
+
+TEST(SeedSet, OfManyDifferentValuesMeetsAllComponents) {
+  const auto waves = [](const auto& x) {
+    double sum = 0;
+    for (std::size_t a = 0; a < x.size(); ++a)
+      sum += std::sin(3.1 * x[a] + 2.0 * x[(a + 1) % x.size()]) * (1.0 + 0.1 * x[a]) + 0.3 * x[a];
+    return sum;
+  };
+  expect_reduced_covers(sample_field<float>(centred_grid<2>(230, 4.0), waves), 30);
+  expect_reduced_covers(sample_field<double>(centred_grid<3>(38, 1.5), waves), 12);
+  expect_reduced_covers(sample_field<float>(centred_grid<4>(16, 1.0), waves), 6);
+  auto holes = sample_field<float>(centred_grid<3>(38, 1.5), waves);
+  for (std::size_t i = 0; i < holes.values.size(); i += 611) holes.values[i] = std::nanf("");
+  expect_reduced_covers(holes, 12);
+}
+
 TEST(SeedSet, InEveryScanOrderMeetsAllComponents) {
   const auto image = coarse_noise<std::uint8_t, 3>(Grid<3>::unit({10, 9, 8}), 11, 9);
   const AllComponents<std::uint8_t, 3> all(image, Neighbourhood::all, 100);

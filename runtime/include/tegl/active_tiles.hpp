@@ -194,14 +194,20 @@ class ActiveTiles {
   TileGrid<N> grid_;
 };
 
+enum class SeedMethod : std::uint8_t;  // tegl/seed_set.hpp
+
 struct ActiveTilesOptions {
   /// How many threads build; 0, or more than there are: all that the machine has.
   unsigned threads = 0;
-  Progress progress;
+  Progress progress = {};
+  /// Of `seed_set` alone, as in SeedSetOptions: how seeds are found (`cover` unless said otherwise), and in which order
+  /// of the axes. Neighbours are those that share a face.
+  SeedMethod seed_method{};
+  std::vector<int> scan_order = {};
 };
 
 /// Builds an index. About linear in the number of tiles, in time and in memory while it is built. Errors: Cancelled;
-/// TooLarge for an interval tree or a span space of an image of more than 2^32 tiles.
+/// TooLarge for an interval tree or a span space of an image of more than 2^32 tiles; those of find_seeds.
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
                                                    const ActiveTilesOptions& options = {});

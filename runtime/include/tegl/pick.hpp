@@ -32,7 +32,8 @@ struct PickReport {
 /// of the contour in those (often one: several where they pass one tile) the one with the vertex nearest to the point,
 /// in steps of the grid. The result is `extract` restricted to that component: the same vertices, normals and simplices
 /// in the same order, the vertices numbered anew (in 3D and 4D those next to missing values may come in another order).
-/// An image without active tiles gives an empty contour, whatever `close` would add.
+/// An image without active tiles gives an empty contour; or, with `close`, the component with the vertex nearest to the
+/// point, and a report that has found no tile.
 ///
 /// Cost: the tiles of the component and those beside them, and those that are nearer to the point than the contour is;
 /// where components share tiles, as in noise, those of the others too; no others are looked at. 5D, and `close`, take

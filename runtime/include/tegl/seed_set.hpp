@@ -66,19 +66,22 @@ struct SeedSetStats {
   std::uint64_t constant_tiles = 0;  ///< of one value, or with a missing corner: never active
   std::uint64_t groups = 0;          ///< of neighbours with one range
   std::uint64_t whole1 = 0;          ///< groups that lie in no neighbour's range: some smallest seed set is of these
-  std::uint64_t lower_bound = 0;     ///< see seed_lower_bound; of `cover` alone
+  std::uint64_t lower_bound = 0;     ///< see seed_lower_bound; of `cover` alone, and 0 if `reduced`
+  /// `cover` alone: too many tiles were left to choose from all of them, as in large images of measured floats, and it
+  /// chose from fewer (docs/seed-sets.md). The three numbers above are 0 then.
+  bool reduced = false;
 };
 
 /// Finds seeds. Tiles with missing values are never active and no seeds. An image without active tiles has none.
-/// Time and memory: about linear in tiles for all but `whole2` and `cover`, which are so where neighbouring tiles have
-/// similar ranges, and otherwise linear times the logarithm of the number of values. Errors: TooLarge for 2^32 tiles
+/// Time and memory: about linear in tiles for all but `whole2`, which is so where neighbouring tiles have similar
+/// ranges. Errors: TooLarge for 2^32 tiles
 /// and more, InvalidArgument for a scan order that is no permutation of the axes, Cancelled. Deterministic.
 template <Value T, int N>
 SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options = {}, SeedSetStats* stats = nullptr);
 
 /// A number that no seed set with this neighbourhood can be smaller than: so many components of active tiles, at
-/// isovalues of their own, of which no tile meets two. It is found greedily: a larger one may exist. Errors: as
-/// find_seeds.
+/// isovalues of their own, of which no tile meets two. It is found greedily, and in images with
+/// too many tiles to choose from at some isovalues only: a larger one may exist. Errors: as find_seeds.
 template <Value T, int N>
 std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options = {});
 

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Seed sets: how many seeds each method finds, how many there must be, what that takes, and what it costs to pick a
+// component. Writes the tables of docs/seed-sets.md in Markdown.
+//
+//   seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] IMAGE...
+//
+// An image "metaballs:N" is made: N^3 samples of float; "metaballs:N^D" in D dimensions. So are "gyroid", "noise", and
+// the others that bench/fields.hpp names. `--orders`: over all scan orders, the least and the most seeds. `--picks`: so
+// many components, each at a random point and an isovalue of the middle half.
+// One thread; times are those of the processor.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "fields.hpp"
+#include "memory.hpp"
+#include "tegl/io.hpp"
+#include "tegl/pick.hpp"
+#include "tegl/seed_set.hpp"
+#include "timing.hpp"
+
+namespace tegl::bench {
+namespace {
+
+struct Arguments {
+  std::vector<SeedMethod> methods = seed_methods();
+  std::vector<Neighbourhood> neighbourhoods{Neighbourhood::all};
+  bool orders = false;
+  int picks = 0;
+  std::vector<std::string> images;
+};
+
+/// "245", or "245 to 255" over all scan orders.
+template <Value T, int N>
+std::string count_seeds(const Image<T, N>& image, SeedSetOptions options, bool orders, std::size_t found) {
+  const bool ordered = options.method != SeedMethod::cover && options.method != SeedMethod::volume_thinning;
+  if (!orders || !ordered) return fmt::format("{}", found);
+  std::size_t least = found, most = found;
+  options.scan_order.resize(N);
+  std::iota(options.scan_order.begin(), options.scan_order.end(), 0);
+  while (std::next_permutation(options.scan_order.begin(), options.scan_order.end())) {
+    const std::size_t seeds = find_seeds(image, options).tiles.size();
+    least = std::min(least, seeds);
+    most = std::max(most, seeds);
+  }
+  return fmt::format("{} to {}", least, most);
+}
+
+template <Value T, int N>
+void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
+  fmt::print(
+      "| neighbourhood | method | seeds | bound | seconds | most memory while found |\n|---|---|---|---|---|---|\n");
+  for (const Neighbourhood neighbourhood : arguments.neighbourhoods)
+    for (const SeedMethod method : arguments.methods) {
+      SeedSetOptions options;
+      options.method = method;
+      options.neighbourhood = neighbourhood;
+      options.threads = 1;
+      const std::uint64_t before = memory_bytes("VmRSS");
+      reset_peak_memory();
+      SeedSetStats stats;
+      const double start = worked_seconds();
+      const std::size_t found = find_seeds(image, options, &stats).tiles.size();
+      const double seconds = worked_seconds() - start;
+      const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
+      fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", neighbourhood_name(neighbourhood),
+                 seed_method_name(method), count_seeds(image, options, arguments.orders, found),
+                 stats.lower_bound > 0 ? fmt::format("{}", stats.lower_bound)
+                 : stats.reduced       ? fmt::format("{}, at some isovalues", seed_lower_bound(image, options))
+                                       : "",
+                 seconds, static_cast<double>(peak) / 1e6);
+      std::fflush(stdout);
+    }
+}
+
+/// A value so far up in the order of all.
+template <Value T>
+double quantile(const std::vector<T>& values, double share) {
+  std::vector<double> finite;
+  for (std::size_t i = 0; i < values.size(); i += 1 + values.size() / 100000)
+    if (std::isfinite(static_cast<double>(values[i]))) finite.push_back(static_cast<double>(values[i]));
+  if (finite.empty()) return 0;
+  const auto at = finite.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(finite.size() - 1));
+  std::nth_element(finite.begin(), at, finite.end());
+  return *at;
+}
+
+template <Value T, int N>
+void measure_picks(const OwnedImage<T, N>& owned, int picks) {
+  const auto image = owned.view();
+  std::mt19937_64 random(1);
+  const auto share = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  ExtractOptions options;
+  options.threads = 1;
+  std::vector<double> tiles, seconds;
+  double whole = 0;
+  for (int i = 0; i < picks; ++i) {
+    const double isovalue = quantile(owned.values, 0.25 + 0.5 * share());
+    std::array<double, N> index, point{};
+    for (int a = 0; a < N; ++a) {
+      const auto& axis = image.grid().axes[a];
+      index[a] = axis[0] + share() * (axis[axis.size() - 1] - axis[0]);
+    }
+    for (int a = 0; a < N; ++a) {
+      point[a] = image.grid().offset[a];
+      for (int b = 0; b < N; ++b) point[a] += image.grid().linear(a, b) * index[b];
+    }
+    PickReport<N> report;
+    seconds.push_back(least_seconds([&] { extract_component<float>(image, isovalue, point, options, &report); }, 3));
+    tiles.push_back(static_cast<double>(report.tiles));
+    whole += least_seconds([&] { extract<float>(image, isovalue, options); }, 1);
+  }
+  const Fit fit = fit_line(tiles, seconds);
+  fmt::print(
+      "\n{} picks: {:.0f} tiles on average; {:.3f} ms + {:.0f} ns for each tile reached, which explains {:.3f}; {:.3f} "
+      "s "
+      "in all, all of the contours {:.3f} s\n",
+      picks, std::accumulate(tiles.begin(), tiles.end(), 0.0) / picks, 1e3 * fit.start, 1e9 * fit.each, fit.explained,
+      std::accumulate(seconds.begin(), seconds.end(), 0.0), whole);
+}
+
+template <Value T, int N>
+void measure(const std::string& name, const OwnedImage<T, N>& owned, const Arguments& arguments) {
+  const auto image = owned.view();
+  fmt::print("\n## {}\n\n{} samples of {} bits\n\n", name, fmt::join(image.grid().sizes(), " x "), 8 * sizeof(T));
+  measure_seeds(image, arguments);
+  if (arguments.picks > 0) measure_picks(owned, arguments.picks);
+}
+
+void measure_field(const std::string& name, const Arguments& arguments) {
+  const std::size_t colon = name.find(':');
+  const std::size_t hat = name.find('^');
+  const std::string field = name.substr(0, colon);
+  const std::size_t samples = std::stoul(name.substr(colon + 1));
+  const int dim = hat == std::string::npos ? 3 : std::stoi(name.substr(hat + 1));
+  if (dim == 2) return measure(name, make_field<2>(field, samples), arguments);
+  if (dim == 3) return measure(name, make_field<3>(field, samples), arguments);
+  if (dim == 4) return measure(name, make_field<4>(field, samples), arguments);
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{}: {} dimensions; expected 2, 3 or 4", name, dim));
+}
+
+/// Those of `all` whose names are in a list with commas.
+template <class Each, class Name>
+std::vector<Each> choose(const std::string& list, const std::vector<Each>& all, const Name& name) {
+  std::vector<Each> chosen;
+  for (std::size_t from = 0; from <= list.size();) {
+    const std::size_t to = std::min(list.find(',', from), list.size());
+    const std::string one = list.substr(from, to - from);
+    const auto at = std::find_if(all.begin(), all.end(), [&](Each each) { return name(each) == one; });
+    if (at == all.end()) throw Error(ErrorCode::InvalidArgument, fmt::format("'{}' is none of the choices", one));
+    chosen.push_back(*at);
+    from = to + 1;
+  }
+  return chosen;
+}
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool more = i + 1 < argc;
+    if (argument == "--methods" && more)
+      arguments.methods = choose(argv[++i], seed_methods(), seed_method_name);
+    else if (argument == "--neighbourhoods" && more)
+      arguments.neighbourhoods = choose<Neighbourhood>(
+          argv[++i], {Neighbourhood::faces, Neighbourhood::faces_and_edges, Neighbourhood::all}, neighbourhood_name);
+    else if (argument == "--orders")
+      arguments.orders = true;
+    else if (argument == "--picks" && more)
+      arguments.picks = std::stoi(argv[++i]);
+    else
+      arguments.images.push_back(argument);
+  }
+  if (arguments.images.empty()) {
+    fmt::print(stderr,
+               "usage: seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] "
+               "IMAGE|FIELD:N[^D] ...\n");
+    return 2;
+  }
+  for (const std::string& name : arguments.images) {
+    const auto fields = field_names(3);
+    if (std::find(fields.begin(), fields.end(), name.substr(0, name.find(':'))) != fields.end()) {
+      measure_field(name, arguments);
+      continue;
+    }
+    const ReadImageResult read = read_image(name);
+    const std::string file = std::filesystem::path(name).filename().string();
+    std::visit(
+        [&](const auto& typed) { std::visit([&](const auto& owned) { measure(file, owned, arguments); }, typed); },
+        read.image);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace tegl::bench
+
+int main(int argc, char** argv) {
+  try {
+    return tegl::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "seeds_bench: {}\n", error.what());
+    return 1;
+  }
+}
