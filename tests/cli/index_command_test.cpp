@@ -48,6 +48,24 @@ TEST_F(Index, OfEveryMethodGivesTheSameContour) {
   }
 }
 
+TEST_F(Index, OfSeedsTakesTheirMethodAndOrder) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("plain.vtkhdf"), "-q"}).exit, 0);
+  for (const char* seeds : {"cover", "whole1", "volume-thinning", "sweeping"}) {
+    const RunResult built = run_tegl({"index", file(), "--method", "seed-set", "--seeds", seeds, "--scan-order",
+                                      "2,0,1", "-o", path("a.tindex"), "-q"});
+    ASSERT_EQ(built.exit, 0) << built.err;
+    ASSERT_EQ(
+        run_tegl({"contour", file(), "--index", path("a.tindex"), "--iso", "0", "-o", path("b.vtkhdf"), "-q"}).exit, 0);
+    EXPECT_EQ(bytes_of(path("b.vtkhdf")), bytes_of(path("plain.vtkhdf"))) << seeds;
+  }
+  const RunResult order = run_tegl({"index", file(), "--method", "seed-set", "--scan-order", "0,0,1"});
+  EXPECT_EQ(order.exit, 2);
+  EXPECT_THAT(order.err, HasSubstr("[0, 0, 1]"));
+  const RunResult other = run_tegl({"index", file(), "--seeds", "whole1"});
+  EXPECT_EQ(other.exit, 2);
+  EXPECT_THAT(other.err, HasSubstr("--method seed-set"));
+}
+
 TEST_F(Index, StandsBesideTheImageUnlessToldOtherwise) {
   const RunResult run = run_tegl({"index", file()});
   ASSERT_EQ(run.exit, 0) << run.err;

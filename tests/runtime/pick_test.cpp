@@ -140,7 +140,7 @@ TEST(Pick, OutsideOfTheImageIsAnError) {
 }
 
 TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
-  // High all over but for a wall of missing values: what there is closes two boxes.
+  // High all over but for a wall of missing values: what there is lies in the border, on both sides of it.
   OwnedImage<float, 3> image{Grid<3>::unit({9, 5, 5}), std::vector<float>(9 * 5 * 5, 1.0f)};
   for (std::size_t i = 0; i < image.values.size(); ++i)
     if (i % 9 == 5) image.values[i] = std::nanf("");
@@ -156,7 +156,7 @@ TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
   EXPECT_EQ(report.components, parts.size());
   EXPECT_FALSE(same(left, right));
   for (const auto& picked : {left, right}) {
-    EXPECT_EQ(expect_closed_manifold(picked).components, 1u);
+    expect_oriented_manifold(picked);  // open where values are missing
     EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return same(part, picked); }));
   }
 }
