@@ -571,8 +571,8 @@ namespace {
 
 template <class Plane>
 void offset(Plane& plane, std::size_t row, std::uint64_t& next) {
-  plane.offset[row] = static_cast<Index>(next);
-  next += plane.count[row];
+  plane.offset.data()[row] = static_cast<Index>(next);  // not by calls, which compilers leave in checked builds
+  next += plane.count.data()[row];
 }
 
 }  // namespace
