@@ -98,7 +98,7 @@ class ComponentsCommand final : public ContourInputCommand {
     for (int a = 0; a < input.space_dim(); ++a) axes_.push_back(input.axis_name(a));
     std::vector<ComponentSelection> conditions;
     for (const std::string& condition : conditions_) conditions.emplace_back(condition, axes_);
-    const Found found = std::visit([&](auto& contour) { return work(contour, conditions, bar); }, input.contour);
+    const Found found = std::visit([&](auto& contour) { return work(contour, input, conditions, bar); }, input.contour);
     bar.clear();
     if (json())
       streams.out.write(dump(document(input, found)));
@@ -133,7 +133,8 @@ class ComponentsCommand final : public ContourInputCommand {
 
   /// Finds, chooses and writes.
   template <int N>
-  Found work(Contour<N, double>& contour, const std::vector<ComponentSelection>& conditions, ProgressBar& bar) {
+  Found work(Contour<N, double>& contour, const ContourInput& input, const std::vector<ComponentSelection>& conditions,
+             ProgressBar& bar) {
     Stopwatch watch;
     const ComponentLabels labels = label_components(contour, {threads(), bar.stage("components")});
     Found found;
@@ -143,12 +144,12 @@ class ComponentsCommand final : public ContourInputCommand {
     WrittenFiles written;
     if (!output_.empty()) {
       add_component_attribute(contour, labels);
-      write_output(to_mesh(select_components(contour, labels, found.chosen)), output_, bar.stage("write"));
+      write_output(mesh_of(select_components(contour, labels, found.chosen), input), output_, bar.stage("write"));
       written.add(output_);
     }
-    if (!split_.empty()) write_split(contour, labels, found, bar.stage("split"), written);
+    if (!split_.empty()) write_split(contour, input, labels, found, bar.stage("split"), written);
     if (!csv_.empty()) {
-      write_text(table(found, &exact_number).to_csv(), csv_);
+      write_text(table(input, found, &exact_number).to_csv(), csv_);
       written.add(csv_);
     }
     written.keep();
@@ -178,8 +179,8 @@ class ComponentsCommand final : public ContourInputCommand {
   }
 
   template <int N>
-  void write_split(const Contour<N, double>& contour, const ComponentLabels& labels, const Found& found,
-                   const Progress& progress, WrittenFiles& written) const {
+  void write_split(const Contour<N, double>& contour, const ContourInput& input, const ComponentLabels& labels,
+                   const Found& found, const Progress& progress, WrittenFiles& written) const {
     constexpr std::size_t kMostFiles = 10000;
     const auto count = static_cast<std::size_t>(std::count(found.chosen.begin(), found.chosen.end(), true));
     if (count > kMostFiles)
@@ -193,24 +194,28 @@ class ComponentsCommand final : public ContourInputCommand {
       const std::string name = split_name(label);
       require_output(name, file());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
-      write_output(to_mesh(parts[label]), name, {});
+      write_output(mesh_of(parts[label], input), name, {});
       written.add(name);
     }
   }
 
-  [[nodiscard]] Table table(const Found& found, std::string (*to_text)(double)) const {
-    Table result{{"label", "simplices", "size", "content", "euler", "boundary"}, {}};
-    for (const std::string& axis : axes_) result.headings.push_back(axis + ".min");
-    for (const std::string& axis : axes_) result.headings.push_back(axis + ".max");
-    for (const std::string& axis : axes_) result.headings.push_back(axis + ".centroid");
+  [[nodiscard]] Table table(const ContourInput& input, const Found& found, std::string (*to_text)(double)) const {
+    const std::vector<std::string> of_axes = units(input);
+    Table result{{"label", "rank", "vertices", "simplices",
+                  heading_with_unit("size", measure_unit(of_axes, input.space_dim() - 1)),
+                  heading_with_unit("content", content_unit(of_axes)), "euler", "boundary"},
+                 {}};
+    for (const char* const quantity : {".min", ".max", ".centroid"})
+      for (std::size_t a = 0; a < axes_.size(); ++a)
+        result.headings.push_back(heading_with_unit(axes_[a] + quantity, of_axes[a]));
     for (const std::size_t label : by_size(found)) {
       const ComponentFacts& facts = found.facts[label];
       std::vector<std::string>& row = result.rows.emplace_back();
-      row = {integer(facts.label), integer(facts.simplices),
-             to_text(facts.size),  facts.content ? to_text(*facts.content) : "",
-             integer(facts.euler), integer(facts.boundary)};
-      for (const auto& of_axes : {facts.lowest, facts.highest, facts.centroid})
-        for (const double x : of_axes) row.push_back(to_text(x));
+      row = {integer(facts.label),     integer(facts.rank),    integer(facts.vertices),
+             integer(facts.simplices), to_text(facts.size),    facts.content ? to_text(*facts.content) : "",
+             integer(facts.euler),     integer(facts.boundary)};
+      for (const auto& place : {facts.lowest, facts.highest, facts.centroid})
+        for (const double x : place) row.push_back(to_text(x));
     }
     return result;
   }

@@ -125,7 +125,9 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     std::erase(given, "--threads");
     refuse_image_options(file(), given, variable(), "none of the options for images but --threads");
     const Progress reading = bar.stage("read");
-    result.contour = to_any_contour(read_mesh(file()));
+    const Mesh mesh = read_mesh(file());
+    result.contour = to_any_contour(mesh);
+    result.isovalue = mesh.isovalue;
     require_simplices(result);
     result.seconds.read = watch.lap();
     reading(1);

@@ -29,7 +29,7 @@ struct ContourInput {
   AnyContour contour;
   std::string file;
   std::string variable;                  ///< netCDF: the variable read
-  std::optional<double> isovalue;        ///< none for a saved contour
+  std::optional<double> isovalue;        ///< none for a saved contour that does not say
   std::optional<ExtractStats> stats;     ///< none for a saved contour
   std::optional<ReadImageResult> image;  ///< where it was asked for, and FILE is one
   StageSeconds seconds;                  ///< of reading and contouring
@@ -51,6 +51,14 @@ void add_input_keys(Json& json, const ContourInput& input);
 
 /// The lines of a report on the input: the file, the isovalue if it has one, the size of the contour.
 std::string input_text(const ContourInput& input);
+
+/// The mesh of a contour that was made of the input's, with its isovalue.
+template <int N, class Real>
+Mesh mesh_of(const Contour<N, Real>& contour, const ContourInput& input) {
+  Mesh mesh = to_mesh(contour);
+  mesh.isovalue = input.isovalue;
+  return mesh;
+}
 
 /// A command whose FILE is an image (with --iso and the other options of the extraction, and --var) or a saved contour
 /// (without any of them but --threads).

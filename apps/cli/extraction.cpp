@@ -12,13 +12,19 @@
 
 namespace tegl::cli {
 
-void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
+void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
+  // All are known everywhere, to say who takes them; help shows those that will do.
+  CLI::Validator triangulations =
+      CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"});
+  if (!of_images_alone) triangulations.description("{compact,barycentric}");
   options_ = {
       app.add_option("--iso", iso_, "the isovalue: samples at or above it are inside")->type_name("NUMBER"),
       app.add_option("--triangulation", triangulation_,
-                     "compact: few simplices; barycentric: even ones; of the polygons of 3D images: fan, zigzag, "
-                     "halving-chord, halving-kink")
-          ->check(CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"}))
+                     of_images_alone
+                         ? "compact: few simplices; barycentric: even ones; of the polygons of 3D images: fan, zigzag, "
+                           "halving-chord, halving-kink"
+                         : "compact: few simplices; barycentric: even ones")
+          ->check(triangulations)
           ->capture_default_str(),
       app.add_option("--ambiguity", ambiguity_,
                      "samples inside that meet across a diagonal: low parts, high joins them; from the data: mean (by "
@@ -44,7 +50,7 @@ void ExtractionOptions::add_to(CLI::App& app, bool iso_required) {
           ->check(CLI::IsMember({"float", "double"}))
           ->capture_default_str(),
   };
-  options_.front()->required(iso_required);
+  options_.front()->required(of_images_alone);
 }
 
 std::vector<std::string> ExtractionOptions::given() const {
@@ -155,6 +161,7 @@ void check_result(ContourResult& result, ProgressBar& bar) {
 void write_result(ContourResult& result, ProgressBar& bar) {
   const Progress progress = bar.stage("write");
   Stopwatch watch;
+  result.mesh.isovalue = result.isovalue;
   result.output_bytes = write_output(result.mesh, result.output, progress);
   result.seconds.write = watch.lap();
 }

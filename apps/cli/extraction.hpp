@@ -20,8 +20,9 @@ namespace tegl::cli {
 /// --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads, --precision.
 class ExtractionOptions {
  public:
-  /// Adds the options to a command. This must outlive the parse.
-  void add_to(CLI::App& app, bool iso_required);
+  /// Adds the options to a command: one that contours images and nothing else needs --iso, and may triangulate
+  /// polygons. This must outlive the parse.
+  void add_to(CLI::App& app, bool of_images_alone);
 
   /// The names of those that were given.
   [[nodiscard]] std::vector<std::string> given() const;

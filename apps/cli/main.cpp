@@ -8,9 +8,11 @@
 #include <array>
 #include <csignal>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
@@ -77,8 +79,9 @@ std::string command_names(const CLI::App& program) {
 }
 
 /// A command line that CLI11 refused, or a request for help.
+/// `normals_of`: what follows --normals, if it is neither a kind of normals nor an option.
 ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json,
-                std::string_view first_word) {
+                std::string_view first_word, std::string_view normals_of) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     program.exit(error);  // prints the help or the version to standard output
     return ExitCode::Ok;
@@ -88,6 +91,10 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   std::string what = error.what();
   if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
     what = what.substr(0, what.find(':')) + " is given more than once; expected it once";
+  std::error_code ignored;
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !normals_of.empty() &&
+      !std::filesystem::exists(normals_of, ignored))
+    what = fmt::format("--normals {}: expected gradient, sobel, geometric or flat", normals_of);
   if (help == "tegl" && !first_word.empty() && first_word.front() != '-') {
     what = fmt::format("there is no command '{}'; expected {}", first_word, command_names(program));
   }
@@ -95,10 +102,11 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
 }
 
+constexpr std::array<std::string_view, 4> kNormals = {"gradient", "sobel", "geometric", "flat"};
+
 /// The arguments, last first, as CLI11 takes them. What --normals may be followed by is joined to it: an option whose
 /// value may be left out would take the next argument, whatever it is, for one.
 std::vector<std::string> joined_arguments(int argc, char** argv) {
-  constexpr std::array<std::string_view, 4> kNormals = {"gradient", "sobel", "geometric", "flat"};
   std::vector<std::string> arguments;
   for (const std::string_view argument : std::vector<std::string_view>(argv + std::min(1, argc), argv + argc)) {
     const bool is_kind = std::find(kNormals.begin(), kNormals.end(), argument) != kNormals.end();
@@ -109,6 +117,15 @@ std::vector<std::string> joined_arguments(int argc, char** argv) {
   }
   std::reverse(arguments.begin(), arguments.end());
   return arguments;
+}
+
+/// What follows --normals, if it is neither a kind of normals nor an option: FILE, or a kind that there is not.
+std::string_view after_normals(int argc, char** argv) {
+  for (int i = 1; i + 1 < argc; ++i)
+    if (const std::string_view next = argv[i + 1]; std::string_view(argv[i]) == "--normals" && !next.starts_with("-") &&
+                                                   std::find(kNormals.begin(), kNormals.end(), next) == kNormals.end())
+      return next;
+  return {};
 }
 
 }  // namespace
@@ -137,7 +154,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // Nothing was parsed, yet whoever asks for JSON wants errors in JSON too.
     const bool json = std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
-    return static_cast<int>(refuse(program, error, streams, json, argc > 1 ? argv[1] : ""));
+    return static_cast<int>(refuse(program, error, streams, json, argc > 1 ? argv[1] : "", after_normals(argc, argv)));
   }
   const auto named =
       std::find_if(commands.begin(), commands.end(), [](const auto& command) { return command->named(); });

@@ -144,13 +144,10 @@ class MeasureCommand final : public ContourInputCommand {
 
   [[nodiscard]] static Table table(const ContourInput& input, const Found& found, std::string (*to_text)(double)) {
     const int last = input.space_dim() - 1;
-    const auto heading = [](const std::string& name, const std::optional<std::string>& unit) {
-      return !unit || unit->empty() ? name : fmt::format("{} ({})", name, *unit);
-    };
     const std::vector<std::string> spatial = units(input, last);
-    Table result{{heading(input.axis_name(last), input.axis_unit(last)),
-                  heading(measure_name(last - 1, last), measure_unit(spatial, last - 1)),
-                  heading("enclosed " + measure_name(last, last), content_unit(spatial))},
+    Table result{{heading_with_unit(input.axis_name(last), input.axis_unit(last)),
+                  heading_with_unit(measure_name(last - 1, last), measure_unit(spatial, last - 1)),
+                  heading_with_unit("enclosed " + measure_name(last, last), content_unit(spatial))},
                  {}};
     for (const CutMeasures& cut : found.cuts)
       result.rows.push_back({to_text(cut.at), to_text(cut.size), cut.content ? to_text(*cut.content) : ""});

@@ -44,6 +44,8 @@ void require_input(const fs::path& path) {
 void require_text_output(const fs::path& output, const fs::path& input) {
   std::error_code error;
   if (output.empty()) fail(output, "is no name of a file");
+  if (output.native().front() == '-')
+    fail(output, fmt::format("looks like an option; expected the name of a file, such as ./{}", output.string()));
   if (fs::is_directory(output, error)) fail(output, "is a directory; expected the name of a file");
   if (fs::equivalent(output, input, error)) fail(output, "is the input itself; expected another file");
   const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");

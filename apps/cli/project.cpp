@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "attributes.hpp"
 #include "commands.hpp"
 #include "contour_input.hpp"
 #include "cuts.hpp"
@@ -117,6 +118,7 @@ class ProjectCommand final : public ContourInputCommand {
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb or .vtkhdf; tetrahedra: .vtkhdf")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    attributes_.add_to(app());
     app().footer(kExamples);
   }
 
@@ -125,6 +127,7 @@ class ProjectCommand final : public ContourInputCommand {
     require_input(file());
     require_output(output_, file());
     require_output_holds(output_, kind_ == "tetrahedra" ? 3 : 2);
+    attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
     auto* const contour = std::get_if<Contour<4, double>>(&input.contour);
@@ -133,6 +136,8 @@ class ProjectCommand final : public ContourInputCommand {
                   fmt::format("{} has a contour in {}D; expected a 4D one", file(), input.space_dim()));
     ContourResult result = input.to_result();
     result.output = output_;
+    result.wording = wording();
+    attributes_.sample_to(*contour, threads(), bar);
     Stopwatch watch;
     result.mesh = project_as_asked(*contour, projection, bar);
     result.seconds.slice = watch.lap();
@@ -151,6 +156,20 @@ class ProjectCommand final : public ContourInputCommand {
   }
 
  private:
+  [[nodiscard]] Wording wording() const {
+    Wording wording;
+    const std::string along = along_.empty() ? "time" : along_;
+    wording.heading = kind_ == "outline" ? fmt::format("Outline of a contour in 4D along {}", along)
+                      : kind_ == "cuts"  ? fmt::format("{} cuts of a contour in 4D along {}", count_, along)
+                                         : fmt::format("Tetrahedra of a contour in 4D, seen along {}", along);
+    wording.unchecked = no_check_ ? "left out" : "left out: projected tetrahedra overlap, and are no manifold";
+    if (kind_ == "outline") {
+      wording.no_size = "where the contour lies flat across the direction, as at a closed one's ends";
+      wording.open = "where the contour is open; --close of an image closes it";
+    }
+    return wording;
+  }
+
   [[nodiscard]] Projection projection_from_options() const {
     Projection projection;
     if (!along_.empty()) {
@@ -202,6 +221,7 @@ class ProjectCommand final : public ContourInputCommand {
     return mesh;
   }
 
+  AttributeOptions attributes_;
   std::string kind_ = "outline";
   std::string along_, eye_, output_;
   int count_ = 8;

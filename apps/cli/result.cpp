@@ -89,10 +89,11 @@ std::string counted_simplices(int dim, std::uint64_t count) {
   return counted(count, singular, plural);
 }
 
-std::string check_text(const Console& console, const MeshSize& size, const std::optional<MeshReport>& report) {
+std::string check_text(const Console& console, const MeshSize& size, const std::optional<MeshReport>& report,
+                       const Wording& wording) {
   std::string text = report_line("size", fmt::format("{}, {}", counted(size.vertices, "vertex", "vertices"),
                                                      counted_simplices(size.dim, size.simplices)));
-  if (!report) return text + report_line("check", "left out");
+  if (!report) return text + report_line("check", wording.unchecked);
   if (report->unused_vertices > 0) {
     text += report_line("unused", counted(report->unused_vertices, "vertex in no simplex", "vertices in no simplex"));
   }
@@ -102,11 +103,12 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
   text += report_line("border", report->boundary_simplices == 0
                                     ? "none: closed"
                                     : counted_simplices(report->dim - 1, report->boundary_simplices));
+  if (report->boundary_simplices > 0 && !wording.open.empty()) text += report_line("", wording.open);
   const std::string faults = fault_text(*report);
   text += report_line("check", faults.empty() ? console.green("an oriented manifold") : console.red(faults));
   if (report->degenerate_simplices > 0) {
-    text += report_line("", fmt::format("{} of zero size (where samples equal the isovalue, --epsilon avoids them)",
-                                        counted_simplices(report->dim, report->degenerate_simplices)));
+    text += report_line("", fmt::format("{} of zero size ({})",
+                                        counted_simplices(report->dim, report->degenerate_simplices), wording.no_size));
   }
   return text;
 }
@@ -155,6 +157,7 @@ Json to_json(const ContourResult& result) {
 std::string to_text(const Console& console, const ContourResult& result) {
   std::string what = result.cut ? fmt::format("Cut at {} = {}", result.cut->axis, number(result.cut->value))
                                 : fmt::format("Contour in {}D", result.image_dim);
+  if (!result.wording.heading.empty()) what = result.wording.heading;
   if (result.isovalue) what += fmt::format(" of the isovalue {}", number(*result.isovalue));
   std::string text = fmt::format("{}\n", console.bold(what));
   text += report_line("input",
@@ -171,7 +174,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
     text += report_line(
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
   }
-  text += check_text(console, result.size(), result.report);
+  text += check_text(console, result.size(), result.report, result.wording);
   text += report_line("seconds", seconds_text(result.seconds));
   text += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
   return text;

@@ -43,8 +43,17 @@ void add_check_keys(Json& json, const MeshSize& size, const std::optional<MeshRe
 /// True when the complex is no oriented manifold. A border is no fault, nor are simplices of zero size.
 bool has_faults(const MeshReport& report);
 
+/// What reports say of results that are no plain contours.
+struct Wording {
+  std::string heading;                                                              ///< empty: "Contour in 3D"
+  std::string unchecked = "left out";                                               ///< without a check
+  std::string no_size = "where samples equal the isovalue, --epsilon avoids them";  ///< why simplices may have none
+  std::string open;  ///< why there may be a border; empty: nothing is said
+};
+
 /// The lines of a mesh check: sizes, components, border, verdict.
-std::string check_text(const Console& console, const MeshSize& size, const std::optional<MeshReport>& report);
+std::string check_text(const Console& console, const MeshSize& size, const std::optional<MeshReport>& report,
+                       const Wording& wording = {});
 
 /// "segments", "triangles", "tetrahedra" for simplices of dimension 1, 2, 3; the singular for a count of 1.
 std::string counted_simplices(int dim, std::uint64_t count);
@@ -100,7 +109,7 @@ struct ContourResult {
   std::string output;
   std::uint64_t output_bytes = 0;
   int image_dim = 0;
-  std::optional<double> isovalue;  ///< none for cuts of a saved contour
+  std::optional<double> isovalue;  ///< none for saved contours that do not say
   std::optional<Cut> cut;
   std::optional<Picked> picked;
   std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour, and for picks
@@ -108,6 +117,7 @@ struct ContourResult {
   Mesh mesh;
   std::optional<MeshSize> streamed;  ///< for what went to the file without being in memory
   StageSeconds seconds;
+  Wording wording;
 
   [[nodiscard]] MeshSize size() const { return streamed ? *streamed : size_of(mesh); }
   [[nodiscard]] ExitCode exit_code() const { return report && has_faults(*report) ? ExitCode::Faults : ExitCode::Ok; }

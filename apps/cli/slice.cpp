@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "attributes.hpp"
 #include "commands.hpp"
 #include "contour_input.hpp"
 #include "cuts.hpp"
@@ -31,6 +32,7 @@ constexpr const char* kExamples =
     "  tegl slice ocean.vtkhdf --at t=1.5,3.25,7.3 -o 'ocean_{t}.ply'\n"
     "  tegl slice ocean.vtkhdf --at t=1:12:45 -o 'film_{t}.glb'      (45 times from 1 to 12)\n"
     "  tegl slice ocean.vtkhdf --at x=329.5 -o meridian.vtkhdf       (a surface in y, z and t)\n"
+    "  tegl slice ocean.vtkhdf --at t=7.3 --attribute ocean.nc -o july.ply\n"
     "  tegl slice ocean.vtkhdf --plane 1,0,0,5=200 --scale t=10 -o moving.vtkhdf   (where x + 5 t = 200)\n"
     "An axis goes by the file's name for it or by x, y, z, t; numbers are in its own unit, whole or not. Across an "
     "axis\n"
@@ -139,6 +141,44 @@ Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const st
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
+/// The points of a cut's vertices in the space that was cut.
+template <int N>
+void append_points(const ContourResult& result, const std::vector<double>& factors, Contour<N, double>& points) {
+  const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(*result.cut, factors));
+  const auto& coordinates = result.mesh.coordinates;
+  for (std::size_t i = 0; i < coordinates.size(); i += N - 1) {
+    const Eigen::Map<const Eigen::Matrix<double, N - 1, 1>> within(coordinates.data() + i);
+    const Eigen::Matrix<double, N, 1> x = frame.origin + frame.axes * within;
+    auto& point = points.vertices.emplace_back();
+    for (int a = 0; a < N; ++a) point[a] = x[a] / factors[static_cast<std::size_t>(a)];
+  }
+}
+
+/// Gives the cuts the values of other images at their vertices.
+template <int N>
+void add_attributes(const AttributeOptions& attributes, const std::vector<double>& factors, unsigned threads,
+                    std::vector<ContourResult>& results, ProgressBar& bar) {
+  Contour<N, double> points;  // of all cuts, so that each image is read once
+  for (const ContourResult& result : results) append_points<N>(result, factors, points);
+  attributes.sample_to(points, threads, bar);
+  for (const Attribute& all : points.vertex_attributes) {
+    std::size_t first = 0;
+    for (ContourResult& result : results) {
+      auto& own = result.mesh.vertex_attributes;
+      if (std::any_of(own.begin(), own.end(), [&](const Attribute& other) { return other.name == all.name; }))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--attribute: the contour has an attribute '{}' already; expected another", all.name));
+      const std::size_t end = first + result.mesh.coordinates.size() / (N - 1);
+      own.push_back({all.name,
+                     all.unit,
+                     all.width,
+                     {all.values.begin() + static_cast<std::ptrdiff_t>(first),
+                      all.values.begin() + static_cast<std::ptrdiff_t>(end)}});
+      first = end;
+    }
+  }
+}
+
 class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
@@ -158,6 +198,7 @@ class SliceCommand final : public Command {
         ->allow_extra_args(false)
         ->type_name("AXIS=FACTOR");
     options_.add_to(app(), false);
+    attributes_.add_to(app());
     app()
         .add_option("-o,--output", output_,
                     "the result: .ply, .gltf, .glb or .vtkhdf; {t} in it stands for the number, {axis} for its axis")
@@ -177,9 +218,14 @@ class SliceCommand final : public Command {
     const std::vector<std::string> outputs = cut_outputs(output_, cuts);
     require_input(file());
     for (const std::string& output : outputs) require_output(output, file());
+    attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
         find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
+    if (attributes_.wanted() && results[0].image_dim == 4)
+      add_attributes<4>(attributes_, factors_, options_.threads(), results, bar);
+    else if (attributes_.wanted())
+      add_attributes<3>(attributes_, factors_, options_.threads(), results, bar);
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = file();
       results[i].output = outputs[i];
@@ -220,7 +266,7 @@ class SliceCommand final : public Command {
     require_cuttable(image_dim(input.image), "image");
     require_contour(input, isovalue);
     const CutSpace space = space_of(input.image);
-    const std::vector<double> factors = parse_scale(scale_, space);
+    factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
@@ -232,27 +278,26 @@ class SliceCommand final : public Command {
       result.image_dim = image_dim(input.image);
       result.seconds.read = read_seconds;
       if (result.cut->across && is_apart(input.image, *result.cut->across)) {
-        cut_slab(input.image, factors, result, bar);
+        cut_slab(input.image, result, bar);
         continue;
       }
       of_whole.push_back(result);
       places.push_back(i);
     }
-    if (!of_whole.empty()) cut_whole(input.image, factors, of_whole, bar);
+    if (!of_whole.empty()) cut_whole(input.image, of_whole, bar);
     for (std::size_t i = 0; i < places.size(); ++i) results[places[i]] = std::move(of_whole[i]);
     return results;
   }
 
   /// A cut whose layers alone are contoured.
-  void cut_slab(const AnyImage& image, const std::vector<double>& factors, ContourResult& result,
-                ProgressBar& bar) const {
+  void cut_slab(const AnyImage& image, ContourResult& result, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.progress = bar.stage("slice");
     ExtractStats& stats = result.stats.emplace();
     Stopwatch watch;
     result.mesh = options_.single_precision()
-                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors, options_, options, stats)
-                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors, options_, options, stats);
+                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors_, options_, options, stats)
+                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors_, options_, options, stats);
     const double seconds = watch.lap();
     require_cut(result);
     result.seconds.add(stats);
@@ -261,8 +306,7 @@ class SliceCommand final : public Command {
   }
 
   /// Cuts of the contour of the whole image.
-  void cut_whole(const AnyImage& image, const std::vector<double>& factors, std::vector<ContourResult>& results,
-                 ProgressBar& bar) const {
+  void cut_whole(const AnyImage& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.progress = bar.stage("contour");
     ExtractStats stats;
@@ -270,7 +314,7 @@ class SliceCommand final : public Command {
     (void)extract_any<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), stats,
                                [&]<int N, class Real>(Contour<N, Real>&& contour) {
                                  if constexpr (N == 3 || N == 4)
-                                   cut_contour_of(std::move(contour), factors, options_, results, bar);
+                                   cut_contour_of(std::move(contour), factors_, options_, results, bar);
                                  return Nothing();
                                });
     for (ContourResult& result : results) {
@@ -288,15 +332,18 @@ class SliceCommand final : public Command {
     const Mesh mesh = read_mesh(file());
     require_cuttable(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
-    const std::vector<double> factors = parse_scale(scale_, space);
+    factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
     const double read_seconds = watch.lap();
-    for (ContourResult& result : results) result.seconds.read = read_seconds;
+    for (ContourResult& result : results) {
+      result.seconds.read = read_seconds;
+      result.isovalue = mesh.isovalue;
+    }
     reading(1);
     if (mesh.space_dim == 4)
-      cut_contour_of(to_contour<4>(mesh), factors, options_, results, bar);
+      cut_contour_of(to_contour<4>(mesh), factors_, options_, results, bar);
     else
-      cut_contour_of(to_contour<3>(mesh), factors, options_, results, bar);
+      cut_contour_of(to_contour<3>(mesh), factors_, options_, results, bar);
     return results;
   }
 
@@ -311,6 +358,8 @@ class SliceCommand final : public Command {
   }
 
   ExtractionOptions options_;
+  AttributeOptions attributes_;
+  std::vector<double> factors_;  ///< of --scale, by axis
   std::vector<std::string> at_, planes_, scale_;
   std::string output_;
   bool no_check_ = false;

@@ -36,7 +36,7 @@ void stream_typed(LayerReader<T, N>& layers, double isovalue, const ExtractOptio
       throw Error(ErrorCode::EmptyResult,
                   fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
                               axis_label(layers.grid().axes[a].name, static_cast<std::size_t>(a))));
-  ContourFile<N, Real> file(result.output, layers.grid());
+  ContourFile<N, Real> file(result.output, layers.grid(), isovalue);
   ExtractStats& stats = result.stats.emplace();
   Stopwatch watch;
   const StreamedSize size = extract_streamed<Real>(layers, isovalue, options, file, &stats);

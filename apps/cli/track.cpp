@@ -20,6 +20,7 @@
 #include "numbers.hpp"
 #include "output.hpp"
 #include "tegl/track_io.hpp"
+#include "units.hpp"
 
 namespace tegl::cli {
 
@@ -219,7 +220,7 @@ class TrackCommand final : public ContourInputCommand {
       } else {
         const auto write_labelled = [&](auto& contour) {
           add_labels(contour, graph);
-          write_output(to_mesh(contour), output, writing);
+          write_output(mesh_of(contour, input), output, writing);
         };
         std::visit(write_labelled, input.contour);
       }
@@ -272,7 +273,7 @@ class TrackCommand final : public ContourInputCommand {
     text += report_line("events", events.empty() ? "none" : events);
     if (!graph.handles.empty())
       text += report_line("handles", fmt::format("{} open or close", grouped(graph.handles.size())));
-    text += longest_text(graph, axis);
+    text += longest_text(graph, input);
     text += report_line("seconds", fmt::format("contour {:.3f} + track {:.3f} + write {:.3f}", input.seconds.total(),
                                                track_seconds, write_seconds));
     for (const std::string& output : files()) text += report_line("output", output);
@@ -280,8 +281,14 @@ class TrackCommand final : public ContourInputCommand {
   }
 
   /// A line for each of the longest tracks.
-  static std::string longest_text(const TrackGraph& graph, const std::string& axis) {
+  static std::string longest_text(const TrackGraph& graph, const ContourInput& input) {
     constexpr std::size_t kMost = 8;
+    const int last = input.space_dim() - 1;
+    const std::string axis = input.axis_name(last);
+    std::vector<std::string> units;
+    for (int a = 0; a < last; ++a) units.push_back(input.axis_unit(a));
+    const std::optional<std::string> unit = measure_unit(units, last - 1);
+    bool any_measure = false;
     const std::vector<std::size_t> order = falling(graph, lifetime);
     constexpr std::array kMeasures{"points", "length", "area"};
     std::string text;
@@ -291,10 +298,16 @@ class TrackCommand final : public ContourInputCommand {
       const TrackEvent& end = graph.events[graph.segments[track.segments.back()].to];
       std::string line = fmt::format("{}: {} at {} = {}, {} at {}", track.number, event_name(start.kind), axis,
                                      number(track.start), event_name(end.kind), number(track.end));
-      if (const double largest = largest_measure(graph, track); largest > 0)
-        line += fmt::format(", {} up to {}", kMeasures[static_cast<std::size_t>(graph.space_dim - 2)], number(largest));
+      if (const double largest = largest_measure(graph, track); largest > 0) {
+        line += fmt::format(", {} up to {}", kMeasures[static_cast<std::size_t>(last - 1)],
+                            last > 1 ? with_unit(number(largest), unit) : number(largest));
+        any_measure = last > 1;
+      }
       text += report_line(i == 0 ? "longest" : "", line);
     }
+    if (any_measure && !unit)
+      text += report_line("", fmt::format("({}s are of axes in different units: of little meaning)",
+                                          kMeasures[static_cast<std::size_t>(last - 1)]));
     return text;
   }
 

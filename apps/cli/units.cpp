@@ -45,6 +45,10 @@ std::string with_unit(const std::string& value, const std::optional<std::string>
   return !unit || unit->empty() ? value : fmt::format("{} {}", value, *unit);
 }
 
+std::string heading_with_unit(const std::string& name, const std::optional<std::string>& unit) {
+  return !unit || unit->empty() ? name : fmt::format("{} ({})", name, *unit);
+}
+
 std::string measure_name(int dimension, int space_dim) {
   switch (dimension) {
     case 1:

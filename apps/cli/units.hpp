@@ -20,6 +20,9 @@ std::optional<std::string> content_unit(const std::vector<std::string>& axis_uni
 /// "12.5 mm^2", "12.5".
 std::string with_unit(const std::string& value, const std::optional<std::string>& unit);
 
+/// "area (mm^2)", "area": the heading of a column.
+std::string heading_with_unit(const std::string& name, const std::optional<std::string>& unit);
+
 /// What a measure of this dimension is called in a space: "length", "area", "volume"; "3-volume" in 4-space,
 /// "4-volume".
 std::string measure_name(int dimension, int space_dim);

@@ -15,13 +15,14 @@ using namespace io_detail;
 namespace {
 
 template <int N>
-VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid) {
+VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue) {
   const MeshFileFormat* const format = find_mesh_file_format(path);
   if (format == nullptr || format->extension != ".vtkhdf")
     fail(ErrorCode::UnsupportedFormat, path, "'{}' cannot grow; expected .vtkhdf", path.extension().string());
   VtkhdfLayout layout;
   layout.dim = N - 1;
   layout.space_dim = N;
+  layout.isovalue = isovalue;
   for (const Axis& axis : grid.axes) {
     layout.axis_names.push_back(axis.name);
     layout.axis_units.push_back(axis.unit);
@@ -33,7 +34,8 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid) {
 
 template <int N, class Real>
 struct ContourFile<N, Real>::Parts {
-  Parts(const fs::path& path, const Grid<N>& grid) : writer(path, layout_of(path, grid)) {}
+  Parts(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue)
+      : writer(path, layout_of(path, grid, isovalue)) {}
 
   using Vertex = typename ContourSink<N, Real>::Vertex;
   /// Hands rows on as double, a block at a time.
@@ -52,8 +54,8 @@ struct ContourFile<N, Real>::Parts {
 };
 
 template <int N, class Real>
-ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid)
-    : parts_(std::make_unique<Parts>(path, grid)) {}
+ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue)
+    : parts_(std::make_unique<Parts>(path, grid, isovalue)) {}
 
 template <int N, class Real>
 ContourFile<N, Real>::~ContourFile() = default;

@@ -147,7 +147,7 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& pat
 template <int N, class Real>
 void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress) {
   const FacetCells<N, Real> cells(facets);
-  io_detail::VtkhdfLayout layout{N - 1, N, {}, {}, facets.vertices.size(), cells.count()};
+  io_detail::VtkhdfLayout layout{N - 1, N, {}, {}, facets.vertices.size(), cells.count(), {}};
   layout.axis_names.assign(facets.axis_names.begin(), facets.axis_names.end());
   layout.axis_units.assign(facets.axis_units.begin(), facets.axis_units.end());
   io_detail::VtkhdfWriter writer(path, layout);

@@ -388,6 +388,8 @@ class GltfReader {
     };
     mesh_.axis_names = texts("axis_names");
     mesh_.axis_units = texts("axis_units");
+    if (const Json& isovalue = member(extras, "isovalue"); isovalue.is_number())
+      mesh_.isovalue = isovalue.get<double>();
     const Json& dim = member(extras, "dim");
     if (mesh_.dim == 0 && dim.is_number_integer()) mesh_.dim = dim.get<int>() == 1 ? 1 : 2;
     const Json& space_dim = member(extras, "space_dim");

@@ -117,6 +117,7 @@ Json asset(const Mesh& mesh) {
   Json extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
   extras["axis_names"] = mesh.axis_names;
   extras["axis_units"] = mesh.axis_units;
+  if (mesh.isovalue) extras["isovalue"] = *mesh.isovalue;
   return {{"version", "2.0"}, {"generator", "tegl"}, {"extras", {{"tegl", extras}}}};
 }
 

@@ -182,6 +182,9 @@ class PlyReader {
     if (parts.size() < 4 || parts[1] != "tegl") return;
     if (parts[2] == "vertex" || parts[2] == "simplex") read_attribute_comment(line, parts);
     if (parts[2] == "space_dim") planar_ = parts[3] == "2";
+    double isovalue = 0.0;
+    if (parts[2] == "isovalue" && parse_number(parts[3], isovalue) && std::isfinite(isovalue))
+      mesh_.isovalue = isovalue;
     std::uint64_t axis = 0;
     if (parts.size() < 6 || parts[2] != "axis" || !parse_number(parts[3], axis) || axis > 2) return;
     auto& texts = parts[4] == "unit" ? mesh_.axis_units : mesh_.axis_names;

@@ -78,6 +78,7 @@ class PlyWriter {
       if (!name.empty()) text += fmt::format("comment tegl axis {} name {}\n", a, name);
       if (!unit.empty()) text += fmt::format("comment tegl axis {} unit {}\n", a, unit);
     }
+    if (mesh_.isovalue) text += fmt::format("comment tegl isovalue {}\n", *mesh_.isovalue);
     text += comments("vertex", of_vertices_) + comments("simplex", of_simplices_);
     text += fmt::format("element vertex {}\n", vertex_count(mesh_));
     for (const char* const name : {"x", "y", "z"}) text += fmt::format("property double {}\n", name);

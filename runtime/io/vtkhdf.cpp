@@ -7,6 +7,7 @@
 #include "vtkhdf.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -57,6 +58,7 @@ class Reader {
     const auto n = static_cast<std::size_t>(mesh_.space_dim);
     mesh_.axis_names = split(file_.get_text(group_.id(), "tegl_axis_names"), n);
     mesh_.axis_units = split(file_.get_text(group_.id(), "tegl_axis_units"), n);
+    read_isovalue();
     return std::move(mesh_);
   }
 
@@ -159,6 +161,18 @@ class Reader {
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
   }
 
+  /// The field array of that name, if it is one finite number.
+  void read_isovalue() {
+    if (!file_.has(group_.id(), "FieldData")) return;
+    const H5Handle field_data = file_.open_group("VTKHDF/FieldData");
+    const std::vector<std::string> names = file_.number_datasets(field_data.id());
+    if (std::find(names.begin(), names.end(), kIsovalue) == names.end()) return;
+    if (file_.rank(field_data.id(), kIsovalue) != 1 || file_.sizes(field_data.id(), kIsovalue)[0] != 1) return;
+    double isovalue = 0.0;
+    file_.read(field_data.id(), kIsovalue, H5T_NATIVE_DOUBLE, &isovalue);
+    if (std::isfinite(isovalue)) mesh_.isovalue = isovalue;
+  }
+
   /// The arrays of a group that have a row for each vertex or simplex, those of the writer first and in its order.
   [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
                                                   const std::set<std::string>& taken) const {
@@ -206,8 +220,8 @@ class Reader {
 }  // namespace
 
 void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress) {
-  VtkhdfWriter writer(
-      path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh)});
+  VtkhdfWriter writer(path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh),
+                             simplex_count(mesh), mesh.isovalue});
   std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
     for (const Attribute& attribute : *attributes) all += attribute.values.size();

@@ -2,8 +2,8 @@
 //
 // VTKHDF, unstructured grids, written: triangles, segments, or tetrahedra whose vertices carry the time as the point
 // array "t". Normals are the point array "Normals", with the fourth component in "normal_t", and attributes are point
-// and cell arrays. All of these are double: lossless. Axis names and units are attributes of the group, those of arrays
-// of the arrays; VTK does not look at them.
+// and cell arrays; the isovalue is a field array. All of these are double: lossless. Axis names and units are
+// attributes of the group, those of arrays of the arrays; VTK does not look at them.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
 #include "vtkhdf_writer.hpp"
@@ -32,6 +32,10 @@ H5Handle create_root(const H5File& file, const VtkhdfLayout& layout) {
   file.put_numbers(group.id(), "tegl_dim_and_space_dim", dims);
   file.put_text(group.id(), "tegl_axis_names", joined(layout.axis_names));
   file.put_text(group.id(), "tegl_axis_units", joined(layout.axis_units));
+  if (layout.isovalue) {
+    const H5Handle field_data = file.create_group("VTKHDF/FieldData");
+    file.create_table(field_data.id(), kIsovalue, H5T_IEEE_F64LE, 0, 1).append(H5T_NATIVE_DOUBLE, &*layout.isovalue, 1);
+  }
   return group;
 }
 

@@ -25,6 +25,7 @@ struct VtkhdfLayout {
   std::vector<std::string> axis_units;
   std::uint64_t expected_vertices = ~std::uint64_t{0};
   std::uint64_t expected_simplices = ~std::uint64_t{0};
+  std::optional<double> isovalue;  ///< to the field array "isovalue"
 };
 
 /// Nothing is at the target before commit(). Errors: WriteFailed, naming the target. Memory: a few MiB.

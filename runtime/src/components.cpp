@@ -139,6 +139,7 @@ template <int N, class Real>
 std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                      const WorkOptions& options) {
   require_labels(contour, labels);
+  detail::require_finite(contour);
   const std::span<const Index> rows = detail::rows_of(contour);
   std::vector<detail::FaceCounts> faces;
   {

@@ -149,6 +149,7 @@ std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) 
 template <int N, class Real>
 Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options) {
   detail::require_vertices(contour);
+  detail::require_finite(contour);
   Measures<N> result;
   if (contour.simplices.empty()) return result;
   const std::span<const Index> rows = detail::rows_of(contour);
@@ -177,6 +178,7 @@ template <int N, class Real>
 std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
                                       const WorkOptions& options) {
   detail::require_vertices(contour);
+  detail::require_finite(contour);
   for (const double t : at)
     if (!std::isfinite(t))
       throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));

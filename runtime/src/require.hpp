@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -29,6 +30,16 @@ void require_vertices(const Contour<N, Real>& contour) {
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices", s, v,
                                 contour.vertices.size()));
+}
+
+/// Throws InvalidArgument unless all coordinates are finite. O(#V).
+template <int N, class Real>
+void require_finite(const Contour<N, Real>& contour) {
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v)
+    for (const Real x : contour.vertices[v])
+      if (!std::isfinite(x))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("a coordinate of vertex {} is {}; expected a finite one", v, x));
 }
 
 /// Throws InvalidArgument unless attributes and normals are as many as what they belong to.

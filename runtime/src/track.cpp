@@ -41,9 +41,7 @@ void require_sound(const TrackOptions& options) {
 template <int N, class Real>
 void require_sound(const Contour<N, Real>& contour) {
   detail::require_vertices(contour);
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v)
-    for (const Real x : contour.vertices[v])
-      if (!std::isfinite(x)) refuse(fmt::format("a coordinate of vertex {} is {}; expected a finite one", v, x));
+  detail::require_finite(contour);
 }
 
 /// Puts the graph together: from the sweep's numbers to those of the result.

@@ -56,14 +56,16 @@ class Sweeper {
     seen_.assign(count, 0);
     for (const double time : options.times) times_.push_back(static_cast<double>(rounded_at<Real>(time)));
     if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
-    if (!times_.empty() && count > 0) plan_samples();
+    if (times_.empty() || count == 0) return;
+    first_ = complex_.time(complex_.order().front());
+    plan_samples();
   }
 
   SweepResult run() {
     const std::span<const Index> order = complex_.order();
     for (std::size_t i = 0; i < order.size(); ++i) {
       const double time = complex_.time(order[i]);
-      while (!starts_.empty() && next_time_ < times_.size() && times_[next_time_] <= time) take_sample();
+      while (!starts_.empty() && next_time_ < times_.size() && is_due(times_[next_time_], time)) take_sample();
       if (i == 0 || time != complex_.time(order[i - 1])) settle_starts();
       if (i % 16384 == 0) report(static_cast<double>(i) / static_cast<double>(order.size()));
       visit(order[i]);
@@ -74,6 +76,12 @@ class Sweeper {
   }
 
  private:
+  /// Whether a sample is to be taken before the first vertex at `time` is visited. At the contour's first time it is
+  /// the limit from above, as in `slice`: all vertices there come first.
+  [[nodiscard]] bool is_due(double sample, double time) const {
+    return sample < time || (sample == time && time != first_);
+  }
+
   void report(double fraction) const { detail::tell(options_.progress, fraction, "tracking was cancelled"); }
 
   // ---- the sweep ----
@@ -350,8 +358,10 @@ class Sweeper {
     const auto& contour = complex_.contour();
     const auto first_cut = [&](Index s) {
       const auto [low, high] = span(s);
-      const auto at = std::upper_bound(times_.begin(), times_.end(), low);
-      const bool is_cut = at != times_.end() && *at <= high && !is_collapsed<N>(complex_.simplex(s).data());
+      const auto at = low == first_ ? std::lower_bound(times_.begin(), times_.end(), low)
+                                    : std::upper_bound(times_.begin(), times_.end(), low);
+      const bool is_cut =
+          low < high && at != times_.end() && *at <= high && !is_collapsed<N>(complex_.simplex(s).data());
       return is_cut ? static_cast<std::size_t>(at - times_.begin()) : times_.size();
     };
     starts_.assign(times_.size() + 3, 0);
@@ -371,7 +381,8 @@ class Sweeper {
     return result;
   }
 
-  /// All vertices before the time have been visited; a vertex at the time counts as above it, as in `slice`.
+  /// All vertices before the time have been visited; a vertex at the time counts as above it, as in `slice`, but at the
+  /// first time as below.
   void take_sample() {
     const double time = times_[next_time_];
     const double asked_for = options_.times[next_time_];
@@ -403,11 +414,14 @@ class Sweeper {
       for (double& x : normal) x = -x;
     if constexpr (N == 2) sums.open = true;  // a point encloses nothing
     unsigned below = 0;
-    for (int i = 0; i < N; ++i) below |= corners[i][N - 1] < time ? 1u << i : 0u;
+    const auto is_below = [&](const PointOf<N>& corner) {
+      return corner[N - 1] < time || (time == first_ && corner[N - 1] == time);
+    };
+    for (int i = 0; i < N; ++i) below |= is_below(corners[i]) ? 1u << i : 0u;
     for (int i = 0; i < N; ++i)
       if (((complex_.border(s) >> i) & 1u) != 0 && (below & ~(1u << i)) != 0 && (~below & kAll & ~(1u << i)) != 0)
         sums.open = true;
-    std::stable_partition(corners.begin(), corners.end(), [&](const auto& corner) { return corner[N - 1] < time; });
+    std::stable_partition(corners.begin(), corners.end(), is_below);
     CutCell<N>(corners, std::popcount(below), time).add_to(sums, normal);
   }
 
@@ -433,6 +447,7 @@ class Sweeper {
   std::vector<Index> front_of_part_;
   Faces<N> faces_;
 
+  double first_ = 0.0;         ///< the least time of a vertex, if there are samples
   std::vector<double> times_;  ///< those of the options in the precision of the vertices, as `slice` rounds them
   std::size_t next_time_ = 0;
   std::vector<std::size_t> starts_;  ///< per time: where in `starting_` its simplices start

@@ -116,8 +116,8 @@ TEST_F(Components, TableIsShownAndWritten) {
   std::string line;
   std::getline(lines, line);
   EXPECT_EQ(line,
-            "label,simplices,size,content,euler,boundary,x.min,y.min,z.min,x.max,y.max,z.max,"
-            "x.centroid,y.centroid,z.centroid");
+            "label,rank,vertices,simplices,size (mm^2),content (mm^3),euler,boundary,x.min (mm),y.min (mm),z.min (mm),"
+            "x.max (mm),y.max (mm),z.max (mm),x.centroid (mm),y.centroid (mm),z.centroid (mm)");
   std::size_t rows = 0;
   while (std::getline(lines, line)) ++rows;
   EXPECT_EQ(rows, 3u);

@@ -227,6 +227,18 @@ TEST_F(Errors, AnOldOutputSurvivesAFailure) {
   EXPECT_EQ(std::filesystem::file_size(path("out.ply")), 8u);
 }
 
+TEST_F(Errors, KindsOfNormalsThatThereAreNotAreNamed) {
+  const RunResult run = run_tegl({"contour", "image.nc", "--normals", "wrong", "--iso", "0", "-o", path("a.ply")});
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--normals wrong: expected gradient, sobel, geometric or flat"));
+}
+
+TEST_F(Errors, NamesOfFilesThatLookLikeOptionsAreRefused) {
+  const RunResult run = run_tegl({"track", ball_file(), "--iso", "0", "--csv", "-q"});
+  EXPECT_EQ(run.exit, 6);
+  EXPECT_THAT(run.err, HasSubstr("-q-events.csv: looks like an option"));
+}
+
 TEST_F(Errors, HelpAndVersionAreNone) {
   const RunResult help = run_tegl({"--help"});
   EXPECT_EQ(help.exit, 0);

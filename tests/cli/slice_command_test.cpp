@@ -51,8 +51,30 @@ TEST_F(Slice, OfASavedContourEqualsThatOfItsImage) {
     for (const char* key : {"vertices", "simplices", "components", "euler", "boundary_simplices", "bad_links"}) {
       EXPECT_EQ(saved.json()[key], direct.json()[key]) << at << " " << key;
     }
-    EXPECT_TRUE(saved.json()["isovalue"].is_null());
+    EXPECT_EQ(saved.json()["isovalue"], 0.0);
     EXPECT_TRUE(saved.json()["active_tiles"].is_null());
+  }
+}
+
+TEST_F(Slice, AttributesAreThoseOfOtherImagesAtTheCutWhereverItComesFrom) {
+  ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  std::vector<std::vector<double>> found;
+  for (const std::vector<std::string>& from : {std::vector<std::string>{file(), "--iso", "0", "--at", "t=4"},
+                                               {path("all.vtkhdf"), "--at", "t=4"},
+                                               {path("all.vtkhdf"), "--plane", "0,0,0,2=8", "--scale", "t=3"}}) {
+    std::vector<std::string> arguments = {"slice"};
+    arguments.insert(arguments.end(), from.begin(), from.end());
+    arguments.insert(arguments.end(), {"--attribute", file(), "-o", path("cut.vtkhdf"), "-q"});
+    const RunResult run = run_tegl(arguments);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    const Mesh cut = read_mesh(path("cut.vtkhdf"));
+    ASSERT_EQ(cut.vertex_attributes.size(), 1u);
+    const auto& values = cut.vertex_attributes[0].values;
+    // At a step vertices lie on edges of the grid, where the image has the isovalue.
+    for (const double value : values) ASSERT_NEAR(value, 0.0, 1e-5);
+    found.emplace_back(values.begin(), values.end());
+    EXPECT_GT(found.back().size(), 50u);
+    EXPECT_EQ(found.back().size(), found.front().size());
   }
 }
 

@@ -61,6 +61,15 @@ TEST(Mesh, GltfKeepsFloatsAndOrder) {
       }
 }
 
+TEST(Mesh, TheIsovalueComesBackFromEveryFormat) {
+  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.vtkhdf"})
+    for (const std::optional<double> isovalue : {std::optional<double>(), {0.1}, {-1e300}, {0.0}}) {
+      Mesh mesh = random_mesh(2, 3, 50, 90, 4);
+      mesh.isovalue = isovalue;
+      EXPECT_EQ(written_and_read(mesh, name).isovalue, isovalue) << name;
+    }
+}
+
 TEST(Mesh, EqualMeshesMakeEqualFilesWheneverTheyAreWritten) {
   TempDir dir;
   const Mesh mesh = random_mesh(3, 4, 100, 200, 5, true);

@@ -262,6 +262,33 @@ TEST(Track, OfASingleContourMeasuresTimesThatDoublesMiss) {
   }
 }
 
+template <int N>
+void expect_first_sample_is_the_cut(const Contour<N, double>& contour) {
+  double first = std::numeric_limits<double>::infinity();
+  for (const auto& vertex : contour.vertices) first = std::min(first, vertex[N - 1]);
+  TrackOptions options;
+  options.times = {first, first + 0.7};
+  const TrackGraph graph = track(contour, options);
+  std::array<double, 2> sums{};
+  for (const TrackSegment& segment : graph.segments)
+    for (const TrackSample& sample : segment.samples) sums[sample.time == first ? 0 : 1] += sample.measure;
+  const double at_first = test::measure(slice(contour, first));
+  EXPECT_GT(at_first, 1.0);
+  EXPECT_NEAR(sums[0], at_first, 1e-9 * at_first);
+  EXPECT_NEAR(sums[1], test::measure(slice(contour, first + 0.7)), 1e-9 * at_first);
+}
+
+TEST(Track, AtTheFirstTimeSamplesAreTheCutFromAbove) {
+  ExtractOptions options;
+  for (const bool close : {false, true}) {
+    options.close = close;
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      expect_first_sample_is_the_cut(extract<double>(test::noise<float, 4>(5, seed).view(), 0.3, options));
+      expect_first_sample_is_the_cut(extract<double>(test::noise<float, 3>(7, seed).view(), 0.3, options));
+    }
+  }
+}
+
 TEST(Track, BeginsAndEndsWhereTheDataSaySo) {
   const Contour<3, double> contour =
       contour_of(space_time<3>(11, 1.0, 5, 0.0, 1.0), [](const Point<3>& p) { return 0.6 - std::hypot(p[0], p[1]); });

@@ -146,6 +146,22 @@ TEST(UnsoundLabels, AreRefused) {
   expect_refusal("labels for 0 simplices; expected 1", [](auto& l) { l.simplices.clear(); });
 }
 
+TEST(UnsoundContours, CoordinatesThatAreNotFiniteAreRefusedByWhatMeasures) {
+  static const std::vector<double> at = {0.5};
+  for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Any contour = tetrahedron();
+    contour.vertices[2][1] = x;
+    const auto refuses = [&](const auto& work) {
+      expect_error(ErrorCode::InvalidArgument, "a coordinate of vertex 2 is", work);
+    };
+    refuses([&] { components(contour, label_components(contour)); });
+    refuses([&] { tegl::measure(contour); });
+    refuses([&] { measure_cuts(contour, at); });
+    refuses([&] { elements(contour); });
+    refuses([&] { track(contour); });
+  }
+}
+
 TEST(UnsoundLabels, OfAComponentWithoutSimplicesAreRefused) {
   Any contour = tetrahedron();
   contour.simplices.push_back({0, 1, 3, 2});

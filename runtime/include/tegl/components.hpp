@@ -61,8 +61,9 @@ struct Component {
 
 /// Describes every component, in the order of the labels. Sums are compensated and in an order that does not depend on
 /// the threads. Simplices that repeat a vertex are counted in `simplices` alone.
-/// Errors: InvalidArgument (a vertex number out of range, labels that do not fit); Cancelled. O(#S log s) time for s
-/// simplices around a vertex; 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
+/// Errors: InvalidArgument (a vertex number out of range, a coordinate that is not finite, labels that do not fit);
+/// Cancelled. O(#S log s) time for s simplices around a vertex; 4 N bytes per simplex and 8 per vertex of memory.
+/// Thread-safe.
 template <int N, class Real>
 std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                      const WorkOptions& options = {});

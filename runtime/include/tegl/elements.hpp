@@ -36,8 +36,8 @@ struct Elements {
 
 /// One element per simplex, in the order of the simplices. Attributes of vertices are interpolated to the centroid:
 /// exact for linear fields, NaN where one of the vertices has NaN. Those of simplices stay. N = 2, 3, 4, 5.
-/// Errors: InvalidArgument (a vertex number out of range, attributes or normals of another number); Cancelled. O(#S)
-/// time and memory. Thread-safe.
+/// Errors: InvalidArgument (a vertex number out of range, a coordinate that is not finite, attributes or normals of
+/// another number); Cancelled. O(#S) time and memory. Thread-safe.
 template <int N, class Real>
 Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options = {});
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -126,6 +127,7 @@ struct Mesh {
   std::vector<std::string> axis_units;
   std::vector<Attribute> vertex_attributes;   ///< rows as many as vertices; names not empty and different
   std::vector<Attribute> simplex_attributes;  ///< likewise, as many as simplices
+  std::optional<double> isovalue;             ///< of the contour, where it is known; finite
 };
 
 /// What a file with a certain extension holds.
@@ -154,8 +156,8 @@ Contour<N, double> to_contour(const Mesh& mesh);
 /// the point arrays Normals and, in 4-space, normal_t (.vtkhdf). Attributes become properties of vertices and of faces
 /// or edges (.ply), point and cell arrays (.vtkhdf; both as double, with names and units), and _NAME attributes of
 /// vertices (.gltf/.glb; as float, of up to four numbers: others, and those of simplices, have no place there and are
-/// left out). Written under another name beside the target and renamed at the end: never half a file. An empty mesh
-/// gives a valid file.
+/// left out). The isovalue goes into the field array `isovalue` (.vtkhdf), a comment (.ply), or asset.extras. Written
+/// under another name beside the target and renamed at the end: never half a file. An empty mesh gives a valid file.
 /// Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh), InvalidArgument (a mesh that
 /// contradicts itself), UnsupportedData (.gltf: coordinates or attributes beyond float), TooLarge (.glb beyond 4 GiB),
 /// WriteFailed, Cancelled.
@@ -185,8 +187,8 @@ class ContourFile final : public ContourSink<N, Real> {
  public:
   using typename ContourSink<N, Real>::Vertex;
   using typename ContourSink<N, Real>::Simplex;
-  /// The grid gives names and units of the axes.
-  ContourFile(const std::filesystem::path& path, const Grid<N>& grid);
+  /// The grid gives names and units of the axes; the isovalue is written as in Mesh.
+  ContourFile(const std::filesystem::path& path, const Grid<N>& grid, std::optional<double> isovalue = {});
   ~ContourFile() override;
   void add_vertices(std::span<const Vertex> vertices) override;
   void add_normals(std::span<const Vertex> normals) override;
@@ -204,8 +206,8 @@ class ContourFile final : public ContourSink<N, Real> {
 /// triangles; glTF: nodes applied), and triangles of .stl and .obj, where vertices with equal coordinates become one.
 /// Normals are read where one of the formats of write_mesh has them for all vertices, and so are attributes: of other
 /// programs any numbers by a name of their own (PLY: scalar properties; VTKHDF: arrays of one or two dimensions; glTF:
-/// _NAME as float). What write_mesh wrote comes back with the same numbering, names and units. Errors: FileNotFound,
-/// MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge.
+/// _NAME as float). What write_mesh wrote comes back with the same numbering, names, units and isovalue. Errors:
+/// FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge.
 Mesh read_mesh(const std::filesystem::path& path);
 
 }  // namespace tegl

@@ -34,8 +34,8 @@ struct Measures {
 /// Measures a contour in N = 2 to 5 dimensions. The content is 1/N of the flux of the position, by the divergence
 /// theorem. Sums are compensated and in an order that does not depend on the threads. Of a smooth surface {f = 0} the
 /// errors of size and content fall with the square of the step of the grid (docs/measures.md).
-/// Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S log s) time for s simplices around a vertex,
-/// 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
+/// Errors: InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S log s) time
+/// for s simplices around a vertex, 4 N bytes per simplex and 8 per vertex of memory. Thread-safe.
 template <int N, class Real>
 Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options = {});
 
@@ -57,8 +57,9 @@ struct CutMeasures {
 /// gives the content. Where the curve jumps, as pieces lie flat at one time, it is the limit from below, at the
 /// contour's first time the one from above. That is the cut that `slice` makes, but where missing values leave the time
 /// before without a contour: `slice` then takes the limit from above. Beyond the contour all is 0. Errors:
-/// InvalidArgument (a value that is not finite, a vertex number out of range); Cancelled. O(#S log s + h) time for h
-/// pairs of a simplex and a cut of it; memory as `measure`, and up to 64 MiB, or 64 bytes for each value. Thread-safe.
+/// InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range); Cancelled. O(#S log s +
+/// h) time for h pairs of a simplex and a cut of it; memory as `measure`, and up to 64 MiB, or 64 bytes for each value.
+/// Thread-safe.
 template <int N, class Real>
 std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
                                       const WorkOptions& options = {});
