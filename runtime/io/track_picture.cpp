@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -188,6 +190,9 @@ class Drawing {
     bottom_ = kTop + row_height_ * static_cast<double>(std::max<std::size_t>(graph_.tracks.size(), 1));
     for (const TrackSegment& segment : graph_.segments)
       for (const TrackSample& sample : segment.samples) largest_ = std::max(largest_, sample.measure);
+    for (const TrackEvent& event : graph_.events)
+      if (const std::vector<double> rows = rows_of(event); rows.front() < rows.back())
+        links_.push_back({x(event.time), rows.front(), rows.back()});
   }
 
   std::string draw() {
@@ -200,7 +205,8 @@ class Drawing {
     draw_titles();
     draw_axis();
     for (Index t = 0; t < graph_.tracks.size(); ++t) draw_track(t);
-    for (const TrackEvent& event : graph_.events) draw_links(event);
+    for (const Link& link : links_)
+      text_ += fmt::format("<path class=\"link\" d=\"M{:.2f} {:.2f}V{:.2f}\"/>\n", link.at, link.top, link.bottom);
     for (const TrackHandle& handle : graph_.handles)
       text_ += handle_mark(x(handle.time), y(graph_.segments[handle.segment].track)) + "\n";
     for (const TrackEvent& event : graph_.events) draw_event(event);
@@ -209,6 +215,11 @@ class Drawing {
   }
 
  private:
+  /// The upright line that joins the tracks of an event.
+  struct Link {
+    double at, top, bottom;
+  };
+
   static constexpr double kLeft = 46;
   static constexpr double kRight = 22;
   static constexpr double kTop = 62;
@@ -260,8 +271,34 @@ class Drawing {
                          kColours[track.number % kColours.size()], track.number, track.start, track.end);
     double measure = 0;  // of a segment without samples: as the one before it
     for (const Index s : track.segments) measure = draw_segment(graph_.segments[s], y(t), measure);
-    text_ += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"end\">{}</text></g>\n", x(track.start) - 8,
-                         y(t) + 4, track.number);
+    text_ += number_of(t) + "</g>\n";
+  }
+
+  /// The number of a track in its row, which is its own: before its start, or behind its end if links leave room nearer
+  /// to that.
+  [[nodiscard]] std::string number_of(Index t) const {
+    const Track& track = graph_.tracks[t];
+    const std::string number = std::to_string(track.number);
+    const double width = 6.5 * static_cast<double>(number.size());
+    const double before = free_of_links(x(track.start) - 8 - width, width, y(t), -1);
+    const double behind = free_of_links(x(track.end) + 8, width, y(t), 1);
+    const double way_before = before < 2 ? picture_.width : x(track.start) - 8 - width - before;
+    const double way_behind = behind + width > picture_.width - 2 ? picture_.width : behind - x(track.end) - 8;
+    const bool comes_first = way_before <= way_behind;
+    return fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\"{}>{}</text>", comes_first ? before + width : behind, y(t) + 4,
+                       comes_first ? " text-anchor=\"end\"" : "", number);
+  }
+
+  /// The left end of a text of some width in a row: from `left` on to the left (step < 0) or to the right, as near as
+  /// no link crosses it.
+  [[nodiscard]] double free_of_links(double left, double width, double row, int step) const {
+    const auto crosses = [&](const Link& link) {
+      return link.top < row + 6 && link.bottom > row - 6 && link.at > left - 2 && link.at < left + width + 2;
+    };
+    // Ends, as each link is passed once.
+    for (auto link = links_.begin(); (link = std::find_if(links_.begin(), links_.end(), crosses)) != links_.end();)
+      left = step < 0 ? link->at - 2.5 - width : link->at + 2.5;
+    return left;
   }
 
   /// A band around the row: up along the samples and back. Returns the measure at its end.
@@ -289,13 +326,6 @@ class Drawing {
       for (const Index s : *list) rows.push_back(y(graph_.segments[s].track));
     std::sort(rows.begin(), rows.end());
     return rows;
-  }
-
-  void draw_links(const TrackEvent& event) {
-    const std::vector<double> rows = rows_of(event);
-    if (rows.front() < rows.back())
-      text_ +=
-          fmt::format("<path class=\"link\" d=\"M{:.2f} {:.2f}V{:.2f}\"/>\n", x(event.time), rows.front(), rows.back());
   }
 
   void draw_event(const TrackEvent& event) {
@@ -331,6 +361,7 @@ class Drawing {
   double row_height_ = 0;
   double bottom_ = 0;
   double largest_ = 0;
+  std::vector<Link> links_;
   std::string text_;
 };
 

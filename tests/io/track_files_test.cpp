@@ -3,6 +3,14 @@
 // Graphs of the parts of real data, held against cuts of the contour; and what of them is written.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+#include <vector>
+
 #include "io_support.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
@@ -96,6 +104,56 @@ TEST(TrackFiles, ThePictureShowsTheLongestTracks) {
   EXPECT_THAT(track_svg(fork()), HasSubstr("2 tracks"));
   EXPECT_THAT(track_svg(fork(), {.most_tracks = 1}), HasSubstr("the 1 longest of 2 tracks"));
   EXPECT_THAT(track_svg(TrackGraph{}), HasSubstr("0 tracks"));
+}
+
+TrackGraph graph_of_the_ocean() {
+  TrackOptions options;
+  options.min_lifetime = 0.5;
+  return track(contour_of(std::string(TEGL_SOURCE_DIR) + "/examples/data/ocean_temperature.nc", "temperature", 20),
+               options);
+}
+
+/// All that a pattern finds in a text: the whole, then its groups.
+std::vector<std::vector<std::string>> all_of(const std::string& text, const char* pattern) {
+  std::vector<std::vector<std::string>> result;
+  const std::regex regex(pattern);
+  for (std::sregex_iterator found(text.begin(), text.end(), regex); found != std::sregex_iterator(); ++found)
+    result.emplace_back(found->begin(), found->end());
+  return result;
+}
+
+TEST(TrackFiles, LinksInThePictureCrossNoNumber) {
+  const TrackGraph graph = graph_of_the_ocean();
+  const std::string svg = track_svg(graph);
+  const auto links = all_of(svg, R"re(class="link" d="M([0-9.]+) ([0-9.]+)V([0-9.]+)")re");
+  const auto numbers = all_of(svg, R"re(<text x="([0-9.]+)" y="([0-9.]+)"( text-anchor="end")?>([0-9]+)</text></g>)re");
+  EXPECT_GT(links.size(), 10u);
+  ASSERT_EQ(numbers.size(), graph.tracks.size());
+  for (const auto& number : numbers) {
+    const double width = 6.2 * static_cast<double>(number[4].size());  // of digits of 11 pixels
+    const double left = std::stod(number[1]) - (number[3].empty() ? 0.0 : width);
+    const double row = std::stod(number[2]) - 4;
+    EXPECT_GE(left, 0.0);
+    for (const auto& link : links)
+      EXPECT_FALSE(std::stod(link[1]) > left && std::stod(link[1]) < left + width && std::stod(link[2]) < row + 5 &&
+                   std::stod(link[3]) > row - 5)
+          << "track " << number[4] << ", link at " << link[1];
+  }
+}
+
+TEST(TrackFiles, GraphvizDrawsAllEventsAndSegments) {
+  if (std::system("dot -V >/dev/null 2>&1") != 0) GTEST_SKIP() << "graphviz is not here";
+  const TrackGraph graph = graph_of_the_ocean();
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tegl_track_dot";
+  std::filesystem::create_directories(folder);
+  const std::string source = (folder / "graph.dot").string(), drawing = (folder / "graph.svg").string();
+  write_track(graph, source);
+  ASSERT_EQ(std::system(("dot -Tsvg '" + source + "' -o '" + drawing + "'").c_str()), 0);
+  std::ifstream file(drawing);
+  const std::string svg{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(all_of(svg, "class=\"node\"").size(), graph.events.size());
+  EXPECT_EQ(all_of(svg, "class=\"edge\"").size(), graph.segments.size());
+  std::filesystem::remove_all(folder);
 }
 
 TEST(TrackFiles, RefusesOtherExtensions) {
