@@ -205,6 +205,7 @@ TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& 
 ///
 /// `uneven`: all a little aside, by unequal weights. Samples of few values, such as masks, put edges' points at few
 /// places, so that the mean itself may lie on the line through two of them, and a triangle of the three has no size.
+/// And nearer to the centre: the edges may be all in one face of the tile, where nothing but the face's own is to be.
 template <int K, class Corner, class Place>
 TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
   Weighted<K> sum;
@@ -217,7 +218,8 @@ TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& p
   for (int a = 0; a < K; ++a) {
     const double mean = sum.point[a] / sum.weight;
     const double centre = uneven ? 0.487 + 0.01 * a : 0.5;
-    point[a] = has_corners ? 0.5 * (centre + mean) : mean;
+    const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
+    point[a] = share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
   }
   return point;
 }
