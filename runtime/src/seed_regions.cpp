@@ -9,6 +9,8 @@
 #include <bit>
 #include <limits>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "progress.hpp"
 #include "seed_links.hpp"
@@ -20,48 +22,55 @@ namespace {
 constexpr std::size_t kEnoughTrees = std::size_t{1} << 13;  ///< a cover of so many is found at once
 constexpr std::size_t kTreesAtOnce = std::size_t{1} << 14;
 constexpr unsigned kMostRounds = 16;
+constexpr unsigned kMostRoundsOfBlocks = 8;
 
-/// How wide ranges are, counted in ends of ranges: so the order does not depend on the scale of the values.
+/// How wide ranges are, counted in ends of ranges of a sample: so the order does not depend on the scale of the values.
 template <class Key>
 class Widths {
  public:
-  static constexpr std::size_t kClasses = 34;
+  static constexpr std::size_t kClasses = 22;
 
   explicit Widths(const RangeMap<Key>& map) {
+    constexpr std::size_t kSample = std::size_t{1} << 19;
+    const std::size_t step = (1 + map.least.size() / kSample) | 1;  // odd: not all in one column
+    const auto for_tiles = [&](const auto& visit) {
+      for (std::size_t i = 0; i < map.least.size(); i += step)
+        if (!map.constant(static_cast<Place>(i))) visit(map.least[i], map.greatest[i]);
+    };
     Key most = 0;
     least_ = std::numeric_limits<Key>::max();
-    const auto for_tiles = [&](const auto& visit) {
-      map.tiles.scan(default_order(map.tiles.dim()), [&](Place tile) {
-        if (!map.constant(tile)) visit(tile);
-      });
-    };
-    for_tiles([&](Place tile) {
-      least_ = std::min(least_, map.least[tile]);
-      most = std::max(most, map.greatest[tile]);
+    for_tiles([&](Key least, Key greatest) {
+      least_ = std::min(least_, least);
+      most = std::max(most, greatest);
     });
     if (most < least_) least_ = most;
     while ((static_cast<std::uint64_t>(most - least_) >> shift_) >= kBins) ++shift_;
-    below_.assign((static_cast<std::uint64_t>(most - least_) >> shift_) + 2, 0);
-    for_tiles([&](Place tile) {
-      ++below_[bin(map.least[tile]) + 1];
-      ++below_[bin(map.greatest[tile]) + 1];
+    last_ = static_cast<std::uint64_t>(most - least_) >> shift_;
+    below_.assign(last_ + 2, 0);
+    for_tiles([&](Key least, Key greatest) {
+      ++below_[bin(least) + 1];
+      ++below_[bin(greatest) + 1];
     });
     for (std::size_t i = 1; i < below_.size(); ++i) below_[i] += below_[i - 1];
   }
   /// A power of 2 each, the widest first: finer ones would leave more tiles.
   [[nodiscard]] std::size_t class_of(Key least, Key greatest) const noexcept {
-    const std::uint64_t width = below_[bin(greatest)] - below_[bin(least)];
+    const std::uint32_t width = below_[bin(greatest)] - below_[bin(least)];
     const auto bits = static_cast<std::size_t>(std::bit_width(width));
     return kClasses - 1 - std::min(bits, kClasses - 1);
   }
 
  private:
   static constexpr std::uint64_t kBins = std::uint64_t{1} << 20;
-  [[nodiscard]] std::size_t bin(Key key) const noexcept { return static_cast<std::uint64_t>(key - least_) >> shift_; }
+  [[nodiscard]] std::size_t bin(Key key) const noexcept {
+    if (key <= least_) return 0;
+    return std::min(static_cast<std::uint64_t>(key - least_) >> shift_, last_);
+  }
 
   Key least_;
   unsigned shift_ = 0;
-  std::vector<std::uint64_t> below_;  ///< ends of ranges in bins before
+  std::uint64_t last_ = 0;            ///< bin
+  std::vector<std::uint32_t> below_;  ///< ends of ranges in bins before, of a sample of tiles
 };
 
 /// Whom tiles, or trees, belong to, from part to part of their ranges: to trees that are kept.
@@ -86,8 +95,23 @@ class Ownership {
     offers_.clear();
     return covered;
   }
+  /// Not given up.
+  void keep(std::uint32_t i, Key greatest) {
+    parts_of_[i] = parts_.size();
+    parts_.push_back({greatest, i});
+  }
+  /// Calls visit(owner, end) for those whom i belongs to from `level` to `end`, from below.
+  template <class Visit>
+  void for_owners(std::uint32_t i, Key level, Key end, const Visit& visit) const {
+    for (const Part* part = &parts_[parts_of_[i]]; level < end;) {
+      while (part->end <= level) ++part;
+      level = std::min(part->end, end);
+      visit(part->owner, level);
+    }
+  }
   /// Links between those whom a and b belong to, by their new numbers, from `level` to `end`.
-  void add_links(std::uint32_t a, std::uint32_t b, Key level, Key end, const std::vector<std::uint32_t>& number,
+  template <class Number>
+  void add_links(std::uint32_t a, std::uint32_t b, Key level, Key end, const Number& number,
                  LinkCollector<Key>& collector) const {
     const Part* of_a = &parts_[parts_of_[a]];
     const Part* of_b = &parts_[parts_of_[b]];
@@ -96,12 +120,22 @@ class Ownership {
       while (of_b->end <= level) ++of_b;
       const Key both = std::min({of_a->end, of_b->end, end});
       if (of_a->owner != of_b->owner) {
-        const std::uint32_t p = number[of_a->owner];
-        const std::uint32_t q = number[of_b->owner];
+        const std::uint32_t p = number(of_a->owner);
+        const std::uint32_t q = number(of_b->owner);
         collector.add({std::min(p, q), std::max(p, q), level, both});
       }
       level = both;
     }
+  }
+
+  /// What is added from here on can be taken away again, or tiles of it be given new parts.
+  [[nodiscard]] std::uint64_t mark() const noexcept { return parts_.size(); }
+  [[nodiscard]] bool since(std::uint64_t mark, std::uint32_t i) const noexcept { return parts_of_[i] >= mark; }
+  void back_to(std::uint64_t mark) { parts_.resize(mark); }
+  /// Parts of i, from below; owner and end.
+  void set(std::uint32_t i, std::span<const std::pair<std::uint32_t, Key>> parts) {
+    parts_of_[i] = parts_.size();
+    for (const auto& [owner, end] : parts) parts_.push_back({end, owner});
   }
 
  private:
@@ -168,7 +202,83 @@ unsigned half_of(std::uint32_t number, unsigned round) noexcept {
   return bits >> 29;
 }
 
-/// From tiles to trees.
+/// Trees given up to others that they are linked to, and the links between those that stay.
+template <class Key>
+class Coarsening {
+ public:
+  /// Trees from `loose` on stay.
+  Coarsening(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, std::size_t loose,
+             unsigned round)
+      : owners_(fine.roots.size()), number_(fine.roots.size()) {
+    for (std::size_t i = loose; i < fine.roots.size(); ++i)
+      owners_.keep(static_cast<std::uint32_t>(i), map.greatest[fine.roots[i]]);
+    give_up(map, widths, fine, loose, round);
+    for (std::uint32_t tree = 0; tree < fine.roots.size(); ++tree) {
+      if (tree < loose && given_up_[tree] != 0) continue;
+      number_[tree] = static_cast<std::uint32_t>(coarse_.roots.size());
+      coarse_.roots.push_back(fine.roots[tree]);
+      if (tree < loose) ++loose_;
+    }
+    LinkCollector<Key> collector;
+    for (const KeyLink<Key>& link : fine.links)
+      owners_.add_links(
+          link.a, link.b, link.least, link.greatest, [&](std::uint32_t tree) { return number_[tree]; }, collector);
+    coarse_.links = collector.take();
+  }
+  [[nodiscard]] const Regions<Key>& coarse() const noexcept { return coarse_; }
+  /// How many of them may still be given up; they come first.
+  [[nodiscard]] std::size_t loose() const noexcept { return loose_; }
+  Regions<Key> take() { return std::move(coarse_); }
+  /// Calls visit(number of a tree that stays, end) for those that a fine tree belongs to.
+  template <class Visit>
+  void for_owners(std::uint32_t tree, Key level, Key end, const Visit& visit) const {
+    owners_.for_owners(tree, level, end, [&](std::uint32_t owner, Key to) { visit(number_[owner], to); });
+  }
+
+ private:
+  void give_up(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, std::size_t loose,
+               unsigned round) {
+    const auto both_ends = [&](const auto& visit) {
+      for (std::uint32_t i = 0; i < fine.links.size(); ++i) {
+        if (fine.links[i].a < loose) visit(i, fine.links[i].a);
+        if (fine.links[i].b < loose) visit(i, fine.links[i].b);
+      }
+    };
+    const std::vector<std::uint32_t> links_of = sort_by_class(loose, both_ends);
+    std::vector<std::size_t> first_of(loose + 1);
+    both_ends([&](std::uint32_t, std::uint32_t tree) { ++first_of[tree + 1]; });
+    for (std::size_t i = 0; i < loose; ++i) first_of[i + 1] += first_of[i];
+    given_up_.resize(loose);
+    for (std::size_t first = 0; first < loose; first += kTreesAtOnce) {
+      const auto order = sort_by_class(8 * Widths<Key>::kClasses, [&](const auto& visit) {
+        for (std::size_t i = first; i < std::min(loose, first + kTreesAtOnce); ++i) {
+          const Place root = fine.roots[i];
+          const auto tree = static_cast<std::uint32_t>(i);
+          visit(tree, 8 * widths.class_of(map.least[root], map.greatest[root]) + half_of(tree, round));
+        }
+      });
+      for (const std::uint32_t tree : order) {
+        for (std::size_t i = first_of[tree]; i < first_of[tree + 1]; ++i) {
+          const KeyLink<Key>& link = fine.links[links_of[i]];
+          const std::uint32_t other = link.a == tree ? link.b : link.a;
+          if (owners_.has(other)) owners_.offer(other, link.least, link.greatest);
+        }
+        const Place root = fine.roots[tree];
+        given_up_[tree] = owners_.give_up(tree, map.least[root], map.greatest[root]) ? 1 : 0;
+      }
+    }
+  }
+
+  Ownership<Key> owners_;
+  std::vector<std::uint32_t> number_;  ///< of those that stay
+  std::vector<std::uint8_t> given_up_;
+  std::size_t loose_ = 0;
+  Regions<Key> coarse_;
+};
+
+/// From tiles to trees, in blocks that are small enough to stay near the processor: trees of a block are given up to
+/// one another, and to those of blocks before it, while their links are few; then only tiles at the border of the block
+/// are looked at again, by the blocks beside it.
 template <class Key>
 class RegionMaker {
  public:
@@ -182,41 +292,40 @@ class RegionMaker {
         number_(map.tiles.room()) {}
 
   Regions<Key> make() {
-    for_blocks(0.0, 0.4, [&](const std::vector<Place>& block) {
-      // Every other tile comes first: of tiles in a row, each of which has a little more than the one before, the
-      // others then lie between two that are done.
-      const auto order = sort_by_class(2 * Widths<Key>::kClasses, [&](const auto& visit) {
-        for (const Place tile : block)
-          visit(tile, 2 * widths_.class_of(map_.least[tile], map_.greatest[tile]) + tile % 2);
-      });
-      for (const Place tile : order) number_[tile] = is_given_up(tile) ? 0 : 1;
-      for (const Place tile : block) {
-        if (number_[tile] == 0) continue;
-        number_[tile] = static_cast<std::uint32_t>(regions_.roots.size());
-        regions_.roots.push_back(tile);
-      }
-    });
-    collect_links();
+    for_blocks([&](const Block& block) { add(block); });
+    for (std::uint32_t tree = 0; tree < regions_.roots.size(); ++tree) number_[regions_.roots[tree]] = tree;
+    for (KeyLink<Key>& link : regions_.links) {
+      const std::uint32_t a = number_[link.a];
+      const std::uint32_t b = number_[link.b];
+      link.a = std::min(a, b);
+      link.b = std::max(a, b);
+    }
     return std::move(regions_);
   }
 
  private:
-  /// All tiles that are ever active, in blocks that are small enough to stay near the processor.
+  /// All its tiles that are ever active, and which of them have neighbours in other blocks.
+  struct Block {
+    std::vector<Place> tiles;
+    std::vector<std::uint32_t> border;  ///< of `tiles`
+  };
+  static constexpr std::uint32_t kNoNumber = 0;  ///< others are one more than in a block
+
   template <class Visit>
-  void for_blocks(double from, double to, const Visit& visit) const {
-    constexpr std::array<std::size_t, kMostAxes + 1> kWidth = {1, 1 << 15, 181, 32, 13, 8};
+  void for_blocks(const Visit& visit) const {
+    constexpr std::array<std::size_t, kMostAxes + 1> kWidth = {1, 4096, 64, 16, 8, 6};
     const int dim = map_.tiles.dim();
     const std::size_t width = kWidth[static_cast<std::size_t>(dim)];
     std::array<std::size_t, kMostAxes> first{};
-    std::vector<Place> block;
+    Block block;
     std::size_t done = 0;
     for (int axis = 0; axis < dim && map_.tiles.rows() > 0;) {
-      report_progress(progress_,
-                      from + (to - from) * static_cast<double>(done) / static_cast<double>(map_.tiles.room()));
-      block.clear();
-      add_tiles(dim - 1, static_cast<std::ptrdiff_t>(map_.tiles.row_place(0)), first, width, block);
+      report_progress(progress_, static_cast<double>(done) / static_cast<double>(map_.tiles.room()));
+      block.tiles.clear();
+      block.border.clear();
+      add_tiles(dim - 1, static_cast<std::ptrdiff_t>(map_.tiles.row_place(0)), first, width, false, block);
       visit(block);
-      done += block.size();
+      done += block.tiles.size();
       for (axis = 0; axis < dim; ++axis) {
         first[axis] += width;
         if (first[axis] < map_.tiles.size(axis)) break;
@@ -225,17 +334,63 @@ class RegionMaker {
     }
   }
   void add_tiles(int axis, std::ptrdiff_t at, const std::array<std::size_t, kMostAxes>& first, std::size_t width,
-                 std::vector<Place>& block) const {
+                 bool outside, Block& block) const {
     const std::size_t end = std::min(first[axis] + width, map_.tiles.size(axis));
     for (std::size_t i = first[axis]; i < end; ++i) {
       const std::ptrdiff_t place = at + static_cast<std::ptrdiff_t>(i) * map_.tiles.step(axis);
-      if (axis > 0)
-        add_tiles(axis - 1, place, first, width, block);
-      else if (!map_.constant(static_cast<Place>(place)))
-        block.push_back(static_cast<Place>(place));
+      const bool at_border = outside || (i == first[axis] && i > 0) || (i + 1 == end && end < map_.tiles.size(axis));
+      if (axis > 0) {
+        add_tiles(axis - 1, place, first, width, at_border, block);
+      } else if (!map_.constant(static_cast<Place>(place))) {
+        if (at_border) block.border.push_back(static_cast<std::uint32_t>(block.tiles.size()));
+        block.tiles.push_back(static_cast<Place>(place));
+      }
     }
   }
 
+  void add(const Block& block) {
+    const std::uint64_t mark = owners_.mark();
+    Regions<Key> trees;  // those of the block first
+    give_up_tiles(block, trees);
+    std::size_t loose = trees.roots.size();
+    link(block, mark, trees);
+    const std::vector<Place> numbered = trees.roots;
+    std::vector<Coarsening<Key>> rounds;
+    rounds.reserve(kMostRoundsOfBlocks);
+    for (unsigned round = 0; round < kMostRoundsOfBlocks && loose > 0; ++round) {
+      const Regions<Key>& fine = rounds.empty() ? trees : rounds.back().coarse();
+      const std::size_t before = loose;
+      rounds.emplace_back(map_, widths_, fine, loose, round);
+      loose = rounds.back().loose();
+      if (loose > before - before / 8) break;
+    }
+    const Regions<Key>& last = rounds.empty() ? trees : rounds.back().coarse();
+    regions_.roots.insert(regions_.roots.end(), last.roots.begin(),
+                          last.roots.begin() + static_cast<std::ptrdiff_t>(loose));
+    for (const KeyLink<Key>& link : last.links)
+      regions_.links.push_back({last.roots[link.a], last.roots[link.b], link.least, link.greatest});
+    keep_border(block, mark, rounds, last.roots);
+    for (const Place root : numbered) number_[root] = kNoNumber;
+  }
+
+  void give_up_tiles(const Block& block, Regions<Key>& trees) {
+    // Every other tile comes first: of tiles in a row, each of which has a little more than the one before, the others
+    // then lie between two that are done.
+    classes_.clear();
+    for (const Place tile : block.tiles)
+      classes_.push_back(
+          static_cast<std::uint8_t>(2 * widths_.class_of(map_.least[tile], map_.greatest[tile]) + tile % 2));
+    const auto order = sort_by_class(2 * Widths<Key>::kClasses, [&](const auto& visit) {
+      for (std::size_t i = 0; i < block.tiles.size(); ++i) visit(block.tiles[i], classes_[i]);
+    });
+    for (const Place tile : order)
+      if (!is_given_up(tile)) number_[tile] = 1;
+    for (const Place tile : block.tiles) {
+      if (number_[tile] == kNoNumber) continue;
+      trees.roots.push_back(tile);
+      number_[tile] = static_cast<std::uint32_t>(trees.roots.size());
+    }
+  }
   bool is_given_up(Place tile) {
     for (const std::ptrdiff_t distance : neighbours_) {
       const auto other = static_cast<Place>(tile + distance);
@@ -245,21 +400,67 @@ class RegionMaker {
     return owners_.give_up(tile, map_.least[tile], map_.greatest[tile]);
   }
 
-  void collect_links() {
+  /// Links of the block's tiles to each other and to those of blocks before; numbers the trees of these.
+  void link(const Block& block, std::uint64_t mark, Regions<Key>& trees) {
     LinkCollector<Key> collector;
-    std::vector<std::ptrdiff_t> ahead;
-    for (const std::ptrdiff_t distance : neighbours_)
-      if (distance > 0) ahead.push_back(distance);
-    for_blocks(0.4, 1.0, [&](const std::vector<Place>& block) {
-      for (const Place tile : block)
-        for (const std::ptrdiff_t distance : ahead) {
-          const auto other = static_cast<Place>(tile + distance);
-          if (map_.overlap(tile, other))
-            owners_.add_links(tile, other, std::max(map_.least[tile], map_.least[other]),
-                              std::min(map_.greatest[tile], map_.greatest[other]), number_, collector);
+    const auto number = [&](Place root) {
+      if (number_[root] == kNoNumber) {
+        trees.roots.push_back(root);
+        number_[root] = static_cast<std::uint32_t>(trees.roots.size());
+      }
+      return number_[root] - 1;
+    };
+    for (const std::uint32_t i : block.border) {
+      const Place tile = block.tiles[i];
+      owners_.for_owners(tile, map_.least[tile], map_.greatest[tile], [&](Place root, Key) { number(root); });
+    }
+    for (const Place tile : block.tiles)
+      for (const std::ptrdiff_t distance : neighbours_) {
+        const auto other = static_cast<Place>(tile + distance);
+        const bool once = owners_.has(other) && (distance > 0 || !owners_.since(mark, other));
+        if (once && map_.overlap(tile, other))
+          owners_.add_links(tile, other, std::max(map_.least[tile], map_.least[other]),
+                            std::min(map_.greatest[tile], map_.greatest[other]), number, collector);
+      }
+    trees.links = collector.take();
+  }
+
+  /// Tiles at the border belong to trees that stay from now on; of others nobody will ask.
+  void keep_border(const Block& block, std::uint64_t mark, const std::vector<Coarsening<Key>>& rounds,
+                   const std::vector<Place>& roots) {
+    using Parts = std::vector<std::pair<std::uint32_t, Key>>;
+    std::vector<std::size_t> end_of;
+    Parts kept, parts, finer;
+    for (const std::uint32_t i : block.border) {
+      const Place tile = block.tiles[i];
+      const Key least = map_.least[tile];
+      const auto add = [&](std::uint32_t owner, Key end) {
+        if (!parts.empty() && parts.back().first == owner)
+          parts.back().second = end;
+        else
+          parts.emplace_back(owner, end);
+      };
+      parts.clear();
+      owners_.for_owners(tile, least, map_.greatest[tile],
+                         [&](std::uint32_t root, Key end) { add(number_[root] - 1, end); });
+      for (const Coarsening<Key>& round : rounds) {
+        std::swap(parts, finer);
+        parts.clear();
+        Key from = least;
+        for (const auto& [tree, end] : finer) {
+          round.for_owners(tree, from, end, add);
+          from = end;
         }
-    });
-    regions_.links = collector.take();
+      }
+      for (const auto& [tree, end] : parts) kept.emplace_back(roots[tree], end);
+      end_of.push_back(kept.size());
+    }
+    owners_.back_to(mark);
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < block.border.size(); ++i) {
+      owners_.set(block.tiles[block.border[i]], std::span(kept).subspan(from, end_of[i] - from));
+      from = end_of[i];
+    }
   }
 
   const RangeMap<Key>& map_;
@@ -267,56 +468,10 @@ class RegionMaker {
   const Progress& progress_;
   std::vector<std::ptrdiff_t> neighbours_;
   Ownership<Key> owners_;
-  std::vector<std::uint32_t> number_;  ///< of a root's tree
+  std::vector<std::uint32_t> number_;  ///< of a root's tree in the block at hand
+  std::vector<std::uint8_t> classes_;
   Regions<Key> regions_;
 };
-
-/// The same with trees instead of tiles, and links instead of neighbours.
-template <class Key>
-Regions<Key> coarsen(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, unsigned round) {
-  const std::size_t count = fine.roots.size();
-  const auto both_ends = [&](const auto& visit) {
-    for (std::uint32_t i = 0; i < fine.links.size(); ++i) {
-      visit(i, fine.links[i].a);
-      visit(i, fine.links[i].b);
-    }
-  };
-  const std::vector<std::uint32_t> links_of = sort_by_class(count, both_ends);
-  std::vector<std::size_t> first_of(count + 1);
-  both_ends([&](std::uint32_t, std::uint32_t tree) { ++first_of[tree + 1]; });
-  for (std::size_t i = 0; i < count; ++i) first_of[i + 1] += first_of[i];
-  Ownership<Key> owners(count);
-  std::vector<std::uint32_t> number(count);
-  for (std::size_t first = 0; first < count; first += kTreesAtOnce) {
-    const auto order = sort_by_class(8 * Widths<Key>::kClasses, [&](const auto& visit) {
-      for (std::size_t i = first; i < std::min(count, first + kTreesAtOnce); ++i) {
-        const Place root = fine.roots[i];
-        const auto tree = static_cast<std::uint32_t>(i);
-        visit(tree, 8 * widths.class_of(map.least[root], map.greatest[root]) + half_of(tree, round));
-      }
-    });
-    for (const std::uint32_t tree : order) {
-      for (std::size_t i = first_of[tree]; i < first_of[tree + 1]; ++i) {
-        const KeyLink<Key>& link = fine.links[links_of[i]];
-        const std::uint32_t other = link.a == tree ? link.b : link.a;
-        if (owners.has(other)) owners.offer(other, link.least, link.greatest);
-      }
-      const Place root = fine.roots[tree];
-      number[tree] = owners.give_up(tree, map.least[root], map.greatest[root]) ? 0 : 1;
-    }
-  }
-  Regions<Key> coarse;
-  for (std::uint32_t tree = 0; tree < count; ++tree) {
-    if (number[tree] == 0) continue;
-    number[tree] = static_cast<std::uint32_t>(coarse.roots.size());
-    coarse.roots.push_back(fine.roots[tree]);
-  }
-  LinkCollector<Key> collector;
-  for (const KeyLink<Key>& link : fine.links)
-    owners.add_links(link.a, link.b, link.least, link.greatest, number, collector);
-  coarse.links = collector.take();
-  return coarse;
-}
 
 }  // namespace
 
@@ -330,7 +485,7 @@ SeedGraph make_region_graph(const RangeMap<Key>& map, Neighbourhood neighbourhoo
   for (unsigned round = 0; round < kMostRounds && regions.roots.size() > kEnoughTrees; ++round) {
     report_progress(progress, 0.7 + 0.2 * round / kMostRounds);
     const std::size_t before = regions.roots.size();
-    regions = coarsen(map, widths, regions, round);
+    regions = Coarsening<Key>(map, widths, regions, before, round).take();
     if (regions.roots.size() > before - before / 32) break;
   }
   report_progress(progress, 0.9);
