@@ -12,6 +12,7 @@
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
+#include "simplicial_contour.hpp"
 #include "tegl/error.hpp"
 #include "tegl/slice.hpp"
 
@@ -19,6 +20,7 @@ namespace tegl {
 namespace {
 
 using test::expect_closed_manifold;
+using test::layer_across;
 using test::Point;
 using test::same_surface;
 
@@ -168,19 +170,6 @@ TEST(SliceByHyperplane, AcrossAnAxisIsTheCutOfTheContourWithThatAxisLast) {
   }
 }
 
-/// The layer of an image across any axis.
-template <Value T>
-Image<T, 3> layer(const Image<T, 4>& image, int axis, std::size_t i) {
-  Grid<3> grid;
-  typename Image<T, 3>::Strides strides;
-  for (int a = 0, b = 0; a < 4; ++a) {
-    if (a == axis) continue;
-    grid.axes[b] = image.grid().axes[a];
-    strides[b++] = image.strides()[a];
-  }
-  return Image<T, 3>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[axis], grid, strides);
-}
-
 TEST(SliceByHyperplane, AtASampleOfAnyAxisIsTheContourOfThatLayer) {
   const auto image = test::noise<float, 4>(5, 5);
   for (const bool barycentric : {false, true}) {
@@ -190,7 +179,7 @@ TEST(SliceByHyperplane, AtASampleOfAnyAxisIsTheContourOfThatLayer) {
     for (int axis = 0; axis < 4; ++axis)
       for (std::size_t i = 0; i < 5; ++i)
         EXPECT_TRUE(same_surface(slice(whole, Hyperplane<4>::across(axis, static_cast<double>(i))),
-                                 extract(layer(image.view(), axis, i), 0.5, options)))
+                                 extract(layer_across(image.view(), axis, i), 0.5, options)))
             << axis << " " << i;
   }
 }

@@ -12,6 +12,7 @@
 #include "compare.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
+#include "real_images.hpp"
 #include "simplicial_contour.hpp"
 #include "tegl/io.hpp"
 #include "tegl/scrubber.hpp"
@@ -20,6 +21,8 @@
 namespace tegl {
 namespace {
 
+using test::isovalue_at;
+using test::middle;
 using test::same_surface;
 
 struct File {
@@ -28,30 +31,6 @@ struct File {
   bool closes = true;  ///< no missing values, so the closed contour is closed
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
-
-/// The middle of an image, at most 28 samples along each axis in space and 8 in time: enough to be real, fast enough to
-/// test.
-template <Value T>
-Image<T, 4> middle(Image<T, 4> image) {
-  for (int a = 0; a < 4; ++a) {
-    const std::size_t size = std::min<std::size_t>(image.size(a), a == 3 ? 8 : 28);
-    image = image.part(a, (image.size(a) - size) / 2, size);
-  }
-  return image;
-}
-
-/// A value with the given share of the samples below it, that few samples equal.
-template <Value T>
-double isovalue_at(const Image<T, 4>& image, double quantile) {
-  std::vector<double> values;
-  test::for_each_sample<4>(image.grid(), [&](std::size_t, const std::array<std::size_t, 4>& index) {
-    const auto value = static_cast<double>(image(index));
-    if (!std::isnan(value)) values.push_back(value);
-  });
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return std::is_floating_point_v<T> ? *at * (1 + 1e-4) + 1e-7 : *at + 0.5;
-}
 
 template <Value T>
 double time_of(const Image<T, 4>& image, double index) {
@@ -70,7 +49,11 @@ class SliceOfFile : public ::testing::TestWithParam<File> {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
     const ReadImageResult read = read_image(path);
     ASSERT_TRUE(std::holds_alternative<AnyImageN<4>>(read.image));
-    std::visit([&](const auto& owned) { visit(middle(owned.view())); }, std::get<AnyImageN<4>>(read.image));
+    std::visit(
+        [&](const auto& owned) {
+          visit(middle(owned.view(), {28, 28, 28, 8}));
+        },
+        std::get<AnyImageN<4>>(read.image));
   }
 };
 

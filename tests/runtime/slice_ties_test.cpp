@@ -127,17 +127,6 @@ TEST(SliceThroughTies, AcrossTheLastAxisIsTheContourOfTheLayer) {
   }
 }
 
-/// Layer k along an axis, as an image of the other axes.
-OwnedImage<float, 3> layer_across(const OwnedImage<float, 4>& image, int axis, std::size_t k) {
-  OwnedImage<float, 3> layer;
-  for (int a = 0, i = 0; a < 4; ++a)
-    if (a != axis) layer.grid.axes[i++] = image.grid.axes[a];
-  test::for_each_sample<4>(image.grid, [&](std::size_t i, const std::array<std::size_t, 4>& index) {
-    if (index[axis] == k) layer.values.push_back(image.values[i]);
-  });
-  return layer;
-}
-
 TEST(SliceThroughTies, OfAnImageAcrossAnyAxisIsTheContourOfTheLayer) {
   std::size_t not_empty = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed)
@@ -148,7 +137,7 @@ TEST(SliceThroughTies, OfAnImageAcrossAnyAxisIsTheContourOfTheLayer) {
       for (int axis = 0; axis < 4; ++axis)
         for (std::size_t k = 0; k < 4; ++k) {
           const auto cut = slice_image_across<double>(image.view(), 1.0, axis, static_cast<double>(k), options);
-          const auto expected = extract<double>(layer_across(image, axis, k).view(), 1.0, options);
+          const auto expected = extract<double>(test::layer_across(image.view(), axis, k), 1.0, options);
           ASSERT_TRUE(test::same_surface(cut, expected))
               << "seed " << seed << " close " << close << " axis " << axis << " layer " << k;
           not_empty += !cut.simplices.empty();
