@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "corners.hpp"
+#include "edge_values.hpp"
 #include "sobel.hpp"
 #include "tegl/image.hpp"
 
@@ -81,30 +83,28 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
 }
 
+namespace {
+
+/// Where the values around edges along one axis are. By place: the layer that the value is in, displaced so that the
+/// first sample's own place finds it. Those along the row (0 ... 3) have none, but the samples at both ends of the
+/// edge.
 template <Value T, int N>
-template <bool kAlongRow, class Calc>
-std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
-                                      Calc* out) const noexcept {
-  const std::ptrdiff_t along = strides_[0];
-  const T* const first = layer(around.layer);
-  const T* const second = kAlongRow              ? first + along
-                          : around.axis == N - 1 ? layer(around.layer + 1)
-                                                 : first + strides_[around.axis];
-  // By place: the layer that the value is in, displaced so that the first sample's own place finds it.
+struct Places {
+  const T* first;
+  const T* second;
   std::array<const T*, kEdgeValues<N>> from;
-  for (int a = 1; a < N; ++a) {
-    const auto neighbour = [&](unsigned j, const T* sample) {
-      if (!around.exists[a][j]) return sample;
-      if (a < N - 1) return sample + (j % 2 == 0 ? -strides_[a] : strides_[a]);
-      const std::size_t k = around.layer + (sample == second && !kAlongRow && around.axis == N - 1 ? 1 : 0);
-      return layer(j % 2 == 0 ? k - 1 : k + 1) + (sample - layer(k));
-    };
-    from[4 * a] = neighbour(0, first);
-    from[4 * a + 1] = a == around.axis ? second : neighbour(1, first);
-    from[4 * a + 2] = a == around.axis ? first : neighbour(2, second);
-    from[4 * a + 3] = neighbour(3, second);
-  }
-  const std::size_t last = row_size_ - 1;
+  std::ptrdiff_t along;
+  std::size_t row_size;
+};
+
+/// One edge after the other.
+template <bool kAlongRow, Value T, int N, class Calc>
+std::uint64_t gather_each(const Places<T, N>& places, const EdgesInRows& edges, Calc* out) noexcept {
+  const T* const first = places.first;
+  const T* const second = places.second;
+  const auto& from = places.from;
+  const std::ptrdiff_t along = places.along;
+  const std::size_t last = places.row_size - 1;
   std::uint64_t at_ends = 0;
   for (std::size_t i = 0; i < edges.count; ++i) {
     const std::size_t here = edges.at[i];
@@ -127,10 +127,71 @@ std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const E
   return at_ends;
 }
 
+/// Whether edges may be gathered by gather_row, and are many enough for that.
+template <class Calc, Value T, int N>
+bool may_be_row(const Places<T, N>& places, const EdgesInRows& edges) noexcept {
+  constexpr std::size_t kLeast = kEdgesAtOnce / 2;  // with fewer, to get ready takes longer than what is saved
+  if (edges.count < kLeast) return false;
+  const std::size_t last = edges.count - 1;
+  return may_be_dense<Calc>(edges.at[last] - edges.at[0], edges.count) && edges.rows[0] == edges.rows[last] &&
+         places.along == 1 && places.row_size >= kMostLanes + 3;
+}
+
+/// Edges of one row: inside by registers, if they are many enough for those; at its ends, where they lack a neighbour,
+/// one by one.
+template <bool kAlongRow, Value T, int N, class Calc>
+std::uint64_t gather_row(const Places<T, N>& places, const EdgesInRows& edges, Calc* out) noexcept {
+  const std::size_t last = edges.count - 1;
+  const std::size_t end = places.row_size - (kAlongRow ? 2 : 1);
+  const std::size_t before = edges.at[0] == 0 ? 1 : 0;
+  const std::size_t behind = edges.at[last] == end ? 1 : 0;
+  auto from = places.from;
+  from[0] = places.first - 1;
+  from[1] = places.first + 1;
+  from[2] = places.second - 1;
+  from[3] = places.second + 1;
+  for (const T*& place : from) place += edges.rows[0] + 1;
+  if (!pick_values<T, Calc>({from.data(), from.size(), 1, end, edges.at, edges.count, out}))
+    return gather_each<kAlongRow>(places, edges, out);
+  if (before != 0) gather_each<kAlongRow>(places, {edges.rows, edges.at, 1}, out);
+  if (behind != 0) gather_each<kAlongRow>(places, {edges.rows + last, edges.at + last, 1}, out + last);
+  return std::uint64_t{before} | std::uint64_t{behind} << last;
+}
+
+}  // namespace
+
+template <Value T, int N>
+template <bool kAlongRow, class Calc>
+std::uint64_t RowSource<T, N>::gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
+                                      Calc* out) const noexcept {
+  const T* const first = layer(around.layer);
+  const T* const second = kAlongRow              ? first + strides_[0]
+                          : around.axis == N - 1 ? layer(around.layer + 1)
+                                                 : first + strides_[around.axis];
+  Places<T, N> places{first, second, {}, strides_[0], row_size_};
+  for (int a = 1; a < N; ++a) {
+    const auto neighbour = [&](unsigned j, const T* sample) {
+      if (!around.exists[a][j]) return sample;
+      if (a < N - 1) return sample + (j % 2 == 0 ? -strides_[a] : strides_[a]);
+      const std::size_t k = around.layer + (sample == second && !kAlongRow && around.axis == N - 1 ? 1 : 0);
+      return layer(j % 2 == 0 ? k - 1 : k + 1) + (sample - layer(k));
+    };
+    places.from[4 * a] = neighbour(0, first);
+    places.from[4 * a + 1] = a == around.axis ? second : neighbour(1, first);
+    places.from[4 * a + 2] = a == around.axis ? first : neighbour(2, second);
+    places.from[4 * a + 3] = neighbour(3, second);
+  }
+  if (may_be_row<Calc>(places, edges)) return gather_row<kAlongRow>(places, edges, out);
+  return gather_each<kAlongRow>(places, edges, out);
+}
+
 template <Value T, int N>
 std::uint64_t RowSource<T, N>::around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
                                             float* out) const noexcept {
-  return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
+  if constexpr (std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits)
+    return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
+  else
+    return 0;  // never asked for
 }
 
 template <Value T, int N>

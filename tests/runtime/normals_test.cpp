@@ -267,6 +267,36 @@ TEST(Normals, AreThoseOfPlainCode) {
   expect_plain_normals_of<std::int16_t, 3>({20, 4, 4});
   expect_plain_normals_of<std::int32_t, 3>({20, 4, 4});
   expect_plain_normals_of<float, 4>({9, 4, 3, 4});
+  expect_plain_normals_of<float, 4>({21, 3, 3, 3});
+}
+
+/// Samples that lie next to each other are read by registers where edges are many, others one by one.
+template <class Real, Value T, int N>
+void expect_the_same_normals_apart(const std::array<std::size_t, N>& sizes) {
+  const auto image = noise<T, N>(sizes, 29);
+  std::vector<T> apart(2 * image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) apart[2 * i] = image.values[i];
+  auto strides = image.view().strides();
+  for (std::ptrdiff_t& stride : strides) stride *= 2;
+  const auto expected = extract<Real>(image.view(), noise_isovalue<T>(), with_normals());
+  const auto got = extract<Real>(Image<T, N>(apart.data(), image.grid, strides), noise_isovalue<T>(), with_normals());
+  ASSERT_GT(expected.normals.size(), 0u);
+  ASSERT_EQ(got.normals.size(), expected.normals.size());
+  EXPECT_EQ(std::memcmp(got.normals.data(), expected.normals.data(), got.normals.size() * sizeof(got.normals[0])), 0);
+}
+
+TEST(Normals, AreTheSameBytesWhetherSamplesLieNextToEachOtherOrNot) {
+  for (const std::size_t size : {17u, 18u, 19u, 20u, 35u, 150u}) {
+    SCOPED_TRACE(testing::Message() << size << " samples along the row");
+    expect_the_same_normals_apart<float, float, 2>({size, 9});
+    expect_the_same_normals_apart<float, float, 3>({size, 4, 5});
+    expect_the_same_normals_apart<double, float, 3>({size, 4, 3});
+    expect_the_same_normals_apart<float, double, 3>({size, 3, 3});
+    expect_the_same_normals_apart<float, std::uint8_t, 3>({size, 3, 4});
+    expect_the_same_normals_apart<float, std::int16_t, 3>({size, 3, 4});
+    expect_the_same_normals_apart<float, std::int32_t, 3>({size, 3, 4});
+    expect_the_same_normals_apart<float, float, 4>({size, 3, 4, 3});
+  }
 }
 
 TEST(Normals, OfSteepAndFlatFieldsHaveLengthOne) {
