@@ -133,8 +133,14 @@ bool may_be_row(const Places<T, N>& places, const EdgesInRows& edges) noexcept {
   constexpr std::size_t kLeast = kEdgesAtOnce / 2;  // with fewer, to get ready takes longer than what is saved
   if (edges.count < kLeast) return false;
   const std::size_t last = edges.count - 1;
-  return may_be_dense<Calc>(edges.at[last] - edges.at[0], edges.count) && edges.rows[0] == edges.rows[last] &&
-         places.along == 1 && places.row_size >= kMostLanes + 3;
+  if (places.along != 1 || places.row_size < kMostLanes + 3 || edges.rows[0] != edges.rows[last] ||
+      !may_be_dense<Calc>(edges.at[last] - edges.at[0], edges.count))
+    return false;
+  // Rows that overlap, or are one and the same by a stride of 0, begin at one place too: then edges do not ascend.
+  bool ascend = true;
+  for (std::size_t i = 1; i < edges.count; ++i)
+    ascend &= edges.rows[i] == edges.rows[0] && edges.at[i] > edges.at[i - 1];
+  return ascend;
 }
 
 /// Edges of one row: inside by registers, if they are many enough for those; at its ends, where they lack a neighbour,

@@ -299,6 +299,26 @@ TEST(Normals, AreTheSameBytesWhetherSamplesLieNextToEachOtherOrNot) {
   }
 }
 
+TEST(Normals, OfRowsThatOverlapAreThoseOfACopy) {
+  const auto values = noise<float, 2>({64, 64}, 31).values;
+  for (const std::array<std::ptrdiff_t, 3> strides :
+       {std::array<std::ptrdiff_t, 3>{1, 0, 40}, {1, 1, 1}, {1, 5, -5}, {1, 0, 0}, {1, 3, 40}}) {
+    SCOPED_TRACE(testing::Message() << "strides " << strides[0] << ' ' << strides[1] << ' ' << strides[2]);
+    OwnedImage<float, 3> copy;
+    copy.grid = Grid<3>::unit({40, 6, 6});
+    const float* const first = values.data() + 1024;
+    for (std::ptrdiff_t z = 0; z < 6; ++z)
+      for (std::ptrdiff_t y = 0; y < 6; ++y)
+        for (std::ptrdiff_t x = 0; x < 40; ++x)
+          copy.values.push_back(first[x * strides[0] + y * strides[1] + z * strides[2]]);
+    const auto expected = extract<float>(copy.view(), noise_isovalue<float>(), with_normals());
+    const auto got =
+        extract<float>(Image<float, 3>(first, copy.grid, strides), noise_isovalue<float>(), with_normals());
+    ASSERT_GT(expected.normals.size(), 0u);
+    EXPECT_EQ(got.normals, expected.normals);
+  }
+}
+
 TEST(Normals, OfSteepAndFlatFieldsHaveLengthOne) {
   for (const float scale : {1e-38F, 1e-25F, 1e25F, 3e37F}) {
     auto image = noise<float, 3>({40, 6, 6}, 9);
