@@ -28,6 +28,23 @@ void RowSource<T, N>::edge_alphas(std::size_t k, int axis, const EdgesInRows& ed
   detail::edge_alphas<T>({samples, others, edges.rows, edges.at, edges.count, strides_[0]}, isovalue_, epsilon_, out);
 }
 
+/// The values at all corners of a tile, from where its first corner is in the lower layer and in the upper one.
+template <int N, class T, class Out, class Strides>
+[[gnu::always_inline]] static inline void gather_tile(const T* lower, const T* upper, const Strides& strides,
+                                                      Out* out) noexcept {
+  constexpr std::size_t kHalf = std::size_t{1} << (N - 1);
+  const auto offset = [&]<std::size_t... A>(std::size_t corner, std::index_sequence<A...>) {
+    return ((static_cast<std::ptrdiff_t>(corner >> A & 1u) * strides[A]) + ...);
+  };
+  // Without a loop: then which strides a corner adds up is known.
+  [&]<std::size_t... C>(std::index_sequence<C...>) {
+    const std::array<std::ptrdiff_t, kHalf> at = {offset(C, std::make_index_sequence<N - 1>())...};
+    ((out[C] = static_cast<Out>(lower[at[C]])), ...);
+    ((out[kHalf + C] = static_cast<Out>(upper[at[C]])), ...);
+  }
+  (std::make_index_sequence<kHalf>());
+}
+
 template <Value T, int N>
 unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corners& corners) const noexcept {
   std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
@@ -36,6 +53,10 @@ unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corne
   // A cell within the last layer has nothing above.
   const T* const above = (axes >> (N - 1) & 1u) != 0 ? next_row(base, N - 1, 1) + along : nullptr;
   const Strides strides = strides_;
+  if (axes == (1u << N) - 1) {
+    gather_tile<N>(samples, above, strides, corners.data());
+    return N;
+  }
   corners[0] = *samples;
   unsigned dim = 0;
   for (unsigned a = 0; a < N; ++a) {
@@ -52,6 +73,10 @@ unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corne
 
 template <Value T, int N>
 void RowSource<T, N>::corner_values(const Index& base, unsigned axes, double* out) const noexcept {
+  if (axes == (1u << N) - 1) {
+    const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
+    return gather_tile<N>(row(base) + along, next_row(base, N - 1, 1) + along, strides_, out);
+  }
   Corners corners;
   const unsigned dim = gather_corners(base, axes, corners);
   std::copy_n(corners.begin(), std::size_t{1} << dim, out);

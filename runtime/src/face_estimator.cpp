@@ -80,17 +80,12 @@ bool is_large_mean_high(std::span<const double> values, double isovalue) noexcep
 
 }  // namespace
 
-bool is_mean_high(std::span<const double> values, double isovalue) noexcept {
-  const double limit = static_cast<double>(values.size()) * isovalue;  // exact: a power of two
+namespace {
+
+/// Where rounding could decide; right for all others, too.
+[[gnu::noinline, gnu::cold]] bool is_near_mean_high(std::span<const double> values, double isovalue) noexcept {
+  const double limit = static_cast<double>(values.size()) * isovalue;
   double sum = 0.0;
-  double size = std::abs(limit);
-  for (const double value : values) {
-    sum += value;
-    size += std::abs(value);
-  }
-  // More than all additions can have rounded off; false for what is not finite.
-  if (std::abs(sum - limit) > 0x1p-46 * size && size < 0x1p1000) return sum > limit;
-  sum = 0.0;
   double rests = 0.0;
   for (const double value : values) {
     const TwoSum two(sum, value);
@@ -103,6 +98,43 @@ bool is_mean_high(std::span<const double> values, double isovalue) noexcept {
   for (const double value : values) exact.add(value);
   exact.add(-limit);
   return !exact.is_negative();
+}
+
+/// Of so many values: a power of two, so that the limit is exact.
+template <std::size_t Count>
+bool is_mean_high_of(const double* values, double isovalue) noexcept {
+  const double limit = static_cast<double>(Count) * isovalue;
+  std::array<double, Count> sums;
+  std::array<double, Count> sizes;
+  for (std::size_t i = 0; i < Count; ++i) {
+    sums[i] = values[i];
+    sizes[i] = std::abs(values[i]);
+  }
+  // By halves, which do not wait for one another.
+  [&]<std::size_t... Level>(std::index_sequence<Level...>) {
+    const auto halve = [&](std::size_t half) {
+      for (std::size_t i = 0; i < half; ++i) {
+        sums[i] += sums[i + half];
+        sizes[i] += sizes[i + half];
+      }
+    };
+    (halve(Count >> (Level + 1)), ...);
+  }
+  (std::make_index_sequence<std::countr_zero(Count)>());
+  const double size = sizes[0] + std::abs(limit);
+  // More than all additions can have rounded off; false for what is not finite.
+  if (std::abs(sums[0] - limit) > 0x1p-46 * size && size < 0x1p1000) return sums[0] > limit;
+  return is_near_mean_high({values, Count}, isovalue);
+}
+
+}  // namespace
+
+bool is_mean_high(std::span<const double> values, double isovalue) noexcept {
+  if (values.size() == 4) return is_mean_high_of<4>(values.data(), isovalue);
+  if (values.size() == 8) return is_mean_high_of<8>(values.data(), isovalue);
+  if (values.size() == 16) return is_mean_high_of<16>(values.data(), isovalue);
+  if (values.size() == 32) return is_mean_high_of<32>(values.data(), isovalue);
+  return is_near_mean_high(values, isovalue);
 }
 
 const char* name_of(Ambiguity ambiguity) noexcept {

@@ -66,12 +66,22 @@ std::vector<std::pair<std::uint8_t, std::uint8_t>> outline(const std::vector<std
   return around;
 }
 
-/// The bits of `squares` where those of `ambiguous` are set, pushed together.
-unsigned packed_squares(unsigned squares, unsigned ambiguous) noexcept {
-  unsigned packed = 0;
-  for (unsigned bit = 1; ambiguous != 0; ambiguous &= ambiguous - 1, bit <<= 1)
-    if ((squares >> std::countr_zero(ambiguous) & 1u) != 0) packed |= bit;
+/// The bits of a set of squares where those of another one, `ambiguous`, are set, pushed together.
+constexpr auto kPackedSquares = [] {
+  std::array<std::array<std::uint8_t, 64>, 64> packed{};  // by `ambiguous`
+  for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
+    for (unsigned squares = 0; squares < 64; ++squares)
+      for (unsigned q = 0, bit = 1; q < 6; ++q) {
+        if ((ambiguous >> q & 1u) == 0) continue;
+        if ((squares >> q & 1u) != 0)
+          packed[ambiguous][squares] = static_cast<std::uint8_t>(packed[ambiguous][squares] | bit);
+        bit *= 2;
+      }
   return packed;
+}();
+
+unsigned packed_squares(unsigned squares, unsigned ambiguous) noexcept {
+  return kPackedSquares[ambiguous][squares & 63u];
 }
 
 /// Cones every disc of more than a triangle from its barycentre. What is no disc stays as it is.
@@ -218,11 +228,23 @@ unsigned resolved_key<2>(const FaceEstimator<2>& estimator, const std::array<std
 
 namespace {
 
-/// The axis of the image that is number `axis` of a face along `axes`.
-unsigned axis_of(unsigned axes, unsigned axis) noexcept {
-  for (; axis != 0; --axis) axes &= axes - 1;
-  return static_cast<unsigned>(std::countr_zero(axes));
-}
+/// The axis of the image that is number `axis` of a face, by the face's axes.
+constexpr auto kAxesOf = [] {
+  std::array<std::array<std::uint8_t, 4>, 16> result{};
+  for (unsigned axes = 0; axes < 16; ++axes)
+    for (unsigned a = 0, number = 0; a < 4; ++a)
+      if ((axes >> a & 1u) != 0) result[axes][number++] = static_cast<std::uint8_t>(a);
+  return result;
+}();
+
+/// The corners of a cube that square 2 * across + side has.
+constexpr auto kCornersOfSquares = [] {
+  std::array<std::array<std::uint8_t, 4>, 6> result{};
+  for (unsigned square = 0; square < 6; ++square)
+    for (unsigned c = 0; c < 4; ++c)
+      result[square][c] = static_cast<std::uint8_t>(unsqueeze(c, square / 2) | square % 2 << square / 2);
+  return result;
+}();
 
 /// The squares and the inside of a cube whose signature is ambiguous.
 template <int N>
@@ -238,14 +260,14 @@ CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::siz
   const unsigned ambiguous = table.ambiguous_squares[signature];
   for (unsigned rest = ambiguous; rest != 0; rest &= rest - 1) {
     const auto square = static_cast<unsigned>(std::countr_zero(rest));
-    const unsigned across = square / 2;
-    std::array<double, 4> corners;
-    for (unsigned c = 0; c < 4; ++c) corners[c] = values[unsqueeze(c, across) | square % 2 << across];
-    const unsigned axis = axis_of(axes, across);
+    const auto& of_square = kCornersOfSquares[square];
+    const std::array<double, 4> corners = {values[of_square[0]], values[of_square[1]], values[of_square[2]],
+                                           values[of_square[3]]};
+    const unsigned axis = kAxesOf[axes][square / 2];
     auto at = base;
     at[axis] += square % 2;
-    if (estimator.is_square_high(at, axes ^ 1u << axis, corners))
-      decision.high_squares = static_cast<std::uint8_t>(decision.high_squares | 1u << square);
+    const unsigned is_high = estimator.is_square_high(at, axes ^ 1u << axis, corners) ? 1 : 0;
+    decision.high_squares = static_cast<std::uint8_t>(decision.high_squares | is_high << square);
   }
   const unsigned r = packed_squares(decision.high_squares, ambiguous);
   if (table.entries[table.first_entry[signature] + r].components > 1)
@@ -275,16 +297,35 @@ constexpr auto kSquaresOfCubes = [] {
   return result;
 }();
 
-/// The corners of a face of the tesseract, in its own order.
+/// The corners of a face of the tesseract, in the face's own order.
 template <std::size_t Count>
-std::array<double, Count> values_in(const std::array<double, 16>& values, unsigned base, unsigned axes) noexcept {
-  std::array<double, Count> result;
+constexpr std::array<std::uint8_t, Count> corners_in(unsigned base, unsigned axes) noexcept {
+  std::array<std::uint8_t, Count> result{};
   unsigned corner = base;
-  for (double& value : result) {
-    value = values[corner];
+  for (std::uint8_t& of_face : result) {
+    of_face = static_cast<std::uint8_t>(corner);
     corner = base | (((corner | ~axes) + 1) & axes);  // the next subset of the axes
   }
   return result;
+}
+
+/// Those of its squares and cubes.
+constexpr auto kSquaresIn4D = [] {
+  std::array<std::array<std::uint8_t, 4>, 24> result{};
+  for (unsigned q = 0; q < 24; ++q) result[q] = corners_in<4>(kTesseractSquares[q].base, kTesseractSquares[q].axes);
+  return result;
+}();
+constexpr auto kCubesIn4D = [] {
+  std::array<std::array<std::uint8_t, 8>, 8> result{};
+  for (unsigned f = 0; f < 8; ++f) result[f] = corners_in<8>((f % 2) << (f / 2), 15u ^ 1u << (f / 2));
+  return result;
+}();
+
+template <std::size_t Count>
+std::array<double, Count> values_at(const std::array<double, 16>& values,
+                                    const std::array<std::uint8_t, Count>& corners) noexcept {
+  return [&]<std::size_t... C>(std::index_sequence<C...>) { return std::array<double, Count>{values[corners[C]]...}; }
+  (std::make_index_sequence<Count>());
 }
 
 std::array<std::size_t, 4> moved(std::array<std::size_t, 4> base, unsigned corner) noexcept {
@@ -315,6 +356,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
                            unsigned signature) noexcept {
   const auto& table = tables::kTile3Resolved;
   const ResolvedCubes& cubes = ResolvedCubes::instance();
+  const auto& ambiguous_cubes = ambiguous_signatures<3>();
   std::array<double, 16> values;
   estimator.source().corner_values(base, 15, values.data());
   const std::uint64_t signatures = cubes.signatures(static_cast<std::uint16_t>(signature));
@@ -326,21 +368,22 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   for (; ambiguous != 0; ambiguous &= ambiguous - 1) {
     const auto q = static_cast<unsigned>(std::countr_zero(ambiguous));
     const auto [corner, axes] = kTesseractSquares[q];
-    if (estimator.is_square_high(moved(base, corner), axes, values_in<4>(values, corner, axes)))
-      tile.key.squares |= 1u << q;
+    const std::uint32_t is_high =
+        estimator.is_square_high(moved(base, corner), axes, values_at(values, kSquaresIn4D[q])) ? 1 : 0;
+    tile.key.squares |= is_high << q;
   }
   const std::uint64_t squares = cubes.squares(tile.key.squares);
   for (unsigned f = 0; f < 8; ++f) {
     const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
     tile.cubes[f] = static_cast<std::uint16_t>(in_cube);
-    if (!ambiguous_signatures<3>()[in_cube]) continue;
+    if (!ambiguous_cubes[in_cube]) continue;
     const unsigned r =
         packed_squares(static_cast<unsigned>(squares >> (8 * f) & 255), table.ambiguous_squares[in_cube]);
     auto choice = facets::Choice::separate;
     if (table.entries[table.first_entry[in_cube] + r].components > 1) {
       const unsigned corner = (f % 2) << (f / 2);
       const unsigned axes = 15u ^ 1u << (f / 2);
-      choice = estimator.choice(moved(base, corner), axes, values_in<8>(values, corner, axes));
+      choice = estimator.choice(moved(base, corner), axes, values_at(values, kCubesIn4D[f]));
     }
     tile.cubes[f] = static_cast<std::uint16_t>(in_cube | (1 + 3 * r + static_cast<unsigned>(choice)) << 8);
     if (choice == facets::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
