@@ -371,24 +371,41 @@ TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const
   return count;
 }
 
+/// The places in a row's list, from `first` on, of ambiguous tiles; returns how many. No branch depends on the tiles.
+template <int N, std::size_t Count>
+static std::uint32_t list_ambiguous(const TileRoom& room, std::uint32_t first, std::uint32_t end,
+                                    std::array<std::uint32_t, Count>& out) {
+  const auto& ambiguous = ambiguous_signatures<N>();
+  std::uint32_t* const to = out.data();
+  std::uint32_t found = 0;
+  for (std::uint32_t i = first; i < end; ++i) {
+    to[found] = i;
+    found += ambiguous[room.signatures[i]] ? 1 : 0;
+  }
+  return found;
+}
+
 template <int N>
 void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const {
   if constexpr (N < 4) {
-    const auto& ambiguous = ambiguous_signatures<N>();
     const bool is_listed = shape_.size(0) <= kMostListed;
+    const std::uint32_t* const entries = rows_->entries();
     BitWalk walk(room.active);
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
-    for (std::uint32_t i = 0; i < count.active; ++i) {
-      const unsigned signature = room.signatures[i];
-      if (!ambiguous[signature]) continue;
-      base[0] = is_listed ? room.at[i] : walk.place_of(i);
-      const unsigned key = resolved_key<N>(*estimator_, base, signature);
-      const std::uint32_t* const entries = rows_->entries();
-      count.simplices += entries[key] & RowTable::kCountMask;
-      count.simplices -= entries[signature] & RowTable::kCountMask;
-      count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
-      room.signatures[i] = static_cast<std::uint16_t>(key);
+    std::array<std::uint32_t, 64> places;
+    for (std::uint32_t first = 0; first < count.active; first += 64) {
+      const std::uint32_t found = list_ambiguous<N>(room, first, std::min(count.active, first + 64), places);
+      for (std::uint32_t j = 0; j < found; ++j) {
+        const std::uint32_t i = places.data()[j];
+        const unsigned signature = room.signatures[i];
+        base[0] = is_listed ? room.at[i] : walk.place_of(i);
+        const unsigned key = resolved_key<N>(*estimator_, base, signature);
+        count.simplices += entries[key] & RowTable::kCountMask;
+        count.simplices -= entries[signature] & RowTable::kCountMask;
+        count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
+        room.signatures[i] = static_cast<std::uint16_t>(key);
+      }
     }
   }
 }

@@ -51,6 +51,8 @@ class FaceEstimator {
   [[nodiscard]] bool is_square_high(const Index& base, unsigned axes, std::span<const double, 4> values) const noexcept;
   /// Whether cubes are to be decided by decide_cube (tegl/saddle.hpp), squares and all, at once.
   [[nodiscard]] bool is_by_cubes() const noexcept { return ambiguity_ == Ambiguity::saddle; }
+  /// Whether faces are decided by their means.
+  [[nodiscard]] bool is_by_means() const noexcept { return ambiguity_ == Ambiguity::mean; }
   [[nodiscard]] double isovalue() const noexcept { return isovalue_; }
   /// The filling of a face of three or more dimensions.
   [[nodiscard]] facets::Choice choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept;

@@ -43,6 +43,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <type_traits>
 
 #include <boost/multiprecision/cpp_int.hpp>
 
@@ -171,7 +172,9 @@ enum class Answer : std::uint8_t { no, yes, unsure };
 
 Answer is_positive(const Rounded& x) noexcept {
   const double error = x.size * Rounded::kError;
-  return x.value > error ? Answer::yes : x.value < -error ? Answer::no : Answer::unsure;
+  // Without branches, which noise would mislead.
+  const unsigned is_yes = x.value > error ? 1 : 0, is_no = x.value < -error ? 1 : 0;
+  return static_cast<Answer>(2 - is_yes - 2 * is_no);
 }
 Answer is_negative(const Rounded& x) noexcept { return is_positive({-x.value, x.size}); }
 Answer is_not_negative(const Rounded& x) noexcept { return is_positive(x); }
@@ -216,9 +219,14 @@ struct SquareQuestion {
   template <class Values>
   Answer operator()(const Values& f) const noexcept {
     const auto determinant = f(square[0]) * f(square[3]) - f(square[1]) * f(square[2]);
-    if (first_is_high) return is_not_negative(determinant);
-    const Answer is_odd = is_positive(determinant);
-    return is_odd == Answer::unsure ? is_odd : answer_of(is_odd == Answer::no);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(determinant)>, Rounded>) {
+      // What is zero is unsure: the sign alone differs, and no branch hangs on it.
+      const Rounded of_high = {first_is_high ? determinant.value : -determinant.value, determinant.size};
+      return is_positive(of_high);
+    } else {
+      if (first_is_high) return is_not_negative(determinant);
+      return answer_of(is_positive(determinant) == Answer::no);
+    }
   }
 };
 
@@ -349,9 +357,9 @@ struct CubeDecider {
       const auto q = static_cast<unsigned>(std::countr_zero(rest));
       const Answer is_high = SquareQuestion{kSquares[q], (signature >> kSquares[q][0] & 1u) != 0}(f);
       if (is_high == Answer::unsure) return false;
-      if (is_high == Answer::no) continue;
-      result.high_squares = static_cast<std::uint8_t>(result.high_squares | 1u << q);
-      entry += bit;
+      const unsigned is_joined = is_high == Answer::yes ? 1 : 0;
+      result.high_squares = static_cast<std::uint8_t>(result.high_squares | is_joined << q);
+      entry += is_joined * bit;
     }
     const Joins& joins = joins_of(entry);
     for (const bool high : {true, false}) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -246,6 +248,60 @@ constexpr auto kCornersOfSquares = [] {
   return result;
 }();
 
+/// The sums of pairs of values at corners that differ along an axis.
+template <unsigned Axis, std::size_t Count>
+std::array<double, Count / 2> sums_along(const std::array<double, Count>& values) noexcept {
+  constexpr std::size_t kStep = std::size_t{1} << Axis;
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array<double, Count / 2>{(values[unsqueeze(I, Axis)] + values[unsqueeze(I, Axis) | kStep])...};
+  }
+  (std::make_index_sequence<Count / 2>());
+}
+
+/// The signs of the means of a cube's squares, at bits 0 to 5, and of its own, at bit 6; and those that rounding could
+/// decide. In noise no branch would be foreseen: there are none.
+struct CubeMeans {
+  unsigned high = 0, unsure = 0;
+
+  CubeMeans(std::span<const double, 8> values, double isovalue) noexcept {
+    std::array<double, 8> corners, sizes;
+    for (std::size_t v = 0; v < 8; ++v) {
+      corners[v] = values[v];
+      sizes[v] = std::abs(values[v]);
+    }
+    const auto along_0 = sums_along<0>(corners), along_1 = sums_along<1>(corners);
+    const auto across_0 = sums_along<1>(along_1), across_1 = sums_along<1>(along_0), across_2 = sums_along<0>(along_0);
+    const std::array<double, 7> sums = {
+        across_0[0], across_0[1], across_1[0], across_1[1], across_2[0], across_2[1], across_2[0] + across_2[1]};
+    const double limit = 4.0 * isovalue;
+    const double size = sums_along<0>(sums_along<0>(sums_along<0>(sizes)))[0] + 2.0 * std::abs(limit);
+    // More than all additions can have rounded off; what is too large, or not finite, is not less than any bound.
+    const double bound = size < 0x1p1000 ? 0x1p-46 * size : std::numeric_limits<double>::infinity();
+    [&]<std::size_t... Q>(std::index_sequence<Q...>) {
+      const auto take = [&](unsigned q, double difference) {
+        high |= (difference > 0.0 ? 1u : 0u) << q;
+        unsure |= (std::abs(difference) > bound ? 0u : 1u) << q;
+      };
+      (take(Q, sums[Q] - (Q < 6 ? limit : 2.0 * limit)), ...);
+    }
+    (std::make_index_sequence<7>());
+  }
+};
+
+/// A cube whose signature is ambiguous, by means; false where rounding could decide.
+bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigned signature,
+                     CubeDecision& decision) noexcept {
+  const auto& table = tables::kTile3Resolved;
+  const unsigned ambiguous = table.ambiguous_squares[signature];
+  const CubeMeans means(values, isovalue);
+  const unsigned r = packed_squares(means.high, ambiguous);
+  const bool has_choice = table.entries[table.first_entry[signature] + r].components > 1;
+  decision.high_squares = static_cast<std::uint8_t>(means.high & ambiguous);
+  const auto centre = (means.high >> 6) != 0 ? facets::Choice::high : facets::Choice::low;
+  decision.centre = has_choice ? centre : facets::Choice::separate;
+  return (means.unsure & (ambiguous | (has_choice ? 64u : 0u))) == 0;
+}
+
 /// The squares and the inside of a cube whose signature is ambiguous.
 template <int N>
 CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
@@ -255,8 +311,10 @@ CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::siz
     std::copy(values.begin(), values.end(), corners.begin());
     return detail::decide_cube(corners, estimator.isovalue(), static_cast<std::uint8_t>(signature));
   }
-  const auto& table = tables::kTile3Resolved;
   CubeDecision decision;
+  if (estimator.is_by_means() && decide_by_means(values, estimator.isovalue(), signature, decision)) return decision;
+  decision = {};
+  const auto& table = tables::kTile3Resolved;
   const unsigned ambiguous = table.ambiguous_squares[signature];
   for (unsigned rest = ambiguous; rest != 0; rest &= rest - 1) {
     const auto square = static_cast<unsigned>(std::countr_zero(rest));
