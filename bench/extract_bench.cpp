@@ -70,6 +70,7 @@ void add(const std::string& group, const Case& what) {
   std::string name = group + "/" + what.field + "/" + std::to_string(what.samples) + "^" + std::to_string(N);
   if (what.options.triangulation == Triangulation::barycentric) name += "/barycentric";
   if (what.options.close) name += "/closed";
+  if (what.options.ambiguity != Ambiguity::low) name += what.options.ambiguity == Ambiguity::mean ? "/mean" : "/saddle";
   if constexpr (!std::is_same_v<T, float>)
     name += std::is_same_v<T, double> ? "/double"
                                       : (std::is_signed_v<T> ? "/int" : "/uint") + std::to_string(8 * sizeof(T));
@@ -100,6 +101,22 @@ void add_field(const std::string& field, std::size_t samples) {
   what.options.triangulation = Triangulation::compact;
   what.options.close = true;
   add<float, N>("extract", what);
+}
+
+/// Ambiguous faces resolved from the data, beside `low` in add_field: of a smooth field, which has hardly any, and of
+/// noise.
+template <int N>
+void add_estimators(const std::string& smooth, std::size_t samples, std::size_t samples_of_noise) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
+    for (const int threads : {1, 4}) {
+      if (threads > 1 && !kHasThreads) continue;
+      Case what{smooth, samples, {}, threads};
+      what.options.ambiguity = ambiguity;
+      add<float, N>("extract", what);
+      what.field = "noise";
+      what.samples = samples_of_noise;
+      add<float, N>("extract", what);
+    }
 }
 
 /// One smooth field in every value type: the classification reads fewer bytes, the rest stays.
@@ -134,6 +151,9 @@ void add_all() {
   for (const auto& field : field_names(2)) add_field<2>(field, 4096);
   for (const auto& field : field_names(3)) add_field<3>(field, field == "noise" ? 128 : 256);
   for (const auto& field : field_names(4)) add_field<4>(field, field == "noise" ? 32 : 64);
+  add_estimators<2>("waves", 4096, 4096);
+  add_estimators<3>("gyroid", 256, 128);
+  add_estimators<4>("balls", 64, 32);
   add_5d();
   add_types();
   add_scaling<3>("metaballs", {32, 64, 128, 256, 512});

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "extract_kernel.hpp"
+#include "extract_tiles.hpp"
 #include "index_file.hpp"
 #include "stopwatch.hpp"
 #include "tile_selection.hpp"
@@ -34,7 +34,11 @@ requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isova
   if (options.close && !active.is_complete())
     throw Error(ErrorCode::InvalidArgument,
                 "the border cannot be closed around chosen tiles; expected an index of all active tiles");
-  if (active.grid().count() == 0 || (options.close && missing)) return extract<Real>(image, isovalue, options, stats);
+  const bool built = detail::is_tile_by_tile<N>(options);
+  if (built && !active.is_complete())
+    detail::require_consistent_method(options, "barycentric contours of 4D images in chosen tiles");
+  if (active.grid().count() == 0 || (options.close && missing) || built)
+    return extract<Real>(image, isovalue, options, stats);
   detail::Stopwatch watch;
   // Next to missing values rows that are not looked at tell nothing of each other.
   const detail::TileSelection selection = active.is_complete() && !missing

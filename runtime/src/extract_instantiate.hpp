@@ -4,7 +4,6 @@
 // Included by the sources that instantiate it, a few value types each, so that they compile side by side.
 #pragma once
 
-#include "extract_kernel.hpp"
 #include "extract_tiles.hpp"
 
 namespace tegl {
@@ -14,13 +13,7 @@ Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const Extrac
                          ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  if constexpr (N <= 4) {
-    return detail::extract_source<N, Real>(source, image.grid(), detail::generated_tables<N>(options), options, stats);
-  } else {
-    Contour<N, Real> contour;
-    detail::extract_tiles<N, Real>(source, image.grid(), options, &contour, stats);
-    return contour;
-  }
+  return detail::extract_any<N, Real>(source, image.grid(), options, stats);
 }
 
 }  // namespace tegl

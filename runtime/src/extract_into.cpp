@@ -147,6 +147,18 @@ class MemorySink final : public ContourSink<N, Real> {
   ContourSize size_;
 };
 
+/// For contours that are not made part by part.
+template <int N, class Real, class I>
+ContourSize copy_into(const Contour<N, Real>& contour, const ContourRoom<N, Real, I>& room, bool with_normals) {
+  check_room(room.simplices.size(), contour.simplices.size(), kSimplices);
+  MemorySink<N, Real, I> sink(room);
+  sink.add_vertices(contour.vertices);
+  if (with_normals) sink.add_normals(contour.normals);
+  auto* to = room.simplices.data();
+  for (const auto& simplex : contour.simplices) std::copy(simplex.begin(), simplex.end(), (*to++).begin());
+  return {contour.vertices.size(), contour.simplices.size()};
+}
+
 template <Value T, int N>
 ContourSize count_by_tables(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
                             ExtractStats* stats) {
@@ -176,18 +188,22 @@ ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOption
   detail::check_arguments(isovalue, asked);
   ExtractOptions options = asked;
   options.normals = false;  // as many as vertices
-  if constexpr (N > 4) {
-    detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-    return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
-  } else {
-    return detail::count_by_tables(image, isovalue, options, stats);
-  }
+  if constexpr (N >= 4)
+    if (detail::is_tile_by_tile<N>(options)) {
+      detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+      return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
+    }
+  ContourSize size;
+  if constexpr (N <= 4) size = detail::count_by_tables(image, isovalue, options, stats);
+  return size;
 }
 
 template <Value T, int N, class Real, VertexNumber I>
 ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
                          const ExtractOptions& options, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
+  if (detail::is_tile_by_tile<N>(options))
+    return detail::copy_into(extract<Real>(image, isovalue, options, stats), room, options.normals);
   const auto tables = detail::generated_tables<N>(options);
   detail::ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};

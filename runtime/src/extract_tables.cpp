@@ -34,7 +34,7 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   if constexpr (N == 4)
     if (is_estimated(options.ambiguity)) {
       if (triangulation == 0)
-        require_consistent_method(options, "barycentric contours of 4D images (compact ones take it)");
+        require_consistent_method(options, "streamed barycentric contours of 4D images (compact ones take it)");
       set.rows = &estimated_tesseracts();
     }
   if constexpr (N < 4)

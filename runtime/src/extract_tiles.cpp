@@ -54,16 +54,16 @@ struct TileSlab {
 template <int N>
 class CellFinder {
  public:
-  explicit CellFinder(const RowShape<N>& shape, bool has_caps) : shape_(shape), has_caps_(has_caps) {}
+  /// `closed`: the axes across which borders have caps.
+  CellFinder(const RowShape<N>& shape, unsigned closed) : shape_(shape), closed_(closed) {}
 
   /// The cells that start in a row of slab k, between `layers`, kind by kind.
   void find(std::size_t k, const std::array<const Word*, 2>& layers, std::size_t row, std::vector<Cell>& out) const {
     const auto index = shape_.index_of(row);
     if (shape_.has_cells(index, kAll)) sweep(CellKind<N>(0), layers, row, kRowOfCells, out);
-    if (!has_caps_) return;
     for (int axis = 0; axis < N; ++axis)
       for (unsigned side = 0; side < 2; ++side) {
-        if (!shape_.has_cells(index, kAll ^ 1u << axis)) continue;
+        if ((closed_ >> axis & 1u) == 0 || !shape_.has_cells(index, kAll ^ 1u << axis)) continue;
         const CellKind<N> kind(axis, side);
         if (axis == 0) {
           sweep(kind, layers, row, side == 0 ? 0 : shape_.size(0) - 1, out);
@@ -116,14 +116,14 @@ class CellFinder {
   }
 
   const RowShape<N>& shape_;
-  bool has_caps_;
+  unsigned closed_;
 };
 
 template <int N, class Real>
 class TileExtraction {
  public:
   TileExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options, Contour<N, Real>* contour,
-                 std::size_t tile_bytes)
+                 std::size_t tile_bytes, const ExtractPlan& plan)
       : source_(source),
         options_(options),
         contour_(contour),
@@ -133,13 +133,13 @@ class TileExtraction {
         placement_(grid),
         cube_(N),
         grid_cells_(cube_, options.close),
-        finder_(shape_, options.close),
+        finder_(shape_, options.close ? plan.closed_axes : 0),
         workers_(options.threads, [] { return Nothing{}; }),
         built_(cube_, options.ambiguity == Ambiguity::high ? facets::Alternative::high : facets::Alternative::low,
                tile_bytes, workers_.count()) {
     if (options.normals) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) {
-      estimator_.emplace(source, grid.sizes(), options, PartOfImage{});
+      estimator_.emplace(source, grid.sizes(), options, plan.part);
       choices_.emplace(cube_, *estimator_);
     }
   }
@@ -213,7 +213,8 @@ class TileExtraction {
     if (std::find(missing.begin(), missing.end(), 1) != missing.end())
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("a {}D image with missing values, the first in layer {} of its last axis; expected "
-                              "numbers only: contours next to missing values are made up to 4D",
+                              "numbers only: contours next to missing values are made up to 4D, barycentric ones in "
+                              "4D with ambiguity low or high",
                               N, k));
   }
 
@@ -516,7 +517,8 @@ class TileExtraction {
 
 template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                          Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes) {
+                          Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes,
+                          const ExtractPlan& plan) {
   if (contour != nullptr) {
     for (int a = 0; a < N; ++a) {
       contour->axis_names[a] = grid.axes[a].name;
@@ -528,16 +530,17 @@ ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const Ex
   done.tiles = 1;
   for (const Axis& axis : grid.axes) done.tiles *= axis.size() - 1;
   ContourSize size;
-  if (done.tiles != 0) size = TileExtraction<N, Real>(source, grid, options, contour, tile_bytes).run(done);
+  if (done.tiles != 0) size = TileExtraction<N, Real>(source, grid, options, contour, tile_bytes, plan).run(done);
   if (stats != nullptr) *stats = done;
   return size;
 }
 
 #define TEGL_INSTANTIATE(N, Real)                                                                      \
   template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&, \
-                                              Contour<N, Real>*, ExtractStats*, std::size_t);
+                                              Contour<N, Real>*, ExtractStats*, std::size_t, const ExtractPlan&);
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, double)
+TEGL_INSTANTIATE(4, float)
 TEGL_INSTANTIATE(4, double)
 TEGL_INSTANTIATE(5, float)
 TEGL_INSTANTIATE(5, double)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The extraction without tables, in any dimension: every tile's contour is built when its signature is first met.
-// Private; from 5D on it is what `extract` does. In 2D to 4D tests hold it against the tables.
+// Private; from 5D on it is what `extract` does, and in 4D where barycentric tiles are resolved from the data.
+// Otherwise, in 2D to 4D, tests hold it against the tables.
 #pragma once
 
 #include "extract_kernel.hpp"
@@ -14,9 +15,31 @@ namespace tegl::detail {
 inline constexpr std::size_t kBuiltTileBytes = std::size_t{1} << 28;
 
 /// The contour of `source` over `grid`, triangulated barycentrically. `contour` null: its size alone. `stats` may be
-/// null. Throws UnsupportedData for missing values.
+/// null. Of `plan`, the closed axes and the part count. Throws UnsupportedData for missing values.
 template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                          Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes = kBuiltTileBytes);
+                          Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes = kBuiltTileBytes,
+                          const ExtractPlan& plan = {});
+
+/// Whether there are no tables for that, so that tiles are built.
+template <int N>
+constexpr bool is_tile_by_tile(const ExtractOptions& options) noexcept {
+  return N > 4 || (N == 4 && options.triangulation == Triangulation::barycentric && is_estimated(options.ambiguity));
+}
+
+/// The contour of `source` over `grid`, by tables where there are any. `stats` may be null.
+template <int N, class Real>
+Contour<N, Real> extract_any(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                             ExtractStats* stats, const ExtractPlan& plan = {}) {
+  Contour<N, Real> contour;
+  if constexpr (N >= 4)
+    if (is_tile_by_tile<N>(options)) {
+      extract_tiles<N, Real>(source, grid, options, &contour, stats, kBuiltTileBytes, plan);
+      return contour;
+    }
+  if constexpr (N <= 4)
+    contour = extract_source<N, Real>(source, grid, generated_tables<N>(options), options, stats, plan);
+  return contour;
+}
 
 }  // namespace tegl::detail

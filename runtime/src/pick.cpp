@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "extract_kernel.hpp"
+#include "extract_tiles.hpp"
 #include "locate.hpp"
 #include "tegl/components.hpp"
 #include "tile_flood.hpp"
@@ -202,7 +202,7 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
     rest.progress = [&options](double fraction) {
       return options.progress(kNearestShare + (1 - kNearestShare) * fraction);
     };
-  const bool in_tiles = N <= 4 && !options.close;
+  const bool in_tiles = !detail::is_tile_by_tile<N>(options) && !options.close;
   Contour<N, Real> contour;
   if constexpr (N <= 4)
     if (in_tiles) contour = extract<Real>(image, isovalue, rest, *choose_tiles(image, tiles));

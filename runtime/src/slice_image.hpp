@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include "extract_kernel.hpp"
+#include "extract_tiles.hpp"
 #include "slice_at.hpp"
 #include "tegl/slice.hpp"
 
@@ -123,8 +123,7 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
   detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
   detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
   if (!is_last) plan.part = {axis, layers.first};
-  const Contour<N, Real> contour =
-      detail::extract_source<N, Real>(source, slab.grid(), detail::generated_tables<N>(options), options, stats, plan);
+  const Contour<N, Real> contour = detail::extract_any<N, Real>(source, slab.grid(), options, stats, plan);
   return slice(contour, Hyperplane<N>::across(axis, at));
 }
 

@@ -28,21 +28,39 @@ OwnedImage<float, 4> enclosed_noise(std::size_t samples, std::uint64_t seed) {
   return image;
 }
 
+/// Whether tiles are built, which takes long: barycentric ones, resolved from the data.
+bool is_built(const ExtractOptions& options) {
+  return options.triangulation == Triangulation::barycentric && options.ambiguity != Ambiguity::low &&
+         options.ambiguity != Ambiguity::high;
+}
+
+/// Built tiles have other triangles than tables do, and otherwise the same surface.
+template <int N>
+void expect_layer(const Contour<N, double>& cut, const Contour<N, double>& layer, const ExtractOptions& options) {
+  if (!is_built(options)) {
+    EXPECT_TRUE(same_surface(cut, layer));
+    return;
+  }
+  const MeshReport found = check(cut), expected = check(layer);
+  EXPECT_EQ(found.euler, expected.euler);
+  EXPECT_EQ(found.components, expected.components);
+}
+
 TEST(Ambiguity4d, ContoursOfNoiseAreClosedManifolds) {
-  const auto image = noise<float, 4>(9, 1);
-  for (auto [name, options] : all_ways(4)) {
+  const auto large = noise<float, 4>(9, 1), small = noise<float, 4>(5, 1);
+  for (auto [name, options] : all_ways()) {
     SCOPED_TRACE(name);
     options.close = true;
-    expect_closed_manifold(extract<float>(image.view(), 0.5, options));
+    expect_closed_manifold(extract<float>((is_built(options) ? small : large).view(), 0.5, options));
   }
 }
 
 TEST(Ambiguity4d, ContoursOfAnyShareOfHighSamplesAreManifolds) {
   for (const double isovalue : {0.2, 0.35, 0.65, 0.8}) {
-    const auto image = noise<float, 4>(7, 2);
-    for (const auto& [name, options] : all_ways(4)) {
+    const auto large = noise<float, 4>(7, 2), small = noise<float, 4>(4, 2);
+    for (const auto& [name, options] : all_ways()) {
       SCOPED_TRACE(name);
-      expect_oriented_manifold(extract<float>(image.view(), isovalue, options));
+      expect_oriented_manifold(extract<float>((is_built(options) ? small : large).view(), isovalue, options));
     }
   }
 }
@@ -50,7 +68,7 @@ TEST(Ambiguity4d, ContoursOfAnyShareOfHighSamplesAreManifolds) {
 TEST(Ambiguity4d, CutsAtAnyTimeAndObliqueOnesAreClosedSurfaces) {
   const auto image = enclosed_noise(8, 3);
   std::mt19937_64 bits(4);
-  for (const auto& [name, options] : all_ways(4)) {
+  for (const auto& [name, options] : all_ways()) {
     SCOPED_TRACE(name);
     const auto contour = extract<double>(image.view(), 0.5, options);
     expect_closed_manifold(contour);
@@ -65,16 +83,16 @@ TEST(Ambiguity4d, CutsAtAnyTimeAndObliqueOnesAreClosedSurfaces) {
 }
 
 TEST(Ambiguity4d, AtAWholeTimeItIsTheContourOfTheLayer) {
-  const auto image = noise<float, 4>(8, 5);
-  const std::size_t layer = 8 * 8 * 8;
-  for (const auto& [name, options] : all_ways(4)) {
+  const auto image = noise<float, 4>(6, 5);
+  const std::size_t layer = 6 * 6 * 6;
+  for (const auto& [name, options] : all_ways()) {
     SCOPED_TRACE(name);
     const auto contour = extract<double>(image.view(), 0.5, options);
-    for (std::size_t t = 0; t < 8; ++t) {
-      const Image<float, 3> part(image.values.data() + t * layer, Grid<3>::unit({8, 8, 8}));
+    for (std::size_t t = 0; t < 6; ++t) {
+      const Image<float, 3> part(image.values.data() + t * layer, Grid<3>::unit({6, 6, 6}));
       const auto expected = extract<double>(part, 0.5, options);
-      EXPECT_TRUE(same_surface(slice(contour, static_cast<double>(t)), expected)) << "layer " << t;
-      EXPECT_TRUE(same_surface(slice_image<double>(image.view(), 0.5, static_cast<double>(t), options), expected));
+      expect_layer(slice(contour, static_cast<double>(t)), expected, options);
+      expect_layer(slice_image<double>(image.view(), 0.5, static_cast<double>(t), options), expected, options);
     }
   }
 }
@@ -98,20 +116,20 @@ Image<float, 3> layer_across(const OwnedImage<float, 4>& image, int axis, std::s
 TEST(Ambiguity4d, AtAWholePlaceAlongAnyAxisItIsTheContourOfTheLayer) {
   const auto image = noise<float, 4>(6, 8);
   // A caller's estimator sees the image's own axes, and 4D contours keep their points off layers of the last one alone.
-  for (const auto& [name, options] : all_ways(4))
+  for (const auto& [name, options] : all_ways())
     for (int axis = options.ambiguity == Ambiguity::custom ? 3 : 0; axis < 4; ++axis)
       for (const std::size_t at : {1u, 4u}) {
+        SCOPED_TRACE(name + ", axis " + std::to_string(axis) + ", at " + std::to_string(at));
         const auto expected = extract<double>(layer_across(image, axis, at), 0.5, options);
-        EXPECT_TRUE(same_surface(slice_image_across<double>(image.view(), 0.5, axis, static_cast<double>(at), options),
-                                 expected))
-            << name << ", axis " << axis << ", at " << at;
+        expect_layer(slice_image_across<double>(image.view(), 0.5, axis, static_cast<double>(at), options), expected,
+                     options);
       }
 }
 
 /// Between layers the direct cut against that of the contour.
 TEST(Ambiguity4d, DirectCutsAreThoseOfTheContour) {
   const auto image = noise<float, 4>(6, 6);
-  for (const auto& [name, options] : all_ways(4)) {
+  for (const auto& [name, options] : all_ways()) {
     SCOPED_TRACE(name);
     const auto contour = extract<double>(image.view(), 0.5, options);
     for (const double t : {0.3, 2.71, 4.5})

@@ -31,7 +31,7 @@ SampledField<N> degenerate_field(std::mt19937_64& bits, std::size_t samples, boo
 template <int N>
 void expect_closed_manifolds(std::uint64_t seed, std::size_t count, std::size_t samples, bool mask) {
   std::mt19937_64 bits(seed);
-  const auto ways = all_ways(N);
+  const auto ways = all_ways();
   for (std::size_t i = 0; i < count; ++i) {
     const auto field = degenerate_field<N>(bits, samples, mask, i % 2 == 0);
     const auto image = image_of<std::int8_t>(field);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "active.hpp"
+#include "estimators.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "tegl/components.hpp"
@@ -89,6 +90,21 @@ TEST(Pick, WithAnyOptionsIsAComponentOfTheWhole) {
   options.close = true;
   expect_picks(noise<float, 3>({12, 11, 10}, 7), 0.9, options, 20);
   expect_picks(noise<float, 2>({20, 19}, 8), 0.8, options, 20);
+}
+
+TEST(Pick, ResolvedFromTheDataIsAComponentOfTheWhole) {
+  for (const NamedOptions& way : all_estimators()) {
+    SCOPED_TRACE(way.name);
+    expect_picks(noise<float, 2>({30, 25}, 21), 0.6, way.options, 15);
+    expect_picks(noise<std::uint8_t, 3>({12, 11, 10}, 22), 30.0, way.options, 15);
+    expect_picks(noise_with_missing<float, 3>(Grid<3>::unit({12, 11, 10}), 23, 0.02), 0.9, way.options, 10);
+    expect_picks(noise<float, 4>({7, 6, 5, 6}, 24), 0.95, way.options, 4);
+    ExtractOptions options = way.options;
+    options.close = true;
+    expect_picks(noise<float, 3>({12, 11, 10}, 25), 0.9, options, 5);
+    options.triangulation = Triangulation::barycentric;
+    expect_picks(noise<float, 4>({5, 4, 4, 5}, 26), 0.95, options, 3);
+  }
 }
 
 TEST(Pick, NextToMissingValuesIsAComponentOfTheWhole) {

@@ -57,13 +57,11 @@ inline std::vector<NamedOptions> all_estimators() {
           {"mid-range", by_estimator(mid_range)},  {"random", by_estimator(random_choice)}};
 }
 
-/// Each of them in each triangulation that images of n dimensions have with it, with one thread: for many small images.
-inline std::vector<NamedOptions> all_ways(int n) {
+/// Each of them in each triangulation, with one thread: for many small images.
+inline std::vector<NamedOptions> all_ways() {
   std::vector<NamedOptions> result;
   for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
     for (NamedOptions way : all_estimators()) {
-      const bool by_data = way.options.ambiguity != Ambiguity::low && way.options.ambiguity != Ambiguity::high;
-      if (n == 4 && by_data && triangulation == Triangulation::barycentric) continue;
       way.options.triangulation = triangulation;
       way.options.threads = 1;
       way.name += triangulation == Triangulation::compact ? ", compact" : ", barycentric";
