@@ -39,7 +39,9 @@ void expect_closed_manifolds(std::uint64_t seed, std::size_t count, std::size_t 
       SCOPED_TRACE(name + ", seed " + std::to_string(seed) + ", field " + std::to_string(i) + ", " + describe(field));
       options.close = i % 2 != 0;
       ASSERT_TRUE(is_closed_oriented_manifold(check(extract<float>(image.view(), 0.0, options))));
-      if (N == 4 && options.triangulation == Triangulation::compact) continue;  // see docs/limits.md
+      const bool by_table = options.ambiguity == Ambiguity::low || options.ambiguity == Ambiguity::high;
+      // See docs/limits.md.
+      if (N == 4 && (options.triangulation == Triangulation::compact || !by_table)) continue;
       options.epsilon = 0.05;
       const auto apart = check(extract<float>(image.view(), 0.0, options));
       ASSERT_TRUE(is_closed_oriented_manifold(apart));
