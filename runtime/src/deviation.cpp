@@ -26,8 +26,9 @@ namespace detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// How much more than a distance that is reached a bound may be.
+/// How much more than a distance that is reached a bound may be; and where it is measured again.
 constexpr double kLooseness = 1.25;
+constexpr double kRefinedLooseness = 1.05;
 /// A bound below these shares, of the longest edge and of the largest distance of a vertex, is good enough.
 constexpr double kEdgeShare = 0.02;
 constexpr double kLeastShare = 0.5;
@@ -39,6 +40,8 @@ constexpr double kWider = 4.0;
 constexpr double kFarAway = 2.0;
 /// Of the longest edge: the rim that is left out of a simplex where it decides. Much more than rounding.
 constexpr double kRim = 1e-11;
+/// Of the longest edge: much more than the rim.
+constexpr double kBeyond = 1e-9;
 /// Flatter simplices are looked at along the normal of what is next to them.
 constexpr double kFlat = 1e-2;
 /// In how many parts a simplex is measured at most; and where the largest bounds are measured again, how many
@@ -177,6 +180,7 @@ class Matcher {
   /// No point of simplex s is farther than that; `least` is raised to a distance that is reached.
   double bound(Index s, double& least) {
     load(s);
+    looseness_ = kLooseness;
     const double enough = std::max(m_.enough, kEdgeShare * edge_);
     const double result = in_parts(enough, kMostParts, least);
     for (const Part& part : parts_)
@@ -187,6 +191,7 @@ class Matcher {
   /// A bound that took more pains, until it is `enough`, or as long as is worth it.
   double refined_bound(Index s, double enough) {
     load(s);
+    looseness_ = kRefinedLooseness;
     double least = 0.0;
     return in_parts(enough, kRefinedParts, least);
   }
@@ -196,6 +201,7 @@ class Matcher {
   struct Near {
     Index simplex;
     CornersN<N> at;
+    double low, high;  ///< the last coordinates
   };
   /// What is left of such a one over a part.
   struct Sheet {
@@ -238,7 +244,7 @@ class Matcher {
 
   /// Whether a closer bound is of no use.
   [[nodiscard]] bool is_enough(const Part& part, double enough) const {
-    return part.bound <= std::max(enough, kLooseness * nearest_);
+    return part.bound <= std::max(enough, looseness_ * nearest_);
   }
 
   /// The largest bound of the parts; they are left in parts_.
@@ -252,22 +258,18 @@ class Matcher {
       std::iota(whole.near.begin(), whole.near.end(), 0u);
       if (nearest_ > kFarAway * edge_) break;
       measure(whole, enough);
-      if (is_enough(whole, enough)) break;
+      if (is_enough(whole, enough) || whole.bound <= reach_) break;
     }
-    if (!is_enough(whole, enough)) measure_by_distances(whole);
+    if (!(whole.bound < kInfinity)) measure_by_distances(whole);
     parts_.push_back(std::move(whole));
     while (!is_enough(parts_.front(), enough) && parts_.size() < most) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part worst = std::move(parts_.back());
       parts_.pop_back();
       for (const CornersN<N>& half : halves(worst.corners)) {
-        Part part;
+        Part part = worst;  // with what bounds the whole, until there is something nearer
         part.corners = half;
-        part.near = worst.near;
-        part.next = worst.next;
         measure(part, enough);
-        if (!is_enough(part, enough)) measure_by_distances(part);
-        part.bound = std::min(part.bound, worst.bound);
         parts_.push_back(std::move(part));
         std::push_heap(parts_.begin(), parts_.end());
       }
@@ -312,24 +314,24 @@ class Matcher {
         near.at[i] = frame_.to_frame(m_.to.corners[t][i]);
         of_near.add(near.at[i]);
       }
+      near.low = of_near.low[D];
+      near.high = of_near.high[D];
       if (of_near.meets(around, rounding)) near_.push_back(near);
     });
   }
 
-  /// By the nearest of the sheets that pass over all of the part. What is not near it is dropped from its list.
+  /// By the nearest of the sheets that pass over all of the part, or by distances. What is not near it is dropped from
+  /// its list.
   void measure(Part& part, double enough) {
     const Prism<N> prism(part.corners, edge_);
     // If all of each simplex is near enough, none needs to be cut.
     gather_sheets(prism, part, false);
     take_best_sheet(prism, part, 0.0);
     if (is_enough(part, m_.enough)) return;
-    gather_sheets(prism, part, true);
-    take_best_sheet(prism, part, 0.0);
-    if (is_enough(part, enough)) return;
-    if (part.bound < kInfinity && !prism.thin()) {
-      probe(prism, part);
-      if (is_enough(part, enough)) return;
-    }
+    // Where sheets did not tell of the whole they will hardly tell of its parts; distances cost less, and these are
+    // smaller.
+    if (!parts_.empty()) measure_by_distances(part);
+    if (!parts_.empty() && is_enough(part, enough)) return;
     // All but a rim, every point of which is nearer than that to the rest: borders and walls that begin at the edge of
     // the part are not over it then.
     CornersN<N> inner = part.corners;
@@ -337,16 +339,31 @@ class Matcher {
     for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
     const Prism<N> inner_prism(inner, edge_);
     gather_sheets(inner_prism, part, true);
-    take_best_sheet(inner_prism, part, kRim * edge_);
-    if (!is_enough(part, enough) && part.bound < kInfinity && !prism.thin()) probe(inner_prism, part);
+    const bool found = take_best_sheet(inner_prism, part, kRim * edge_);
+    if (part.bound <= 2.0 * kRim * edge_) {  // the same contour: without a rim it is as near as rounding allows
+      gather_sheets(prism, part, true);
+      take_best_sheet(prism, part, 0.0);
+    }
+    if (found && !is_enough(part, enough) && !prism.thin()) probe(inner_prism, part);
+    if (parts_.empty() && !is_enough(part, enough)) measure_by_distances(part);
   }
 
   /// `cut`: what is left of them over the part; else what their corners and hyperplanes tell of that.
   void gather_sheets(const Prism<N>& prism, Part& part, bool cut) {
     sheets_.clear();
+    // What is farther off than the bound that is known, by more than rounding, will not better it.
+    double lowest = kInfinity, highest = -kInfinity;
+    for (const PointN<N>& corner : part.corners) {
+      lowest = std::min(lowest, corner[D]);
+      highest = std::max(highest, corner[D]);
+    }
+    const double limit = part.bound + kBeyond * edge_;
+    lowest -= limit;
+    highest += limit;
     std::size_t kept = 0;
     for (const std::uint32_t number : part.near) {
       const Near& near = near_[number];
+      if (near.low > highest || near.high < lowest) continue;
       if (!remnant_.load(near.at, prism)) continue;
       const unsigned open = m_.open.of(near.simplex);
       if ((cut || open != 0) && !remnant_.cut(prism)) continue;
@@ -366,10 +383,11 @@ class Matcher {
   }
 
   /// Of the groups of sheets that are apart from others by their heights, the nearest that passes over all of the part
-  /// for sure.
-  void take_best_sheet(const Prism<N>& prism, Part& part, double rim) {
+  /// for sure. False if none is nearer than what is known.
+  bool take_best_sheet(const Prism<N>& prism, Part& part, double rim) {
     const double apart = prism.rounding() + 1e-15 * reach_;
     const double reach = reach_ - std::max(-prism.low(), prism.high());
+    bool found = false;
     for (std::size_t i = 0, j = 0; i < sheets_.size(); i = j) {
       double high = sheets_[i].high;
       bool open = false;
@@ -382,6 +400,7 @@ class Matcher {
       const double bound = std::max(high - prism.low(), prism.high() - low) + rim;
       if (!(bound < part.bound)) continue;
       if (open || !covered(std::span(sheets_).subspan(i, j - i), part.corners)) continue;
+      found = true;
       part.bound = bound;
       part.matches.clear();
       for (std::size_t k = i; k < j; ++k) {
@@ -390,6 +409,7 @@ class Matcher {
         if (far == bound) part.farthest = sheets_[k].near;
       }
     }
+    return found;
   }
 
   /// Finds out how far the part is below or above the farthest corner of its sheets.
@@ -465,6 +485,7 @@ class Matcher {
   const Measure<N>& m_;
   // Of the simplex at hand.
   double edge_ = 0.0;
+  double looseness_ = kLooseness;
   double nearest_ = 0.0;  ///< the largest distance of a point of it that is known
   Frame<N> frame_ = Frame<N>({1.0}, {});
   CornersN<N> whole_;
