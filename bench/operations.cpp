@@ -160,23 +160,6 @@ void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
                   }});
 }
 
-/// What makes axes of different units count alike: the mean extent of a tetrahedron along them.
-std::array<double, 4> scale_of(const Contour<4, double>& contour) {
-  std::array<double, 4> extent{}, scale{1.0, 1.0, 1.0, 1.0};
-  for (const auto& simplex : contour.simplices)
-    for (std::size_t a = 0; a < 4; ++a) {
-      double low = contour.vertices[simplex[0]][a], high = low;
-      for (const Index v : simplex) {
-        low = std::min(low, contour.vertices[v][a]);
-        high = std::max(high, contour.vertices[v][a]);
-      }
-      extent[a] += high - low;
-    }
-  for (std::size_t a = 1; a < 4; ++a)
-    if (contour.axis_units[a] != contour.axis_units[0] && extent[a] > 0) scale[a] = extent[0] / extent[a];
-  return scale;
-}
-
 template <Value T>
 void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
   const auto simplified = [&](SimplifyMethod method) {
@@ -185,7 +168,7 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
     options.ratio = 0.2;
     options.measure = false;
     options.threads = subject.threads;
-    options.scale = scale_of(subject.contour);
+    options.scale = automatic_scale(subject.contour);
     subject.simplified = simplify(subject.contour, options);
     return counted(subject.simplified.simplices.size(), "tetrahedra");
   };
@@ -195,7 +178,7 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
   list.push_back({"`deviation` from it (simplify), and back", [&] {
                     DeviationOptions<4> options;
                     options.threads = subject.threads;
-                    options.scale = scale_of(subject.contour);
+                    options.scale = automatic_scale(subject.contour);
                     const Deviation from = deviation(subject.contour, subject.simplified, options);
                     const Deviation back = deviation(subject.simplified, subject.contour, options);
                     return fmt::format("at most {:.3g} and {:.3g}, at least {:.3g} and {:.3g}", from.bound, back.bound,

@@ -205,27 +205,6 @@ class SimplifyCommand final : public ContourInputCommand {
     return result;
   }
 
-  /// The mean extent of a simplex along an axis of another unit counts as that along the first axis.
-  template <int N>
-  static std::array<double, N> automatic_scale(const Contour<N, double>& contour) {
-    std::array<double, N> extent{};
-    for (const auto& simplex : contour.simplices)
-      for (int a = 0; a < N; ++a) {
-        double low = contour.vertices[simplex[0]][a], high = low;
-        for (const Index v : simplex) {
-          low = std::min(low, contour.vertices[v][a]);
-          high = std::max(high, contour.vertices[v][a]);
-        }
-        extent[a] += high - low;
-      }
-    std::array<double, N> result;
-    for (int a = 0; a < N; ++a) {
-      const bool same = contour.axis_units[a] == contour.axis_units[0];
-      result[a] = same || !(extent[a] > 0.0) || !(extent[0] > 0.0) ? 1.0 : extent[0] / extent[a];
-    }
-    return result;
-  }
-
   [[nodiscard]] Json document(const ContourResult& result, const SimplifyStats& stats) const {
     const auto or_null = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
     Json json = to_json(result);

@@ -8,11 +8,15 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <span>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <Eigen/LU>
 
 #include "progress.hpp"
@@ -29,6 +33,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kErrorName = "simplification_error";
+constexpr std::string_view kScaleUnit = "scale ";
 constexpr std::size_t kMostPlanes = 20;
 /// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
 constexpr unsigned kGentleRounds = 6;
@@ -101,12 +106,43 @@ class Simplifier {
       fail(fmt::format("the fast method is for triangles; expected another one for simplices in {} dimensions", N));
   }
 
+  /// By how much distances have grown at most since an earlier error was taken, under the scale that its unit says.
+  [[nodiscard]] double factor_of_earlier(const Attribute& attribute) const {
+    const bool scaled = attribute.unit.starts_with(kScaleUnit);
+    std::istringstream numbers(scaled ? attribute.unit.substr(kScaleUnit.size()) : "");
+    numbers.imbue(std::locale::classic());
+    double factor = 0.0;
+    for (int a = 0; a < N; ++a) {
+      double earlier = 1.0;
+      const bool read =
+          !scaled || ((a == 0 || numbers.get() == ',') && numbers >> earlier && (a + 1 < N || numbers.eof()));
+      if (!read || !(earlier > 0.0))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the attribute {} has the unit '{}'; expected {} positive numbers after '{}'",
+                                attribute.name, attribute.unit, N, kScaleUnit));
+      factor = std::max(factor, options_.scale[a] / earlier);
+    }
+    return factor;
+  }
+
+  /// Of errors: that of the axes, or else what was done to them.
+  [[nodiscard]] std::string error_unit() const {
+    const auto& units = contour_.axis_units;
+    const auto is_one = [](double scale) { return scale == 1.0; };
+    if (!std::all_of(options_.scale.begin(), options_.scale.end(), is_one))
+      return fmt::format("{}{}", kScaleUnit, fmt::join(options_.scale, ","));
+    const bool same =
+        std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units[0]; });
+    return same ? units[0] : std::string();
+  }
+
   /// Normals and attributes of each vertex, side by side. An error from before is no attribute but a debt.
   void gather_carried() {
     if (!contour_.normals.empty()) carried_width_ = N;
     for (const Attribute& attribute : contour_.vertex_attributes) {
       if (attribute.name == kErrorName) {
-        for (const double error : attribute.values) earlier_error_ = std::max(earlier_error_, error);
+        const double factor = factor_of_earlier(attribute);
+        for (const double error : attribute.values) earlier_error_ = std::max(earlier_error_, factor * error);
         continue;
       }
       carried_attributes_.push_back(&attribute);
@@ -310,9 +346,7 @@ class Simplifier {
   void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
     Attribute attribute;
     attribute.name = kErrorName;
-    const auto& units = result.axis_units;
-    if (std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units[0]; }))
-      attribute.unit = units[0];
+    attribute.unit = error_unit();
     attribute.values.assign(result.vertices.size(), earlier_error_);
     for (std::size_t s = 0; s < errors.size(); ++s)
       for (const Index v : result.simplices[s])
@@ -436,6 +470,26 @@ std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
 }
 
 template <int N, class Real>
+std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
+  std::array<double, N> extent{};
+  for (const auto& simplex : contour.simplices)
+    for (int a = 0; a < N; ++a) {
+      Real low = contour.vertices[simplex[0]][a], high = low;
+      for (const Index v : simplex) {
+        low = std::min(low, contour.vertices[v][a]);
+        high = std::max(high, contour.vertices[v][a]);
+      }
+      extent[a] += static_cast<double>(high) - static_cast<double>(low);
+    }
+  std::array<double, N> result;
+  for (int a = 0; a < N; ++a) {
+    const bool same = contour.axis_units[a] == contour.axis_units[0];
+    result[a] = same || !(extent[a] > 0.0) || !(extent[0] > 0.0) ? 1.0 : extent[0] / extent[a];
+  }
+  return result;
+}
+
+template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options, SimplifyStats* stats) {
   detail::Simplifier<N, Real> simplifier(contour, options);
   Contour<N, Real> result = simplifier.run();
@@ -446,6 +500,12 @@ Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions
 template std::vector<Hyperplane<2>> border_planes(const Grid<2>&);
 template std::vector<Hyperplane<3>> border_planes(const Grid<3>&);
 template std::vector<Hyperplane<4>> border_planes(const Grid<4>&);
+template std::array<double, 2> automatic_scale<2, float>(const Contour<2, float>&);
+template std::array<double, 2> automatic_scale<2, double>(const Contour<2, double>&);
+template std::array<double, 3> automatic_scale<3, float>(const Contour<3, float>&);
+template std::array<double, 3> automatic_scale<3, double>(const Contour<3, double>&);
+template std::array<double, 4> automatic_scale<4, float>(const Contour<4, float>&);
+template std::array<double, 4> automatic_scale<4, double>(const Contour<4, double>&);
 template Contour<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&, SimplifyStats*);
 template Contour<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&, SimplifyStats*);
 template Contour<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&, SimplifyStats*);

@@ -289,6 +289,41 @@ TYPED_TEST(Simplify, ScaleDecidesWhatIsFar) {
   EXPECT_LT(simplify(contour, options).simplices.size(), fine.simplices.size());
 }
 
+TYPED_TEST(Simplify, EarlierErrorsCountByTheScaleTheyWereTakenAt) {
+  constexpr int N = TypeParam::value;
+  const auto contour = ball<N>(ball_samples<N>());
+  auto options = with_ratio<N>(SimplifyMethod::quadric, 0.5);
+  options.scale[0] = 0.5;
+  SimplifyStats first, second;
+  auto once = simplify(contour, options, &first);
+  ASSERT_EQ(once.vertex_attributes.size(), 1u);
+  EXPECT_EQ(once.vertex_attributes[0].unit, N == 2 ? "scale 0.5,1" : (N == 3 ? "scale 0.5,1,1" : "scale 0.5,1,1,1"));
+  options = with_ratio<N>(SimplifyMethod::quadric, 1.0);  // nothing goes: all of its error is from before
+  auto twice = simplify(once, options, &second);
+  EXPECT_NEAR(*second.error(), 2.0 * *first.error(), 1e-9);  // lengths along the first axis have doubled
+  EXPECT_EQ(twice.vertex_attributes[0].unit, contour.axis_units[0]);
+  options.scale.fill(3.0);
+  simplify(twice, options, &second);
+  EXPECT_NEAR(*second.error(), 6.0 * *first.error(), 1e-9);
+  for (const char* unit : {"scale 1", "scale 1,1,1,1,1", "scale 0,1,1,1", "scale 1,x,1,1"}) {
+    once.vertex_attributes[0].unit = unit;
+    expect_error(ErrorCode::InvalidArgument, unit, [&] { simplify(once, options); });
+  }
+}
+
+TYPED_TEST(Simplify, AutomaticScaleMakesOtherUnitsAsFineAsTheFirst) {
+  constexpr int N = TypeParam::value;
+  auto contour = ball<N>(ball_samples<N>());
+  Eigen::Matrix<double, N, 1> factors = Eigen::Matrix<double, N, 1>::Ones();
+  factors[N - 1] = 20.0;
+  scale_axes(contour, factors);
+  EXPECT_EQ(automatic_scale(contour)[N - 1], 1.0);  // of the same unit
+  contour.axis_units[N - 1] = "s";
+  const auto scale = automatic_scale(contour);
+  for (int a = 0; a + 1 < N; ++a) EXPECT_EQ(scale[a], 1.0);
+  EXPECT_NEAR(scale[N - 1], 0.05, 0.01);
+}
+
 /// Where samples equal the isovalue, vertices fall together: these edges are contracted first, and cost nothing.
 TYPED_TEST(Simplify, RemovesSimplicesOfZeroSize) {
   constexpr int N = TypeParam::value;

@@ -109,19 +109,27 @@ struct SimplifyStats {
 /// Normals and vertex attributes are interpolated where vertices move; simplex attributes are those of the simplices
 /// that are left. The attribute "simplification_error" of a vertex: every point of the original that was matched with a
 /// simplex is within the largest one of that simplex's vertices, and every point of the simplex is so near to the
-/// original. If the contour has this attribute, from an earlier simplification, its largest value is added; that is a
-/// bound if `scale` is what it was then.
+/// original. Its unit is that of the axes, or "scale 1,1,0.5" where distances were those after a scale. If the contour
+/// has this attribute, from an earlier simplification, its largest value is added, by the axis that grew most from that
+/// scale to this one; so the bound holds. (scale_axes leaves attributes: after it, the earlier bound is another's.)
 ///
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
-/// stays. It is the same for any number of threads. Errors: InvalidArgument (options; no manifold: a face in three
-/// simplices, a repeated vertex; `fast` for other than triangles, or without meshoptimizer), UnsupportedData (the
-/// result of `fast` is no manifold), Cancelled. Time: O(S log S), about 5 microseconds for each triangle and 10 for
-/// each tetrahedron (facets, vertices: two to three times that); the error as long for triangles, 15 to 50 microseconds
-/// for each tetrahedron, in each of up to 12 rounds if there is a `max_error`. If no round keeps
-/// that, the result is the contour itself. Memory: about 200 bytes for each simplex.
+/// stays. It is the same for any number of threads. Errors: InvalidArgument (options; an earlier error whose unit is a
+/// scale of other numbers than N above 0; no manifold: a face in three simplices, a repeated vertex; `fast` for other
+/// than triangles, or without meshoptimizer), UnsupportedData (the result of `fast` is no manifold), Cancelled. Time:
+/// O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three times
+/// that); the error as long for triangles, 15 to 50 microseconds for each tetrahedron, in each of up to 12 rounds if
+/// there is a `max_error`. If no round keeps that, the result is the contour itself. Memory: about 200 bytes for each
+/// simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
                           SimplifyStats* stats = nullptr);
+
+/// A `scale` for a contour whose axes have different units: the mean extent of a simplex along an axis of another unit
+/// than the first counts as that along the first axis; all others, and what has no extent, count as they are. N = 2, 3,
+/// 4; Real: float or double. O(S).
+template <int N, class Real>
+std::array<double, N> automatic_scale(const Contour<N, Real>& contour);
 
 /// Whether SimplifyMethod::fast is there.
 bool has_fast_simplify() noexcept;
