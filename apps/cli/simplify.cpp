@@ -238,7 +238,8 @@ class SimplifyCommand final : public ContourInputCommand {
                                                counted_simplices(dim, stats.simplices_before)));
     lines += report_line("method", fmt::format("{}: {:.3g} % of the simplices are left", method_, 100.0 * share));
     if (stats.error()) {
-      const auto unit = measure_unit(result.mesh.axis_units, 1);
+      // Scaled lengths are in no unit of the axes.
+      const auto unit = scale_.empty() ? measure_unit(result.mesh.axis_units, 1) : std::nullopt;
       lines += report_line("error", fmt::format("at most {} (of the original {}, of the result {})",
                                                 with_unit(number(*stats.error()), unit),
                                                 number(*stats.error_of_original), number(*stats.error_of_result)));

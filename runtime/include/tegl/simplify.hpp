@@ -118,9 +118,9 @@ struct SimplifyStats {
 /// scale of other numbers than N above 0; no manifold: a face in three simplices, a repeated vertex; `fast` for other
 /// than triangles, or without meshoptimizer), UnsupportedData (the result of `fast` is no manifold), Cancelled. Time:
 /// O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three times
-/// that); the error as long for triangles, 15 to 50 microseconds for each tetrahedron, in each of up to 12 rounds if
-/// there is a `max_error`. If no round keeps that, the result is the contour itself. Memory: about 200 bytes for each
-/// simplex.
+/// that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
+/// the result, in each of up to 12 rounds if there is a `max_error`. If no round keeps that, the result is the contour
+/// itself. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
                           SimplifyStats* stats = nullptr);
