@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Example 13: an estimator of one's own. Two fields, one body and two bodies, which have the same high and low samples
-// on a grid, so that no method that looks at the corners of a face alone tells them apart: after J. Wilhelms and A. Van
-// Gelder, Topological considerations in isosurface generation, 1990. Both are cubic, and a cubic estimate of what is in
-// the middle of a face, from its neighbourhood, does.
+// on a grid, and for which mean and saddle answer alike (their values differ by a constant): after J. Wilhelms and A.
+// Van Gelder, Topological considerations in isosurface generation, 1990. Both are cubic, and a cubic estimate of what
+// is in the middle of a face, from its neighbourhood, tells them apart.
 //
 //     13_own_estimator [FOLDER]     writes six surfaces there, for examples/render_estimators.py
 #include <tegl/check.hpp>

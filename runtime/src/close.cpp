@@ -302,7 +302,10 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   using Regions = CubeRegions;
   const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
   corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
-  if (const unsigned own = cube_vertices(key); own != 0) {
+  const unsigned own = cube_vertices(key);
+  if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key, own))
+    return estimator_->report_change(index);
+  if (own != 0) {
     const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);
     for (unsigned j = 0; j < own; ++j) ids[Regions::kFirstOwn + j] = first + j;
   }

@@ -444,9 +444,15 @@ void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, co
 
 template <int N>
 CountScratch Counter<N>::make_scratch() const {
-  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr};
+  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, {}};
   if (lists_cubes_) scratch.tesseract = std::make_unique<ResolvedTesseract>();
   if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
+  if (estimator_ != nullptr && estimator_->is_callers()) {
+    if constexpr (N == 4)
+      scratch.answers.tesseracts.reserve(shape_.size(0));
+    else
+      scratch.answers.keys.reserve(shape_.size(0));
+  }
   return scratch;
 }
 

@@ -15,6 +15,7 @@
 #include "face_estimator.hpp"
 #include "resolved_tiles.hpp"
 #include "tegl/table_contract.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 
@@ -30,11 +31,20 @@ struct TableSet {
   const tables::RegionTable* square = nullptr;     ///< of 2; N = 4, for closed borders
 };
 
+/// What a caller's estimator said of the tiles of a row that data decide on, in their order. Kept so that what is
+/// written is what was compared with the counts, whatever it would answer next.
+struct RowAnswers {
+  std::vector<ResolvedTile> tesseracts;  ///< N = 4
+  std::vector<std::uint16_t> keys;       ///< N < 4: of all active tiles
+  std::size_t taken = 0;                 ///< how many of them are written
+};
+
 /// What a thread keeps while it counts and lists tiles.
 struct CountScratch {
   std::vector<Word> words;                       ///< of a row
   TileLists tiles;                               ///< of a row, where slabs do not keep them
   std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, where data decide
+  RowAnswers answers;                            ///< where a caller decides
 };
 
 class TileSelection;

@@ -101,20 +101,23 @@ class TileWriter {
         flip_(flip),
         has_cubes_(has_cubes) {}
 
-  /// `tiles`: those of the row (Counter::tiles). `simplices`: where simplex `first_simplex` goes.
-  /// `tesseract`: the thread's, or null where data decide on nothing.
+  /// `tiles`: those of the row (Counter::tiles). `simplices`: where simplex `first_simplex` goes. `scratch`: the
+  /// thread's. Writes nothing, and reports it, where a caller's estimator changed its answers since the row was
+  /// counted.
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const ActiveTiles& tiles,
              VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex,
-             ResolvedTesseract* tesseract) const noexcept {
+             CountScratch& scratch) const noexcept {
     const RowShape<N>& shape = *view.shape;
     auto index = shape.index_of(row);
     if (view.slab->active_count[row] == 0) return;
     index[N - 1] = layer;
+    if (estimator_ != nullptr && estimator_->is_callers() && !ask_again(view, row, index, tiles, scratch))
+      return estimator_->report_change(index);
     Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
     if (rows_ != nullptr && view.slab->all_valid)
-      write_quickly(view, row, index, tiles, vertices, out, tesseract);
+      write_quickly(view, row, index, tiles, vertices, out, scratch);
     else
-      write_one_by_one(view, row, index, vertices, out, tesseract);
+      write_one_by_one(view, row, index, vertices, out, scratch);
   }
 
   /// Whether the barycentres of cubes in a slab, and in the layer above it (and layer 0), are written along with its
@@ -127,7 +130,7 @@ class TileWriter {
   /// Of rows whose tiles are all valid: then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
                      const ActiveTiles& tiles, VertexRun<Vertex> vertices, Simplex* out,
-                     ResolvedTesseract* tesseract) const noexcept {
+                     CountScratch& scratch) const noexcept {
     TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
     // The tiles with vertices of their own come in order: their places are found by walking along.
@@ -135,7 +138,7 @@ class TileWriter {
       const TileWriter& writer;
       const SlabView<N>& view;
       std::size_t row;
-      ResolvedTesseract* tesseract;
+      CountScratch& scratch;
       typename RowShape<N>::Index index;
       VertexRun<Vertex> vertices;
       BitWalk active;
@@ -150,7 +153,7 @@ class TileWriter {
         if constexpr (N == 4)
           if (own.writer.is_estimated_tile(key))
             return own.writer.write_resolved(own.view, own.row, own.index, key, ids, own.next, own.vertices,
-                                             *own.tesseract, out);
+                                             own.scratch, out);
         const SimplexList<N> list(own.writer.table_, key);
         SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
         own.writer.write_own(list, places, own.index, own.next, own.vertices);
@@ -162,7 +165,7 @@ class TileWriter {
     Own own{*this,
             view,
             row,
-            tesseract,
+            scratch,
             start,
             vertices,
             BitWalk(view.slab->active.data() + row * view.shape->words()),
@@ -171,7 +174,7 @@ class TileWriter {
   }
 
   void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
-                        VertexRun<Vertex> vertices, Simplex* out, ResolvedTesseract* tesseract) const noexcept {
+                        VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch) const noexcept {
     const RowShape<N>& shape = *view.shape;
     const Word* const active = view.slab->active.data() + row * shape.words();
     CellBits<N, kAll> cells(view, row);
@@ -194,10 +197,10 @@ class TileWriter {
         edges.ids(bit, ids.data());
         if constexpr (N == 4)
           if (is_estimated_tile(signature)) {
-            out = write_resolved(view, row, index, signature, ids, own, vertices, *tesseract, out);
+            out = write_resolved(view, row, index, signature, ids, own, vertices, scratch, out);
             continue;
           }
-        const SimplexList<N> list(table_, key_of(index, signature));
+        const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
         if constexpr (N == 4)
           if (cubes) cube_ids(*cubes, bit, ids);
         if (has_cubes_ || list.own_vertices() != 0) {
@@ -219,6 +222,62 @@ class TileWriter {
         return resolved_key<N>(*estimator_, index, signature);
     return signature;
   }
+  /// The same when it is written.
+  [[nodiscard]] unsigned key_of(const typename RowShape<N>::Index& index, unsigned signature,
+                                RowAnswers& answers) const noexcept {
+    if constexpr (N < 4)
+      if (estimator_ != nullptr && estimator_->is_callers()) return answers.keys[answers.taken++];
+    return key_of(index, signature);
+  }
+
+  /// Asks a caller's estimator for what is to be written of a row, and keeps it; whether it comes to what was counted:
+  /// as many vertices and simplices, and the same fillings of the cubes with vertices of their own.
+  [[nodiscard]] bool ask_again(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
+                               const ActiveTiles& tiles, CountScratch& scratch) const noexcept {
+    RowAnswers& answers = scratch.answers;
+    answers.tesseracts.clear();
+    answers.keys.clear();
+    answers.taken = 0;
+    std::uint64_t simplices = 0, own_vertices = 0;
+    CellBits<N, kAll> cells(view, row);
+    const Word* const active = view.slab->active.data() + row * view.shape->words();
+    for (std::size_t w = 0, ordinal = 0; w < view.shape->words(); ++w) {
+      if (active[w] != 0) cells.load(w);
+      for (Word rest = active[w]; rest != 0; rest &= rest - 1, ++ordinal) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+        unsigned key = cells.signature(bit);
+        index[0] = w * kWordBits + bit;
+        if constexpr (N == 4)
+          if (is_estimated_tile(key)) {
+            const ResolvedTile& tile = answers.tesseracts.emplace_back(resolved_tile(*estimator_, index, key));
+            const ResolvedSize size = scratch.tesseract->size(tile.key);
+            simplices += size.simplices;
+            own_vertices += size.own_vertices;
+            if (!has_listed_cubes(view, row, index[0], tile)) return false;
+            continue;
+          }
+        key = tiles.count != 0 ? tiles.signatures[ordinal] : key_of(index, key);
+        if constexpr (N < 4) answers.keys.push_back(static_cast<std::uint16_t>(key));
+        const SimplexList<N> list(table_, key);
+        simplices += list.size();
+        own_vertices += list.own_vertices();
+      }
+    }
+    return simplices == view.slab->simplices(row) && own_vertices == view.slab->own_vertices(row);
+  }
+
+  /// Whether the cubes of a tile are those that were counted.
+  [[nodiscard]] static bool has_listed_cubes(const SlabView<N>& view, std::size_t row, std::size_t at,
+                                             const ResolvedTile& tile) noexcept {
+    for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
+      const unsigned axis = cube / 2, side = cube % 2;
+      const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
+      if (!plane.has_listed(view.shape->shifted(row, side << axis), at + (axis == 0 ? side : 0), tile.cubes[cube],
+                            detail::cube_vertices(tile.cubes[cube])))
+        return false;
+    }
+    return true;
+  }
 
   [[nodiscard]] bool is_estimated_tile(unsigned signature) const noexcept {
     return N == 4 && estimator_ != nullptr && ambiguous_signatures<4>()[signature];
@@ -227,10 +286,12 @@ class TileWriter {
   /// A tile of four dimensions that data decide on; its own vertices are numbered from `own` on, which moves on. `ids`:
   /// those of its edges.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
-                          unsigned signature, Ids& ids, Index& own, VertexRun<Vertex> vertices,
-                          ResolvedTesseract& tesseract, Simplex* out) const noexcept {
-    const ResolvedTile tile = resolved_tile(*estimator_, index, signature);
-    const ResolvedView& filling = tesseract.find(tile.key);
+                          unsigned signature, Ids& ids, Index& own, VertexRun<Vertex> vertices, CountScratch& scratch,
+                          Simplex* out) const noexcept {
+    RowAnswers& answers = scratch.answers;
+    const ResolvedTile tile =
+        estimator_->is_callers() ? answers.tesseracts[answers.taken++] : resolved_tile(*estimator_, index, signature);
+    const ResolvedView& filling = scratch.tesseract->find(tile.key);
     for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
       const unsigned count = detail::cube_vertices(tile.cubes[cube]);
       if (count == 0) continue;

@@ -400,7 +400,7 @@ class Extraction {
         edges.add_by_bits(&layer(k + 1), &here, row);
       generate_layer_cubes(k + 1, row, vertices);
       generate_slab_cubes(around, k, row, vertices);
-      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting.tesseract.get());
+      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting);
     }
     edges.finish();
   }

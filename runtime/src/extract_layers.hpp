@@ -179,10 +179,22 @@ struct CubePlane : RankPlane<tables::kFaceSlots> {
   }
   /// The first vertex of a cube that is listed.
   [[nodiscard]] Index listed_id(std::size_t row, std::size_t at) const noexcept {
+    return first(row) + find(row, at)->before;
+  }
+  /// Whether a cube is listed with this key and so many vertices; with none: not listed.
+  [[nodiscard]] bool has_listed(std::size_t row, std::size_t at, unsigned key, unsigned vertices) const noexcept {
+    const auto of_row = count[row] == 0 ? std::span<const ListedCube>() : lists.row(row);
+    const auto found = count[row] == 0 ? of_row.begin() : find(row, at);
+    const bool is_listed = found != of_row.end() && found->at == at;
+    return is_listed ? vertices != 0 && found->key == key : vertices == 0;
+  }
+
+ private:
+  /// The first listed cube of a row that is not before `at`.
+  [[nodiscard]] std::span<const ListedCube>::iterator find(std::size_t row, std::size_t at) const noexcept {
     const auto of_row = lists.row(row);
-    const auto found = std::lower_bound(of_row.begin(), of_row.end(), at,
-                                        [](const ListedCube& cube, std::size_t place) { return cube.at < place; });
-    return first(row) + found->before;
+    return std::lower_bound(of_row.begin(), of_row.end(), at,
+                            [](const ListedCube& cube, std::size_t place) { return cube.at < place; });
   }
 };
 
@@ -279,6 +291,18 @@ struct SlabPlanes {
   }
   [[nodiscard]] std::uint64_t first_simplex(std::size_t row) const noexcept {
     return chunks[chunk_of(row)].first_simplex + simplex_offset[row];
+  }
+  /// How many vertices the tiles of a row own, and how many simplices they have; what offsets know once they are made.
+  [[nodiscard]] std::uint64_t own_vertices(std::size_t row) const noexcept {
+    return (is_last_of_chunk(row) ? chunks[chunk_of(row)].vertices : edges.offset[row + 1]) - own_offset[row];
+  }
+  [[nodiscard]] std::uint64_t simplices(std::size_t row) const noexcept {
+    return (is_last_of_chunk(row) ? chunks[chunk_of(row)].simplices : simplex_offset[row + 1]) - simplex_offset[row];
+  }
+
+ private:
+  [[nodiscard]] bool is_last_of_chunk(std::size_t row) const noexcept {
+    return row + 1 == own_offset.size() || chunk_of(row + 1) != chunk_of(row);
   }
 };
 

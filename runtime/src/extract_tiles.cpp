@@ -399,6 +399,7 @@ class TileExtraction {
         write_simplices(slab(k), c, ids);
       }
     });
+    if (estimator_) estimator_->rethrow();
   }
 
   /// Numbers all vertices of a cell, and writes those of the faces that it owns.
@@ -412,6 +413,8 @@ class TileExtraction {
     for_faces_of(k, c,
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
                      std::size_t, std::uint16_t face) {
+                   // Cells around a face agree on it, unless a caller's estimator does not.
+                   if (estimator_ && vertices.count != faces.count(word, bit)) return estimator_->report_change(base);
                    number_face(seen, vertices, faces.first(word, bit), ids);
                    if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
                    if (faces.owner(word, bit) != owner_name(faces, layer(k), c)) return;

@@ -10,7 +10,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "tegl/error.hpp"
 #include "tegl/saddle.hpp"
 
 namespace tegl {
@@ -191,11 +196,32 @@ facets::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span
     const facets::Choice choice = estimator_.choose(AmbiguousFace(base, axes, values, isovalue_, near));
     return choice <= facets::Choice::high ? choice : facets::Choice::separate;
   } catch (...) {
-    const std::lock_guard lock(mutex_);
-    if (!error_) error_ = std::current_exception();
-    failed_ = true;
+    keep_error(std::current_exception());
   }
   return facets::Choice::separate;
+}
+
+template <int N>
+void FaceEstimator<N>::keep_error(std::exception_ptr error) const noexcept {
+  const std::lock_guard lock(mutex_);
+  if (!error_) error_ = std::move(error);
+  failed_ = true;
+}
+
+template <int N>
+void FaceEstimator<N>::report_change(const Index& row) const noexcept {
+  if (failed_) return;  // what it answers since then is no answer of the caller's
+  try {
+    std::string place;
+    for (int a = 0; a < N; ++a)
+      place += fmt::format("{}{}", a == 0 ? "" : ", ", static_cast<std::ptrdiff_t>(row[a]) + around_.origin[a]);
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the estimator answered differently for the same face, in the row of tiles from sample "
+                            "({}) on; expected answers that depend on the face alone",
+                            place));
+  } catch (...) {
+    keep_error(std::current_exception());
+  }
 }
 
 template <int N>

@@ -57,11 +57,18 @@ class FaceEstimator {
   /// The filling of a face of three or more dimensions.
   [[nodiscard]] facets::Choice choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
 
-  /// Throws what a caller's estimator threw, if it did.
+  /// Whether a caller decides, whose answers may differ from one time to the next.
+  [[nodiscard]] bool is_callers() const noexcept { return ambiguity_ == Ambiguity::custom; }
+  /// Notes that they did, in the row of tiles based at `row`: ends the extraction as what the caller throws does.
+  void report_change(const Index& row) const noexcept;
+
+  /// Throws what a caller's estimator threw, if it did, or that its answers changed.
   void rethrow() const;
 
  private:
   [[nodiscard]] facets::Choice ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
+
+  void keep_error(std::exception_ptr error) const noexcept;
 
   const SampleSource<N>& source_;
   Ambiguity ambiguity_;

@@ -59,11 +59,17 @@ class FaceRanks {
       next = static_cast<Index>(first);
       first += count;
     }
+    end_ = static_cast<Index>(first);
     return first;
   }
 
   /// The first vertex of a face that is marked.
   [[nodiscard]] Index first(std::size_t word, unsigned bit) const noexcept { return first_[ordinal(word, bit)]; }
+  /// How many vertices it has numbers for.
+  [[nodiscard]] Index count(std::size_t word, unsigned bit) const noexcept {
+    const std::size_t at = ordinal(word, bit);
+    return (at + 1 < first_.size() ? first_[at + 1] : end_) - first_[at];
+  }
   [[nodiscard]] std::uint32_t owner(std::size_t word, unsigned bit) const noexcept {
     return owners_[ordinal(word, bit)];
   }
@@ -77,6 +83,7 @@ class FaceRanks {
   std::vector<std::uint32_t> before_;  ///< faces marked before this word
   std::vector<Index> first_;           ///< by rank; until they are numbered: how many vertices
   std::vector<std::uint32_t> owners_;  ///< by rank
+  Index end_ = 0;                      ///< the number after the last
 };
 
 }  // namespace tegl::detail

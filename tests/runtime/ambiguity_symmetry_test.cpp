@@ -4,7 +4,9 @@
 // that is itself symmetric. Facet by facet: the pieces in each tile, which edges each meets, and the Euler
 // characteristic of each. With the barycentric tables simplex by simplex as well; all others choose diagonals by the
 // numbers of corners, which no symmetry keeps.
+#include <cmath>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +67,35 @@ void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t s
       }
     }
   }
+}
+
+TEST(Symmetry, KeepsHowManyVerticesAndTrianglesThereAreThoughTunnelsOwnVerticesMove) {
+  std::mt19937_64 bits(4);
+  const auto symmetries = grid_symmetries<3>();
+  bool moved_any = false;
+  for (int field = 0; field < 8; ++field) {
+    const auto image = image_of<float>(random_box<3>(bits, {4, 4, 4}, 1 << 20));
+    for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+      const ExtractOptions options = by_ambiguity(ambiguity);
+      const auto contour = extract<double>(image.view(), 0.0, options);
+      for (std::size_t s = 0; s < symmetries.size(); s += 5) {
+        const auto found = rounded(extract<double>(moved(image, symmetries[s]).view(), 0.0, options));
+        const auto expected = rounded(moved<3>(contour, symmetries[s], {4, 4, 4}));
+        ASSERT_EQ(found.vertices.size(), expected.vertices.size());
+        ASSERT_EQ(found.simplices.size(), expected.simplices.size());
+        const std::set<std::array<double, 3>> there(expected.vertices.begin(), expected.vertices.end());
+        for (const auto& vertex : found.vertices) {
+          if (there.contains(vertex)) continue;
+          moved_any = true;
+          double nearest = 0x1p22;
+          for (const auto& other : expected.vertices)
+            nearest = std::min(nearest, std::hypot(vertex[0] - other[0], vertex[1] - other[1], vertex[2] - other[2]));
+          ASSERT_LT(nearest, 0.5 * 0x1p20);
+        }
+      }
+    }
+  }
+  EXPECT_TRUE(moved_any);
 }
 
 TEST(Symmetry, OfImagesIsThatOfContoursIn2d) { expect_equivariant<2>({9, 6}, 1, 1); }

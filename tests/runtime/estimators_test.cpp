@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -369,6 +370,74 @@ TEST(EstimatorsOfTheCaller, ThatThrowEndTheExtraction) {
     EXPECT_THROW(extract(image.view(), 0.5, options), std::domain_error);
     EXPECT_THROW(count(image.view(), 0.5, options), std::domain_error);
   }
+}
+
+/// Another answer each time, whatever the face.
+ExtractOptions with_changing_answers() {
+  ExtractOptions options;
+  options.ambiguity = Ambiguity::custom;
+  options.threads = 1;
+  options.estimator.choose = [calls = std::make_shared<std::atomic<std::uint64_t>>(0)](const AmbiguousFace&) {
+    return static_cast<facets::Choice>((++*calls * 0x9e3779b97f4a7c15u >> 33) % 3);
+  };
+  return options;
+}
+
+/// All numbers of vertices are there, so that nothing was written elsewhere; or the error names what is wrong. Returns
+/// whether it did.
+template <Value T, int N>
+bool is_found_out(const OwnedImage<T, N>& image, const ExtractOptions& options) {
+  try {
+    const auto contour = extract<double>(image.view(), 0.5, options);
+    for (const auto& simplex : contour.simplices)
+      for (const Index v : simplex) EXPECT_LT(v, contour.vertices.size());
+    return false;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::InvalidArgument);
+    EXPECT_NE(std::string(error.what()).find("answered differently for the same face"), std::string::npos)
+        << error.what();
+    return true;
+  }
+}
+
+TEST(EstimatorsOfTheCaller, ThatAnswerDifferentlyForTheSameFaceAreReportedAndOverwriteNothing) {
+  int reported = 0;
+  for (const bool close : {false, true}) {
+    ExtractOptions options = with_changing_answers();
+    options.close = close;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      EXPECT_TRUE((is_found_out(noise<float, 4>(std::size_t{6}, seed), options)));
+      auto missing = noise<float, 4>(std::size_t{6}, seed);
+      missing.values[missing.values.size() / 2] = std::numeric_limits<float>::quiet_NaN();
+      EXPECT_TRUE((is_found_out(missing, options)));
+      auto missing3 = noise<float, 3>(std::size_t{12}, seed);
+      missing3.values[missing3.values.size() / 2] = std::numeric_limits<float>::quiet_NaN();
+      EXPECT_TRUE((is_found_out(missing3, options)));
+      is_found_out(noise<float, 2>(std::size_t{20}, seed), options);
+      is_found_out(noise<float, 3>(std::size_t{12}, seed), options);
+    }
+    reported += is_found_out(noise<float, 5>(std::size_t{3}, 1), options) ? 1 : 0;
+  }
+  EXPECT_GT(reported, 0);
+}
+
+TEST(EstimatorsOfTheCaller, ThatThrowOnlyWhenAskedAgainReachTheCaller) {
+  const auto image = noise<float, 4>(std::size_t{6}, 1);
+  ExtractOptions options = with(Ambiguity::custom);
+  options.threads = 1;
+  std::size_t calls = 0;
+  options.estimator.choose = [&](const AmbiguousFace&) {
+    ++calls;
+    return facets::Choice::high;
+  };
+  count(image.view(), 0.5, options);
+  const std::size_t least = calls + calls / 2;
+  calls = 0;
+  options.estimator.choose = [&](const AmbiguousFace&) {
+    if (++calls > least) throw std::domain_error("no opinion");
+    return facets::Choice::high;
+  };
+  EXPECT_THROW(extract(image.view(), 0.5, options), std::domain_error);
 }
 
 TEST(EstimatorsOfTheCaller, AreToBeThere) {

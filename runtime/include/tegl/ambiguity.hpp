@@ -22,13 +22,16 @@ namespace tegl {
 /// high:
 ///   they are joined. Loops in a cube are never joined.
 /// - mean: the estimation method. The centre of every ambiguous face is high if the mean of the face's corners is at or
-///   above the isovalue, low otherwise (exactly: no rounding), and what has the centre's sign hangs together in the
-///   face.
+///   above the isovalue, low otherwise, and what has the centre's sign hangs together in the face. Exactly, without
+///   rounding, but where the sum of the corners is too large for a double, or one is infinite: then the sum of the
+///   corners divided by 1024, rounded, is compared; with infinities of both signs the centre is high.
 /// - saddle: as the multilinear interpolant has it, exactly in squares and cubes (tegl/saddle.hpp); in faces of four
 /// and
 ///   more dimensions, by the sign of their centre as `mean`.
 /// - custom: as ExtractOptions::estimator says.
-/// Faces that are not ambiguous come from the tables in any case.
+/// Faces that are not ambiguous come from the tables in any case. Where few faces are ambiguous, as in smooth images,
+/// all of them cost about the same; in noise, mean and saddle look at samples again (docs/ambiguity.md), and `count`,
+/// which otherwise looks at bits alone, takes up to 30 times as long as with low.
 enum class Ambiguity { low, high, mean, saddle, custom };
 
 /// An ambiguous face of the image's grid, as an estimator sees it. Valid during the call only.
@@ -77,8 +80,12 @@ struct Estimator {
   /// Asked for ambiguous squares, for cubes whose boundary the contour meets in several loops, and for faces of four
   /// and five dimensions where one is ambiguous in them or where what the contour has on their boundary is of several
   /// parts or not a sphere; in what order, how often and by which threads is not defined, and several ask at the same
-  /// time. The answer has to depend on the face alone, not on who asks: a face is asked for once by each tile around
-  /// it. For a square, `separate` is as `low`. What it throws ends the extraction and reaches the caller.
+  /// time. The answer has to depend on the face alone, not on who asks or when: a face is asked for by each tile around
+  /// it, and where counts come first (4D, missing values) once more. Where a row of tiles then has another number of
+  /// vertices or simplices than was counted, or tiles around a cube another filling of it, the extraction throws
+  /// InvalidArgument; answers that change and are not found out give tiles that do not fit together. Nothing is written
+  /// outside of the contour in either case. For a square, `separate` is as `low`. What it throws ends the extraction
+  /// and reaches the caller.
   std::function<facets::Choice(const AmbiguousFace& face)> choose;
   /// How many samples beyond the face `choose` looks at, along any axis, through AmbiguousFace::sample. Layers of
   /// streamed images are kept for so long; beyond them nothing is known there.
