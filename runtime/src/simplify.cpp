@@ -339,7 +339,21 @@ class Simplifier {
       const double factor = gently ? std::clamp(0.8 * allowed / errors[s], 0.1, 0.8) : 0.0;
       for (const Index v : result.simplices[s]) factors[kept_[v]] = std::min(factors[kept_[v]], factor);
     }
+    // What is around may be the cause: were it left as it is, the next round would do the same once more.
+    if (!gently) widen(factors, result, std::size_t{1} << (stats_.rounds - kGentleRounds - 1));
     for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[survivors_[v]];
+  }
+
+  /// Spreads the least factors by so many rings of simplices.
+  void widen(std::vector<double>& factors, const Contour<N, Real>& result, std::size_t rings) const {
+    for (std::size_t ring = 0; ring < rings; ++ring) {
+      const std::vector<double> before = factors;
+      for (const auto& simplex : result.simplices) {
+        double least = 1.0;
+        for (const Index v : simplex) least = std::min(least, before[kept_[v]]);
+        for (const Index v : simplex) factors[kept_[v]] = std::min(factors[kept_[v]], least);
+      }
+    }
   }
 
   /// The attribute: for each vertex the largest bound of its simplices.

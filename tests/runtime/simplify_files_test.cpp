@@ -13,6 +13,7 @@
 #include "tegl/deviation.hpp"
 #include "tegl/hyperplane.hpp"
 #include "tegl/io.hpp"
+#include "tegl/slice.hpp"
 #include "variants.hpp"
 
 namespace tegl::test {
@@ -114,6 +115,22 @@ TEST_P(SimplifiedFile, KeepsManifoldAndBorderWithinItsBound) {
       EXPECT_LE(*stats.error(), 3.0);  // steps: samples of these data are as rough as that
     }
   });
+}
+
+/// A goal is reached in some rounds: it is never given up for the contour as it was.
+TEST(ViscousFingers, AreSimplifiedHoweverSmallTheErrorIs) {
+  const auto path = std::filesystem::path(TEGL_SHARED_DATA_DIR) / "fourd/viscous_fingers_64x64x64x24_float.nhdr";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
+  const ReadImageResult input = read_image(path);
+  const auto& image = std::get<OwnedImage<float, 4>>(std::get<AnyImageN<4>>(input.image));
+  const auto contour = slice_image<float>(image.view(), 30.0, 7.3);
+  SimplifyOptions<3> options;
+  options.max_error = 0.02;
+  SimplifyStats stats;
+  const auto result = simplify(contour, options, &stats);
+  EXPECT_LT(result.simplices.size(), contour.simplices.size() / 2);
+  EXPECT_LE(*stats.error(), 0.02 + 1e-9);
+  EXPECT_GT(*stats.error(), 0.0);
 }
 
 /// The bound may be looser than the distance where contours are rough, but not by much.
