@@ -14,16 +14,14 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <system_error>
-#include <variant>
 #include <vector>
 
+#include "image_file.hpp"
 #include "memory.hpp"
 #include "tegl/active_tiles_io.hpp"
-#include "tegl/io.hpp"
 #include "timing.hpp"
 
 namespace tegl::bench {
@@ -152,11 +150,8 @@ int run(int argc, char** argv) {
       measure(file, few_balls(std::stoul(file.substr(6))), queries, csv);
       continue;
     }
-    const ReadImageResult read = read_image(file);
-    const std::string name = std::filesystem::path(file).filename().string();
-    std::visit(
-        [&](const auto& typed) { std::visit([&](const auto& owned) { measure(name, owned, queries, csv); }, typed); },
-        read.image);
+    with_image_of_file(file,
+                       [&](const std::string& of_file, const auto& owned) { measure(of_file, owned, queries, csv); });
   }
   if (csv != nullptr) std::fclose(csv);
   return 0;
@@ -165,11 +160,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace tegl::bench
 
-int main(int argc, char** argv) {
-  try {
-    return tegl::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "active_tiles_bench: {}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return tegl::bench::run_program("active_tiles_bench", argc, argv, tegl::bench::run); }

@@ -14,17 +14,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "fields.hpp"
+#include "image_file.hpp"
 #include "memory.hpp"
-#include "tegl/io.hpp"
 #include "tegl/pick.hpp"
 #include "tegl/seed_set.hpp"
 #include "timing.hpp"
@@ -193,11 +191,8 @@ int run(int argc, char** argv) {
       measure_field(name, arguments);
       continue;
     }
-    const ReadImageResult read = read_image(name);
-    const std::string file = std::filesystem::path(name).filename().string();
-    std::visit(
-        [&](const auto& typed) { std::visit([&](const auto& owned) { measure(file, owned, arguments); }, typed); },
-        read.image);
+    with_image_of_file(name,
+                       [&](const std::string& of_file, const auto& owned) { measure(of_file, owned, arguments); });
   }
   return 0;
 }
@@ -205,11 +200,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace tegl::bench
 
-int main(int argc, char** argv) {
-  try {
-    return tegl::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "seeds_bench: {}\n", error.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return tegl::bench::run_program("seeds_bench", argc, argv, tegl::bench::run); }

@@ -8,6 +8,23 @@
 #include <array>
 #include <type_traits>
 
+// Samples, what is calculated with, and a name. (The file is read once per instruction set.)
+#ifndef TEGL_FOR_VALUES
+#define TEGL_FOR_VALUES(APPLY)            \
+  APPLY(std::uint8_t, float, pick_u8f)    \
+  APPLY(std::int8_t, float, pick_i8f)     \
+  APPLY(std::uint16_t, float, pick_u16f)  \
+  APPLY(std::int16_t, float, pick_i16f)   \
+  APPLY(float, float, pick_f32f)          \
+  APPLY(std::uint8_t, double, pick_u8d)   \
+  APPLY(std::int8_t, double, pick_i8d)    \
+  APPLY(std::uint16_t, double, pick_u16d) \
+  APPLY(std::int16_t, double, pick_i16d)  \
+  APPLY(std::int32_t, double, pick_i32d)  \
+  APPLY(float, double, pick_f32d)         \
+  APPLY(double, double, pick_f64d)
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "edge_values.cpp"
 #include "dispatch.hpp"
@@ -134,18 +151,7 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
 // Highway's tables of functions hold no templates.
 #define TEGL_PICK(T, Calc, name) \
   bool name(const EdgesInRow<T, Calc>& row) { return pick(row); }
-TEGL_PICK(std::uint8_t, float, pick_u8f)
-TEGL_PICK(std::int8_t, float, pick_i8f)
-TEGL_PICK(std::uint16_t, float, pick_u16f)
-TEGL_PICK(std::int16_t, float, pick_i16f)
-TEGL_PICK(float, float, pick_f32f)
-TEGL_PICK(std::uint8_t, double, pick_u8d)
-TEGL_PICK(std::int8_t, double, pick_i8d)
-TEGL_PICK(std::uint16_t, double, pick_u16d)
-TEGL_PICK(std::int16_t, double, pick_i16d)
-TEGL_PICK(std::int32_t, double, pick_i32d)
-TEGL_PICK(float, double, pick_f32d)
-TEGL_PICK(double, double, pick_f64d)
+TEGL_FOR_VALUES(TEGL_PICK)
 #undef TEGL_PICK
 
 }  // namespace HWY_NAMESPACE
@@ -162,18 +168,7 @@ namespace tegl::detail {
   bool pick_values<T, Calc>(const EdgesInRow<T, Calc>& row) noexcept { \
     return HWY_DYNAMIC_DISPATCH(name)(row);                            \
   }
-TEGL_DISPATCH(std::uint8_t, float, pick_u8f)
-TEGL_DISPATCH(std::int8_t, float, pick_i8f)
-TEGL_DISPATCH(std::uint16_t, float, pick_u16f)
-TEGL_DISPATCH(std::int16_t, float, pick_i16f)
-TEGL_DISPATCH(float, float, pick_f32f)
-TEGL_DISPATCH(std::uint8_t, double, pick_u8d)
-TEGL_DISPATCH(std::int8_t, double, pick_i8d)
-TEGL_DISPATCH(std::uint16_t, double, pick_u16d)
-TEGL_DISPATCH(std::int16_t, double, pick_i16d)
-TEGL_DISPATCH(std::int32_t, double, pick_i32d)
-TEGL_DISPATCH(float, double, pick_f32d)
-TEGL_DISPATCH(double, double, pick_f64d)
+TEGL_FOR_VALUES(TEGL_DISPATCH)
 #undef TEGL_DISPATCH
 
 }  // namespace tegl::detail

@@ -40,10 +40,28 @@ SimplifyOptions<4> to_half() {
   return options;
 }
 
-/// What looks up vertices by number.
-std::vector<std::pair<std::string, std::function<void(const Any&)>>> all_that_follow_vertices() {
+using Calls = std::vector<std::pair<std::string, std::function<void(const Any&)>>>;
+
+/// What makes another contour of one, and carries normals and attributes along; beside these, `others`.
+Calls all_that_make_contours(Calls others) {
   static const std::vector<double> at = {0.5};
-  return {
+  const Calls calls = {
+      {"slice", [](const Any& c) { slice(c, 0.5); }},
+      {"slice by a hyperplane", [](const Any& c) { slice(c, Hyperplane<4>::across(1, 0.5)); }},
+      {"slice_stack", [](const Any& c) { slice_stack<4, float>(c, Eigen::Vector4d::UnitW(), at); }},
+      {"Scrubber", [](const Any& c) { const Scrubber<4, float> scrubber(c); }},
+      {"project", [](const Any& c) { project(c); }},
+      {"outline", [](const Any& c) { outline(c); }},
+      {"simplify", [](const Any& c) { simplify(c, to_half()); }},
+  };
+  others.insert(others.end(), calls.begin(), calls.end());
+  return others;
+}
+
+/// What looks up vertices by number.
+Calls all_that_follow_vertices() {
+  static const std::vector<double> at = {0.5};
+  return all_that_make_contours({
       {"label_components", [](const Any& c) { label_components(c); }},
       {"components", [](const Any& c) { components(c, no_labels()); }},
       {"split_components", [](const Any& c) { split_components(c, no_labels()); }},
@@ -55,38 +73,23 @@ std::vector<std::pair<std::string, std::function<void(const Any&)>>> all_that_fo
        [](const Any& c) {
          elements_by_cell(c, Grid<4>::unit({9, 9, 9, 9}));
        }},
-      {"slice", [](const Any& c) { slice(c, 0.5); }},
-      {"slice by a hyperplane", [](const Any& c) { slice(c, Hyperplane<4>::across(1, 0.5)); }},
-      {"slice_stack", [](const Any& c) { slice_stack<4, float>(c, Eigen::Vector4d::UnitW(), at); }},
-      {"Scrubber", [](const Any& c) { const Scrubber<4, float> scrubber(c); }},
-      {"project", [](const Any& c) { project(c); }},
-      {"outline", [](const Any& c) { outline(c); }},
       {"flat_normals", [](const Any& c) { flat_normals(c); }},
       {"geometric_normals", [](const Any& c) { geometric_normals(c); }},
-      {"simplify", [](const Any& c) { simplify(c, to_half()); }},
       {"deviation from", [](const Any& c) { deviation(c, tetrahedron()); }},
       {"deviation to", [](const Any& c) { deviation(tetrahedron(), c); }},
       {"deviation of nothing", [](const Any& c) { deviation(Any(), c); }},
       {"track", [](const Any& c) { track(c); }},
-  };
+  });
 }
 
 /// What carries normals and attributes along.
-std::vector<std::pair<std::string, std::function<void(const Any&)>>> all_that_carry_attributes() {
-  static const std::vector<double> at = {0.5};
-  return {
+Calls all_that_carry_attributes() {
+  return all_that_make_contours({
       {"split_components", [](const Any& c) { split_components(c, label_components(c)); }},
       {"select_components", [](const Any& c) { select_components(c, label_components(c), {true}); }},
       {"add_component_attribute", [](Any c) { add_component_attribute(c, label_components(c)); }},
       {"elements", [](const Any& c) { elements(c); }},
-      {"slice", [](const Any& c) { slice(c, 0.5); }},
-      {"slice by a hyperplane", [](const Any& c) { slice(c, Hyperplane<4>::across(1, 0.5)); }},
-      {"slice_stack", [](const Any& c) { slice_stack<4, float>(c, Eigen::Vector4d::UnitW(), at); }},
-      {"Scrubber", [](const Any& c) { const Scrubber<4, float> scrubber(c); }},
-      {"project", [](const Any& c) { project(c); }},
-      {"outline", [](const Any& c) { outline(c); }},
-      {"simplify", [](const Any& c) { simplify(c, to_half()); }},
-  };
+  });
 }
 
 TEST(UnsoundContours, VertexNumbersOutOfRangeAreRefused) {
