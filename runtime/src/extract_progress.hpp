@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "call_apart.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::detail {
@@ -50,7 +51,7 @@ class ProgressReporter {
     last_ = std::max(last_, std::min(1.0, slabs / static_cast<double>(slabs_)));
     bool goes_on = false;
     try {
-      goes_on = progress_(last_);
+      goes_on = call_apart([&] { return progress_(last_); });
     } catch (...) {
       stopped_.store(true, std::memory_order_relaxed);
       throw;

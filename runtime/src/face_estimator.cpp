@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "call_apart.hpp"
 #include "tegl/error.hpp"
 #include "tegl/saddle.hpp"
 
@@ -193,7 +194,8 @@ facets::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span
     near.end[a] = std::min(near.end[a], at + static_cast<std::ptrdiff_t>(axes >> a & 1u) + reach + 1);
   }
   try {
-    const facets::Choice choice = estimator_.choose(AmbiguousFace(base, axes, values, isovalue_, near));
+    const AmbiguousFace face(base, axes, values, isovalue_, near);
+    const facets::Choice choice = call_apart([&] { return estimator_.choose(face); });
     return choice <= facets::Choice::high ? choice : facets::Choice::separate;
   } catch (...) {
     keep_error(std::current_exception());

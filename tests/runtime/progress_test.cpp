@@ -4,6 +4,8 @@
 // longer wanted ends where it is, whichever way it is made and however many threads make it.
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include "fields.hpp"
 #include "tegl/extract.hpp"
@@ -158,6 +161,57 @@ TEST(Progress, WhatItThrowsReachesTheCaller) {
       EXPECT_EQ(seen, 3);
     }
 }
+
+#ifndef __SANITIZE_THREAD__  // it does not see how TBB, which is not built for it, orders things
+
+/// Work for several threads, for which the one that asks has to wait.
+void wait_for_others() {
+  std::atomic<std::uint64_t> sum = 0;
+  tbb::parallel_for(0, 8, [&](int i) {
+    std::uint64_t own = 1;
+    for (int k = 0; k < 20000; ++k) own = own * 6364136223846793005u + static_cast<std::uint64_t>(i);
+    sum += own;
+  });
+}
+
+/// While a caller's function waits, its thread may take up other work: none that calls it once more.
+TEST(Progress, IsNotAskedForWhileItWaitsForTasksOfItsOwn) {
+  const auto image = noise<float, 3>({60, 50, 40}, 11);
+  for (const Way& way : ways(image)) {
+    int depth = 0, deepest = 0;
+    ExtractOptions options;
+    options.threads = 4;
+    options.progress = [&](double) {
+      deepest = std::max(deepest, ++depth);
+      wait_for_others();
+      --depth;
+      return true;
+    };
+    way.make(options);
+    EXPECT_EQ(deepest, 1) << way.name;
+  }
+}
+
+TEST(Progress, NorAreEstimators) {
+  const auto image = noise<float, 3>({40, 12, 12}, 13);
+  for (const Way& way : ways(image)) {
+    std::atomic<int> deepest = 0;
+    ExtractOptions options;
+    options.threads = 4;
+    options.ambiguity = Ambiguity::custom;
+    options.estimator.choose = [&](const AmbiguousFace&) {
+      static thread_local int depth = 0;
+      if (++depth > deepest) deepest = depth;
+      tbb::parallel_for(0, 4, [](int) {});
+      --depth;
+      return facets::Choice::high;
+    };
+    way.make(options);
+    EXPECT_EQ(deepest, 1) << way.name;
+  }
+}
+
+#endif
 
 }  // namespace
 }  // namespace tegl::test
