@@ -6,9 +6,11 @@
 // differences on regular ones (8.3) are the special case; interpolation along the edge.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -60,13 +62,14 @@ class AxisSteps {
 
 /// The derivative along an axis, by axis coordinates (before the map to the world): the mean of the difference
 /// quotients to both sides. Where one of them is not finite (a missing sample, an infinite one), the other; 0 if
-/// neither is.
+/// neither is. Always a number: sums of derivatives are no NaN.
 inline double derivative(double backward, double value, double forward, const StepWeights& weights) noexcept {
   const double ahead = (forward - value) * weights.forward;
   const double back = (value - backward) * weights.backward;
   if (std::isfinite(ahead + back)) return ahead + back;
-  if (std::isfinite(ahead) && !std::isfinite(back)) return 2.0 * ahead;
-  if (std::isfinite(back) && !std::isfinite(ahead)) return 2.0 * back;
+  constexpr double kHalf = std::numeric_limits<double>::max() / 2;
+  if (std::isfinite(ahead) && !std::isfinite(back)) return 2.0 * std::clamp(ahead, -kHalf, kHalf);
+  if (std::isfinite(back) && !std::isfinite(ahead)) return 2.0 * std::clamp(back, -kHalf, kHalf);
   return 0.0;  // where both are finite but not their sum, the field is too steep to say more
 }
 
