@@ -40,7 +40,7 @@ struct EdgeTarget {
   VertexRun<Vertex> vertices;
 };
 
-/// One per thread. O(samples of a row) memory.
+/// One per thread. O(samples of a row) memory: of long rows, where the edges are; all else by pieces of them.
 template <int N, class Real>
 class EdgeWriter {
  public:
@@ -51,17 +51,19 @@ class EdgeWriter {
 
   EdgeWriter(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
       : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
-    for (int a = 0; a < N; ++a) lists_[a].allocate(room(shape.size(0)), a > 0 && a + 1 < N);
+    for (int a = 0; a < N; ++a) lists_[a].allocate(shape.size(0), a > 0 && a + 1 < N);
     segments_.reserve(most_segments(shape.size(0)));  // later on, nothing may be thrown
     if (placement.normals() == nullptr) return;
     normals_ = std::make_unique<NormalScratch>();
-    for (List& list : lists_) list.normals.resize(room(shape.size(0)));
+    for (List& list : lists_) list.normals.resize(room_together(shape.size(0)));
   }
 
   /// Of one for rows of so many samples.
-  static constexpr std::size_t bytes(std::size_t samples) noexcept {
-    constexpr std::size_t kEach = sizeof(std::uint32_t) + sizeof(std::ptrdiff_t) + N * sizeof(double) + sizeof(Vertex);
-    return N * kEach * room(samples) + most_segments(samples) * sizeof(Segment);
+  static constexpr std::size_t bytes(std::size_t samples, bool normals) noexcept {
+    constexpr std::size_t kEach = sizeof(std::ptrdiff_t) + N * sizeof(double);
+    const std::size_t vertices = room_together(samples) * (normals ? 2 : 1);
+    return N * (sizeof(std::uint32_t) * room(samples) + kEach * room_at_once(samples) + sizeof(Vertex) * vertices) +
+           most_segments(samples) * sizeof(Segment) + (normals ? sizeof(NormalScratch) : 0);
   }
 
   /// From here on, until finish(), edges are those of `target`.
@@ -103,19 +105,26 @@ class EdgeWriter {
   }
 
  private:
-  static constexpr std::size_t kMargin = 16;  ///< what is written behind lists
-  static constexpr std::uint32_t kMany = 48;  ///< edges of a row that need no others beside them
-  static constexpr std::size_t kAtOnce = 8;   ///< values
+  static constexpr std::size_t kMargin = 16;   ///< what is written behind lists
+  static constexpr std::uint32_t kMany = 48;   ///< edges of a row that need no others beside them
+  static constexpr std::size_t kAtOnce = 8;    ///< values
+  static constexpr std::size_t kPiece = 4096;  ///< edges of one row that are worked on at a time
 
   /// How many edges make a list full, and what it has room for, where rows have so many samples.
   static constexpr std::size_t full(std::size_t samples) noexcept {
     return std::clamp<std::size_t>(samples / 2, 32, 512);
   }
   static constexpr std::size_t room(std::size_t samples) noexcept { return full(samples) + samples + kMargin; }
+  /// For edges of several rows.
+  static constexpr std::size_t room_together(std::size_t samples) noexcept { return full(samples) + kMany + kMargin; }
+  static constexpr std::size_t room_at_once(std::size_t samples) noexcept {
+    return std::max(room_together(samples), std::min(samples, kPiece) + kMargin);
+  }
   /// Each has an edge at least.
   static constexpr std::size_t most_segments(std::size_t samples) noexcept { return N * (full(samples) + 1); }
 
-  /// Edges along one axis.
+  /// Edges along one axis. Where they are of one row, there is no more than a piece of what is below `at`: alike for
+  /// all of them, or used up before the next piece.
   struct List {
     std::size_t size = 0;
     std::vector<std::uint32_t> at;
@@ -123,14 +132,15 @@ class EdgeWriter {
     std::array<std::vector<double>, N> start;  ///< as in EdgePoints
     std::vector<double> end;
     std::vector<double> alphas;
-    std::vector<Vertex> points;
-    std::vector<Vertex> normals;  ///< if any are wanted
+    std::vector<Vertex> points;   ///< of several rows
+    std::vector<Vertex> normals;  ///< likewise, if any are wanted
 
-    void allocate(std::size_t most, bool has_end) {
-      at.resize(most);
+    void allocate(std::size_t samples, bool has_end) {
+      at.resize(room(samples));
+      points.resize(room_together(samples));
+      const std::size_t most = room_at_once(samples);
       rows.resize(most);
       alphas.resize(most);
-      points.resize(most);
       for (int a = 1; a + 1 < N; ++a) start[a].resize(most);
       if (has_end) end.resize(most);
     }
@@ -168,9 +178,10 @@ class EdgeWriter {
       const std::uint32_t count = counts[axis];
       if (count == 0) continue;
       List& list = lists_[axis];
-      fill(list.rows, list.size, count, offset);
-      for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, count, placement_.sample(a, index[a]));
-      if (axis > 0 && axis + 1 < N) fill(list.end, list.size, count, placement_.sample(axis, index[axis] + 1));
+      const std::size_t filled = std::min<std::size_t>(count, kPiece);
+      fill(list.rows, list.size, filled, offset);
+      for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, filled, placement_.sample(a, index[a]));
+      if (axis > 0 && axis + 1 < N) fill(list.end, list.size, filled, placement_.sample(axis, index[axis] + 1));
       segments_.push_back({row, axis, static_cast<std::uint32_t>(list.size), count, firsts[axis]});
       list.size += count;
       longest = std::max(longest, list.size);
@@ -195,15 +206,26 @@ class EdgeWriter {
   void flush() noexcept {
     if (segments_.empty()) return;
     const bool in_place = segments_.back().row == segments_.front().row;  // one row: one segment in a list
-    std::array<Vertex*, N> out;
-    for (int axis = 0; axis < N; ++axis) out[axis] = lists_[axis].points.data();
+    std::array<Vertex*, N> points, normals;
+    for (int axis = 0; axis < N; ++axis) {
+      points[axis] = lists_[axis].points.data();
+      normals[axis] = lists_[axis].normals.data();
+    }
     if (in_place)
-      for (const Segment& segment : segments_) out[segment.axis] = &target_.vertices[segment.vertex];
+      for (const Segment& segment : segments_) {
+        points[segment.axis] = &target_.vertices[segment.vertex];
+        if (normals_) normals[segment.axis] = &target_.vertices.normal(segment.vertex);
+      }
     for (int axis = 0; axis < N; ++axis)
-      if (lists_[axis].size != 0) make_points(axis, out[axis]);
+      for (std::size_t first = 0; first < lists_[axis].size; first += kPiece) {
+        const EdgesInRows edges = make_points(axis, first, points[axis] + first);
+        if (normals_) make_normals(axis, first, edges, normals[axis] + first);
+      }
     if (!in_place)
-      for (const Segment& segment : segments_) put(segment, lists_[segment.axis].points, target_.vertices.data);
-    if (normals_) flush_normals(in_place);
+      for (const Segment& segment : segments_) {
+        put(segment, lists_[segment.axis].points, target_.vertices.data);
+        if (normals_) put(segment, lists_[segment.axis].normals, target_.vertices.normals);
+      }
     segments_.clear();
     for (List& list : lists_) list.size = 0;
   }
@@ -212,45 +234,36 @@ class EdgeWriter {
     return axis == N - 1 ? target_.in_slab : target_.in_layer;
   }
 
-  /// Of one list.
-  void make_points(int axis, Vertex* out) noexcept {
+  /// Of a piece of one list, from edge `first` on, which it returns.
+  EdgesInRows make_points(int axis, std::size_t first, Vertex* out) noexcept {
     List& list = lists_[axis];
     const std::size_t layer = run(axis).layer;
-    source_.edge_alphas(layer, axis, {list.rows.data(), list.at.data(), list.size}, list.alphas.data());
+    const EdgesInRows edges{list.rows.data(), list.at.data() + first, std::min(kPiece, list.size - first)};
+    source_.edge_alphas(layer, axis, edges, list.alphas.data());
     EdgePoints<N, Real> points{};
-    points.at = list.at.data();
+    points.at = edges.at;
     points.alphas = list.alphas.data();
-    points.count = list.size;
+    points.count = edges.count;
     points.axis = axis;
     for (int a = 1; a + 1 < N; ++a) points.start[a] = list.start[a].data();
     points.end = list.end.data();
     points.out = out;
     placement_.edges(layer, points);
+    return edges;
   }
 
-  /// The normals of all that is listed, whose places on edges are known.
-  void flush_normals(bool in_place) noexcept {
-    std::array<Vertex*, N> out;
-    for (int axis = 0; axis < N; ++axis) out[axis] = lists_[axis].normals.data();
-    if (in_place)
-      for (const Segment& segment : segments_) out[segment.axis] = &target_.vertices.normal(segment.vertex);
-    for (int axis = 0; axis < N; ++axis) {
-      const List& list = lists_[axis];
-      if (list.size == 0) continue;
-      const auto start_of = [&](std::size_t edge) {
-        const Segment& segment = *std::find_if(segments_.begin(), segments_.end(), [&](const Segment& s) {
-          return s.axis == axis && edge - s.first < s.count;
-        });
-        auto start = start_in(segment.row, axis);
-        start[0] = list.at[edge];
-        return start;
-      };
-      placement_.normals()->edges(start_in(segments_.front().row, axis), axis,
-                                  {list.rows.data(), list.at.data(), list.size}, list.alphas.data(), *normals_,
-                                  out[axis], start_of);
-    }
-    if (!in_place)
-      for (const Segment& segment : segments_) put(segment, lists_[segment.axis].normals, target_.vertices.normals);
+  /// The normals of that piece, whose places on edges are known.
+  void make_normals(int axis, std::size_t first, const EdgesInRows& edges, Vertex* out) noexcept {
+    const auto start_of = [&](std::size_t i) {
+      const Segment& segment = *std::find_if(segments_.begin(), segments_.end(), [&](const Segment& s) {
+        return s.axis == axis && first + i - s.first < s.count;
+      });
+      auto start = start_in(segment.row, axis);
+      start[0] = edges.at[i];
+      return start;
+    };
+    placement_.normals()->edges(start_in(segments_.front().row, axis), axis, edges, lists_[axis].alphas.data(),
+                                *normals_, out, start_of);
   }
 
   /// The first sample of the row that edges start in.

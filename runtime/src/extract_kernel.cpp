@@ -108,7 +108,7 @@ class Extraction {
                  }),
         ahead_(workers_.count() > 1 && source.is_at_hand()),
         batch_(plan.batch == 0 ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
-                                              EdgeWriter<N, Real>::bytes(shape_.size(0)), ahead_)
+                                              EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals), ahead_)
                                : std::min(plan.batch, shape_.layers() - 1)),
         layers_((ahead_ ? 2 : 1) * batch_ + 2),
         slabs_((ahead_ ? 2 : 1) * batch_ + 1) {

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include <Eigen/LU>
 
@@ -26,10 +27,17 @@ struct EdgeValues {
   std::array<Calc, 4 * kEdgesAtOnce> row_weights{};
 };
 
-/// What a thread keeps between rows.
-struct NormalScratch {
-  EdgeValues<float> floats;
-  EdgeValues<double> doubles;
+/// What a thread keeps between rows: an extraction calculates in one of the types.
+class NormalScratch {
+ public:
+  template <class Calc>
+  [[nodiscard]] EdgeValues<Calc>& of() noexcept {
+    if (auto* const there = std::get_if<EdgeValues<Calc>>(&values_)) return *there;
+    return values_.emplace<EdgeValues<Calc>>();
+  }
+
+ private:
+  std::variant<EdgeValues<double>, EdgeValues<float>> values_;
 };
 
 template <int N, class Real>
@@ -69,8 +77,8 @@ class NormalWriter {
       return;
     }
     if constexpr (std::is_same_v<Real, float>)
-      if (in_float_) return edges_by(start, axis, edges, alphas, scratch.floats, out, start_of);
-    edges_by(start, axis, edges, alphas, scratch.doubles, out, start_of);
+      if (in_float_) return edges_by(start, axis, edges, alphas, scratch.of<float>(), out, start_of);
+    edges_by(start, axis, edges, alphas, scratch.of<double>(), out, start_of);
   }
 
   /// As Placement::in_cell.

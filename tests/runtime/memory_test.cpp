@@ -60,7 +60,8 @@ std::size_t bytes_beside(const OwnedImage<T, N>& image, double isovalue, const E
   EXPECT_GT(size.simplices, 0u);
   std::vector<std::array<float, N>> vertices(size.vertices);
   std::vector<std::array<Index, N>> simplices(size.simplices);
-  const ContourRoom<N, float> room{vertices, simplices};
+  std::vector<std::array<float, N>> normals(options.normals ? size.vertices : 0);
+  const ContourRoom<N, float> room{vertices, simplices, normals};
   extract_into(image.view(), isovalue, room, options);  // threads and tables are there
   const std::size_t before = live_bytes;
   peak_bytes = before;
@@ -76,20 +77,47 @@ std::vector<ExtractOptions> all_variants() {
   return result;
 }
 
+/// With 1 and 4 threads, without normals and with them.
+template <Value T, int N>
+void expect_at_most(std::size_t bytes, const OwnedImage<T, N>& image, double isovalue,
+                    const std::vector<ExtractOptions>& all) {
+  for (ExtractOptions options : all)
+    for (const unsigned threads : {1u, 4u})
+      for (const bool normals : {false, true}) {
+        options.threads = threads;
+        options.normals = normals;
+        SCOPED_TRACE(testing::Message() << describe(options) << ", threads " << threads << ", normals " << normals);
+        EXPECT_LE(bytes_beside(image, isovalue, options), bytes);
+      }
+}
+
 template <Value T, int N>
 void expect_a_sixteenth(const OwnedImage<T, N>& image, double isovalue) {
-  for (ExtractOptions options : all_variants())
-    for (const unsigned threads : {1u, 4u}) {
-      options.threads = threads;
-      SCOPED_TRACE(describe(options) + ", threads " + std::to_string(threads));
-      EXPECT_LE(bytes_beside(image, isovalue, options), image.values.size() * sizeof(T) / 16);
-    }
+  expect_at_most(image.values.size() * sizeof(T) / 16, image, isovalue, all_variants());
 }
 
 TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn2d) { expect_a_sixteenth(noise<float, 2>(2048, 1), 0.5); }
 TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn3d) { expect_a_sixteenth(noise<float, 3>(112, 2), 0.9); }
 TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn4d) {
   expect_a_sixteenth(noise<float, 4>({64, 16, 16, 72}, 3), 0.98);
+}
+
+/// 128 KiB and what is not by slabs, however small the image.
+TEST(Memory, BesideASmallImageIsAnEighthOfAMebibyte) {
+  constexpr std::size_t kMost = (std::size_t{1} << 17) + 8192;
+  expect_at_most(kMost, noise<float, 3>(64, 5), 0.5, all_variants());
+  expect_at_most(kMost, noise<std::uint8_t, 3>(64, 6), 127.5, variants());
+  expect_at_most(kMost, noise<float, 2>(512, 7), 0.5, all_variants());
+}
+TEST(Memory, BesideAnImageOfAFewMebibytesIsASixteenthOfIt) {
+  expect_a_sixteenth(noise<float, 2>(1024, 8), 0.5);
+  expect_a_sixteenth(noise<float, 3>(96, 9), 0.5);
+}
+
+/// Of few long rows, a thread's lists of edges are the most.
+TEST(Memory, BesideLongRows) {
+  const auto image = noise<float, 2>({50000, 50}, 10);
+  for (const auto& o : variants()) expect_at_most(image.values.size() * sizeof(float) / 4, image, 0.5, {o});
 }
 
 /// What is needed beside a long image is a few slabs' worth: a longer one needs no more.

@@ -15,6 +15,7 @@
 
 #include "fields.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/normals.hpp"
 #include "tegl/slice.hpp"
 #include "variants.hpp"
 
@@ -346,17 +347,70 @@ TEST(Normals, OfTheLargestNumbersAreNumbers) {
   }
 }
 
-TEST(Normals, DoNotChangeHowMuchIsCounted) {
-  const auto image = noise<float, 3>(4, 1);
-  EXPECT_EQ(count(image.view(), 0.5, with_normals()), count(image.view(), 0.5));
+/// One-sided differences twice as large as half of the largest number.
+template <int N>
+void expect_normals_of_the_steepest(const std::array<std::size_t, N>& sizes) {
+  Grid<N> grid = Grid<N>::unit(sizes);
+  for (Axis& axis : grid.axes) axis = Axis::uniform(axis.size(), 0.0, 0.6);
+  auto image = noise_with_missing<double, N>(grid, 21, 0.1);
+  for (double& value : image.values) value = (2.0 * value - 1.0) * 1.5e308;
+  for (ExtractOptions options : variants())
+    for (const GradientKind kind : {GradientKind::differences, GradientKind::sobel}) {
+      options.close = true;
+      options.gradient = kind;
+      SCOPED_TRACE(describe(options));
+      const auto contour = extract<double>(image.view(), 1e307, with_normals(options));
+      ASSERT_GT(contour.normals.size(), 100u);
+      const auto by_gradients = gradient_normals(image.view(), contour, kind);
+      for (std::size_t v = 0; v < contour.normals.size(); ++v)
+        for (const auto& normal : {contour.normals[v], by_gradients[v]}) {
+          const double size = length<N, double>(normal);
+          ASSERT_TRUE(size == 0.0 || std::abs(size - 1.0) < 1e-12) << "vertex " << v << ": " << size;
+        }
+    }
 }
 
-/// The cut's normals by place: at most one vertex each, where nothing is pinched.
+TEST(Normals, NextToMissingValuesAreNumbersHoweverSteepTheField) {
+  expect_normals_of_the_steepest<2>({30, 20});
+  expect_normals_of_the_steepest<3>({12, 9, 8});
+  expect_normals_of_the_steepest<4>({7, 6, 5, 6});
+}
+
+/// Normals by place; where the contour passes a place twice, one of them.
 template <int N, class Real>
 std::map<std::array<Real, N>, std::array<Real, N>> by_place(const Contour<N, Real>& contour) {
   std::map<std::array<Real, N>, std::array<Real, N>> result;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) result[contour.vertices[v]] = contour.normals[v];
   return result;
+}
+
+/// Edges of one row are worked on in pieces if they are more than some thousand; across it they are few.
+TEST(Normals, AndPointsOfLongRowsAreThoseOfTheTransposedImage) {
+  constexpr std::size_t kLong = 20000;
+  const auto along = noise<float, 2>({kLong, 4}, 23);
+  auto across = noise<float, 2>({4, kLong}, 1);
+  for (std::size_t i = 0; i < kLong; ++i)
+    for (std::size_t j = 0; j < 4; ++j) across.values[4 * i + j] = along.values[kLong * j + i];
+  for (const unsigned threads : {1u, 4u}) {
+    ExtractOptions options = with_normals();
+    options.threads = threads;
+    const auto contour = extract<float>(along.view(), 0.5, options);
+    ASSERT_GT(contour.vertices.size(), 3 * kLong);
+    const auto expected = by_place(extract<float>(across.view(), 0.5, options));
+    for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+      const auto& [x, y] = contour.vertices[v];
+      const auto swapped = expected.find({y, x});
+      ASSERT_NE(swapped, expected.end()) << "vertex " << v << " at " << x << ", " << y;
+      // Floats: squares are summed in the order of the axes, and small gradients have few digits.
+      ASSERT_NEAR(contour.normals[v][0], swapped->second[1], 1e-4) << "vertex " << v;
+      ASSERT_NEAR(contour.normals[v][1], swapped->second[0], 1e-4) << "vertex " << v;
+    }
+  }
+}
+
+TEST(Normals, DoNotChangeHowMuchIsCounted) {
+  const auto image = noise<float, 3>(4, 1);
+  EXPECT_EQ(count(image.view(), 0.5, with_normals()), count(image.view(), 0.5));
 }
 
 template <int N>

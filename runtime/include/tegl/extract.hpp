@@ -37,13 +37,15 @@ struct ExtractOptions {
   /// Whether vertices get normals: in the contour's `direction`, along the image's gradient there; of length 1, or 0
   /// where it vanishes. At samples it is the mean of the difference quotients forward and backward, at
   /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
-  /// along edges). Normals of a vertex are as exact as its type allows.
+  /// along edges). Normals of a vertex are as exact as its type allows. Where a 4D contour is taken apart next to missing
+  /// values, vertices put in the middle between two have the mean of their normals, of length 1.
   bool normals = false;
   GradientKind gradient = GradientKind::differences;  ///< what normals are made of
   /// How many threads work; 0, or more than there are: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
   /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
-  /// axis) at least once, and within large ones, with fractions that do not fall.
+  /// axis) at least once, and within large ones, with fractions that do not fall; how often depends on the threads' pace.
+  /// It may use threads (TBB) itself: while it waits for them, it is not called again.
   Progress progress;
 };
 
@@ -66,7 +68,9 @@ struct ExtractStats {
 /// of the last axis are kept off the layers by the least that Real can show, so that `slice` finds the contour of a
 /// layer in it even where samples equal the isovalue. An image with an axis of one sample has no tiles, hence an empty
 /// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for
-/// 5D images with missing values. Cost: one pass over the samples plus the output. Real: float or double.
+/// 5D images with missing values. Cost: one pass over the samples plus the output. Memory beside both, up to 4D: 1/16 of
+/// an image of float, or 128 KiB where that is more; and at least one slab's bits and lists (docs/cost.md). Real: float
+/// or double.
 ///
 /// 5D: no tables; a tile is built when its signature is first met, up to symmetry: 0.1 to 0.3 ms for each where the
 /// image is smooth, 3 ms in noise. That is little for smooth images, which have few kinds of tiles, and nearly all for
