@@ -2,7 +2,7 @@
 //
 // How fast contours are made, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
 // closed or not, by number of threads, and by size (scaling/...: what bench/scaling plots); in 5D a smooth field and
-// noise.
+// noise, and single tiles.
 // stages.hpp says what is reported.
 #include <benchmark/benchmark.h>
 
@@ -11,11 +11,14 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <random>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "fields.hpp"
 #include "stages.hpp"
+#include "tegl/tile_facets.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -142,19 +145,43 @@ void add_scaling(const std::string& field, std::initializer_list<std::size_t> si
 void add_5d() {
   for (const int threads : {1, 4}) {
     if (threads > 1 && !kHasThreads) continue;
-    add<float, 5>("extract", {"sphere", 16, {}, threads});
+    add<float, 5>("extract", {"sphere", 12, {}, threads});
+    add<float, 5>("extract", {"sphere", 20, {}, threads});
     add<float, 5>("extract", {"noise", 4, {}, threads});
   }
+}
+
+/// The facets of one tile of 5D: a corner cut off, a plane through it, random signatures, and random signs of faces
+/// too.
+void add_tiles() {
+  constexpr int N = 5;
+  const auto add_tile = [](const char* name, std::uint32_t signature, bool random_signature, bool random_signs) {
+    benchmark::RegisterBenchmark((std::string("tile_facets/5D/") + name).c_str(), [=](benchmark::State& state) {
+      std::mt19937_64 random(1);
+      std::vector<facets::Choice> signs;
+      for (auto _ : state) {
+        const std::uint64_t key = random_signature ? random() & 0xffffffffU : signature;
+        signs.resize(random_signs ? 243 : 0);
+        for (auto& sign : signs) sign = static_cast<facets::Choice>(random() % 3);
+        benchmark::DoNotOptimize(tile_facets<N>(key, signs));
+      }
+    })->Unit(benchmark::kMillisecond);
+  };
+  add_tile("corner", 1U, false, false);
+  add_tile("plane", 0xaaaaaaaaU, false, false);
+  add_tile("random", 0, true, false);
+  add_tile("random_signs", 0, true, true);
 }
 
 void add_all() {
   for (const auto& field : field_names(2)) add_field<2>(field, 4096);
   for (const auto& field : field_names(3)) add_field<3>(field, field == "noise" ? 128 : 256);
   for (const auto& field : field_names(4)) add_field<4>(field, field == "noise" ? 32 : 64);
-  add_estimators<2>("waves", 4096, 4096);
+  add_estimators<2>("gyroid", 4096, 4096);
   add_estimators<3>("gyroid", 256, 128);
   add_estimators<4>("balls", 64, 32);
   add_5d();
+  add_tiles();
   add_types();
   add_scaling<3>("metaballs", {32, 64, 128, 256, 512});
   add_scaling<3>("gyroid", {32, 64, 128, 256, 512});

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Small fixed inputs whose instructions are counted: `instruction_bench --list` names them, `instruction_bench NAME`
-// runs one. What counts happens inside the function tegl_measured, which valgrind knows by that name (see
-// bench/instructions); making the field does not.
+// Fixed inputs whose instructions are counted: `instruction_bench --list` names the small ones, which are watched,
+// `instruction_bench --list-large` those whose counts explain times, and `instruction_bench NAME` runs one. What counts
+// happens inside the function tegl_measured, which valgrind knows by that name (see bench/instructions); making the
+// field does not.
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -133,16 +134,37 @@ std::vector<NamedCase> all_cases() {
   };
 }
 
+/// What bench/side_by_side runs, at an eighth of its samples or less.
+std::vector<NamedCase> large_cases() {
+  const ExtractOptions normals = with_normals(ExtractOptions{}, true);
+  return {
+      extract_case<3>("metaballs", 256),
+      extract_case<3>("gyroid", 256),
+      extract_case<3>("noise", 96),
+      extract_case<3>("metaballs", 256, " normals", normals),
+      extract_case<3>("gyroid", 256, " normals", normals),
+      extract_case<3>("noise", 96, " normals", normals),
+      extract_case<2>("metaballs", 2048),
+      extract_case<2>("gyroid", 2048),
+      extract_case<2>("noise", 1024),
+      extract_case<4>("balls", 48),
+      extract_case<4>("sphere", 48),
+      extract_case<4>("noise", 20),
+  };
+}
+
 int run(const std::string& name) {
-  for (const auto& [known, work] : all_cases()) {
-    if (name == "--list") std::printf("%s\n", known.c_str());
-    if (name == known) {
-      work();
-      return 0;
+  for (const auto& [option, cases] : {std::pair{"--list", all_cases()}, {"--list-large", large_cases()}}) {
+    for (const auto& [known, work] : cases) {
+      if (name == option) std::printf("%s\n", known.c_str());
+      if (name == known) {
+        work();
+        return 0;
+      }
     }
+    if (name == option) return 0;
   }
-  if (name == "--list") return 0;
-  std::fprintf(stderr, "no case '%s'; --list names them\n", name.c_str());
+  std::fprintf(stderr, "no case '%s'; --list and --list-large name them\n", name.c_str());
   return 2;
 }
 
@@ -152,7 +174,7 @@ int run(const std::string& name) {
 int main(int argc, char** argv) {
   try {
     if (argc == 2) return tegl::bench::run(argv[1]);
-    std::fprintf(stderr, "usage: instruction_bench --list | NAME\n");
+    std::fprintf(stderr, "usage: instruction_bench --list | --list-large | NAME\n");
     return 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "instruction_bench: %s\n", error.what());

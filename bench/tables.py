@@ -130,10 +130,28 @@ def cost(result: dict) -> list[str]:
     return text
 
 
-def missed(result: dict) -> list[str]:
+def instructions(result: dict) -> list[str]:
+    text = ["| image | instructions, millions | per sample | per active tile | per simplex |", "|---|---|---|---|---|"]
+    for case in result["cases"]:
+        count = case["instructions"]
+        each = " | ".join(f"{count / case[what]:.1f}" for what in ("samples", "active", "simplices"))
+        text.append(f"| {case['name']} | {count / 1e6:.1f} | {each} |")
+    return text
+
+
+def instructions_text(cases: list[dict], row: dict) -> str:
+    """Of the case that is like the row, but smaller: what an active tile takes, with its share of the samples."""
+    for case in cases:
+        name, size, *normals = case["name"].split()
+        if (name, int(size[-1]), bool(normals)) == (row["field"], row["dim"], row["normals"]):
+            return f"{case['instructions'] / case['active']:.0f} ({size})"
+    return ""
+
+
+def missed(result: dict, cases: list[dict]) -> list[str]:
     """The marks for speed that are not met, and what bounds each."""
-    text = ["| image | threads | reached | asked for | memory alone takes, of the time | what bounds the rest |",
-            "|---|---|---|---|---|---|"]
+    text = ["| image | threads | reached | asked for | memory alone takes, of the time | page faults | instructions per active tile | "
+            "what bounds the rest |", "|---|---|---|---|---|---|---|---|"]
     for row in result["rows"]:
         for verdict in row["verdicts"]:
             if verdict["met"] or "memory" in verdict:
@@ -144,16 +162,17 @@ def missed(result: dict) -> list[str]:
                        f"{ms(verdict['seconds'])} ms")
             bound = NORMALS_BOUND if row["normals"] else BOUNDS[row["field"], row["dim"]]
             text.append(f"| {row['name']} | {verdict['threads']} | {reached} | {verdict['wanted']} | "
-                        f"{ms(side['floor'])} of {ms(side['least'])} ms | {bound} |")
+                        f"{ms(side['floor'])} of {ms(side['least'])} ms | {side['page_faults']:.0f} | {instructions_text(cases, row)} | {bound} |")
     return text if len(text) > 2 else ["All marks for speed are met."]
 
 
 def write_missed(path) -> None:
     """Puts that table between its marks in docs/cost.md."""
     result = json.loads((RESULTS / "side_by_side.json").read_text())
+    cases = json.loads((RESULTS / "instructions.json").read_text())["cases"]
     first, last = "<!-- missed marks: made by bench/tables.py -->\n", "<!-- end -->"
     before, rest = path.read_text().split(first)
-    path.write_text(before + first + "\n" + "\n".join(missed(result)) + "\n\n" + last + rest.split(last, 1)[1])
+    path.write_text(before + first + "\n" + "\n".join(missed(result, cases)) + "\n\n" + last + rest.split(last, 1)[1])
 
 
 def page(name: str, title: str, how: str, table) -> list[str]:
@@ -173,6 +192,8 @@ def main() -> None:
     text += page("scaling", "Scaling", "`bench/scaling`: the least of three runs of each.", scaling)
     text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
                  stages)
+    text += page("instructions", "Instructions", "`bench/instructions --large`: of one extraction by one thread, by callgrind, "
+                 "which knows AVX2 at most.", instructions)
     (RESULTS / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(text)) + "\n")
     write_missed(COST)
 

@@ -2,72 +2,19 @@
 //
 // How much memory an extraction takes beside its image and its contour: every allocation of this program is counted.
 // (Blocks of 2 MiB and more come from the system, past the counter; extract_into_test watches the process itself.)
-#include <malloc.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "counted_memory.hpp"
 #include "fields.hpp"
 #include "tegl/extract.hpp"
 #include "variants.hpp"
 
-namespace {
-
-std::atomic<std::size_t> live_bytes = 0;
-std::atomic<std::size_t> peak_bytes = 0;
-
-void* counted(void* block) {
-  if (block == nullptr) throw std::bad_alloc();
-  const std::size_t bytes = malloc_usable_size(block);
-  const std::size_t live = live_bytes.fetch_add(bytes) + bytes;
-  std::size_t peak = peak_bytes.load();
-  while (peak < live && !peak_bytes.compare_exchange_weak(peak, live)) {
-  }
-  return block;
-}
-
-void free_counted(void* block) noexcept {
-  if (block == nullptr) return;
-  live_bytes.fetch_sub(malloc_usable_size(block));
-  std::free(block);
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return counted(std::malloc(std::max<std::size_t>(bytes, 1))); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  const auto align = static_cast<std::size_t>(alignment);
-  return counted(std::aligned_alloc(align, (bytes + align - 1) / align * align));
-}
-void operator delete(void* block) noexcept { free_counted(block); }
-void operator delete(void* block, std::size_t) noexcept { free_counted(block); }
-void operator delete(void* block, std::align_val_t) noexcept { free_counted(block); }
-void operator delete(void* block, std::size_t, std::align_val_t) noexcept { free_counted(block); }
-
 namespace tegl::test {
 namespace {
-
-/// The most bytes that are allocated at a time while the contour is written to memory that is there beforehand.
-template <Value T, int N>
-std::size_t bytes_beside(const OwnedImage<T, N>& image, double isovalue, const ExtractOptions& options) {
-  const ContourSize size = count(image.view(), isovalue, options);
-  EXPECT_GT(size.simplices, 0u);
-  std::vector<std::array<float, N>> vertices(size.vertices);
-  std::vector<std::array<Index, N>> simplices(size.simplices);
-  std::vector<std::array<float, N>> normals(options.normals ? size.vertices : 0);
-  const ContourRoom<N, float> room{vertices, simplices, normals};
-  extract_into(image.view(), isovalue, room, options);  // threads and tables are there
-  const std::size_t before = live_bytes;
-  peak_bytes = before;
-  EXPECT_EQ(extract_into(image.view(), isovalue, room, options), size);
-  return peak_bytes - before;
-}
 
 /// The kinds of tables, and one that the data choose from.
 std::vector<ExtractOptions> all_variants() {
