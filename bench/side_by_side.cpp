@@ -29,7 +29,9 @@ void run_tegl(const float* data, std::size_t samples, double isovalue, int threa
   result.stage_seconds[1] = stats.find_seconds;
   result.stage_seconds[2] = stats.generate_seconds;
   result.stage_seconds[3] = stats.close_seconds;
-  set_output_bytes(result, contour_bytes(contour));
+  set_output_bytes(result, {contour.vertices.size() * sizeof(contour.vertices[0]),
+                            contour.normals.size() * sizeof(contour.vertices[0]),
+                            contour.simplices.size() * sizeof(contour.simplices[0])});
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ void run_vtk(Filter* filter, int dim, const float* data, std::size_t samples, do
   result.vertices = static_cast<std::uint64_t>(output->GetNumberOfPoints());
   result.simplices = static_cast<std::uint64_t>(cells->GetNumberOfCells());
   const bool normals = output->GetPointData()->GetNormals() != nullptr;
-  set_output_bytes(
-      result, result.vertices * (normals ? 6 : 3) * sizeof(float) + result.simplices * (dim + 1) * sizeof(vtkIdType));
+  const std::uint64_t points = result.vertices * 3 * sizeof(float);
+  set_output_bytes(result, {points, normals ? points : 0, result.simplices * (dim + 1) * sizeof(vtkIdType)});
 }
 
 void set_vtk_threads(int threads) {

@@ -6,9 +6,11 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <string>
 
 #include "memory.hpp"
@@ -47,10 +49,20 @@ auto measured(SideResult& result, Make&& make) {
   return made;
 }
 
-/// What remains of the measured memory beside the output.
-inline void set_output_bytes(SideResult& result, std::uint64_t bytes) {
-  result.output_bytes = bytes;
-  result.extra_bytes -= result.extra_bytes > bytes ? bytes : result.extra_bytes;
+/// What an array takes of the process's memory: all of its large pages, where it has some.
+inline std::uint64_t in_pages(std::uint64_t bytes) {
+  constexpr std::uint64_t kPage = std::uint64_t{1} << 21U;
+  return bytes < kPage ? bytes : (bytes + kPage - 1) / kPage * kPage;
+}
+
+/// What remains of the measured memory beside the output, which is of the given arrays.
+inline void set_output_bytes(SideResult& result, std::initializer_list<std::uint64_t> arrays) {
+  std::uint64_t occupied = 0;
+  for (const std::uint64_t bytes : arrays) {
+    result.output_bytes += bytes;
+    occupied += in_pages(bytes);
+  }
+  result.extra_bytes -= std::min(result.extra_bytes, occupied);
 }
 
 }  // namespace tegl::bench
