@@ -21,7 +21,7 @@ namespace tegl::test::counted_memory {
 inline std::atomic<std::size_t> live_bytes = 0;
 inline std::atomic<std::size_t> peak_bytes = 0;
 
-inline void* counted(void* block) {
+[[gnu::noinline]] inline void* counted(void* block) {
   if (block == nullptr) throw std::bad_alloc();
   const std::size_t bytes = malloc_usable_size(block);
   const std::size_t live = live_bytes.fetch_add(bytes) + bytes;
@@ -31,7 +31,8 @@ inline void* counted(void* block) {
   return block;
 }
 
-inline void free_counted(void* block) noexcept {
+// Not inlined, or the compiler takes the pair of malloc and free for a mismatch.
+[[gnu::noinline]] inline void free_counted(void* block) noexcept {
   if (block == nullptr) return;
   live_bytes.fetch_sub(malloc_usable_size(block));
   std::free(block);
