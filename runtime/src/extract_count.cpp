@@ -385,26 +385,70 @@ static std::uint32_t list_ambiguous(const TileRoom& room, std::uint32_t first, s
   return found;
 }
 
+/// How many of the places from `j` on are of tiles at the same word.
+static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* places, std::uint32_t j,
+                                   std::uint32_t end) {
+  const std::uint32_t first = j;
+  for (const unsigned word = room.at[places[j]] / kWordBits; j < end && room.at[places[j]] / kWordBits == word;) ++j;
+  return j - first;
+}
+
 template <int N>
 void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const {
   if constexpr (N < 4) {
     const bool is_listed = shape_.size(0) <= kMostListed;
-    const std::uint32_t* const entries = rows_->entries();
-    BitWalk walk(room.active);
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
-    std::array<std::uint32_t, 64> places;
-    for (std::uint32_t first = 0; first < count.active; first += 64) {
-      const std::uint32_t found = list_ambiguous<N>(room, first, std::min(count.active, first + 64), places);
-      for (std::uint32_t j = 0; j < found; ++j) {
-        const std::uint32_t i = places.data()[j];
-        const unsigned signature = room.signatures[i];
-        base[0] = is_listed ? room.at[i] : walk.place_of(i);
-        const unsigned key = resolved_key<N>(*estimator_, base, signature);
-        count.simplices += entries[key] & RowTable::kCountMask;
-        count.simplices -= entries[signature] & RowTable::kCountMask;
-        count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
-        room.signatures[i] = static_cast<std::uint16_t>(key);
+    BitWalk walk(room.active);
+    const auto resolve = [&](std::uint32_t i) {
+      const unsigned signature = room.signatures[i];
+      base[0] = is_listed ? room.at[i] : walk.place_of(i);
+      const unsigned key = resolved_key<N>(*estimator_, base, signature);
+      count.simplices += rows_->entry(key) & RowTable::kCountMask;
+      count.simplices -= rows_->entry(signature) & RowTable::kCountMask;
+      count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
+      room.signatures[i] = static_cast<std::uint16_t>(key);
+    };
+    std::array<std::uint32_t, kWordBits> places;
+    if constexpr (N == 2) {
+      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+        const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
+        const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
+        for (std::uint32_t j = 0; j < found; ++j) resolve(places.data()[j]);
+      }
+    } else {
+      RowFaces<N> faces(*estimator_, base, shape_.size(0));
+      const bool at_once = is_listed && RowFaces<N>::can_use(*estimator_);
+      const auto resolve_word = [&](const std::uint32_t* of_word, std::uint32_t tiles) {
+        TilesOfWord of;
+        of.count = tiles;
+        for (std::uint32_t j = 0; j < tiles; ++j) {
+          of.bits[j] = room.at[of_word[j]] % kWordBits;
+          of.signatures[j] = static_cast<std::uint8_t>(room.signatures[of_word[j]]);
+        }
+        detail::resolve(*estimator_, *rows_, faces.look_at(room.at[of_word[0]] / kWordBits), of);
+        for (std::uint32_t j = 0; j < tiles; ++j) {
+          const Variant variant = of.variants[j];
+          if (variant.key == 0) {
+            resolve(of_word[j]);
+            continue;
+          }
+          count.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
+          count.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
+          room.signatures[of_word[j]] = variant.key;
+        }
+      };
+      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+        const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
+        const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
+        for (std::uint32_t j = 0; j < found;) {
+          const std::uint32_t tiles = at_once ? count_at_word(room, places.data(), j, found) : 1;
+          if (tiles >= RowFaces<N>::kMany)
+            resolve_word(places.data() + j, tiles);
+          else
+            for (std::uint32_t k = j; k < j + tiles; ++k) resolve(places.data()[k]);
+          j += tiles;
+        }
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
@@ -360,6 +361,13 @@ HWY_INLINE typename TileOutput<N>::Simplex* write_plain(const std::uint8_t* loca
   return out;
 }
 
+/// Where the entry of a key is.
+template <int N, bool Variants>
+HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
+  if constexpr (N == 3 && Variants) return table.variant_places()[signature_of<3>(key)] + (key >> 8);
+  return key;
+}
+
 #if HWY_TARGET <= HWY_AVX3
 
 /// The vertex numbers of a tile's edges in one or two registers.
@@ -405,7 +413,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
     const unsigned signature = row.signatures[i];
     const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
-    const std::uint32_t entry = entries[signature];
+    const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
     const unsigned count = entry & RowTable::kCountMask;
     const std::uint8_t* local = simplices + std::size_t{entry >> RowTable::kFirstShift} * N;
     __m512i ids[Lanes<N>::kCount];
@@ -463,7 +471,7 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
     const unsigned signature = row.signatures[i];
     const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
-    const std::uint32_t entry = entries[signature];
+    const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
     add_bits<kEdges>(first, moved, ids);
     if ((entry & RowTable::kOwnFlag) != 0)
       out = own.write(own.self, signature, i, ids, out);
@@ -591,14 +599,33 @@ bool RowTable::can_use(const tables::TileTable& table) noexcept {
 
 RowTable::RowTable(const tables::TileTable& table, std::size_t keys)
     : table_(&table), entries_(keys), simplices_(table.simplices) {
-  for (std::size_t s = 0; s < entries_.size(); ++s) {
-    const tables::List& list = table.lists[table.list_of[s]];
-    const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
-    entries_[s] = list.first_simplex << kFirstShift | (own ? kOwnFlag : 0) | list.simplex_count;
-  }
-  for (std::size_t s = 0; s < counts_.size() && table.dim <= 3 && s < entries_.size(); ++s)
-    counts_[s] = static_cast<std::uint8_t>(entries_[s] & kCountMask);
+  for (std::size_t s = 0; s < entries_.size(); ++s) entries_[s] = entry_of_list(static_cast<unsigned>(s));
+  count_simplices();
   if (table.dim == 2) choose_segment_bytes();
+}
+
+RowTable::RowTable(const tables::TileTable& table, const std::array<unsigned, 256>& counts,
+                   std::vector<Variant> variants)
+    : table_(&table), simplices_(table.simplices), variants_(std::move(variants)) {
+  // The plain ones first: then signatures find theirs as in other tables.
+  for (unsigned s = 0; s < 256; ++s) entries_.push_back(entry_of_list(s));
+  for (unsigned s = 0; s < 256; ++s) {
+    variant_places_[s] = static_cast<std::uint16_t>(counts[s] == 1 ? s : entries_.size());
+    for (unsigned variant = 0; counts[s] != 1 && variant < counts[s]; ++variant)
+      entries_.push_back(entry_of_list(s | variant << 8));
+  }
+  count_simplices();
+}
+
+std::uint32_t RowTable::entry_of_list(unsigned key) const {
+  const tables::List& list = table_->lists[table_->list_of[key]];
+  const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
+  return list.first_simplex << kFirstShift | (own ? kOwnFlag : 0) | list.simplex_count;
+}
+
+void RowTable::count_simplices() {
+  for (std::size_t s = 0; s < counts_.size() && table_->dim <= 3 && s < entries_.size(); ++s)
+    counts_[s] = static_cast<std::uint8_t>(entries_[s] & kCountMask);
 }
 
 void RowTable::choose_segment_bytes() {

@@ -32,6 +32,15 @@ constexpr unsigned signature_of(unsigned key) noexcept {
   return key & ((1u << (1u << N)) - 1);
 }
 
+/// A resolved tile: its key, and how much more it has than the tile of its signature alone.
+struct Variant {
+  std::uint16_t key = 0;
+  std::int8_t more_simplices = 0, more_own_vertices = 0;
+};
+
+/// Where the entries of each signature's variants begin, N = 3, if there are so many.
+using VariantPlaces = std::array<std::uint16_t, 256>;
+
 /// A tile table in the flat layout, ready for the loops.
 class RowTable {
  public:
@@ -48,13 +57,24 @@ class RowTable {
   explicit RowTable(const tables::TileTable& table) : RowTable(table, std::size_t{1} << (1u << table.dim)) {}
   /// Of a table whose lists go by `keys` keys (tile_variants.hpp). Where it says "signature", keys do as well.
   RowTable(const tables::TileTable& table, std::size_t keys);
+  /// Of cubes: signature s has counts[s] keys, and entries stand one behind the other, as few of all possible keys are
+  /// met. `variants`: what `variant` finds, four for each entry of tables::ResolvedTable.
+  RowTable(const tables::TileTable& table, const std::array<unsigned, 256>& counts, std::vector<Variant> variants);
 
   /// Treats the tiles of a signature as if they had vertices of their own.
   void mark_as_own(unsigned signature) noexcept { entries_[signature] |= kOwnFlag; }
   /// Whether there are more keys than signatures.
   [[nodiscard]] bool has_variants() const noexcept { return entries_.size() > std::size_t{1} << (1u << table_->dim); }
-  /// By signature.
+  /// By signature; in 2D by key; in 3D, where there are variants, by variant_places()[signature] + variant.
   [[nodiscard]] const std::uint32_t* entries() const noexcept { return entries_.data(); }
+  [[nodiscard]] const VariantPlaces& variant_places() const noexcept { return variant_places_; }
+  [[nodiscard]] std::uint32_t entry(unsigned key) const noexcept {
+    return entries_[variants_.empty() ? key : variant_places_[key & 255u] + (key >> 8)];
+  }
+  /// The cube of an entry of tables::ResolvedTable, with a choice of facets::Choice for its centre if that matters.
+  [[nodiscard]] const Variant& variant(unsigned resolved, unsigned choice) const noexcept {
+    return variants_[4 * resolved + choice];
+  }
   /// dim local vertices each.
   [[nodiscard]] const std::uint8_t* simplices() const noexcept { return simplices_; }
   /// dim = 2: for each signature, which bytes of its edges' four vertex numbers make two segments (those of the second
@@ -74,10 +94,14 @@ class RowTable {
 
  private:
   void choose_segment_bytes();
+  [[nodiscard]] std::uint32_t entry_of_list(unsigned key) const;
+  void count_simplices();
 
   const tables::TileTable* table_;
   std::vector<std::uint32_t> entries_;
   const std::uint8_t* simplices_;
+  VariantPlaces variant_places_{};
+  std::vector<Variant> variants_;
   std::array<std::uint8_t, 256> counts_{};
   std::array<std::array<std::array<std::uint8_t, 16>, 32>, 2> segment_bytes_{};
 };

@@ -83,6 +83,22 @@ void RowSource<T, N>::corner_values(const Index& base, unsigned axes, double* ou
 }
 
 template <Value T, int N>
+void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept {
+  const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
+  constexpr unsigned kHalf = 1u << (N - 2);
+  const std::array<const T*, 2> layers = {row(base) + along, next_row(base, N - 1, 1) + along};
+  for (unsigned r = 0; r < 2 * kHalf; ++r, out += pitch) {
+    const T* from = layers[r / kHalf];
+    for (unsigned a = 1; a < N - 1; ++a) from += static_cast<std::ptrdiff_t>(r >> (a - 1) & 1u) * strides_[a];
+    if (strides_[0] == 1)
+      std::copy_n(from, count, out);
+    else
+      for (std::size_t i = 0; i < count; ++i)
+        out[i] = static_cast<double>(from[static_cast<std::ptrdiff_t>(i) * strides_[0]]);
+  }
+}
+
+template <Value T, int N>
 void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept {
   static constexpr auto kInOrder = [] {
     std::array<std::uint32_t, N << (N - 1)> result{};

@@ -71,6 +71,9 @@ class SampleSource {
   [[nodiscard]] virtual double value(const Index& index) const noexcept = 0;
   /// The values at the corners of the cell along `axes` based at `base`, in the order of the cell's own corners.
   virtual void corner_values(const Index& base, unsigned axes, double* out) const noexcept = 0;
+  /// `count` samples of each of the 2^(N-1) rows around the tiles from `base` on, `pitch` apart: bit a - 1 of a row's
+  /// number is its side along axis a.
+  virtual void corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept = 0;
   [[nodiscard]] virtual double isovalue() const noexcept = 0;
   /// The layer of the image that layer 0 is.
   [[nodiscard]] virtual std::size_t first_layer() const noexcept { return 0; }
@@ -121,6 +124,7 @@ class RowSource : public SampleSource<N> {
     return static_cast<double>(row(index)[static_cast<std::ptrdiff_t>(index[0]) * strides_[0]]);
   }
   void corner_values(const Index& base, unsigned axes, double* out) const noexcept final;
+  void corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept final;
   [[nodiscard]] double isovalue() const noexcept final { return isovalue_; }
   [[nodiscard]] Strides strides() const noexcept final { return strides_; }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;

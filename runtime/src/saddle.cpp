@@ -345,7 +345,28 @@ struct PairQuestion {
   }
 };
 
-/// A cube, by the answers to questions about it; nothing if one of them is unsure.
+/// A cube whose squares are decided, by the answers to questions about it; nothing if one of them is unsure.
+struct CentreDecider {
+  unsigned entry;
+
+  template <class Values>
+  bool operator()(const Values& f, Choice& result) const noexcept {
+    result = Choice::separate;
+    const Joins& joins = joins_of(entry);
+    for (const bool high : {true, false}) {
+      const std::uint8_t pair = high ? joins.high : joins.low;
+      if (pair == 0) continue;
+      const Answer is_joined = PairQuestion{kPairs[pair - 1u], high}(f);
+      if (is_joined == Answer::unsure) return false;
+      if (is_joined == Answer::no) continue;
+      result = high ? Choice::high : Choice::low;
+      break;
+    }
+    return true;
+  }
+};
+
+/// The same of a cube as a whole.
 struct CubeDecider {
   unsigned signature;
 
@@ -361,17 +382,7 @@ struct CubeDecider {
       result.high_squares = static_cast<std::uint8_t>(result.high_squares | is_joined << q);
       entry += is_joined * bit;
     }
-    const Joins& joins = joins_of(entry);
-    for (const bool high : {true, false}) {
-      const std::uint8_t pair = high ? joins.high : joins.low;
-      if (pair == 0) continue;
-      const Answer is_joined = PairQuestion{kPairs[pair - 1u], high}(f);
-      if (is_joined == Answer::unsure) return false;
-      if (is_joined == Answer::no) continue;
-      result.centre = high ? Choice::high : Choice::low;
-      break;
-    }
-    return true;
+    return CentreDecider{entry}(f, result.centre);
   }
 };
 
@@ -432,6 +443,30 @@ bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue
 
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept {
   return decide<CubeDecision>(values, isovalue, CubeDecider{signature});
+}
+
+const std::array<CubeJoin, 656>& cube_joins() noexcept {
+  static const auto kJoins = [] {
+    std::array<CubeJoin, 656> result{};
+    for (unsigned entry = 0; entry < result.size(); ++entry) {
+      const Joins& joins = joins_of(entry);
+      CubeJoin& join = result[entry];
+      join.pairs = static_cast<std::uint8_t>((joins.high != 0) + (joins.low != 0));
+      if (join.pairs != 1) continue;
+      join.high = joins.high != 0;
+      const Pair& pair = kPairs[(join.high ? joins.high : joins.low) - 1u];
+      unsigned at = 0;
+      for (const std::uint8_t lower : {pair.a, pair.c, pair.b, pair.d})
+        for (const unsigned end : {unsigned{lower}, unsigned{lower} + pair.step})
+          join.corners[at++] = static_cast<std::uint8_t>(end);
+    }
+    return result;
+  }();
+  return kJoins;
+}
+
+Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept {
+  return decide<Choice>(values, isovalue, CentreDecider{entry});
 }
 
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept {

@@ -185,7 +185,38 @@ void VariantTable<N>::finish() {
   tile_.lists = lists_.data();
   tile_.simplices = simplices_.data();
   tile_.side_masks = masks_.data();
-  rows_.emplace_back(tile_, kKeys<N>);
+  make_rows();
+}
+
+template <>
+void VariantTable<2>::make_rows() {
+  rows_.emplace_back(tile_, kKeys<2>);
+}
+
+template <>
+void VariantTable<3>::make_rows() {
+  const auto& table = tables::kTile3Resolved;
+  std::array<unsigned, 256> counts{};
+  std::vector<Variant> variants(4 * std::size_t{table.entry_count});
+  for (unsigned s = 0; s < counts.size(); ++s) {
+    const unsigned resolutions = 1u << std::popcount(unsigned{table.ambiguous_squares[s]});
+    counts[s] = ambiguous_signatures<3>()[s] ? 1 + 3 * resolutions : 1;
+    if (counts[s] == 1) continue;
+    const tables::List& plain = lists_[list_of_[s]];
+    for (unsigned r = 0; r < resolutions; ++r) {
+      const unsigned entry = table.first_entry[s] + r;
+      for (unsigned choice = 0; choice < 3; ++choice) {
+        const unsigned chosen = table.entries[entry].components > 1 ? choice : 0;
+        const unsigned key = s | (1 + 3 * r + chosen) << 8;
+        const tables::List& list = lists_[list_of_[key]];
+        variants[4 * entry + choice] = {static_cast<std::uint16_t>(key),
+                                        static_cast<std::int8_t>(list.simplex_count - plain.simplex_count),
+                                        static_cast<std::int8_t>(list.cone_vertices + list.side_vertices -
+                                                                 plain.cone_vertices - plain.side_vertices)};
+      }
+    }
+  }
+  rows_.emplace_back(tile_, counts, std::move(variants));
 }
 
 template <int N>
@@ -408,6 +439,78 @@ template <>
 unsigned resolved_key<3>(const FaceEstimator<3>& estimator, const std::array<std::size_t, 3>& base,
                          unsigned signature) noexcept {
   return cube_key<3>(estimator, base, 7, signature);
+}
+
+template <int N>
+const FaceBlock<N>& RowFaces<N>::look_at(std::size_t word) noexcept {
+  if (word == word_) return block_;
+  word_ = word;
+  base_[0] = word * kWordBits;
+  const std::size_t count = std::min(block_.kSamples, samples_ - base_[0]);
+  block_.tiles = count - 1;
+  estimator_.source().corner_rows(base_, count, block_.samples[0].data(), block_.kPitch);
+  for (auto& row : block_.samples) std::fill(row.begin() + static_cast<std::ptrdiff_t>(count), row.end(), 0.0);
+  if (estimator_.is_by_means())
+    decide_by_means(block_, estimator_.isovalue());
+  else
+    decide_by_saddles(block_, estimator_.isovalue());
+  return block_;
+}
+template class RowFaces<3>;
+template class RowFaces<4>;
+
+namespace {
+
+/// The corners of a cell of a block along `axes` based at corner `base` of tile `bit`.
+template <int N, unsigned Axes>
+std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, unsigned base) noexcept {
+  std::array<double, 8> values;
+  unsigned corner = base;
+  for (double& value : values) {
+    value = block.samples[corner >> 1][bit + (corner & 1u)];
+    corner = base | (((corner | ~Axes) + 1) & Axes);
+  }
+  return values;
+}
+
+}  // namespace
+
+void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
+             TilesOfWord& tiles) noexcept {
+  const auto& resolved = tables::kTile3Resolved;
+  const bool by_means = estimator.is_by_means();
+  const auto& joins = cube_joins();
+  JoinQuestions questions;
+  std::array<std::uint8_t, kWordBits> asked;
+  std::array<std::uint16_t, kWordBits> entries;
+  for (std::size_t j = 0; j < tiles.count; ++j) {
+    const unsigned bit = tiles.bits[j], signature = tiles.signatures[j];
+    const auto high = static_cast<unsigned>(block.high[bit]);
+    const unsigned entry =
+        resolved.first_entry[signature] + packed_squares(high, unsigned{resolved.ambiguous_squares[signature]});
+    tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
+    if (block.unsure[bit] != 0) {
+      tiles.variants[j] = {};
+    } else if (!by_means && joins[entry].pairs == 1) {
+      for (std::size_t e = 0; e < 8; ++e) {
+        const unsigned corner = joins[entry].corners[e];
+        questions.ends[e][questions.count] = block.samples[corner >> 1][bit + (corner & 1u)];
+      }
+      questions.sign[questions.count] = joins[entry].high ? 1.0 : -1.0;
+      entries[questions.count] = static_cast<std::uint16_t>(entry);
+      asked[questions.count++] = static_cast<std::uint8_t>(j);
+    } else if (!by_means && joins[entry].pairs > 1) {
+      const auto centre = detail::decide_centre(corners_of_cube<3, 7>(block, bit, 0), estimator.isovalue(), entry);
+      tiles.variants[j] = table.variant(entry, static_cast<unsigned>(centre));
+    }
+  }
+  answer(questions, estimator.isovalue());
+  for (std::size_t q = 0; q < questions.count; ++q) {
+    Variant& variant = tiles.variants[asked[q]];
+    const auto joined = static_cast<unsigned>(joins[entries[q]].high ? facets::Choice::high : facets::Choice::low);
+    if (questions.answers[q] == JoinQuestions::yes) variant = table.variant(entries[q], joined);
+    if (questions.answers[q] == JoinQuestions::unsure) variant = {};
+  }
 }
 
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,

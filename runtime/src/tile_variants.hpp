@@ -13,6 +13,7 @@
 
 #include "extract_rows.hpp"
 #include "face_estimator.hpp"
+#include "face_signs.hpp"
 #include "resolved_tiles.hpp"
 #include "tegl/saddle.hpp"
 #include "tegl/table_contract.hpp"
@@ -43,6 +44,7 @@ class VariantTable {
   void add_plain(unsigned key, const tables::TileTable& from, unsigned signature, bool reversed);
   void add_variants(int triangulation);
   void finish();
+  void make_rows();
 
   std::vector<tables::List> lists_;
   std::vector<std::uint16_t> list_of_;
@@ -83,6 +85,42 @@ unsigned list_of_key(unsigned key) noexcept;
 
 /// How many vertices of its own a cube has in the compact triangulation, by key.
 inline unsigned cube_vertices(unsigned key) { return variant_table<3>(1).rows().own_vertices(key); }
+
+/// The faces of a row's tiles, N = 3 or 4, a word of tiles at a time: where many of a word's tiles are ambiguous this
+/// is quicker than to ask for them one by one.
+template <int N>
+class RowFaces {
+ public:
+  using Index = std::array<std::size_t, N>;
+  /// So many ambiguous tiles of a word are worth it.
+  static constexpr std::size_t kMany = 6;
+
+  /// Of the row through `base`, which has `samples`.
+  RowFaces(const FaceEstimator<N>& estimator, const Index& base, std::size_t samples) noexcept
+      : estimator_(estimator), base_(base), samples_(samples) {}
+  /// Not for a caller's estimator.
+  static bool can_use(const FaceEstimator<N>& estimator) noexcept { return !estimator.is_callers(); }
+
+  /// Decides all faces of a word's tiles, unless it was the last one.
+  const FaceBlock<N>& look_at(std::size_t word) noexcept;
+
+ private:
+  const FaceEstimator<N>& estimator_;
+  Index base_;
+  std::size_t samples_;
+  std::size_t word_ = ~std::size_t{0};
+  FaceBlock<N> block_;
+};
+
+/// Tiles at a word, with ambiguous signatures, and what becomes of them: with key 0, that it is to be asked for by
+/// itself.
+struct TilesOfWord {
+  std::size_t count = 0;
+  std::array<std::uint8_t, kWordBits> bits, signatures;
+  std::array<Variant, kWordBits> variants;
+};
+void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
+             TilesOfWord& tiles) noexcept;
 
 /// The key of an ambiguous tile.
 template <int N>

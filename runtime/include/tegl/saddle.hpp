@@ -44,6 +44,16 @@ namespace detail {
 bool square_is_high(const std::array<double, 4>& values, double isovalue) noexcept;
 /// `signature`: bit v is set if corner v is high.
 CubeDecision decide_cube(const std::array<double, 8>& values, double isovalue, unsigned signature) noexcept;
+/// What decides whether regions of a cube are joined inside of it, by entry of tables::kTile3Resolved, which is the
+/// signature with its squares decided: a pair of diagonal edges, if there is one, and sometimes one of either sign.
+struct CubeJoin {
+  std::uint8_t pairs = 0;                 ///< how many; with none, the centre is `separate`
+  bool high = false;                      ///< of one: whether it joins high corners
+  std::array<std::uint8_t, 8> corners{};  ///< of one: the lower and upper end of each of its edges A, C, B, D
+};
+const std::array<CubeJoin, 656>& cube_joins() noexcept;
+/// The centre of a cube with this entry.
+facets::Choice decide_centre(const std::array<double, 8>& values, double isovalue, unsigned entry) noexcept;
 /// The same without the filter, for tests: all signs by exact arithmetic.
 bool square_is_high_exactly(const std::array<double, 4>& values, double isovalue) noexcept;
 CubeDecision decide_cube_exactly(const std::array<double, 8>& values, double isovalue) noexcept;
