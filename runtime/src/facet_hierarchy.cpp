@@ -89,6 +89,12 @@ bool has_closed_boundary(const FacetHierarchy<N, Real>& facets, int k, std::size
   return true;
 }
 
+/// Of a polygon.
+template <int N, class Real>
+Index a_point(const FacetHierarchy<N, Real>& facets, Index polygon) noexcept {
+  return facets.down(1, facets.down(2, polygon)[0])[0];
+}
+
 template <int N, class Real>
 void check_ridges(const FacetHierarchy<N, Real>& facets, FacetReport& report) {
   std::vector<std::int8_t> signs(facets.count(N - 2), 0);
@@ -123,9 +129,12 @@ FacetReport check(const FacetHierarchy<N, Real>& facets) {
       report.euler += sign * euler;
       if (euler == 0) ++report.tori;
       if (k > 0 && !has_closed_boundary(facets, k, f, sum)) ++report.open_boundaries;
-      // A component has one point or more, and its points hang together by segments, but for what connects the parts of
-      // a facet's boundary: these are connected.
+      // A component has one point or more, and its points hang together by segments, or by a polyhedron whose boundary
+      // has several parts.
       if (k == 1 && components.join(facets.down(1, f)[0], facets.down(1, f)[1])) --report.components;
+      if (k == 3)
+        for (const Index polygon : facets.down(3, f))
+          if (components.join(a_point(facets, facets.down(3, f)[0]), a_point(facets, polygon))) --report.components;
     }
   }
   check_ridges(facets, report);

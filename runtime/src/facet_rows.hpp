@@ -225,23 +225,28 @@ class FaceNumbers {
     first_facet.assign(rows, 0);
     first_entry.assign(rows, 0);
   }
-  /// After the bits are set.
-  void rank() {
+  /// After the bits are set. `has_types`: each of the faces has a type (FacetTables).
+  void rank(bool has_types) {
     std::uint32_t count = 0;
     for (std::size_t w = 0; w < bits.size(); ++w) {
       before_[w] = count;
       count += static_cast<std::uint32_t>(std::popcount(bits[w]));
     }
     first_.resize(count);
+    if (has_types) types_.resize(count);
   }
   /// The number of the first facet of a face that has one.
   [[nodiscard]] Index& first(std::size_t row, std::size_t i) noexcept { return first_[ordinal(row, i)]; }
   [[nodiscard]] Index first(std::size_t row, std::size_t i) const noexcept { return first_[ordinal(row, i)]; }
   [[nodiscard]] Index* first_of_row(std::size_t row) noexcept { return first_.data() + before_[row * words_]; }
+  [[nodiscard]] std::uint16_t& type(std::size_t row, std::size_t i) noexcept { return types_[ordinal(row, i)]; }
+  [[nodiscard]] std::uint16_t type(std::size_t row, std::size_t i) const noexcept { return types_[ordinal(row, i)]; }
 
   std::vector<Word> bits;                  ///< rows x words
   std::vector<std::uint64_t> first_facet;  ///< by row: how many facets, and then the first one's number
   std::vector<std::uint64_t> first_entry;  ///< by row, of what bounds them, likewise
+  /// Of cubes that the data resolve, likewise: points and segments inside, and what bounds the segments.
+  std::vector<std::uint64_t> first_point, first_segment, first_end;
 
  private:
   [[nodiscard]] std::size_t ordinal(std::size_t row, std::size_t i) const noexcept {
@@ -252,6 +257,7 @@ class FaceNumbers {
   std::size_t words_ = 0;
   std::vector<std::uint32_t> before_;
   Buffer<Index> first_;
+  Buffer<std::uint16_t> types_;
 };
 
 }  // namespace tegl::detail

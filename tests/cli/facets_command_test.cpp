@@ -41,7 +41,7 @@ TEST_F(FacetsCommand, WritesFacetsWithTheTopologyOfTheContour) {
                                            write("moving.nrrd", nrrd_bytes(noise({5, 6, 7, 5}, 3)))};
   for (const std::string& image : images)
     for (const bool close : {false, true}) {
-      std::vector<std::string> more = {"--iso", "128"};
+      std::vector<std::string> more = {"--iso", "128", "--ambiguity", close ? "mean" : "low"};
       if (close) more.push_back("--close");
       std::vector<std::string> facets = {image, "--facets", "-o", path("out.vtu")};
       std::vector<std::string> simplices = {image, "-o", path("out.vtkhdf")};

@@ -22,7 +22,6 @@
 #include "invariants.hpp"
 #include "tegl/active_tiles.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/facet_hierarchy.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream.hpp"
 
@@ -501,8 +500,6 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnes) {
 TEST(EstimatedContours, AreRefusedWhereTheyCannotBeMade) {
   auto image = noise<float, 4>(std::size_t{3}, 1);
   ExtractOptions options = with(Ambiguity::mean);
-  expect_error(ErrorCode::InvalidArgument, "mean; expected low or high",
-               [&] { extract_facets(image.view(), 0.5, options); });
   options.triangulation = Triangulation::barycentric;
   expect_error(ErrorCode::InvalidArgument, "streamed barycentric", [&] {
     Collector<4, float> collector;

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimators.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "measure.hpp"
@@ -207,10 +208,11 @@ OwnedImage<float, 3> all_pairs(int axis) {
 TEST(ContoursFromPolygons, AreManifoldsForAllPairsOfCubes) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto image = all_pairs(axis);
-    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high})
+    for (const NamedOptions& way : all_estimators())
       for (const bool close : {false, true}) {
-        ExtractOptions options;
-        options.ambiguity = ambiguity;
+        SCOPED_TRACE(way.name);
+        ExtractOptions options = way.options;
+        if (options.ambiguity > Ambiguity::high && (axis > 0 || close)) continue;  // they are many
         options.close = close;
         const auto facets = extract_facets<float>(image.view(), 0.0, options);
         const FacetReport expected = check(facets);
@@ -220,7 +222,8 @@ TEST(ContoursFromPolygons, AreManifoldsForAllPairsOfCubes) {
           const MeshReport report = expect_oriented_manifold(contour);
           EXPECT_EQ(report.euler, expected.euler);
           EXPECT_EQ(report.boundary_simplices, expected.border);
-          if (method != PolygonTriangulation::barycentric) {
+          // Resolved from the data, a polygon may pass so many squares twice that it has no triangles of its points.
+          if (method != PolygonTriangulation::barycentric && options.ambiguity <= Ambiguity::high) {
             EXPECT_EQ(contour.vertices.size(), facets.vertices.size()) << "a polygon had forbidden chords alone";
           }
         }
@@ -232,9 +235,7 @@ TEST(ContoursFromPolygons, AreFansAndZigzagsWhateverChordsAreForbidden) {
   // Of a fan, all triangles have a point in common; of a zigzag no point is in more than three of them.
   const auto image = all_pairs(0);
   for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high}) {
-    ExtractOptions options;
-    options.ambiguity = ambiguity;
-    const auto facets = extract_facets<float>(image.view(), 0.0, options);
+    const auto facets = extract_facets<float>(image.view(), 0.0, by_ambiguity(ambiguity));
     const auto fans = triangulate(facets, PolygonTriangulation::fan);
     const auto zigzags = triangulate(facets, PolygonTriangulation::zigzag);
     std::size_t first = 0;
@@ -256,20 +257,29 @@ TEST(ContoursFromPolygons, AreFansAndZigzagsWhateverChordsAreForbidden) {
 
 TEST(ContoursFromPolygons, OfNoiseAreManifoldsWithMissingValuesAndWithout) {
   for (const double missing : {0.0, 0.05}) {
-    const auto image = noise_with_missing<float, 3>(Grid<3>::unit({22, 23, 24}), 6, missing);
-    ExtractOptions options;
-    options.normals = true;
-    const auto facets = extract_facets<double>(image.view(), 0.5, options);
-    const MeshReport expected = check(extract<double>(image.view(), 0.5, options));
-    for (const PolygonTriangulation method : kMethods) {
-      const auto contour = triangulate(facets, method);
-      const MeshReport report = expect_oriented_manifold(contour);
-      EXPECT_EQ(report.euler, expected.euler);
-      EXPECT_EQ(report.components, expected.components);
-      ASSERT_EQ(contour.normals.size(), contour.vertices.size());
-      for (const auto& n : contour.normals) {
-        const double length = std::hypot(n[0], n[1], n[2]);
-        EXPECT_TRUE(length == 0 || std::abs(length - 1) < 1e-12);
+    const auto image = noise_with_missing<float, 3>(Grid<3>::unit({12, 13, 14}), 6, missing);
+    for (const NamedOptions& way : all_estimators()) {
+      SCOPED_TRACE(way.name);
+      ExtractOptions options = way.options;
+      options.normals = true;
+      const auto facets = extract_facets<double>(image.view(), 0.5, options);
+      options.triangulation = Triangulation::barycentric;
+      const auto barycentric = extract<double>(image.view(), 0.5, options);
+      const MeshReport expected = check(barycentric);
+      for (const PolygonTriangulation method : kMethods) {
+        const auto contour = triangulate(facets, method);
+        const MeshReport report = expect_oriented_manifold(contour);
+        if (method == PolygonTriangulation::barycentric) {
+          EXPECT_EQ(contour.vertices.size(), barycentric.vertices.size());
+          EXPECT_EQ(contour.simplices.size(), barycentric.simplices.size());
+        }
+        EXPECT_EQ(report.euler, expected.euler);
+        EXPECT_EQ(report.components, expected.components);
+        ASSERT_EQ(contour.normals.size(), contour.vertices.size());
+        for (const auto& n : contour.normals) {
+          const double length = std::hypot(n[0], n[1], n[2]);
+          EXPECT_TRUE(length == 0 || std::abs(length - 1) < 1e-12);
+        }
       }
     }
   }
