@@ -34,11 +34,9 @@ requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isova
   if (options.close && !active.is_complete())
     throw Error(ErrorCode::InvalidArgument,
                 "the border cannot be closed around chosen tiles; expected an index of all active tiles");
-  const bool built = detail::is_tile_by_tile<N>(options);
-  if (built && !active.is_complete())
-    detail::require_consistent_method(options, "barycentric contours of 4D images in chosen tiles");
-  if (active.grid().count() == 0 || (options.close && missing) || built)
-    return extract<Real>(image, isovalue, options, stats);
+  // Built tiles are found by all samples, as they take so much longer to build.
+  const bool finds_all = active.is_complete() && ((options.close && missing) || detail::is_tile_by_tile<N>(options));
+  if (active.grid().count() == 0 || finds_all) return extract<Real>(image, isovalue, options, stats);
   detail::Stopwatch watch;
   // Next to missing values rows that are not looked at tell nothing of each other.
   const detail::TileSelection selection = active.is_complete() && !missing
@@ -49,8 +47,7 @@ requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isova
   detail::ExtractPlan plan;
   plan.selection = &selection;
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-  auto contour =
-      detail::extract_source<N, Real>(source, image.grid(), detail::generated_tables<N>(options), options, stats, plan);
+  auto contour = detail::extract_any<N, Real>(source, image.grid(), options, stats, plan);
   if (stats != nullptr) stats->find_seconds += seconds;
   return contour;
 }

@@ -43,7 +43,7 @@ class CountOutput final : public ContourOutput<N, Real> {
  public:
   using typename ContourOutput<N, Real>::Room;
   Room open(const ContourPart& /*part*/) override { return {nullptr, nullptr}; }
-  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchCandidates<N>& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& pinches) override {
     size = {all.end_vertex, all.end_simplex};
     any_missing = pinches.any_missing();
   }
@@ -72,7 +72,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     }
   }
 
-  void close(const ContourPart& part, const PinchCandidates<N>& /*pinches*/) override {
+  void close(const ContourPart& part, const PinchList& /*pinches*/) override {
     if constexpr (sizeof(I) != sizeof(Index)) {
       auto* wide = room_.simplices.data() + part.first_simplex;
       for (const Simplex& simplex : narrow_) {
@@ -83,7 +83,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     }
   }
 
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
     size = {all.end_vertex, all.end_simplex};
     any_missing = pinches.any_missing();
     if (caps == nullptr || any_missing) return;
@@ -160,22 +160,21 @@ ContourSize copy_into(const Contour<N, Real>& contour, const ContourRoom<N, Real
 }
 
 template <Value T, int N>
-ContourSize count_by_tables(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
-                            ExtractStats* stats) {
-  const auto tables = generated_tables<N>(options);
+ContourSize count_by_parts(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                           ExtractStats* stats) {
   const ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
   ExtractStats done;
   if (!options.close) {
     ImageSource<T, N> source(image, isovalue, options.epsilon);
     CountOutput<N, float> output;
-    done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+    done = extract_any_to<N, float>(source, image.grid(), options, plan, output);
     if (stats != nullptr) *stats = done;
     if (!output.any_missing) return output.size;
   }
   ImageSource<T, N> source(image, isovalue, options.epsilon);
   NoSink<N, float> sink;
   StreamOutput<N, float> output(sink, options.normals);
-  done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+  done = extract_any_to<N, float>(source, image.grid(), options, plan, output);
   if (stats != nullptr) *stats = done;
   return output.size();
 }
@@ -188,14 +187,12 @@ ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOption
   detail::check_arguments(isovalue, asked);
   ExtractOptions options = asked;
   options.normals = false;  // as many as vertices
-  if constexpr (N >= 4)
-    if (detail::is_tile_by_tile<N>(options)) {
-      detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
-      return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
-    }
-  ContourSize size;
-  if constexpr (N <= 4) size = detail::count_by_tables(image, isovalue, options, stats);
-  return size;
+  if constexpr (N > 4) {
+    detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+    return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
+  } else {
+    return detail::count_by_parts(image, isovalue, options, stats);
+  }
 }
 
 template <Value T, int N, class Real, VertexNumber I>

@@ -39,12 +39,6 @@ void check_arguments(double isovalue, const ExtractOptions& options) {
                 "ExtractOptions::estimator");
 }
 
-void require_consistent_method(const ExtractOptions& options, const char* what) {
-  if (is_estimated(options.ambiguity))
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} with ambiguity {}; expected low or high", what, name_of(options.ambiguity)));
-}
-
 namespace {
 
 /// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
@@ -540,7 +534,7 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   [[nodiscard]] std::size_t pieces_ahead() const noexcept override { return ahead_.size(); }
   void touch_ahead(std::size_t piece) noexcept override { *static_cast<volatile unsigned char*>(ahead_[piece]) = 0; }
 
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
     if (caps != nullptr) add_caps(*caps, all.end_vertex);
     if (!pinches.any_missing()) return;
     std::vector<Index> candidates(pinches.vertices().begin(), pinches.vertices().end());

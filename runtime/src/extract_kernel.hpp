@@ -27,9 +27,6 @@ void check_vertex_count(std::uint64_t count, std::uint64_t limit);
 /// Throws InvalidIsovalue or InvalidArgument.
 void check_arguments(double isovalue, const ExtractOptions& options);
 
-/// Throws InvalidArgument for estimators from the data; `what` only knows the consistent method.
-void require_consistent_method(const ExtractOptions& options, const char* what);
-
 /// Where an output has to move, it gets room for what the share of the image that is `done` lets expect, within bounds.
 template <class T>
 void resize_output(Buffer<T>& output, std::uint64_t size, double done) {
@@ -63,8 +60,7 @@ struct ContourPart {
 class TileSelection;
 template <int N, class Real>
 class Caps;
-template <int N>
-class PinchCandidates;
+class PinchList;
 
 /// Where an extraction puts its contour: part after part, each in two steps. Vertices' numbers in simplices count
 /// modulo 2^32; those in a part's simplices belong to it or to the part before.
@@ -92,9 +88,9 @@ class ContourOutput {
   [[nodiscard]] virtual std::size_t pieces_ahead() const noexcept { return 0; }
   virtual void touch_ahead(std::size_t /*piece*/) noexcept {}
   /// A part is written. `pinches`: the vertices of this part and all before that may have to be doubled.
-  virtual void close(const ContourPart& /*part*/, const PinchCandidates<N>& /*pinches*/) {}
+  virtual void close(const ContourPart& /*part*/, const PinchList& /*pinches*/) {}
   /// All parts are written; `caps` may be null.
-  virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) = 0;
+  virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) = 0;
 };
 
 /// How an extraction goes about its work.

@@ -32,11 +32,7 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   set.rows = triangulation == 0 ? row_table<N, 0>() : row_table<N, 1>();
   set.compact = options.triangulation == Triangulation::compact;
   if constexpr (N == 4)
-    if (is_estimated(options.ambiguity)) {
-      if (triangulation == 0)
-        require_consistent_method(options, "streamed barycentric contours of 4D images (compact ones take it)");
-      set.rows = &estimated_tesseracts();
-    }
+    if (is_estimated(options.ambiguity)) set.rows = &estimated_tesseracts();
   if constexpr (N < 4)
     if (is_estimated(options.ambiguity)) {
       const VariantTable<N>& variants = variant_table<N>(triangulation);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The extraction without tables, slab by slab along the last axis. What a slab takes: find its cells (tiles that are
-// active, and caps), build the tiles whose signatures are new, number the vertices face by face, write. See
-// extract_layers.hpp for the words.
+// active, and caps), build the tiles whose signatures are new, number the vertices face by face, write. A part of the
+// contour is a slab with the layer above it. See extract_layers.hpp for the words.
 #include "extract_tiles.hpp"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <limits>
 #include <numeric>
@@ -15,118 +16,59 @@
 #include <fmt/format.h>
 
 #include "built_tile.hpp"
-#include "extract_cell.hpp"
 #include "extract_place.hpp"
 #include "extract_progress.hpp"
 #include "face_ranks.hpp"
 #include "grid_cells.hpp"
+#include "pinches.hpp"
 #include "stopwatch.hpp"
+#include "tile_cells.hpp"
 #include "tile_choices.hpp"
 #include "tile_places.hpp"
+#include "tile_selection.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
 namespace {
 
-/// A tile or cap with a contour.
-struct Cell {
-  std::uint64_t signature;
-  std::uint32_t row, i;    ///< its first sample
-  std::uint32_t tile = 0;  ///< number of the built tile
-  std::uint8_t kind;
-};
-
 /// The samples against the isovalue, and the faces with vertices among those within the layer.
 struct TileLayer {
   std::vector<Word> high;
+  std::vector<Word> missing;  ///< none: none are
   FaceRanks faces;
 };
 
 /// Between two layers.
 struct TileSlab {
+  std::vector<Word> valid;  ///< rows x words, tiles that count; none: all do
   std::vector<Cell> cells;
   std::vector<SeenTile> tiles;
   std::vector<std::uint64_t> simplices;  ///< by cell: the first one's number
   FaceRanks faces;
 };
 
-/// Finds the cells of a slab that have a contour.
-template <int N>
-class CellFinder {
+/// The vertices next to tiles that do not count.
+class TilePinches final : public PinchList {
  public:
-  /// `closed`: the axes across which borders have caps.
-  CellFinder(const RowShape<N>& shape, unsigned closed) : shape_(shape), closed_(closed) {}
-
-  /// The cells that start in a row of slab k, between `layers`, kind by kind.
-  void find(std::size_t k, const std::array<const Word*, 2>& layers, std::size_t row, std::vector<Cell>& out) const {
-    const auto index = shape_.index_of(row);
-    if (shape_.has_cells(index, kAll)) sweep(CellKind<N>(0), layers, row, kRowOfCells, out);
-    for (int axis = 0; axis < N; ++axis)
-      for (unsigned side = 0; side < 2; ++side) {
-        if ((closed_ >> axis & 1u) == 0 || !shape_.has_cells(index, kAll ^ 1u << axis)) continue;
-        const CellKind<N> kind(axis, side);
-        if (axis == 0) {
-          sweep(kind, layers, row, side == 0 ? 0 : shape_.size(0) - 1, out);
-        } else if (axis == N - 1) {
-          if (side == 0 ? k == 0 : k + 2 == shape_.layers())
-            sweep(kind, {layers[side], nullptr}, row, kRowOfCells, out);
-        } else if (index[axis] == (side == 0 ? 0 : shape_.size(axis) - 1)) {
-          sweep(kind, layers, row, kRowOfCells, out);
-        }
-      }
+  void note_missing() noexcept { any_missing_ = true; }
+  /// What comes next is not below what came in earlier calls.
+  void add(std::vector<std::uint64_t>& vertices) {
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
   }
-
- private:
-  static constexpr unsigned kAll = (1u << N) - 1;
-  static constexpr std::size_t kRowOfCells = ~std::size_t{0};
-
-  /// `only`: the one sample that a cell may start at; kRowOfCells: cells along the row.
-  void sweep(CellKind<N> kind, const std::array<const Word*, 2>& layers, std::size_t row, std::size_t only,
-             std::vector<Cell>& out) const {
-    struct Corner {
-      const Word* row;
-      unsigned ahead;
-    };
-    std::array<Corner, kAll + 1> corners;
-    for (unsigned c = 0; c < kind.corners(); ++c) {
-      const unsigned shift = kind.spread(c);
-      corners[c] = {layers[shift >> (N - 1)] + shape_.shifted(row, shift) * shape_.pitch(), shift & 1u};
-    }
-    for (std::size_t w = 0; w < shape_.words(); ++w) {
-      Word any = 0, all = ~Word{0};
-      for (unsigned c = 0; c < kind.corners(); ++c) {
-        const Word* const at = corners[c].row + w;
-        const Word word = corners[c].ahead == 0 ? at[0] : at[0] >> 1 | at[1] << (kWordBits - 1);
-        any |= word;
-        all &= word;
-      }
-      Word rest = (kind.is_cap() ? any : any & ~all) & shape_.mask(w, only == kRowOfCells);
-      if (only != kRowOfCells) rest &= w == only / kWordBits ? Word{1} << (only % kWordBits) : 0;
-      for (; rest != 0; rest &= rest - 1) {
-        const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
-        std::uint64_t signature = 0;
-        for (unsigned c = 0; c < kind.corners(); ++c) {
-          const std::size_t sample = i + corners[c].ahead;
-          signature |= (corners[c].row[sample / kWordBits] >> (sample % kWordBits) & 1u) << c;
-        }
-        out.push_back({signature, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(i), 0,
-                       static_cast<std::uint8_t>(kind.number())});
-      }
-    }
-  }
-
-  const RowShape<N>& shape_;
-  unsigned closed_;
 };
 
 template <int N, class Real>
 class TileExtraction {
  public:
-  TileExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options, Contour<N, Real>* contour,
-                 std::size_t tile_bytes, const ExtractPlan& plan)
+  TileExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                 ContourOutput<N, Real>& output, std::size_t tile_bytes, const ExtractPlan& plan)
       : source_(source),
         options_(options),
-        contour_(contour),
+        output_(output),
+        max_vertices_(plan.max_vertices),
+        selection_(plan.selection != nullptr && plan.selection->only_these() ? plan.selection : nullptr),
         reporter_(options.progress, grid.axes[N - 1].size() - 1),
         flip_(against_tables(grid, options)),
         shape_(grid.sizes()),
@@ -144,24 +86,30 @@ class TileExtraction {
     }
   }
 
-  ContourSize run(ExtractStats& stats) {
+  void run(ExtractStats& stats) {
     const std::size_t slabs = shape_.layers() - 1;
-    source_.keep(3);
+    // Of two slabs and what is around them: gradients look one layer further, an estimator as far as it says.
+    const std::size_t reach =
+        options_.ambiguity == Ambiguity::custom ? std::min(options_.estimator.reach, shape_.layers()) : 0;
+    source_.keep(2 + reach + std::max<std::size_t>(2, reach));
+    std::size_t prepared = 0;
     Stopwatch watch;
     for (std::size_t k = 0; k <= slabs; ++k) {
       reporter_.begin_batch(k == 0 ? 0 : k - 1, k, passes());
       reporter_.tell(k == 0 ? 0.0 : static_cast<double>(k - 1));
+      for (; prepared < std::min(k + 2 + reach, shape_.layers()); ++prepared) source_.prepare(prepared);
+      watch.add_to(stats.read_seconds);
       if (k == 0) classify(0);
       if (k < slabs) classify(k + 1);
       watch.add_to(stats.classify_seconds);
       if (k < slabs) find_cells(k, stats);
       number_vertices(k);
       watch.add_to(stats.find_seconds);
-      if (k > 0 && contour_ != nullptr) write(k - 1);
+      if (k > 0) write(k - 1);
       watch.add_to(stats.generate_seconds);
     }
+    output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, pinches_);
     reporter_.tell(static_cast<double>(slabs));
-    return {vertices_, simplices_};
   }
 
  private:
@@ -196,37 +144,64 @@ class TileExtraction {
   }
 
   void classify(std::size_t k) {
-    source_.prepare(k);
     TileLayer& here = layer(k);
     here.high.assign(shape_.rows() * shape_.pitch(), 0);
+    here.missing.assign(shape_.rows() * shape_.pitch(), 0);
     here.faces.reset(shape_.rows() * grid_cells_.slots(false) * shape_.words());
-    std::vector<std::uint8_t> missing(shape_.rows());
+    std::atomic<bool> any_missing = false;
     for_range(shape_.rows(), 64, [&](std::size_t from, std::size_t to) {
-      std::vector<Word> ignored(shape_.pitch());
       for (std::size_t row = from; row < to; ++row) {
         auto start = shape_.index_of(row);
         start[N - 1] = k;
-        const BitRows high{here.high.data() + row * shape_.pitch(), shape_.pitch()};
-        missing[row] = source_.classify(start, 1, high, {ignored.data(), 0}) != 0 ? 1 : 0;
+        const std::size_t first = row * shape_.pitch();
+        if (source_.classify(start, 1, {here.high.data() + first, shape_.pitch()},
+                             {here.missing.data() + first, shape_.pitch()}) != 0)
+          any_missing = true;
       }
     });
-    if (std::find(missing.begin(), missing.end(), 1) != missing.end())
+    if (!any_missing) return here.missing.clear();
+    if (N > 4)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("a {}D image with missing values, the first in layer {} of its last axis; expected "
-                              "numbers only: contours next to missing values are made up to 4D, barycentric ones in "
-                              "4D with ambiguity low or high",
+                              "numbers only: contours next to missing values are made up to 4D",
                               N, k));
+  }
+
+  /// The tiles of slab k that count.
+  void find_valid(std::size_t k) {
+    std::vector<Word>& valid = slab(k).valid;
+    valid.clear();
+    const TileLayer &below = layer(k), &above = layer(k + 1);
+    if (selection_ == nullptr && below.missing.empty() && above.missing.empty()) return;
+    pinches_.note_missing();
+    valid.assign(shape_.rows() * shape_.words(), ~Word{0});
+    for (std::size_t chunk = 0; selection_ != nullptr && chunk < shape_.chunks(); ++chunk)
+      selection_->write_valid(k, chunk, shape_.chunk_end(chunk) - chunk * kChunkRows, shape_.words(), valid);
+    constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
+    for (std::size_t row = 0; row < shape_.rows(); ++row)
+      for (std::size_t w = 0; w < shape_.words(); ++w) {
+        Word& here = valid[row * shape_.words() + w];
+        here &= shape_.mask(w, true);
+        if (!shape_.has_cells(shape_.index_of(row), kMiddle)) here = 0;
+        for (const TileLayer* of : {&below, &above})
+          for (unsigned shift = 0; shift <= kMiddle && here != 0 && !of->missing.empty(); shift += 2) {
+            const Word* const at = of->missing.data() + shape_.shifted(row, shift) * shape_.pitch() + w;
+            here &= ~(at[0] | at[0] >> 1 | at[1] << (kWordBits - 1));
+          }
+      }
   }
 
   void find_cells(std::size_t k, ExtractStats& stats) {
     TileSlab& here = slab(k);
     here.faces.reset(shape_.rows() * grid_cells_.slots(true) * shape_.words());
     const std::array<const Word*, 2> layers = {layer(k).high.data(), layer(k + 1).high.data()};
+    find_valid(k);
+    const Word* const valid = here.valid.empty() ? nullptr : here.valid.data();
     by_row_.resize(shape_.rows());
     for_range(shape_.rows(), 16, [&](std::size_t from, std::size_t to) {
       for (std::size_t row = from; row < to; ++row) {
         by_row_[row].clear();
-        finder_.find(k, layers, row, by_row_[row]);
+        finder_.find(k, layers, valid, row, by_row_[row]);
       }
     });
     here.cells.clear();
@@ -382,28 +357,93 @@ class TileExtraction {
     if (k > 0) tell(k - 1);
     if (has_slab) tell(k);
     vertices_ = layer(k).faces.number(vertices_);
+    part_end_ = vertices_;
     if (has_slab) vertices_ = slab(k).faces.number(vertices_);
-    if (contour_ != nullptr) check_vertex_count(vertices_, kMaxVertices);
   }
 
+  /// The part that slab k is.
   void write(std::size_t k) {
     const double done = static_cast<double>(k + 1) / static_cast<double>(shape_.layers() - 1);
-    resize_output(contour_->vertices, vertices_, done);
-    if (options_.normals) resize_output(contour_->normals, vertices_, done);
-    resize_output(contour_->simplices, slab(k).simplices.back(), done);
-    pass_over(slab(k).cells.size(), 16, [&](std::size_t from, std::size_t to) {
-      TilePlaces<N> places(cube_, built_.symmetries());
-      std::vector<Index> ids;
-      for (std::size_t c = from; c < to; ++c) {
-        write_vertices(k, c, places, ids);
-        write_simplices(slab(k), c, ids);
-      }
-    });
-    if (estimator_) estimator_->rethrow();
+    const ContourPart part{part_first_, part_end_, slab(k).simplices.front(), slab(k).simplices.back(), done};
+    room_ = output_.open(part);
+    if (room_.vertices != nullptr || room_.simplices != nullptr) {
+      check_vertex_count(part.end_vertex, max_vertices_);
+      pass_over(slab(k).cells.size(), 16, [&](std::size_t from, std::size_t to) {
+        TilePlaces<N> places(cube_, built_.symmetries());
+        std::vector<Index> ids;
+        for (std::size_t c = from; c < to; ++c) {
+          write_vertices(k, c, k == 0 ? kAnyFace : kNotBelow, places, ids);
+          write_simplices(slab(k), c, ids);
+        }
+      });
+      // Of the layer above, what no tile of this slab has.
+      if (pinches_.any_missing() && k + 2 < shape_.layers())
+        for_range(slab(k + 1).cells.size(), 16, [&](std::size_t from, std::size_t to) {
+          TilePlaces<N> places(cube_, built_.symmetries());
+          std::vector<Index> ids;
+          for (std::size_t c = from; c < to; ++c) write_vertices(k + 1, c, kBelow, places, ids);
+        });
+      if (estimator_) estimator_->rethrow();
+      if (pinches_.any_missing()) find_pinches(k);
+      output_.close(part, pinches_);
+    }
+    part_first_ = part_end_;
   }
 
+  /// The vertices of the part that are next to tiles that do not count: those on edges, and the caps'.
+  void find_pinches(std::size_t k) {
+    std::vector<std::uint64_t> found;
+    const auto look = [&](std::size_t of, bool below) {
+      for (std::size_t c = 0; c < slab(of).cells.size(); ++c) {
+        const CellKind<N> kind(slab(of).cells[c].kind);
+        const auto base = base_of(slab(of).cells[c], of);
+        for_faces_of(of, c,
+                     [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
+                         std::size_t, std::uint16_t face) {
+                       const CubeFaces::Cell& cell = cube_.cells()[face];
+                       const bool is_below = &faces == &layer(of).faces;
+                       if (cell.dim != 1 || (is_below ? !below && of > 0 : below)) return;
+                       if (!kind.is_cap() && is_surrounded(base, cell)) return;
+                       const std::uint64_t first =
+                           part_first_ + static_cast<Index>(faces.first(word, bit) - static_cast<Index>(part_first_));
+                       for (std::size_t v = 0; v < vertices.count; ++v) found.push_back(first + v);
+                     });
+      }
+    };
+    look(k, false);
+    if (k + 2 < shape_.layers()) look(k + 1, true);
+    pinches_.add(found);
+  }
+
+  /// Whether all tiles around an edge of the tile at `base`, of those that the image has, count.
+  [[nodiscard]] bool is_surrounded(const typename RowShape<N>::Index& base, const CubeFaces::Cell& edge) {
+    constexpr unsigned kAllAxes = (1u << N) - 1;
+    const unsigned across = kAllAxes & ~unsigned{edge.axes};
+    for (unsigned back = across;; back = (back - 1) & across) {
+      auto tile = base;
+      bool inside = true;
+      for (int a = 0; a < N; ++a) {
+        tile[a] += edge.base >> a & 1u;
+        inside = inside && tile[a] >= (back >> a & 1u);
+        tile[a] -= back >> a & 1u;
+        inside = inside && tile[a] + 1 < shape_.size(a);
+      }
+      if (inside && !is_valid(tile)) return false;
+      if (back == 0) return true;
+    }
+  }
+  [[nodiscard]] bool is_valid(const typename RowShape<N>::Index& tile) noexcept {
+    const std::vector<Word>& valid = slab(tile[N - 1]).valid;
+    if (valid.empty()) return true;
+    std::size_t row = 0;
+    for (int a = 1; a + 1 < N; ++a) row += tile[a] * shape_.shifted(0, 1u << a);
+    return (valid[row * shape_.words() + tile[0] / kWordBits] >> (tile[0] % kWordBits) & 1u) != 0;
+  }
+
+  enum Which { kAnyFace, kNotBelow, kBelow };  ///< faces: all, but those of the layer below the cells, those alone
+
   /// Numbers all vertices of a cell, and writes those of the faces that it owns.
-  void write_vertices(std::size_t k, std::size_t c, TilePlaces<N>& places, std::vector<Index>& ids) {
+  void write_vertices(std::size_t k, std::size_t c, Which which, TilePlaces<N>& places, std::vector<Index>& ids) {
     const Cell& cell = slab(k).cells[c];
     const SeenTile& seen = slab(k).tiles[cell.tile];
     const CellKind<N> kind(cell.kind);
@@ -413,16 +453,23 @@ class TileExtraction {
     for_faces_of(k, c,
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
                      std::size_t, std::uint16_t face) {
+                   const bool is_below = &faces == &layer(k).faces;
+                   if (which == kBelow && !is_below) {  // has no numbers yet; edges are places of what depends on them
+                     if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
+                     return;
+                   }
                    // Cells around a face agree on it, unless a caller's estimator does not.
                    if (estimator_ && vertices.count != faces.count(word, bit)) return estimator_->report_change(base);
                    number_face(seen, vertices, faces.first(word, bit), ids);
                    if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
-                   if (faces.owner(word, bit) != owner_name(faces, layer(k), c)) return;
+                   if ((is_below && which == kNotBelow) || faces.owner(word, bit) != owner_name(faces, layer(k), c))
+                     return;
                    for (std::size_t v = vertices.first; v < std::size_t{vertices.first} + vertices.count; ++v) {
                      const auto place = in_grid(kind, places(v));
-                     contour_->vertices[ids[v]] = point(kind, base, place);
+                     const auto at = static_cast<Index>(ids[v] - static_cast<Index>(part_first_));
+                     room_.vertices[at] = point(kind, base, place);
                      if (options_.normals)
-                       contour_->normals[ids[v]] =
+                       room_.normals[at] =
                            placement_.normals()->template in_cell<CellFrame<N, (1u << N) - 1>>(base, place);
                    }
                  });
@@ -487,7 +534,7 @@ class TileExtraction {
     const bool is_mirrored = CellKind<N>(cell.kind).is_mirrored() != built_.symmetries().is_mirror(seen.symmetry);
     const bool flip = flip_ != is_mirrored;
     const std::vector<std::uint16_t>& stored = seen.tile->simplices;
-    auto* out = contour_->simplices.data() + from.simplices[c];
+    auto* out = room_.simplices + (from.simplices[c] - from.simplices.front());
     for (std::size_t s = 0; s < stored.size(); s += N, ++out) {
       for (std::size_t j = 0; j < N; ++j) (*out)[j] = ids[stored[s + j]];
       if (flip) std::swap((*out)[N - 2], (*out)[N - 1]);
@@ -496,7 +543,9 @@ class TileExtraction {
 
   SampleSource<N>& source_;
   const ExtractOptions& options_;
-  Contour<N, Real>* contour_;
+  ContourOutput<N, Real>& output_;
+  std::uint64_t max_vertices_;
+  const TileSelection* selection_;  ///< null: all tiles
   ProgressReporter reporter_;
   bool flip_;
   RowShape<N> shape_;
@@ -514,9 +563,53 @@ class TileExtraction {
   std::vector<TileKey> keys_;  ///< of the cells of the slab at hand, where the data decide
   std::uint64_t vertices_ = 0;
   std::uint64_t simplices_ = 0;
+  std::uint64_t part_first_ = 0, part_end_ = 0;  ///< vertices of the part at hand
+  typename ContourOutput<N, Real>::Room room_{};
+  TilePinches pinches_;
+};
+
+/// A contour in memory, or its size alone.
+template <int N, class Real>
+class BuiltContour final : public ContourOutput<N, Real> {
+ public:
+  using typename ContourOutput<N, Real>::Room;
+  BuiltContour(Contour<N, Real>* contour, bool normals) : contour_(contour), normals_(normals) {}
+
+  Room open(const ContourPart& part) override {
+    if (contour_ == nullptr) return {nullptr, nullptr};
+    resize_output(contour_->vertices, part.end_vertex, part.done);
+    if (normals_) resize_output(contour_->normals, part.end_vertex, part.done);
+    resize_output(contour_->simplices, part.end_simplex, part.done);
+    return {contour_->vertices.data() + part.first_vertex, contour_->simplices.data() + part.first_simplex,
+            normals_ ? contour_->normals.data() + part.first_vertex : nullptr};
+  }
+  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& pinches) override {
+    size = {all.end_vertex, all.end_simplex};
+    if constexpr (N <= 4) {
+      if (contour_ == nullptr || !pinches.any_missing()) return;
+      separate_pinches(*contour_, {pinches.vertices().begin(), pinches.vertices().end()}, kMaxVertices);
+      size = {contour_->vertices.size(), contour_->simplices.size()};
+    }
+  }
+
+  ContourSize size;
+
+ private:
+  Contour<N, Real>* contour_;
+  bool normals_;
 };
 
 }  // namespace
+
+template <int N, class Real>
+ExtractStats extract_tiles_to(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                              const ExtractPlan& plan, ContourOutput<N, Real>& output, std::size_t tile_bytes) {
+  ExtractStats stats;
+  stats.tiles = 1;
+  for (const Axis& axis : grid.axes) stats.tiles *= axis.size() - 1;
+  if (stats.tiles != 0) TileExtraction<N, Real>(source, grid, options, output, tile_bytes, plan).run(stats);
+  return stats;
+}
 
 template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
@@ -529,17 +622,16 @@ ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const Ex
     }
     contour->direction = options.direction;
   }
-  ExtractStats done;
-  done.tiles = 1;
-  for (const Axis& axis : grid.axes) done.tiles *= axis.size() - 1;
-  ContourSize size;
-  if (done.tiles != 0) size = TileExtraction<N, Real>(source, grid, options, contour, tile_bytes, plan).run(done);
+  BuiltContour<N, Real> output(contour, options.normals);
+  const ExtractStats done = extract_tiles_to<N, Real>(source, grid, options, plan, output, tile_bytes);
   if (stats != nullptr) *stats = done;
-  return size;
+  return output.size;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                      \
-  template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&, \
+#define TEGL_INSTANTIATE(N, Real)                                                                            \
+  template ExtractStats extract_tiles_to<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&,   \
+                                                  const ExtractPlan&, ContourOutput<N, Real>&, std::size_t); \
+  template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&,       \
                                               Contour<N, Real>*, ExtractStats*, std::size_t, const ExtractPlan&);
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, double)

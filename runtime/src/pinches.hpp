@@ -20,10 +20,22 @@
 
 namespace tegl::detail {
 
+/// The vertices that may need it, as far as an extraction has come.
+class PinchList {
+ public:
+  /// Ascending, each once.
+  [[nodiscard]] const std::vector<std::uint64_t>& vertices() const noexcept { return vertices_; }
+  [[nodiscard]] bool any_missing() const noexcept { return any_missing_; }
+
+ protected:
+  bool any_missing_ = false;
+  std::vector<std::uint64_t> vertices_;
+};
+
 /// Gathers, while an extraction goes through the layers, the vertices that may need it: those on edges of the grid
 /// that a valid tile shares with a tile with missing corners.
 template <int N>
-class PinchCandidates {
+class PinchCandidates : public PinchList {
  public:
   PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter);
 
@@ -36,10 +48,6 @@ class PinchCandidates {
   /// The least number that a vertex met from now on can have; the largest is below that plus 2^32.
   void set_least(std::uint64_t least) noexcept { least_ = least; }
 
-  /// Ascending, each once.
-  [[nodiscard]] const std::vector<std::uint64_t>& vertices() const noexcept { return vertices_; }
-  [[nodiscard]] bool any_missing() const noexcept { return any_missing_; }
-
  private:
   void add_row(const EdgePlane& plane, int axis, std::size_t row, const Slab<N>* below, const Slab<N>* above);
 
@@ -47,9 +55,7 @@ class PinchCandidates {
   const Counter<N>& counter_;
   std::array<Slab<N>, 2> invalid_;  ///< of the last two slabs: "valid" has the tiles that are not
   std::size_t slabs_ = 0;           ///< opened so far
-  bool any_missing_ = false;
   std::vector<Word> buffer_;
-  std::vector<std::uint64_t> vertices_;
   std::uint64_t least_ = 0;
 };
 

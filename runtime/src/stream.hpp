@@ -80,7 +80,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
     return {vertices_.data(), simplices_.data(), with_normals_ ? normals_.data() : nullptr};
   }
 
-  void close(const ContourPart& part, const PinchCandidates<N>& pinches) override {
+  void close(const ContourPart& part, const PinchList& pinches) override {
     wide_.resize(simplices_.size());
     for (std::size_t s = 0; s < simplices_.size(); ++s)
       for (int j = 0; j < N; ++j)
@@ -91,7 +91,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
     size_ = {part.end_vertex, part.end_simplex};
   }
 
-  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchCandidates<N>& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
     std::vector<std::uint64_t> candidates = pinches.vertices();
     if (caps != nullptr) add_caps(*caps, all, pinches.any_missing(), candidates);
     if (pinches.any_missing()) separate(candidates);
