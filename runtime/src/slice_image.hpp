@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "extract_tiles.hpp"
+#include "moved_estimator.hpp"
 #include "slice_at.hpp"
 #include "tegl/slice.hpp"
 
@@ -112,11 +113,12 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
   detail::check_arguments(isovalue, options);
   auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
   const bool is_last = axis == N - 1;
-  // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis. (But a
-  // caller's estimator is to see the image's own axes.)
-  if (N == 4 && !is_last && options.ambiguity != Ambiguity::custom &&
-      detail::is_at_layer<N, Real>(image.grid(), axis, at, layers))
-    return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, options, stats);
+  // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis.
+  if (N == 4 && !is_last && detail::is_at_layer<N, Real>(image.grid(), axis, at, layers)) {
+    ExtractOptions moved = options;
+    if (options.ambiguity == Ambiguity::custom) moved.estimator = detail::moved_estimator<N>(options.estimator, axis);
+    return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, moved, stats);
+  }
   if (!is_last) layers = detail::with_neighbours(layers, image.size(axis), options);
   const Image<T, N> slab = image.part(axis, layers.first, layers.second);
   // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.

@@ -136,6 +136,9 @@ struct Collector final : ContourSink<N, Real> {
   void add_vertices(std::span<const std::array<Real, N>> part) override {
     contour.vertices.insert(contour.vertices.end(), part.begin(), part.end());
   }
+  void add_normals(std::span<const std::array<Real, N>> part) override {
+    contour.normals.insert(contour.normals.end(), part.begin(), part.end());
+  }
   void add_simplices(std::span<const std::array<std::uint64_t, N>> part) override {
     for (const auto& simplex : part) {
       auto& to = contour.simplices.emplace_back();
@@ -497,19 +500,95 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnes) {
   }
 }
 
-TEST(EstimatedContours, AreRefusedWhereTheyCannotBeMade) {
-  auto image = noise<float, 4>(std::size_t{3}, 1);
-  ExtractOptions options = with(Ambiguity::mean);
+/// Barycentric, resolved from the data: built tile by tile.
+ExtractOptions built(Ambiguity ambiguity, bool close) {
+  ExtractOptions options = with(ambiguity);
   options.triangulation = Triangulation::barycentric;
-  expect_error(ErrorCode::InvalidArgument, "streamed barycentric", [&] {
+  options.close = close;
+  return options;
+}
+
+TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
+  for (const double missing : {0.0, 0.02}) {
+    const auto image = noise_with_missing<float, 4>(Grid<4>::unit({4, 3, 4, 6}), 15, missing);
+    for (const Ambiguity ambiguity : kEstimated)
+      for (const bool close : {false, true}) {
+        SCOPED_TRACE(std::string(name_of(ambiguity)) + (close ? ", closed" : "") + (missing > 0 ? ", missing" : ""));
+        ExtractOptions options = built(ambiguity, close);
+        options.normals = true;
+        const auto contour = extract(image.view(), 0.5, options);
+        if (missing > 0 || !close)
+          expect_oriented_manifold(contour);
+        else
+          expect_closed_manifold(contour);
+        for (const unsigned threads : {1u, 4u}) {
+          options.threads = threads;
+          Collector<4, float> collector;
+          auto layers = layers_of(image);
+          const ContourSize size = extract_streamed(layers, 0.5, options, collector);
+          expect_same_bytes(collector.contour, contour);
+          EXPECT_EQ(size.vertices, contour.vertices.size());
+          EXPECT_EQ(size.simplices, contour.simplices.size());
+        }
+        const ContourSize size = count(image.view(), 0.5, options);
+        EXPECT_EQ(size.vertices, contour.vertices.size());
+        EXPECT_EQ(size.simplices, contour.simplices.size());
+      }
+  }
+}
+
+TEST(BarycentricContoursOf4dImages, AreStreamedWithAnEstimatorThatLooksFarther) {
+  const auto image = noise<float, 4>(std::array<std::size_t, 4>{4, 3, 4, 7}, 16);
+  for (const std::size_t reach : {1, 3}) {
+    Neighbourhood<float, 4> around{image};
+    ExtractOptions options = built(Ambiguity::custom, false);
+    options.estimator = around.estimator(reach);
+    const auto contour = extract(image.view(), 0.5, options);
     Collector<4, float> collector;
     auto layers = layers_of(image);
     extract_streamed(layers, 0.5, options, collector);
-  });
-  const auto chosen = choose_tiles(image.view(), {0});
-  expect_error(ErrorCode::InvalidArgument, "chosen tiles", [&] { extract(image.view(), 0.5, options, *chosen); });
-  image.values[7] = std::numeric_limits<float>::quiet_NaN();
-  expect_error(ErrorCode::UnsupportedData, "missing values", [&] { extract(image.view(), 0.5, options); });
+    expect_same_bytes(collector.contour, contour);
+    EXPECT_GT(around.asked, 0u);
+    EXPECT_EQ(around.wrong, 0u);
+  }
+}
+
+TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnesNextToMissingValuesAndInChosenTiles) {
+  for (const std::uint64_t seed : {17u, 18u, 19u}) {
+    const auto image = noise_with_missing<float, 4>(Grid<4>::unit({4, 4, 4, 4}), seed, 0.02);
+    const auto whole = noise<float, 4>(std::size_t{4}, seed);
+    std::vector<TileNumber> tiles;
+    for (TileNumber tile = 0; tile < 27 * 3; ++tile)
+      if ((tile * 2654435761u >> 7) % 3 != 0) tiles.push_back(tile);
+    const auto chosen = choose_tiles(whole.view(), tiles);
+    // Of an image with missing values, tiles without any.
+    std::erase_if(tiles, [&](TileNumber tile) {
+      const std::size_t first = tile % 3 + tile / 3 % 3 * 4 + tile / 9 % 3 * 16 + tile / 27 * 64;
+      for (unsigned v = 0; v < 16; ++v)
+        if (std::isnan(image.values[first + (v & 1u) + (v >> 1 & 1u) * 4 + (v >> 2 & 1u) * 16 + (v >> 3) * 64]))
+          return true;
+      return false;
+    });
+    const auto holes = choose_tiles(image.view(), tiles);
+    for (const Ambiguity ambiguity : kEstimated) {
+      SCOPED_TRACE(std::string(name_of(ambiguity)) + ", seed " + std::to_string(seed));
+      const ExtractOptions built_options = built(ambiguity, false), compact_options = with(ambiguity);
+      const auto expect_alike = [](const Contour<4, double>& found, const Contour<4, double>& compact) {
+        expect_oriented_manifold(found);
+        const MeshReport a = check(found), b = check(compact);
+        EXPECT_EQ(a.components, b.components);
+        EXPECT_EQ(a.euler, b.euler);
+        EXPECT_GT(found.simplices.size(), 0u);
+      };
+      expect_alike(extract<double>(image.view(), 0.5, built_options),
+                   extract<double>(image.view(), 0.5, compact_options));
+      expect_alike(extract<double>(whole.view(), 0.5, built_options, *chosen),
+                   extract<double>(whole.view(), 0.5, compact_options, *chosen));
+      expect_alike(extract<double>(image.view(), 0.5, built_options, *holes),
+                   extract<double>(image.view(), 0.5, compact_options, *holes));
+      expect_closed_up_to_missing_values<double>(image.view(), 0.5, built_options);
+    }
+  }
 }
 
 }  // namespace tegl::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A caller's estimator for an image that is looked at with another axis for its last one: it is to see the axes that
+// the image has.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "tegl/ambiguity.hpp"
+
+namespace tegl::detail {
+
+/// A face of the image with `axis` moved behind the others, as one of the image itself.
+template <int N>
+class MovedFace {
+ public:
+  MovedFace(const AmbiguousFace& face, int axis) : face_(face) {
+    for (int b = 0; b < N; ++b) own_[b] = b == N - 1 ? axis : b + (b >= axis ? 1 : 0);
+  }
+  MovedFace(const MovedFace&) = delete;
+  MovedFace& operator=(const MovedFace&) = delete;
+
+  /// What `choose` says of it.
+  [[nodiscard]] facets::Choice ask(const std::function<facets::Choice(const AmbiguousFace&)>& choose) const {
+    std::array<std::size_t, N> base{};
+    std::array<unsigned, N> bit{};  // of a corner's number in the moved face, by own axis
+    unsigned axes = 0;
+    for (unsigned b = 0, next = 0; b < N; ++b) {
+      base[own_[b]] = face_.base()[b];
+      if ((face_.axes() >> b & 1u) == 0) continue;
+      axes |= 1u << own_[b];
+      bit[own_[b]] = next++;
+    }
+    std::array<double, std::size_t{1} << N> values{};
+    for (unsigned corner = 0; corner < face_.values().size(); ++corner) {
+      unsigned moved = 0;
+      unsigned rest = axes;
+      for (unsigned j = 0; rest != 0; rest &= rest - 1, ++j)
+        moved |= (corner >> j & 1u) << bit[static_cast<std::size_t>(std::countr_zero(rest))];
+      values[corner] = face_.values()[moved];
+    }
+    // How far it may look, and where the image ends, the moved face knows.
+    constexpr auto kFar = static_cast<std::ptrdiff_t>(std::uint64_t{1} << 62);
+    AmbiguousFace::Surroundings around;
+    around.image = this;
+    around.read = [](const void* face, const std::ptrdiff_t* index) {
+      return static_cast<const MovedFace*>(face)->sample(index);
+    };
+    around.first.fill(-kFar);
+    around.end.fill(kFar);
+    return choose(AmbiguousFace(base, axes, std::span(values).first(face_.values().size()), face_.isovalue(), around));
+  }
+
+ private:
+  [[nodiscard]] double sample(const std::ptrdiff_t* index) const noexcept {
+    std::array<std::ptrdiff_t, N> steps{};
+    for (std::size_t b = 0; b < N; ++b) steps[b] = index[own_[b]] - static_cast<std::ptrdiff_t>(face_.base()[b]);
+    return face_.sample(steps);
+  }
+
+  const AmbiguousFace& face_;
+  std::array<int, N> own_{};  ///< the image's axis that is the moved image's
+};
+
+/// The estimator for the image with `axis` moved behind the others.
+template <int N>
+Estimator moved_estimator(const Estimator& estimator, int axis) {
+  return {[choose = estimator.choose, axis](const AmbiguousFace& face) { return MovedFace<N>(face, axis).ask(choose); },
+          estimator.reach};
+}
+
+}  // namespace tegl::detail
