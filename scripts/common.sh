@@ -16,6 +16,37 @@ fail() {
   exit 1
 }
 
+# missing_packages PACKAGE...: those of them that dpkg does not know as installed, one per line.
+missing_packages() {
+  local package
+  for package in "$@"; do
+    if [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) != installed ]]; then
+      echo "$package"
+    fi
+  done
+}
+
+# install_packages PACKAGE...: installs the Debian packages that are missing. If none is, it touches nothing and needs
+# neither network nor root.
+install_packages() {
+  local missing as_root=()
+  command -v apt-get >/dev/null || fail "needs apt-get (Debian 12 or a relative); packages to install by other means: $*"
+  mapfile -t missing < <(missing_packages "$@")
+  if [[ ${#missing[@]} -eq 0 ]]; then
+    echo "Set-up: all $# packages are installed."
+    return
+  fi
+  say "Installing ${#missing[@]} of $# Debian packages: ${missing[*]}"
+  if [[ $(id -u) -ne 0 ]]; then
+    command -v sudo >/dev/null || fail "not root, and no sudo: let root run: apt-get install --no-install-recommends ${missing[*]}"
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+  mapfile -t missing < <(missing_packages "$@")
+  [[ ${#missing[@]} -eq 0 ]] || fail "apt-get succeeded, but these packages are still not installed: ${missing[*]}"
+}
+
 # The number of compilers to run at a time: one per core, but at most one per 2 GiB of memory, which is what
 # the sources that include ITK need at worst. JOBS overrides it.
 job_count() {
