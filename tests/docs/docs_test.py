@@ -4,14 +4,21 @@
 
     docs_test.py commands SOURCE BIN    runs every block marked ```sh in a scratch folder, BIN first in the PATH
     docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
-    docs_test.py links SOURCE           every relative link leads to a file
+    docs_test.py links SOURCE           every link leads to a file, every anchor to a heading, and the front page to all pages
+    docs_test.py transcripts SOURCE BIN [--update]
+                                        the ```console blocks of getting-started.md and guides.md: what is behind each $ runs,
+                                        and says what stands below it. --update writes what it says into the page
+    docs_test.py html SOURCE FOLDER     builds the documentation as scripts/docs does, into FOLDER
+    docs_test.py checkers SOURCE        what looks for dead links and stale output finds them
     docs_test.py options SOURCE BIN     docs/command-line.md names every option that the programs' help names
     docs_test.py examples SOURCE BIN    what the help and inline code show of ocean.vtkhdf and ocean.nc works with the
                                         file in examples/data
 
-Blocks marked otherwise (```console, ```text) are for reading only.
+Blocks marked otherwise (```text, and ```console of other pages) are for reading only.
 """
 
+import itertools
+import math
 import os
 import pathlib
 import re
@@ -21,9 +28,12 @@ import tempfile
 import textwrap
 
 
-def pages(source):
-    return [source / "README.md", source / "CONTRIBUTING.md", source / "CHANGELOG.md",
-            source / "examples/data/README.md", *sorted((source / "docs").rglob("*.md"))]
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs/site"))
+import pages as markdown  # noqa: E402
+
+pages = markdown.all_pages
+TRANSCRIPTS = ("docs/getting-started.md", "docs/guides.md")
 
 
 def blocks(page, languages):
@@ -63,7 +73,7 @@ def commands(source, programs):
 
 def snippets(source, _=None):
     """Looks for each snippet, as it is but for its indentation, in the compiled sources."""
-    compiled = {"cpp": sorted((source / "examples").glob("*.cpp")),
+    compiled = {"cpp": [*sorted((source / "examples").glob("*.cpp")), source / "tests/docs/pages_test.cpp"],
                 "cmake": [source / "tests/install/consumer/CMakeLists.txt"]}
     squeeze = lambda text: "\n".join(line.strip() for line in text.strip().splitlines())
     texts = {language: [squeeze(file.read_text(encoding="utf-8")) for file in files]
@@ -80,16 +90,123 @@ def snippets(source, _=None):
 
 
 def links(source, _=None):
-    count = 0
+    count, dead, seen, to_visit = 0, [], set(), [source / "docs/index.md"]
     for page in pages(source):
-        for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
-            if re.match(r"[a-z]+:", target):
-                continue
-            if not (page.parent / target).exists():
-                sys.exit(f"{page}: links to {target}, which is not there")
+        for line, target in markdown.links(page.read_text(encoding="utf-8")):
+            fault = markdown.dead_link(source, page, target)
+            dead += [f"{page.relative_to(source)}:{line}: {fault}"] if fault else []
             count += 1
+    while to_visit:
+        page = to_visit.pop()
+        seen.add(page)
+        targets = [(page.parent / target.partition("#")[0]).resolve()
+                   for _, target in markdown.links(page.read_text(encoding="utf-8")) if not markdown.is_external(target)]
+        to_visit += [to for to in targets if to.suffix == ".md" and to.exists() and to not in seen | set(to_visit)]
+    dead += [f"no links lead from docs/index.md to {page.relative_to(source)}" for page in pages(source) if page not in seen]
+    if dead:
+        sys.exit("\n".join(dead))
     assert count > 0, "no links found"
     print(f"{count} links lead somewhere")
+
+
+NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\w)")
+
+
+def same_output(shown, said):
+    """Whether a program said what is shown. Seconds and the sizes of files may differ, other numbers by rounding; a line
+    of three dots stands for any lines."""
+    if "..." in shown:
+        at = shown.index("...")
+        rest = shown[at + 1:]
+        return len(said) >= len(shown) - 1 and same_output(shown[:at], said[:at]) and any(
+            same_output(rest, said[first:]) for first in range(at, len(said) + 1))
+    return len(shown) == len(said) and all(same_line(*lines) for lines in zip(shown, said))
+
+
+def same_line(shown, said):
+    mask = lambda line: re.sub(r"\([\d.]+ [kMG]?B\)", "(SIZE)", re.sub(r"^(  seconds ) *.*", r"\1", line)).rstrip()
+    shown, said = mask(shown), mask(said)
+    numbers = list(itertools.zip_longest(NUMBER.findall(shown), NUMBER.findall(said)))
+    near = lambda a, b: math.isclose(float(a), float(b), rel_tol=1e-5, abs_tol=1e-12)
+    # Blanks align columns, so they go with the digits.
+    words = lambda line: NUMBER.sub("0", line).split()
+    return words(shown) == words(said) and all(a is not None and b is not None and near(a, b) for a, b in numbers)
+
+
+def steps(text):
+    """[command, lines below it] of each command of a block; lines that a command goes on in end with a backslash."""
+    found = []
+    for line in text.splitlines():
+        if line.startswith("$ "):
+            found.append([line[2:], []])
+        elif found and found[-1][0].endswith("\\") and not found[-1][1]:
+            found[-1][0] += "\n" + line
+        else:
+            assert found, f"output without a command: {line}"
+            found[-1][1].append(line)
+    return found
+
+
+def transcripts(source, programs, update=None):
+    count = 0
+    for page in (source / name for name in TRANSCRIPTS):
+        text = page.read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as folder:
+            os.symlink(source / "examples", pathlib.Path(folder) / "examples")
+            environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+            for line, _, block in blocks(page, {"console"}):
+                for command, shown in steps(block):
+                    done = subprocess.run(["bash", "-euc", command], cwd=folder, env=environment, text=True, check=False,
+                                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                    said = done.stdout.rstrip("\n").splitlines()
+                    if done.returncode != 0:
+                        sys.exit(f"{page}:{line}: exit status {done.returncode}\n$ {command}\n{done.stdout}")
+                    if update and "..." not in shown:
+                        before = "\n".join([f"$ {command}", *shown]) + "\n"
+                        assert text.count(before) == 1, f"{page}:{line}: not there once: {before}"
+                        text = text.replace(before, "\n".join([f"$ {command}", *said]) + "\n")
+                    elif not same_output(shown, said):
+                        sys.exit(f"{page}:{line}: says something else (docs_test.py transcripts … --update takes it over)\n"
+                                 f"$ {command}\n{done.stdout}\nand not\n" + "\n".join(shown))
+                    count += 1
+        if update:
+            page.write_text(text, encoding="utf-8")
+    assert count > 0, "no transcripts found: the pages have lost their blocks"
+    print(f"{count} commands say what the pages show")
+
+
+def html(source, folder):
+    sys.exit(subprocess.run([sys.executable, "-B", source / "docs/site/build.py", folder], check=False).returncode)
+
+
+def checkers(source):
+    """Pages with faults, each of which has to be found."""
+    import build  # in docs/site
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name).resolve()
+        (root / "other.md").write_text("# Other\n\n## A *heading*: with `code`\n\n## Twice\n\n## Twice\n", encoding="utf-8")
+        page = root / "page.md"
+        page.write_text("# Page\n\n`[no](link.md)` [a\nb](gone.md) ![p](gone.png) [`c`](other.md#gone) <img src=\"gone.svg\">\n"
+                        "```sh\n[no](link.md)\n```\n"
+                        "[x](other.md#a-heading-with-code) [y](other.md#twice-1) [z](#page) [w](https://example.org)\n",
+                        encoding="utf-8")
+        found = [markdown.dead_link(root, page, target) for _, target in markdown.links(page.read_text(encoding="utf-8"))]
+        assert [fault.split(":")[0] for fault in found if fault] == ["gone.md", "gone.png", "other.md#gone", "gone.svg"], found
+        assert len(found) == 8, found
+        (root / "a.html").write_text('<a href="b.html#there">1</a><a href="b.html#gone">2</a><img src="c.png"/>'
+                                     '<a href="repo:x">3</a><a href="https://example.org">4</a>', encoding="utf-8")
+        (root / "b.html").write_text('<h1 id="there">b</h1>', encoding="utf-8")
+        dead, count = build.dead_links(root)
+        assert count == 4 and [text.split(": ", 1)[1] for text in dead] == [
+            "b.html#gone: no such anchor", "c.png: no such file", "repo:x: no such file"], dead
+    said = ["Contour", "  size         17 680 vertices", "  seconds      0.4 = read 0.1", "  output       a.glb (1.5 kB)"]
+    assert same_output(["Contour", "...", "  output       a.glb (1.4 kB)"], said)
+    assert same_output([said[0], said[1], "  seconds      9", said[3]], said)
+    assert not same_output(["Contour", "...", "  output       b.glb (1.5 kB)"], said)
+    assert not same_output([said[0], "  size         17 681 vertices", *said[2:]], said)
+    assert not same_output(said[:3], said) and not same_output([*said, "more"], said)
+    assert same_line("area 1771.30 mm", "area 1771.3001 mm") and not same_line("area 1771.3 mm", "area 1771.4 mm")
+    print("all faults were found")
 
 
 def examples(source, programs):

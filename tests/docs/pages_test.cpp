@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What docs/guides.md and docs/coming-from.md show in C++: between [name] and [/name] stand the pages' snippets, around
+// them what they need, and whether they do what the pages say.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tegl/active_tiles.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/elements.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/io.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/pick.hpp"
+#include "tegl/sample.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/stream.hpp"
+#include "tegl/track.hpp"
+
+namespace {
+
+constexpr std::size_t kSize = 20, kSteps = 9;
+
+/// Positive inside of a ball of radius 6 about the middle of kSize^3 samples, which moves along x with time.
+double ball(double x, double y, double z, double t = 0.0) {
+  const double middle = 9.4;
+  return 6.0 - std::hypot(x - middle - 0.25 * t, y - middle, z - middle);
+}
+
+/// Its samples at one time, x fastest.
+std::vector<float> volume_at(double t) {
+  std::vector<float> values;
+  for (std::size_t z = 0; z < kSize; ++z)
+    for (std::size_t y = 0; y < kSize; ++y)
+      for (std::size_t x = 0; x < kSize; ++x)
+        values.push_back(
+            static_cast<float>(ball(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z), t)));
+  return values;
+}
+
+std::vector<float> film() {
+  std::vector<float> values;
+  for (std::size_t t = 0; t < kSteps; ++t)
+    for (const float value : volume_at(static_cast<double>(t))) values.push_back(value);
+  return values;
+}
+
+double ball_volume() { return 4.0 / 3.0 * 3.14159265358979 * 216.0; }
+
+TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
+  const std::vector<float> values = volume_at(0);
+  const float* scalars = values.data();
+  const double value = 0.0;
+  const std::array<std::size_t, 3> dimensions = {kSize, kSize, kSize};
+  const std::array<double, 3> origin = {-10, 5, 0}, spacing = {0.5, 2, 1};
+  // [vtk]
+  // vtkImageData: dimensions, origin and spacing, x fastest
+  tegl::Grid<3> grid;
+  for (int a = 0; a < 3; ++a) grid.axes[a] = tegl::Axis::uniform(dimensions[a], origin[a], spacing[a]);
+  tegl::ExtractOptions options;
+  options.normals = true;  // ComputeNormalsOn
+  const tegl::Contour<3> surface = tegl::extract(tegl::Image<float, 3>(scalars, grid), value, options);
+  // [/vtk]
+  // [vtk_filters]
+  const double volume = tegl::measure(surface).content.value();  // vtkMassProperties
+  const std::vector<tegl::Contour<3>> parts =                    // vtkPolyDataConnectivityFilter
+      tegl::split_components(surface, tegl::label_components(surface));
+  tegl::SimplifyOptions<3> fewer;
+  fewer.ratio = 0.1;  // vtkQuadricDecimation
+  const tegl::Contour<3> small = tegl::simplify(surface, fewer);
+  tegl::write_mesh(tegl::to_mesh(small), "small.ply");  // vtkPLYWriter
+  // [/vtk_filters]
+  EXPECT_NEAR(volume, ball_volume(), 0.03 * ball_volume());  // the spacings' product is 1
+  EXPECT_EQ(parts.size(), 1u);
+  EXPECT_LE(small.simplices.size(), surface.simplices.size() / 9);
+  ASSERT_EQ(surface.normals.size(), surface.vertices.size());
+  const std::array<double, 3> middle = {-10 + 0.5 * 9.4, 5 + 2 * 9.4, 9.4};
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
+    double outward = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      outward += (static_cast<double>(surface.vertices[v][a]) - middle[a]) * static_cast<double>(surface.normals[v][a]);
+    EXPECT_GT(outward, 0);  // out of what is high, as VTK's
+  }
+  EXPECT_EQ(tegl::read_mesh("small.ply").simplices.size(), 3 * small.simplices.size());
+}
+
+TEST(ComingFromNumpy, TheLastAxisOfAnArrayIsTheFirstOfAnImage) {
+  const std::size_t planes = 3, rows = 4, columns = 5;
+  std::vector<float> values(planes * rows * columns);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
+  const float* array = values.data();
+  // [array]
+  // an array of shape (planes, rows, columns), in C order
+  const tegl::Image<float, 3> volume(array, tegl::Grid<3>::unit({columns, rows, planes}));
+  // [/array]
+  EXPECT_EQ(volume({1, 2, 1}), static_cast<float>((1 * rows + 2) * columns + 1));
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(columns), plane = row * static_cast<std::ptrdiff_t>(rows);
+  // [strides]
+  // the same array with its axes in their own order: no copy, strides count elements
+  const tegl::Image<float, 3> as_indexed(array, tegl::Grid<3>::unit({planes, rows, columns}), {plane, row, 1});
+  // [/strides]
+  EXPECT_EQ(as_indexed({1, 2, 1}), volume({1, 2, 1}));
+  EXPECT_EQ(as_indexed({2, 0, 4}), volume({4, 0, 2}));
+}
+
+TEST(ComingFromPyMCubes, AFunctionIsSampledFirst) {
+  // [function]
+  // marching_cubes_func((-2, -2, -2), (2, 2, 2), 64, 64, 64, f, 0)
+  tegl::Grid<3> grid;
+  for (tegl::Axis& axis : grid.axes) axis = tegl::Axis::uniform(64, -2.0, 4.0 / 63);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < 64; ++k)
+    for (std::size_t j = 0; j < 64; ++j)
+      for (std::size_t i = 0; i < 64; ++i)
+        values.push_back(1.5 - std::hypot(grid.axes[0][i], grid.axes[1][j], grid.axes[2][k]));
+  const auto surface = tegl::extract<double>(tegl::Image<double, 3>(values.data(), grid), 0.0);
+  // [/function]
+  EXPECT_NEAR(tegl::measure(surface).content.value(), 4.0 / 3.0 * 3.14159265358979 * 3.375, 0.03);
+}
+
+TEST(ComingFromCornelius, ElementsOfAllCellsComeAtOnceAndCloseUp) {
+  const std::vector<float> values = film();
+  const tegl::Grid<4> grid = tegl::Grid<4>::unit({kSize, kSize, kSize, kSteps});
+  const double freeze_out = 0.0;
+  std::array<double, 4> sum{};
+  const auto integrate = [&](const std::array<double, 4>&, const std::array<double, 4>& dsigma) {
+    for (std::size_t a = 0; a < 4; ++a) sum[a] += dsigma[a];
+  };
+  // [cornelius]
+  // instead of init(), and of find_surface_4d(), get_centroid_elem() and get_normal_elem() for each cell
+  tegl::ExtractOptions options;
+  options.ambiguity = tegl::Ambiguity::mean;  // as Cornelius decides ambiguous squares
+  const auto contour = tegl::extract<double>(tegl::Image<float, 4>(values.data(), grid), freeze_out, options);
+  const tegl::Elements<4> elements = tegl::elements_by_cell(contour, grid);
+  for (std::size_t e = 0; e < elements.centroids.size(); ++e) integrate(elements.centroids[e], elements.normals[e]);
+  // [/cornelius]
+  // Open at the first and the last time alone, by as much on either side, one facing back and one ahead.
+  for (const double component : sum) EXPECT_NEAR(component, 0.0, 1e-9);
+}
+
+TEST(Guides, ASeriesOfVolumesIsReadLayerByLayer) {
+  const std::vector<float> all = film();
+  const auto read_volume = [&](std::size_t k, float* to) {
+    const std::vector<float> values = volume_at(static_cast<double>(k));
+    std::copy(values.begin(), values.end(), to);
+  };
+  // [series]
+  const tegl::Grid<4> grid = tegl::Grid<4>::unit({20, 20, 20, 9});  // time is the last axis
+  tegl::FunctionLayers<float, 4> layers(grid, [&](std::size_t k, float* to) { read_volume(k, to); });
+  tegl::ContourFile<4, float> file("film.vtkhdf", grid);
+  tegl::extract_streamed(layers, 0.0, {}, file);
+  file.commit();
+  // [/series]
+  const auto whole = tegl::extract(tegl::Image<float, 4>(all.data(), grid), 0.0);
+  const auto streamed = tegl::to_contour<4>(tegl::read_mesh("film.vtkhdf"));
+  ASSERT_EQ(streamed.simplices.size(), whole.simplices.size());
+  EXPECT_TRUE(std::equal(whole.simplices.begin(), whole.simplices.end(), streamed.simplices.begin()));
+}
+
+TEST(Guides, TasksTakeAFewLines) {
+  const std::vector<float> values = film(), other = values;
+  const tegl::Grid<4> grid = tegl::Grid<4>::unit({kSize, kSize, kSize, kSteps});
+  const tegl::Image<float, 4> image(values.data(), grid), pressure(other.data(), grid);
+  // [cut]
+  const tegl::Contour<3> between = tegl::slice_image(image, 0.0, 3.25);  // reads two volumes only
+  // [/cut]
+  EXPECT_EQ(tegl::check(between).euler, 2);
+  // [attribute]
+  tegl::Contour<4> contour = tegl::extract(image, 0.0);
+  contour.vertex_attributes.push_back(tegl::sample(pressure, contour, "pressure", "Pa"));
+  const tegl::Contour<3> coloured = tegl::slice(contour, 3.25);  // has the attribute too
+  // [/attribute]
+  ASSERT_EQ(coloured.vertex_attributes.size(), 1u);
+  for (const double value : coloured.vertex_attributes[0].values) EXPECT_NEAR(value, 0.0, 0.05);
+  // [pick]
+  const tegl::Contour<4> nearest = tegl::extract_component(image, 0.0, {9, 9, 2, 4});
+  // [/pick]
+  EXPECT_EQ(nearest.simplices.size(), contour.simplices.size());
+  double fraction = 0;
+  const auto user_gave_up = [] { return false; };
+  // [progress]
+  tegl::ExtractOptions options;
+  options.progress = [&](double done) {
+    fraction = done;
+    return !user_gave_up();  // false ends the extraction with ErrorCode::Cancelled
+  };
+  // [/progress]
+  EXPECT_EQ(tegl::extract(image, 0.0, options).simplices, contour.simplices);
+  EXPECT_GT(fraction, 0.0);
+}
+
+}  // namespace
