@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images from NumPy arrays, and their contours.
+#include "tegl/extract.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "binding.hpp"
+#include "docs.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl::python {
+
+namespace {
+
+/// A tuple (origin, step), or a list of the coordinates of all samples.
+using AxisArgument = py::object;
+using Matrix = std::vector<std::vector<double>>;
+
+template <int N>
+Grid<N> grid_of(const py::array& array, const std::vector<AxisArgument>& axes, const std::optional<Matrix>& affine,
+                const std::vector<std::string>& names, const std::vector<std::string>& units) {
+  Grid<N> grid;
+  for (std::size_t a = 0; a < N; ++a) {
+    const auto size = static_cast<std::size_t>(array.shape(static_cast<py::ssize_t>(a)));
+    if (py::isinstance<py::tuple>(axes[a])) {
+      const auto [first, step] = py::cast<std::pair<double, double>>(axes[a]);
+      grid.axes[a] = Axis::uniform(size, first, step);
+    } else {
+      const auto coordinates = py::cast<std::vector<double>>(axes[a]);
+      if (coordinates.size() != size)
+        throw Error(ErrorCode::InvalidGrid, fmt::format("an axis of {} samples has {} coordinates; expected {}", size,
+                                                        coordinates.size(), size));
+      grid.axes[a] = Axis::rectilinear(coordinates);
+    }
+    grid.axes[a].name = names[a];
+    grid.axes[a].unit = units[a];
+  }
+  if (affine)
+    for (int row = 0; row < N; ++row) {
+      const auto& numbers = affine->at(static_cast<std::size_t>(row));
+      for (int column = 0; column < N; ++column)
+        grid.linear(row, column) = numbers.at(static_cast<std::size_t>(column));
+      grid.offset(row) = numbers.at(N);
+    }
+  return grid;
+}
+
+template <class T, int N>
+bool try_view(const py::array& array, const Grid<N>& grid, std::optional<ViewsOf<N>>& view) {
+  if (!py::isinstance<py::array_t<T>>(array)) return false;
+  typename Image<T, N>::Strides strides;
+  for (int a = 0; a < N; ++a) {
+    if (array.strides(a) % static_cast<py::ssize_t>(sizeof(T)) != 0)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("axis {} has a stride of {} bytes; expected a multiple of {}",
+                                                          a, array.strides(a), sizeof(T)));
+    strides[static_cast<std::size_t>(a)] = array.strides(a) / static_cast<py::ssize_t>(sizeof(T));
+  }
+  view = Image<T, N>(static_cast<const T*>(array.data()), grid, strides);
+  return true;
+}
+
+template <int N>
+ViewsOf<N> view_of(const py::array& array, const Grid<N>& grid) {
+  std::optional<ViewsOf<N>> view;
+  if (try_view<std::uint8_t>(array, grid, view) || try_view<std::int8_t>(array, grid, view) ||
+      try_view<std::uint16_t>(array, grid, view) || try_view<std::int16_t>(array, grid, view) ||
+      try_view<std::int32_t>(array, grid, view) || try_view<float>(array, grid, view) ||
+      try_view<double>(array, grid, view))
+    return *view;
+  throw Error(ErrorCode::UnsupportedData,
+              fmt::format("values are of type {}; expected uint8, int8, uint16, int16, int32, float32 or float64",
+                          std::string(py::str(array.dtype()))));
+}
+
+AnyImage make_image(const py::array& array, const std::vector<AxisArgument>& axes, const std::optional<Matrix>& affine,
+                    const std::vector<std::string>& names, const std::vector<std::string>& units) {
+  const auto dim = static_cast<std::size_t>(array.ndim());
+  if (dim < 2 || dim > 5)
+    throw Error(ErrorCode::UnsupportedData, fmt::format("the array has {} axes; expected 2 to 5", dim));
+  if (axes.size() != dim || names.size() != dim || units.size() != dim || (affine && affine->size() < dim))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("expected axes, names and units for each of {} axes", dim));
+  const auto view = [&]<int N>(std::integral_constant<int, N>) {
+    return view_of<N>(array, grid_of<N>(array, axes, affine, names, units));
+  };
+  if (dim == 2) return {view(std::integral_constant<int, 2>()), array};
+  if (dim == 3) return {view(std::integral_constant<int, 3>()), array};
+  if (dim == 4) return {view(std::integral_constant<int, 4>()), array};
+  return {view(std::integral_constant<int, 5>()), array};
+}
+
+template <class Real>
+AnyContour contour_of(const AnyImage& image, double level, const ExtractOptions& options) {
+  return visit_image(image, [&](const auto& view) -> AnyContour {
+    return {extract<Real>(view, level, options), level};
+  });
+}
+
+std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, bool is_double, const py::dict& arguments,
+                                        const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  return call.run([&] {
+    return std::make_unique<AnyContour>(is_double ? contour_of<double>(image, level, options)
+                                                  : contour_of<float>(image, level, options));
+  });
+}
+
+std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, double level, const py::dict& arguments,
+                                                  const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const ContourSize size =
+      call.run([&] { return visit_image(image, [&](const auto& view) { return count(view, level, options); }); });
+  return {size.vertices, size.simplices};
+}
+
+template <class Real>
+AnyContour cut_of(const AnyImage& image, double level, int axis, double at, const ExtractOptions& options) {
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
+    if constexpr (N == 3 || N == 4) {
+      if (axis == N - 1) return {slice_image<Real>(view, level, at, options), level};
+      return {slice_image_across<Real>(view, level, axis, at, options), level};
+    } else {
+      throw Error(ErrorCode::UnsupportedData, fmt::format("a cut of a {}D image; expected 3 or 4 dimensions", N));
+    }
+  });
+}
+
+std::unique_ptr<AnyContour> cut_any(const AnyImage& image, double level, int axis, double at, bool is_double,
+                                    const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  return call.run([&] {
+    return std::make_unique<AnyContour>(is_double ? cut_of<double>(image, level, axis, at, options)
+                                                  : cut_of<float>(image, level, axis, at, options));
+  });
+}
+
+/// The least and the greatest sample around a tile.
+template <class T>
+std::pair<double, double> range_of(const Image<T, 3>& image, const std::array<std::size_t, 3>& tile) {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const auto value =
+        static_cast<double>(image({tile[0] + (corner & 1), tile[1] + (corner >> 1 & 1), tile[2] + (corner >> 2)}));
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+  return {least, greatest};
+}
+
+/// The largest range of samples of the tiles that a point lies in or on the border of; in steps of the grid.
+template <class T>
+float range_around(const Image<T, 3>& image, const std::array<float, 3>& point) {
+  std::array<std::size_t, 3> first;
+  std::array<std::size_t, 3> count;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto last_tile = static_cast<double>(image.size(static_cast<int>(a)) - 2);
+    const auto at = static_cast<double>(point[a]);
+    const double low = std::clamp(std::ceil(at) - 1.0, 0.0, last_tile);
+    first[a] = static_cast<std::size_t>(low);
+    count[a] = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, last_tile) - low) + 1;
+  }
+  double result = 0.0;
+  for (std::size_t k = 0; k < count[2]; ++k)
+    for (std::size_t j = 0; j < count[1]; ++j)
+      for (std::size_t i = 0; i < count[0]; ++i) {
+        const auto [least, greatest] = range_of(image, {first[0] + i, first[1] + j, first[2] + k});
+        if (greatest - least > result) result = greatest - least;
+      }
+  return static_cast<float>(result);
+}
+
+py::array ranges_around(const AnyImage& image, const AnyContour& contour) {
+  const auto* vertices = std::get_if<Contour<3, float>>(&contour.contour);
+  if (vertices == nullptr || image.view.index() != 1)
+    throw Error(ErrorCode::UnsupportedData, "ranges around vertices are for 3D contours of single precision");
+  Buffer<float> result(vertices->vertices.size());
+  {
+    const py::gil_scoped_release release;
+    std::visit(
+        [&](const auto& view) {
+          for (std::size_t v = 0; v < result.size(); ++v) result[v] = range_around(view, vertices->vertices[v]);
+        },
+        std::get<1>(image.view));
+  }
+  return owned(std::move(result));
+}
+
+}  // namespace
+
+void bind_extract(py::module_& m) {
+  py::class_<AnyImage>(m, "Image", doc::Image)
+      .def(py::init(&make_image), py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("names"),
+           py::arg("units"))
+      .def_readonly("array", &AnyImage::array)
+      .def_property_readonly("ndim", [](const AnyImage& image) { return image.array.ndim(); });
+  m.def("extract", &extract_any, py::arg("image"), py::arg("level"), py::arg("double"), py::arg("options"),
+        py::arg("progress"), doc::extract);
+  m.def("count", &count_any, py::arg("image"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
+  m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),
+        py::arg("options"), py::arg("progress"), doc::slice_image);
+  m.def("ranges_around", &ranges_around, py::arg("image"), py::arg("contour"),
+        "For each vertex the largest range of samples of a tile that it lies in; the vertices in steps of the grid.");
+}
+
+}  // namespace tegl::python

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Image and contour files for Python.
+#include <fmt/format.h>
+
+#include "binding.hpp"
+#include "docs.hpp"
+#include "tegl/io.hpp"
+
+namespace tegl::python {
+
+namespace {
+
+template <int N>
+void put_grid(py::dict& result, const Grid<N>& grid) {
+  py::list axes;
+  py::list names;
+  py::list units;
+  for (const Axis& axis : grid.axes) {
+    if (axis.is_uniform()) {
+      axes.append(py::make_tuple(axis.origin(), axis.step()));
+    } else {
+      std::vector<double> coordinates;
+      for (std::size_t i = 0; i < axis.size(); ++i) coordinates.push_back(axis[i]);
+      axes.append(py::cast(coordinates));
+    }
+    names.append(axis.name);
+    units.append(axis.unit);
+  }
+  result["axes"] = axes;
+  result["names"] = names;
+  result["units"] = units;
+  result["affine"] = py::none();
+  if (!grid.has_world_map()) return;
+  std::vector<std::vector<double>> affine;
+  for (int row = 0; row < N; ++row) {
+    std::vector<double> numbers;
+    for (int column = 0; column < N; ++column) numbers.push_back(grid.linear(row, column));
+    numbers.push_back(grid.offset(row));
+    affine.push_back(std::move(numbers));
+  }
+  result["affine"] = py::cast(affine);
+}
+
+/// The array has the library's memory, in the order of its axes: axis 0 fastest.
+template <class T, int N>
+void put_image(py::dict& result, OwnedImage<T, N>& image) {
+  put_grid(result, image.grid);
+  auto kept = std::make_unique<std::vector<T>>(std::move(image.values));
+  const py::capsule owner(kept.get(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
+  const std::vector<T>& values = *kept.release();
+  std::vector<py::ssize_t> shape;
+  std::vector<py::ssize_t> strides;
+  py::ssize_t stride = sizeof(T);
+  for (const Axis& axis : image.grid.axes) {
+    shape.push_back(static_cast<py::ssize_t>(axis.size()));
+    strides.push_back(stride);
+    stride *= shape.back();
+  }
+  result["array"] = py::array(py::dtype::of<T>(), shape, strides, values.data(), owner);
+}
+
+py::dict read_any(const std::string& path, const std::string& variable, const py::object& progress) {
+  Call call(progress);
+  ReadImageOptions options;
+  options.variable = variable;
+  options.progress = call.progress();
+  ReadImageResult read = call.run([&] {
+    const auto lock = lock_files();
+    return read_image(path, options);
+  });
+  py::dict result;
+  std::visit([&](auto& images) { std::visit([&](auto& image) { put_image(result, image); }, images); }, read.image);
+  put(result, "format", read.info.format);
+  put(result, "variable", read.info.variable);
+  put(result, "variables", read.info.variables);
+  put(result, "value_unit", read.info.value_unit);
+  put(result, "value_name", read.info.value_name);
+  put(result, "world_frame", read.info.world_frame);
+  return result;
+}
+
+void write_any(const AnyContour& contour, const std::string& path, const py::object& progress) {
+  Call call(progress);
+  const Progress tell = call.progress();
+  call.run([&] {
+    Mesh mesh = std::visit(
+        []<int N, class Real>(const Contour<N, Real>& c) -> Mesh {
+          if constexpr (N <= 4)
+            return to_mesh(c);
+          else
+            throw_dimension("a file", N, "2 to 4 dimensions");
+        },
+        contour.contour);
+    mesh.isovalue = contour.isovalue;
+    const auto lock = lock_files();
+    write_mesh(mesh, path, tell);
+  });
+}
+
+std::unique_ptr<AnyContour> load_any(const std::string& path) {
+  const py::gil_scoped_release release;
+  const auto mesh = [&] {
+    const auto lock = lock_files();
+    return read_mesh(path);
+  }();
+  auto result = std::make_unique<AnyContour>();
+  if (mesh.dim == 1)
+    result->contour = to_contour<2>(mesh);
+  else if (mesh.dim == 2)
+    result->contour = to_contour<3>(mesh);
+  else if (mesh.dim == 3)
+    result->contour = to_contour<4>(mesh);
+  else
+    throw Error(ErrorCode::UnsupportedData,
+                fmt::format("{} holds {}-simplices; expected segments, triangles or tetrahedra", path, mesh.dim));
+  result->isovalue = mesh.isovalue;
+  return result;
+}
+
+}  // namespace
+
+void bind_files(py::module_& m) {
+  m.def("read_image", &read_any, py::arg("path"), py::arg("variable"), py::arg("progress"), doc::read_image);
+  m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
+  m.def("load_contour", &load_any, py::arg("path"), doc::read_mesh);
+}
+
+}  // namespace tegl::python

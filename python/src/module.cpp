@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The Python module tegl._tegl: what the package is made of, and how errors of the library reach Python.
+#include <fmt/format.h>
+
+#include "binding.hpp"
+#include "docs.hpp"
+
+namespace tegl::python {
+
+void throw_dimension(const char* operation, int dim, const char* expected) {
+  throw Error(ErrorCode::UnsupportedData, fmt::format("{} of a {}D contour; expected {}", operation, dim, expected));
+}
+
+bool Call::tell(double fraction) {
+  // Now and then is enough: the lock is waited for each time.
+  const std::scoped_lock only_one(mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  if (error_) return false;
+  const bool is_news = callback_ && fraction >= 1.0 && told_ < 1.0;
+  if (!is_news && now - last_ < std::chrono::milliseconds(20)) return true;
+  last_ = now;
+  const py::gil_scoped_acquire acquire;
+  try {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!callback_ || callback_.is_none()) return true;
+    told_ = fraction;
+    return !callback_(fraction).is(py::bool_(false));
+  } catch (...) {
+    error_ = std::current_exception();
+    return false;
+  }
+}
+
+std::unique_lock<std::mutex> lock_files() {
+  static std::mutex mutex;
+  return std::unique_lock(mutex);
+}
+
+ExtractOptions extract_options(const py::dict& arguments, Call& call) {
+  const auto text = [&](const char* name) { return py::cast<std::string>(arguments[name]); };
+  ExtractOptions result;
+  result.triangulation =
+      named<Triangulation>("triangulation", text("triangulation"),
+                           {{"compact", Triangulation::compact}, {"barycentric", Triangulation::barycentric}});
+  result.ambiguity = named<Ambiguity>(
+      "ambiguity", text("ambiguity"),
+      {{"low", Ambiguity::low}, {"high", Ambiguity::high}, {"mean", Ambiguity::mean}, {"saddle", Ambiguity::saddle}});
+  result.direction = named<GradientDirection>("direction", text("direction"), gradient_directions());
+  result.gradient = named<GradientKind>("gradient", text("gradient"),
+                                        {{"differences", GradientKind::differences}, {"sobel", GradientKind::sobel}});
+  result.close = py::cast<bool>(arguments["close"]);
+  result.normals = py::cast<bool>(arguments["normals"]);
+  result.epsilon = py::cast<double>(arguments["epsilon"]);
+  result.threads = py::cast<unsigned>(arguments["threads"]);
+  result.progress = call.progress();
+  return result;
+}
+
+namespace {
+
+/// The exception of Python's that fits best.
+PyObject* exception_of(ErrorCode code, PyObject* cancelled) {
+  switch (code) {
+    case ErrorCode::FileNotFound:
+      return PyExc_FileNotFoundError;
+    case ErrorCode::WriteFailed:
+      return PyExc_OSError;
+    case ErrorCode::TooLarge:
+      return PyExc_OverflowError;
+    case ErrorCode::EmptyResult:
+      return PyExc_RuntimeError;
+    case ErrorCode::Cancelled:
+      return cancelled;
+    default:
+      return PyExc_ValueError;
+  }
+}
+
+}  // namespace
+
+}  // namespace tegl::python
+
+PYBIND11_MODULE(_tegl, m) {
+  using namespace tegl::python;
+  m.doc() = "The compiled part of tegl. Axes are in the library's order here: use the package tegl.";
+  // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the module keeps it as long as the interpreter lives.
+  static PyObject* const cancelled = PyErr_NewExceptionWithDoc(
+      "tegl.Cancelled", "A progress function returned False: the work was ended.", PyExc_RuntimeError, nullptr);
+  m.add_object("Cancelled", py::reinterpret_borrow<py::object>(cancelled));
+  py::register_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer) std::rethrow_exception(pointer);
+    } catch (const tegl::Error& error) {
+      PyErr_SetString(exception_of(error.code(), cancelled), error.what());
+    }
+  });
+  m.attr("__version__") = TEGL_VERSION;
+  py::dict docs;
+  for (const auto& [name, text] : doc::kAll) docs[name] = text;
+  m.attr("docs") = docs;
+  bind_contour(m);
+  bind_extract(m);
+  bind_operations(m);
+  bind_elements(m);
+  bind_track(m);
+  bind_index(m);
+  bind_files(m);
+}

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is done with contours: cuts, checks, components, measures, simplification.
+#include <fmt/format.h>
+
+#include "binding.hpp"
+#include "docs.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl::python {
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, const Numbers& offsets, unsigned threads,
+                             const py::object& progress) {
+  Call call(progress);
+  const WorkOptions options{threads, call.progress()};
+  return call.run([&] {
+    return std::visit(
+        [&]<int N, class Real>(const Contour<N, Real>& c) -> std::vector<AnyContour> {
+          if constexpr (N == 3 || N == 4) {
+            const auto direction = to_array<N>("the normal", normal);
+            std::vector<AnyContour> result;
+            for (auto& cut : slice_stack(c, Eigen::Matrix<double, N, 1>(direction.data()), offsets, options))
+              result.push_back({std::move(cut), contour.isovalue});
+            return result;
+          } else {
+            throw_dimension("a cut", N, "3 or 4 dimensions");
+          }
+        },
+        contour.contour);
+  });
+}
+
+py::dict check_any(const AnyContour& contour) {
+  MeshReport report;
+  {
+    const py::gil_scoped_release release;
+    report = std::visit([](const auto& c) { return check(c); }, contour.contour);
+  }
+  py::dict result;
+  put(result, "dim", report.dim);
+  put(result, "vertices", report.vertices);
+  put(result, "unused_vertices", report.unused_vertices);
+  put(result, "simplices", report.simplices);
+  put(result, "components", report.components);
+  put(result, "euler", report.euler);
+  put(result, "boundary_simplices", report.boundary_simplices);
+  put(result, "nonmanifold_simplices", report.nonmanifold_simplices);
+  put(result, "bad_links", report.bad_links);
+  put(result, "orientation_conflicts", report.orientation_conflicts);
+  put(result, "degenerate_simplices", report.degenerate_simplices);
+  return result;
+}
+
+py::dict measure_any(const AnyContour& contour, unsigned threads, const py::object& progress) {
+  Call call(progress);
+  const WorkOptions options{threads, call.progress()};
+  return std::visit(
+      [&](const auto& c) {
+        const auto measures = call.run([&] { return measure(c, options); });
+        py::dict result;
+        put(result, "size", measures.size);
+        put(result, "content", measures.content);
+        put(result, "centroid", to_list(measures.centroid));
+        put(result, "lowest", to_list(measures.lowest));
+        put(result, "highest", to_list(measures.highest));
+        put(result, "boundary_simplices", measures.boundary_simplices);
+        put(result, "open_simplices", measures.open_simplices);
+        return result;
+      },
+      contour.contour);
+}
+
+/// (size, content) of each cut; content NaN where there is none.
+std::pair<Numbers, Numbers> measure_cuts_any(const AnyContour& contour, const Numbers& at, unsigned threads,
+                                             const py::object& progress) {
+  Call call(progress);
+  const WorkOptions options{threads, call.progress()};
+  return call.run([&] {
+    return std::visit(
+        [&]<int N, class Real>(const Contour<N, Real>& c) -> std::pair<Numbers, Numbers> {
+          if constexpr (N >= 3) {
+            std::pair<Numbers, Numbers> result;
+            for (const CutMeasures& cut : measure_cuts(c, at, options)) {
+              result.first.push_back(cut.size);
+              result.second.push_back(cut.content.value_or(std::numeric_limits<double>::quiet_NaN()));
+            }
+            return result;
+          } else {
+            throw_dimension("measures of cuts", N, "3 to 5 dimensions");
+          }
+        },
+        contour.contour);
+  });
+}
+
+std::unique_ptr<ComponentLabels> label_any(const AnyContour& contour, unsigned threads, const py::object& progress) {
+  Call call(progress);
+  const WorkOptions options{threads, call.progress()};
+  return call.run([&] {
+    return std::visit([&](const auto& c) { return std::make_unique<ComponentLabels>(label_components(c, options)); },
+                      contour.contour);
+  });
+}
+
+template <int N>
+py::dict to_dict(const Component<N>& component) {
+  py::dict result;
+  put(result, "label", component.label);
+  put(result, "vertices", component.vertices);
+  put(result, "simplices", component.simplices);
+  put(result, "size", component.size);
+  put(result, "content", component.content);
+  put(result, "centroid", to_list(component.centroid));
+  put(result, "lowest", to_list(component.lowest));
+  put(result, "highest", to_list(component.highest));
+  put(result, "euler", component.euler);
+  put(result, "boundary_simplices", component.boundary_simplices);
+  return result;
+}
+
+py::list components_any(const AnyContour& contour, const ComponentLabels& labels, unsigned threads,
+                        const py::object& progress) {
+  Call call(progress);
+  const WorkOptions options{threads, call.progress()};
+  return std::visit(
+      [&](const auto& c) {
+        const auto found = call.run([&] { return components(c, labels, options); });
+        py::list result;
+        for (const auto& component : found) result.append(to_dict(component));
+        return result;
+      },
+      contour.contour);
+}
+
+std::vector<AnyContour> split_any(const AnyContour& contour, const ComponentLabels& labels) {
+  const py::gil_scoped_release release;
+  return std::visit(
+      [&](const auto& c) {
+        std::vector<AnyContour> result;
+        for (auto& part : split_components(c, labels)) result.push_back({std::move(part), contour.isovalue});
+        return result;
+      },
+      contour.contour);
+}
+
+std::unique_ptr<AnyContour> select_any(const AnyContour& contour, const ComponentLabels& labels,
+                                       const std::vector<bool>& keep) {
+  const py::gil_scoped_release release;
+  return std::visit(
+      [&](const auto& c) {
+        return std::unique_ptr<AnyContour>(new AnyContour{select_components(c, labels, keep), contour.isovalue});
+      },
+      contour.contour);
+}
+
+template <int N>
+SimplifyOptions<N> simplify_options(const py::dict& arguments, Call& call) {
+  SimplifyOptions<N> result;
+  result.method = named<SimplifyMethod>("method", py::cast<std::string>(arguments["method"]),
+                                        {{"quadric", SimplifyMethod::quadric},
+                                         {"facets", SimplifyMethod::facets},
+                                         {"vertices", SimplifyMethod::vertices},
+                                         {"fast", SimplifyMethod::fast}});
+  result.border = named<SimplifyBorder>("border", py::cast<std::string>(arguments["border"]),
+                                        {{"fixed", SimplifyBorder::fixed}, {"within", SimplifyBorder::within}});
+  result.count = py::cast<std::optional<std::uint64_t>>(arguments["count"]);
+  result.ratio = py::cast<std::optional<double>>(arguments["ratio"]);
+  result.max_error = py::cast<std::optional<double>>(arguments["max_error"]);
+  if (!arguments["max_curvature"].is_none()) result.max_curvature = py::cast<double>(arguments["max_curvature"]);
+  if (!arguments["scale"].is_none()) result.scale = to_array<N>("scale", py::cast<Numbers>(arguments["scale"]));
+  result.measure = py::cast<bool>(arguments["measure"]);
+  result.allow_nonmanifold = py::cast<bool>(arguments["allow_nonmanifold"]);
+  result.threads = py::cast<unsigned>(arguments["threads"]);
+  result.progress = call.progress();
+  return result;
+}
+
+py::dict to_dict(const SimplifyStats& stats) {
+  py::dict result;
+  put(result, "simplices_before", stats.simplices_before);
+  put(result, "simplices_after", stats.simplices_after);
+  put(result, "vertices_before", stats.vertices_before);
+  put(result, "vertices_after", stats.vertices_after);
+  put(result, "error_of_original", stats.error_of_original);
+  put(result, "error_of_result", stats.error_of_result);
+  put(result, "rounds", stats.rounds);
+  return result;
+}
+
+py::tuple simplify_any(const AnyContour& contour, const py::dict& arguments, const py::object& progress) {
+  Call call(progress);
+  return std::visit(
+      [&]<int N, class Real>(const Contour<N, Real>& c) -> py::tuple {
+        if constexpr (N <= 4) {
+          const SimplifyOptions<N> options = simplify_options<N>(arguments, call);
+          SimplifyStats stats;
+          auto result = std::make_unique<AnyContour>(call.run([&] {
+            return AnyContour{simplify(c, options, &stats), contour.isovalue};
+          }));
+          return py::make_tuple(std::move(result), to_dict(stats));
+        } else {
+          throw_dimension("simplification", N, "2 to 4 dimensions");
+        }
+      },
+      contour.contour);
+}
+
+Numbers automatic_scale_any(const AnyContour& contour) {
+  return std::visit(
+      []<int N, class Real>(const Contour<N, Real>& c) -> Numbers {
+        if constexpr (N <= 4)
+          return to_list(automatic_scale(c));
+        else
+          throw_dimension("a scale", N, "2 to 4 dimensions");
+      },
+      contour.contour);
+}
+
+}  // namespace
+
+void bind_operations(py::module_& m) {
+  m.def("slice_stack", &cuts, py::arg("contour"), py::arg("normal"), py::arg("offsets"), py::arg("threads"),
+        py::arg("progress"), doc::slice_stack);
+  m.def("check", &check_any, py::arg("contour"), doc::check_2);
+  m.def("measure", &measure_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::measure);
+  m.def("measure_cuts", &measure_cuts_any, py::arg("contour"), py::arg("at"), py::arg("threads"), py::arg("progress"),
+        doc::measure_cuts);
+  py::class_<ComponentLabels>(m, "ComponentLabels", doc::ComponentLabels)
+      .def_readonly("count", &ComponentLabels::count)
+      .def_property_readonly("vertices",
+                             [](const py::object& self) {
+                               const auto& labels = py::cast<const ComponentLabels&>(self);
+                               return read_only(labels.vertices.data(),
+                                                {static_cast<py::ssize_t>(labels.vertices.size())}, self);
+                             })
+      .def_property_readonly("simplices", [](const py::object& self) {
+        const auto& labels = py::cast<const ComponentLabels&>(self);
+        return read_only(labels.simplices.data(), {static_cast<py::ssize_t>(labels.simplices.size())}, self);
+      });
+  m.def("label_components", &label_any, py::arg("contour"), py::arg("threads"), py::arg("progress"),
+        doc::label_components);
+  m.def("components", &components_any, py::arg("contour"), py::arg("labels"), py::arg("threads"), py::arg("progress"),
+        doc::components);
+  m.def("split_components", &split_any, py::arg("contour"), py::arg("labels"), doc::split_components);
+  m.def("select_components", &select_any, py::arg("contour"), py::arg("labels"), py::arg("keep"),
+        doc::select_components);
+  m.def("simplify", &simplify_any, py::arg("contour"), py::arg("options"), py::arg("progress"), doc::simplify);
+  m.def("automatic_scale", &automatic_scale_any, py::arg("contour"), doc::automatic_scale);
+  m.def("has_fast_simplify", &has_fast_simplify, "Whether the method 'fast' is there.");
+}
+
+}  // namespace tegl::python

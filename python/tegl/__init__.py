@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contours of 2D to 5D arrays that are always oriented manifolds without holes: lines, surfaces, and the surfaces of
+what moves, which can be cut at any time.
+
+    import numpy, tegl
+
+    t, z, y, x = numpy.ogrid[0:12, -1:1:40j, -1:1:40j, -1:1:40j]
+    array = 0.6 + 0.02 * t - numpy.sqrt(x**2 + y**2 + z**2)
+    contour = tegl.contour(array, 0.0)           # tetrahedra in space and time
+    surface = contour.slice(7.3)                 # triangles: the surface at t = 7.3
+    print(surface.measure().content, surface.check().is_closed)
+    surface.save("surface.ply")
+
+`tegl.marching_cubes` is that of scikit-image. docs/python.md has more.
+"""
+
+from . import _tegl
+from ._contour import Contour, load
+from ._image import Image, contour, read
+from ._index import Index, PickReport
+from ._operations import (Component, Components, CutMeasures, Elements, ElementSum, Measures, MeshReport, SimplifyStats,
+                          check, components, elements, measure, simplify, slice)
+from ._skimage import marching_cubes
+from ._tegl import Cancelled, __version__
+from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment, track
+
+__all__ = [
+    "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",
+    "Measures", "MeshReport", "PickReport", "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle",
+    "TrackSample", "TrackSegment", "__version__", "check", "components", "contour", "elements", "load",
+    "marching_cubes", "measure", "read", "simplify", "slice", "track",
+]

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The contour as Python sees it, and what it can do."""
+
+from __future__ import annotations
+
+import os
+import typing
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from . import _arguments, _tegl
+
+if typing.TYPE_CHECKING:
+    from ._operations import Components, Elements, Measures, MeshReport
+    from ._track import TrackGraph
+
+Progress = Callable[[float], object]
+
+
+class Contour:
+    """Simplices in the space of an array: segments (2D), triangles (3D), tetrahedra (4D) or 4-simplices (5D).
+
+    `tegl.contour` makes them, and so do `load`, `slice`, `simplify` and the others. The arrays look into the library's
+    memory: nothing is copied, they are for reading only, and they keep the memory alive.
+
+    Columns of `vertices` are in the order of the array's axes, as in scikit-image. Orientation, in this order of the
+    columns: the normal n of a simplex with vertices v0, v1, ... for which det(v1 - v0, v2 - v0, ..., n) > 0 faces the
+    lower values (`direction` "descent") or the higher ones ("ascent"). So with "descent" the signed content of a closed
+    contour, (-1)^(N-1) times the sum over its simplices of det(vertices[simplex]) / N!, is positive where what is
+    enclosed is high: triangles turn counterclockwise seen from the low side.
+    """
+
+    _core: _tegl.Contour
+    _is_reversed: bool
+    _image: _tegl.Image | None
+
+    def __init__(self, vertices, simplices, *, normals=None, axis_names: Sequence[str] | None = None,
+                 axis_units: Sequence[str] | None = None, direction: str = "descent", isovalue: float | None = None,
+                 vertex_attributes: Mapping[str, typing.Any] | None = None,
+                 simplex_attributes: Mapping[str, typing.Any] | None = None, time_axis: int = 0) -> None:
+        """A contour from arrays (any mesh of simplices), which are copied. Attributes: name -> numbers, a row each."""
+        vertices = np.asarray(vertices)
+        if vertices.ndim != 2 or not 2 <= vertices.shape[1] <= 5:
+            raise ValueError(f"vertices have the shape {vertices.shape}; expected (#V, N) with N = 2 to 5")
+        if vertices.dtype != np.float64:
+            vertices = vertices.astype(np.float32 if vertices.dtype.itemsize < 4 or vertices.dtype == np.float32
+                                       else np.float64)
+        simplices = np.asarray(simplices)
+        if simplices.size and simplices.dtype.kind not in "iu":
+            raise ValueError(f"simplices are of type {simplices.dtype}; expected integers")
+        if simplices.size and (simplices.min() < 0 or simplices.max() >= len(vertices)):
+            raise ValueError(f"simplices have vertex numbers {simplices.min()} to {simplices.max()}; expected 0 to "
+                             f"{len(vertices) - 1}")
+        ndim = vertices.shape[1]
+        self._is_reversed = _arguments.turn_around(time_axis, ndim)
+        turn = slice(None, None, -1) if self._is_reversed else slice(None)
+
+        def labels(given: Sequence[str] | None) -> list[str]:
+            return list(given if given is not None else [""] * ndim)[turn]
+
+        def attributes(given: Mapping[str, typing.Any] | None) -> list[tuple[str, str, np.ndarray]]:
+            return [(name, "", np.asarray(values, dtype=np.float64)) for name, values in (given or {}).items()]
+
+        self._image = None
+        self._core = _tegl.Contour.from_arrays(
+            vertices[:, turn], simplices.reshape(-1, ndim)[:, turn] if simplices.size == 0 else simplices[:, turn],
+            None if normals is None else np.asarray(normals)[:, turn], labels(axis_names), labels(axis_units),
+            direction, isovalue, attributes(vertex_attributes), attributes(simplex_attributes))
+
+    @classmethod
+    def _of(cls, core: _tegl.Contour, is_reversed: bool, image: _tegl.Image | None = None) -> Contour:
+        self = cls.__new__(cls)
+        self._core, self._is_reversed, self._image = core, is_reversed, image
+        return self
+
+    def _turned(self, rows: np.ndarray) -> np.ndarray:
+        """A view with the columns turned around: of points and of simplices alike, so that orientation stays."""
+        return rows[:, ::-1] if self._is_reversed else rows
+
+    def _listed(self, per_axis: typing.Iterable) -> list:
+        return list(per_axis)[::-1] if self._is_reversed else list(per_axis)
+
+    # What it is.
+
+    @property
+    def ndim(self) -> int:
+        """N: how many coordinates vertices have."""
+        return self._core.ndim
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """#V x N coordinates, row = vertex, columns in the order of the array's axes."""
+        return self._turned(self._core.vertices)
+
+    @property
+    def simplices(self) -> np.ndarray:
+        """#S x N vertex numbers (uint32), row = simplex."""
+        return self._turned(self._core.simplices)
+
+    @property
+    def normals(self) -> np.ndarray | None:
+        """#V x N of length 1, or 0 where the gradient vanishes; None if they were not asked for."""
+        normals = self._core.normals
+        return None if normals is None else self._turned(normals)
+
+    @property
+    def vertex_attributes(self) -> dict[str, np.ndarray]:
+        """Numbers of every vertex: name -> #V, or #V x width, in double precision."""
+        return {name: values for name, (values, _) in self._core.vertex_attributes.items()}
+
+    @property
+    def simplex_attributes(self) -> dict[str, np.ndarray]:
+        """Numbers of every simplex: name -> #S, or #S x width, in double precision."""
+        return {name: values for name, (values, _) in self._core.simplex_attributes.items()}
+
+    @property
+    def attribute_units(self) -> dict[str, str]:
+        """The units of all attributes; empty where they are not known."""
+        return {name: unit for attributes in (self._core.vertex_attributes, self._core.simplex_attributes)
+                for name, (_, unit) in attributes.items()}
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        return tuple(self._listed(self._core.axis_names))
+
+    @property
+    def axis_units(self) -> tuple[str, ...]:
+        return tuple(self._listed(self._core.axis_units))
+
+    @property
+    def time_axis(self) -> int:
+        """The axis that cuts are across, and along which parts are tracked, if nothing else is said: 0 or N - 1."""
+        return 0 if self._is_reversed else self.ndim - 1
+
+    @property
+    def direction(self) -> str:
+        """Which way the orientation and the normals point: "descent" (towards low) or "ascent"."""
+        return self._core.direction
+
+    @property
+    def isovalue(self) -> float | None:
+        return self._core.isovalue
+
+    def __repr__(self) -> str:
+        what = {2: "segments", 3: "triangles", 4: "tetrahedra", 5: "4-simplices"}[self.ndim]
+        level = "" if self.isovalue is None else f" at {self.isovalue:g}"
+        return f"<tegl.Contour{level}: {len(self._core.vertices)} vertices, {len(self._core.simplices)} {what}>"
+
+    # What can be done with it: see the functions of the same names.
+
+    def slice(self, at=None, *, axis: int | str | None = None, normal=None, offset=None, threads: int = 0,
+              progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
+        """The cut by a hyperplane: see `tegl.slice`."""
+        from . import _operations
+        return _operations.slice(self, at=at, axis=axis, normal=normal, offset=offset, threads=threads,
+                                 progress=progress, **coordinate)
+
+    def components(self, *, threads: int = 0, progress: Progress | None = None) -> Components:
+        """The connected pieces: see `tegl.components`."""
+        from . import _operations
+        return _operations.components(self, threads=threads, progress=progress)
+
+    def measure(self, *, threads: int = 0, progress: Progress | None = None) -> Measures:
+        """Size, content, centroid: see `tegl.measure`."""
+        from . import _operations
+        return _operations.measure(self, threads=threads, progress=progress)
+
+    def check(self) -> MeshReport:
+        """Is it a manifold? See `tegl.check`."""
+        from . import _operations
+        return _operations.check(self)
+
+    def simplify(self, **options) -> Contour:
+        """Fewer simplices, the same manifold: see `tegl.simplify`."""
+        from . import _operations
+        return _operations.simplify(self, **options)
+
+    def elements(self, *, by_cell: bool = False, threads: int = 0, progress: Progress | None = None) -> Elements:
+        """Hypersurface elements: see `tegl.elements`."""
+        from . import _operations
+        return _operations.elements(self, by_cell=by_cell, threads=threads, progress=progress)
+
+    def track(self, **options) -> TrackGraph:
+        """What becomes of the parts: see `tegl.track`."""
+        from . import _track
+        return _track.track(self, **options)
+
+    @_arguments.documents("write_mesh")
+    def save(self, path: str | os.PathLike, *, progress: Progress | None = None) -> None:
+        """Writes a file, in the format of its suffix: .ply, .gltf, .glb (2D, 3D) or .vtkhdf (4D too).
+
+        Files have x, y, z and t: the library's order of axes, so that what NumPy has as (t, z, y, x) comes out right.
+        """
+        _tegl.write_contour(self._core, os.fspath(path), progress)
+
+    @staticmethod
+    def load(path: str | os.PathLike, *, time_axis: int = 0) -> Contour:
+        """Reads a contour from a file: see `tegl.load`."""
+        return load(path, time_axis=time_axis)
+
+    # For other programs. Their points are x, y, z (and t): the library's order of axes, as in files.
+
+    def points_and_cells(self) -> tuple[np.ndarray, list[tuple[str, np.ndarray]]]:
+        """(points, cells) as meshio has them: points #V x N as x, y, z, t; cells [("triangle", #S x N)]."""
+        kind = {2: "line", 3: "triangle", 4: "tetra"}.get(self.ndim)
+        if kind is None:
+            raise ValueError(f"cells of a {self.ndim}D contour; expected 2 to 4 dimensions")
+        return self._core.vertices, [(kind, self._core.simplices)]
+
+    def to_meshio(self):
+        """A meshio.Mesh, points as x, y, z; the t of 4D contours as point data. Needs meshio."""
+        from . import _export
+        return _export.to_meshio(self)
+
+    def to_vtk(self):
+        """A vtkPolyData of segments or triangles, or a vtkUnstructuredGrid of tetrahedra with t as a point array, with
+        normals and attributes, points as x, y, z. Needs VTK's Python modules."""
+        from . import _export
+        return _export.to_vtk(self)
+
+    def to_pyvista(self):
+        """The same as a mesh of pyvista. Needs pyvista."""
+        from . import _export
+        return _export.to_pyvista(self)
+
+
+@_arguments.documents("read_mesh")
+def load(path: str | os.PathLike, *, time_axis: int = 0) -> Contour:
+    """Reads a contour from a file: .vtkhdf, .ply, .gltf, .glb, .stl, .obj.
+
+    Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;
+    with -1 they are x, y, z (, t).
+    """
+    core = _tegl.load_contour(os.fspath(path))
+    return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))

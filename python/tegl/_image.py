@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contours of arrays, and images from files."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import typing
+from collections.abc import Sequence
+
+import numpy as np
+
+from . import _arguments, _tegl
+from ._contour import Contour, Progress
+
+
+@_arguments.documents("extract", "ExtractOptions", "Ambiguity")
+def contour(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
+            axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
+            time_axis: int | None = None, triangulation: str = "compact", ambiguity: str = "low",
+            direction: str = "descent", close: bool = False, epsilon: float = 0.0, normals: bool = False,
+            gradient: str = "differences", dtype=np.float32, threads: int = 0,
+            progress: Progress | None = None) -> Contour:
+    """The contour {value = level} of an array of 2 to 5 axes: what separates samples >= level from the others.
+
+    array
+        A NumPy array of real numbers with any strides, a masked array, an xarray.DataArray (with its coordinates, names
+        and units), or an image that `tegl.read` gave. uint8, int8, uint16, int16, int32, float32 and float64 are looked
+        at where they lie; bool counts as uint8; other types are copied to one of these. NaN is a missing value: no
+        contour there.
+    spacing, origin
+        The distance of samples along each axis, and the coordinate of the first one, in the order of the array's axes;
+        or one number for all.
+    coords
+        Instead: the coordinates of the samples along each axis, ascending or descending in any steps; None for an axis
+        whose coordinates are the indices.
+    affine
+        A matrix of N x (N+1) or (N+1) x (N+1) numbers that takes these coordinates to those of the world, as NIfTI has.
+    mask
+        True where samples count, as in scikit-image; the others are missing. (numpy.ma's masks, which say the opposite,
+        are understood as they are meant.) With a mask the values are copied.
+    time_axis
+        The axis that `slice`, `track` and `measure` take for the time: 0, the first, if nothing else is said (for xarray
+        the one with dates or named "time" or "t"), or -1, the last.
+    dtype
+        Of the vertices: float32 or float64.
+    threads
+        How many work; 0: all that there are. The result is the same.
+    progress
+        Called with a fraction now and then; returning False ends the work with `tegl.Cancelled`. Ctrl-C ends it, too.
+
+    Vertices have their columns in the order of the array's axes. Errors are ValueErrors with the library's text;
+    OverflowError for a contour that is too large; MemoryError.
+    """
+    options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
+                                         close=close, epsilon=epsilon, normals=normals, gradient=gradient,
+                                         threads=threads)
+    is_double = _arguments.is_double(dtype)
+    prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
+                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
+    core = _tegl.extract(prepared.image, float(level), is_double, options, progress)
+    return Contour._of(core, prepared.is_reversed, prepared.image)
+
+
+@dataclasses.dataclass(frozen=True)
+class Image:
+    """An array with its coordinates, as `tegl.read` gives it. All that is listed by axis is in the array's order."""
+
+    array: np.ndarray
+    coords: tuple[np.ndarray, ...]  #: of the samples along each axis
+    axis_names: tuple[str, ...]
+    axis_units: tuple[str, ...]
+    affine: np.ndarray | None  #: N x (N+1), from `coords` to the world; None: they are the world's
+    time_axis: int  #: 0 or N - 1
+    value_name: str
+    value_unit: str
+    format: str  #: such as "netCDF"
+    variable: str  #: that was read, of a file with several
+    variables: tuple[str, ...]  #: all that can be read as an image
+    world_frame: str  #: such as "RAS"; "" where there is none
+    _axes: tuple = dataclasses.field(repr=False, default=())
+
+    def __tegl_image__(self):
+        return self._axes, self.axis_names, self.axis_units, self.affine, self.time_axis, self.array
+
+    def contour(self, level: float, **options: typing.Any) -> Contour:
+        """`tegl.contour` of it."""
+        return contour(self, level, **options)
+
+    def to_xarray(self):
+        """An xarray.DataArray with these names, coordinates and units; the affine map as the attribute "affine"."""
+        try:
+            import xarray
+        except ImportError as error:
+            raise ImportError(f"to_xarray needs xarray, which Python does not find: {error}") from error
+        dims = [name or f"axis_{number}" for number, name in enumerate(self.axis_names)]
+        coords = {dim: (dim, values, {"units": unit} if unit else {})
+                  for dim, values, unit in zip(dims, self.coords, self.axis_units)}
+        attrs: dict[str, typing.Any] = {"units": self.value_unit} if self.value_unit else {}
+        if self.value_name:
+            attrs["long_name"] = self.value_name
+        if self.affine is not None:
+            attrs["affine"] = self.affine
+        return xarray.DataArray(self.array, dims=dims, coords=coords, name=self.variable or None, attrs=attrs)
+
+
+@_arguments.documents("read_image")
+def read(path: str | os.PathLike, variable: str = "", *, time_axis: int = 0,
+         progress: Progress | None = None) -> Image:
+    """Reads an image: NIfTI, NRRD, MetaImage, netCDF. The values are not copied from the library's memory.
+
+    The array's first axis is the one that runs slowest in the file: (t, z, y, x), in C order. With `time_axis=-1` the
+    axes are the other way round, (x, y, z, t) in Fortran order, as nibabel has them.
+    """
+    found = _tegl.read_image(os.fspath(path), variable, progress)
+    array = found["array"]
+    ndim = array.ndim
+    is_reversed = _arguments.turn_around(time_axis, ndim)
+    turn = slice(None, None, -1) if is_reversed else slice(None)
+    affine = None if found["affine"] is None else np.array(found["affine"])
+    if affine is not None and is_reversed:
+        affine = np.column_stack([affine[::-1, ndim - 1::-1], affine[::-1, ndim]])
+    axes = tuple(_arguments.UniformAxis(*axis) if isinstance(axis, tuple) else np.array(axis)
+                 for axis in found["axes"])[turn]
+    array = array.T if is_reversed else array
+    coords = tuple(axis.origin + np.arange(size) * axis.step if isinstance(axis, _arguments.UniformAxis) else axis
+                   for axis, size in zip(axes, array.shape))
+    return Image(array=array, coords=coords, axis_names=tuple(found["names"])[turn],
+                 axis_units=tuple(found["units"])[turn], affine=affine, time_axis=0 if is_reversed else ndim - 1,
+                 value_name=found["value_name"], value_unit=found["value_unit"], format=found["format"],
+                 variable=found["variable"], variables=tuple(found["variables"]), world_frame=found["world_frame"],
+                 _axes=axes)

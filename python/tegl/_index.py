@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contours at many isovalues, or of one component, without looking at all samples."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import typing
+
+import numpy as np
+
+from . import _arguments, _tegl
+from ._contour import Contour, Progress
+
+
+@dataclasses.dataclass(frozen=True)
+class PickReport:
+    """What was picked."""
+
+    found: bool  #: whether any tile is active
+    tile: tuple[int, ...]  #: the lowest corner of the active tile nearest to the point, in the order of the array's axes
+    distance: float  #: from the point to it, in steps of the grid
+    tiles: int  #: that were reached from it
+    components: int  #: of the contour in those, of which one was picked
+
+
+class Index:
+    """An index of the active tiles of an array, built once: contours at any isovalue in the time that they take alone.
+
+    The array's values must not change; the index keeps the array. Arrays of 2 to 4 axes.
+    """
+
+    @_arguments.documents("build_active_tiles", "ActiveMethod")
+    def __init__(self, array, method: str = "interval-tree", *, spacing=None, origin=None, coords=None, affine=None,
+                 mask=None, axis_names=None, axis_units=None, time_axis: int | None = None, threads: int = 0,
+                 progress: Progress | None = None) -> None:
+        """Builds an index. Arguments as of `tegl.contour`; methods: "interval-tree", "span-space", "min-max-tree",
+        "seed-set", "full-scan"."""
+        self._prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine,
+                                            mask=mask, axis_names=axis_names, axis_units=axis_units,
+                                            time_axis=time_axis)
+        self._core = _tegl.build_index(self._prepared.image, method, threads, progress)
+
+    @classmethod
+    @_arguments.documents("read_active_tiles")
+    def load(cls, path: str | os.PathLike, array, *, threads: int = 0, progress: Progress | None = None,
+             **grid: typing.Any) -> Index:
+        """Reads an index that `save`, or `tegl index`, wrote of this array."""
+        self = cls.__new__(cls)
+        self._prepared = _arguments.prepare(array, **grid)
+        self._core = _tegl.load_index(os.fspath(path), self._prepared.image, threads, progress)
+        return self
+
+    @_arguments.documents("write_active_tiles")
+    def save(self, path: str | os.PathLike) -> None:
+        """Writes a file, .tindex."""
+        self._core.save(os.fspath(path))
+
+    @property
+    def method(self) -> str:
+        return self._core.method
+
+    @property
+    def memory(self) -> int:
+        """Bytes beside the array."""
+        return self._core.memory
+
+    def __repr__(self) -> str:
+        shape = self._prepared.image.array.shape
+        return f"<tegl.Index {self.method} of {' x '.join(map(str, self._prepared.turned(shape)))}: {self.memory} bytes>"
+
+    def contour(self, level: float, *, dtype=np.float32, progress: Progress | None = None,
+                **options: typing.Any) -> Contour:
+        """What `tegl.contour` of the array gives, byte by byte. Options as there: triangulation, normals, ..."""
+        core = self._core.contour(float(level), _arguments.is_double(dtype), _arguments.extract_options(**options),
+                                  progress)
+        return Contour._of(core, self._prepared.is_reversed, self._prepared.image)
+
+    def active_tiles(self, level: float) -> np.ndarray:
+        """The lowest corners of the tiles that the contour passes: #T x N indices, in the order of the array's axes."""
+        sizes = [size - 1 for size in self._prepared.image.array.shape]
+        found = self._core.find(float(level))
+        corners = np.column_stack(np.unravel_index(found, sizes, order="F")) if len(found) else \
+            np.empty((0, len(sizes)), dtype=np.intp)
+        return corners[:, ::-1] if self._prepared.is_reversed else corners
+
+    @_arguments.documents("extract_component")
+    def pick(self, point, level: float, *, dtype=np.float32, return_report: bool = False,
+             progress: Progress | None = None, **options: typing.Any) -> typing.Any:
+        """The one component of the contour that is nearest to a point, in the array's coordinates.
+
+        It is found from the point, without the index. With `return_report`: (contour, PickReport).
+        """
+        core, report = _tegl.extract_component(
+            self._prepared.image, float(level), self._prepared.turned([float(number) for number in point]),
+            _arguments.is_double(dtype), _arguments.extract_options(**options), progress)
+        result = Contour._of(core, self._prepared.is_reversed, self._prepared.image)
+        report["tile"] = tuple(self._prepared.turned(report["tile"]))
+        return (result, PickReport(**report)) if return_report else result

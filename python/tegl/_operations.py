@@ -1,0 +1,367 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is done with contours: cuts, checks, components, measures, elements, simplification."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import typing
+from collections.abc import Sequence
+
+import numpy as np
+
+from . import _arguments, _tegl
+from ._contour import Contour, Progress
+
+
+@_arguments.documents("slice", "slice_2", "slice_image_across")
+def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | str | None = None, normal=None,
+          offset=None, threads: int = 0, progress: Progress | None = None, **more) -> Contour | list[Contour]:
+    """The cut of a contour by a hyperplane, one dimension less: what a moving surface is like at a time.
+
+    ::
+
+        tegl.slice(contour, at=7.3)                          # the time axis
+        tegl.slice(contour, lat=-20.5)                       # an axis by its name
+        tegl.slice(contour, at=3.0, axis=2)                  # or by its number
+        tegl.slice(contour, at=[1.5, 7.3])                   # several, in one pass: a list
+        tegl.slice(contour, normal=(0, 1, 1, 0), offset=9)   # any hyperplane <normal, x> = offset
+        tegl.slice(array, 20.0, at=7.3)                      # straight from an array: only the layers beside it are read
+
+    The last form takes the arguments of `tegl.contour` too. Times of an xarray with dates are days since its first one,
+    and may be given as numpy.datetime64. Of 3D and 4D contours.
+    """
+    if isinstance(contour_or_array, Contour):
+        if level is not None:
+            raise ValueError(f"level is {level} and the first argument a contour, which has its level; expected at=")
+        return _cut(contour_or_array, at, axis, normal, offset, threads, progress, more)
+    if level is None:
+        raise ValueError("a cut of an array needs a level; expected tegl.slice(array, level, at=...)")
+    return _cut_image(contour_or_array, float(level), at, axis, normal, offset, threads, progress, more)
+
+
+def _named_axis(names: Sequence[str], ndim: int, time_axis: int, at, axis, more: dict) -> tuple[int, typing.Any]:
+    """Which axis, and where; names of axes are taken out of `more`."""
+    named = [name for name in more if name in names]
+    if named:
+        if len(named) > 1 or at is not None or axis is not None:
+            raise ValueError(f"several hyperplanes: {', '.join(named)}"
+                             f"{' and at' if at is not None else ''}{' and axis' if axis is not None else ''}; "
+                             "expected one")
+        axis, at = named[0], more.pop(named[0])
+    if at is None:
+        raise ValueError("no hyperplane; expected at=, the name of an axis" +
+                         (f" ({', '.join(n for n in names if n)})" if any(names) else "") + ", or normal= and offset=")
+    return _arguments.axis_number(time_axis if axis is None else axis, names, ndim), at
+
+
+def _cut(contour: Contour, at, axis, normal, offset, threads, progress, more) -> Contour | list[Contour]:
+    ndim = contour.ndim
+    if normal is not None:
+        if at is not None or axis is not None or offset is None or more:
+            raise ValueError("normal goes with offset alone; expected normal= and offset=, or at=")
+        direction = [float(number) for number in normal]
+        places = offset
+    else:
+        if offset is not None:
+            raise ValueError("offset without normal; expected both, or at=")
+        number, places = _named_axis(contour.axis_names, ndim, contour.time_axis, at, axis, more)
+        if more:
+            raise ValueError(f"no axis is named '{next(iter(more))}'; the contour's are "
+                             f"{', '.join(repr(name) for name in contour.axis_names)}")
+        direction = [float(a == number) for a in range(ndim)]
+        unit = contour.axis_units[number]
+        places = [_arguments.number_on_axis(place, unit) for place in places] if _is_list(places) else \
+            _arguments.number_on_axis(places, unit)
+    several = _is_list(places)
+    cuts = _tegl.slice_stack(contour._core, contour._listed(direction),
+                             [float(place) for place in places] if several else [float(places)], threads, progress)
+    found = [Contour._of(cut, contour._is_reversed) for cut in cuts]
+    return found if several else found[0]
+
+
+def _is_list(value) -> bool:
+    return not isinstance(value, str) and np.ndim(value) == 1
+
+
+_GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_units", "time_axis")
+
+
+def _cut_image(array, level, at, axis, normal, offset, threads, progress, more) -> Contour | list[Contour]:
+    if normal is not None:  # there is no short way to an oblique cut
+        from ._image import contour
+        whole = contour(array, level, threads=threads, progress=progress, **more)
+        return _cut(whole, at, axis, normal, offset, threads, progress, {})
+    if offset is not None:
+        raise ValueError("offset without normal; expected both, or at=")
+    prepared = _arguments.prepare(array, **{name: more.pop(name) for name in _GRID if name in more})
+    is_double = _arguments.is_double(more.pop("dtype", np.float32))
+    time_axis = 0 if prepared.is_reversed else prepared.ndim - 1
+    number, places = _named_axis(prepared.names, prepared.ndim, time_axis, at, axis, more)
+    options = _arguments.extract_options(threads=threads, **more)
+    cuts = [Contour._of(_tegl.slice_image(prepared.image, level, prepared.library_axis(number),
+                                          _arguments.number_on_axis(place, prepared.units[number]), is_double, options,
+                                          progress), prepared.is_reversed)
+            for place in (places if _is_list(places) else [places])]
+    return cuts if _is_list(places) else cuts[0]
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshReport:
+    """What `tegl.check` found, as counts: see docs/command-line.md, `tegl check`."""
+
+    dim: int
+    vertices: int
+    unused_vertices: int
+    simplices: int
+    components: int
+    euler: int
+    boundary_simplices: int
+    nonmanifold_simplices: int
+    bad_links: int
+    orientation_conflicts: int
+    degenerate_simplices: int
+
+    @property
+    def is_manifold(self) -> bool:
+        """Whether it is an oriented manifold, with or without a border. Simplices of zero size do not count."""
+        return not (self.nonmanifold_simplices or self.bad_links or self.orientation_conflicts or self.unused_vertices)
+
+    @property
+    def is_closed(self) -> bool:
+        return self.boundary_simplices == 0
+
+
+@_arguments.documents("MeshReport")
+def check(contour: Contour) -> MeshReport:
+    """Counts a contour's invariants: is it a manifold, closed, oriented? In how many pieces?"""
+    return MeshReport(**_tegl.check(contour._core))
+
+
+@dataclasses.dataclass(frozen=True)
+class Measures:
+    """What a contour measures."""
+
+    size: float  #: length (2D), area (3D), 3-volume (4D), 4-volume (5D)
+    content: float | None  #: the enclosed area, volume, ...: positive where it is high; None: the contour is open
+    centroid: np.ndarray
+    lowest: np.ndarray
+    highest: np.ndarray
+    boundary_simplices: int
+    open_simplices: int
+
+
+@dataclasses.dataclass(frozen=True)
+class CutMeasures:
+    """What cuts of a contour measure, number by number."""
+
+    at: np.ndarray
+    size: np.ndarray  #: length (3D), area (4D), 3-volume (5D) of the cut
+    content: np.ndarray  #: the enclosed area, volume, ...; NaN where the cut is open
+
+
+@_arguments.documents("measure", "Measures", "measure_cuts")
+def measure(contour: Contour, *, at=None, threads: int = 0,
+            progress: Progress | None = None) -> Measures | CutMeasures:
+    """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times."""
+    if at is not None:
+        unit = contour.axis_units[contour.time_axis]
+        places = [_arguments.number_on_axis(place, unit) for place in np.atleast_1d(np.asarray(at))]
+        size, content = _tegl.measure_cuts(contour._core, places, threads, progress)
+        return CutMeasures(np.array(places), np.array(size), np.array(content))
+    found = _tegl.measure(contour._core, threads, progress)
+    for name in ("centroid", "lowest", "highest"):
+        found[name] = np.array(contour._listed(found[name]))
+    return Measures(**found)
+
+
+@dataclasses.dataclass(frozen=True)
+class Component:
+    """What is known of one component."""
+
+    label: int
+    vertices: int
+    simplices: int
+    size: float  #: length, area, volume
+    content: float | None  #: what it encloses; negative: a cavity; None: it is open
+    centroid: np.ndarray
+    lowest: np.ndarray
+    highest: np.ndarray
+    euler: int
+    boundary_simplices: int
+
+
+class Components(Sequence[Component]):
+    """The components of a contour, in the order of their labels."""
+
+    def __init__(self, contour: Contour, labels: _tegl.ComponentLabels, found: list[Component]) -> None:
+        self._contour, self._labels, self._found = contour, labels, found
+
+    @property
+    def vertex_labels(self) -> np.ndarray:
+        """#V; 2**32 - 1 for vertices in no simplex."""
+        return self._labels.vertices
+
+    @property
+    def simplex_labels(self) -> np.ndarray:
+        """#S."""
+        return self._labels.simplices
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __getitem__(self, index):
+        return self._found[index]
+
+    def __repr__(self) -> str:
+        return f"<tegl.Components: {len(self)}>"
+
+    @_arguments.documents("split_components")
+    def split(self) -> list[Contour]:
+        """A contour for each."""
+        return [Contour._of(part, self._contour._is_reversed, self._contour._image)
+                for part in _tegl.split_components(self._contour._core, self._labels)]
+
+    @_arguments.documents("select_components")
+    def select(self, keep) -> Contour:
+        """The contour of some: a truth value for each component, or the labels of those to keep."""
+        chosen = np.asarray(keep)
+        if chosen.dtype != bool:
+            labels, chosen = chosen.astype(np.int64).ravel(), np.zeros(len(self), dtype=bool)
+            if labels.size and not (0 <= labels.min() and labels.max() < len(self)):
+                raise ValueError(f"labels are {labels.min()} to {labels.max()}; expected 0 to {len(self) - 1}")
+            chosen[labels] = True
+        core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist())
+        return Contour._of(core, self._contour._is_reversed, self._contour._image)
+
+    def largest(self, count: int = 1) -> Contour:
+        """The contour of the largest ones by size."""
+        order = sorted(range(len(self)), key=lambda label: (-self._found[label].size, label))
+        return self.select(np.array(order[:count], dtype=np.int64))
+
+
+@_arguments.documents("label_components", "components", "Component")
+def components(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> Components:
+    """The connected components: labels, what each is, contours of some."""
+    labels = _tegl.label_components(contour._core, threads, progress)
+    found = []
+    for one in _tegl.components(contour._core, labels, threads, progress):
+        for name in ("centroid", "lowest", "highest"):
+            one[name] = np.array(contour._listed(one[name]))
+        found.append(Component(**one))
+    return Components(contour, labels, found)
+
+
+@dataclasses.dataclass(frozen=True)
+class ElementSum:
+    """Sums over elements."""
+
+    normal: np.ndarray
+    absolute: np.ndarray
+    measure: float
+    closure_error: float  #: 0: closed, up to rounding
+
+
+class Elements:
+    """A contour as points with normals times volume, to integrate over it. Columns are in the array's order of axes."""
+
+    def __init__(self, core: _tegl.Elements, is_reversed: bool) -> None:
+        self._core, self._is_reversed = core, is_reversed
+
+    def _turned(self, rows: np.ndarray) -> np.ndarray:
+        return rows[:, ::-1] if self._is_reversed else rows
+
+    @property
+    def centroids(self) -> np.ndarray:
+        """#E x N."""
+        return self._turned(self._core.centroids)
+
+    @property
+    def normals(self) -> np.ndarray:
+        """#E x N: d sigma_mu, covariant."""
+        return self._turned(self._core.normals)
+
+    @property
+    def measures(self) -> np.ndarray:
+        """#E: lengths, areas or volumes."""
+        return self._core.measures
+
+    @property
+    def counts(self) -> np.ndarray:
+        """#E: of how many simplices each is made."""
+        return self._core.counts
+
+    @property
+    def attributes(self) -> dict[str, np.ndarray]:
+        """name -> #E, or #E x width."""
+        return {name: values for name, (values, _) in self._core.attributes.items()}
+
+    def __len__(self) -> int:
+        return len(self._core.measures)
+
+    def __repr__(self) -> str:
+        return f"<tegl.Elements: {len(self)}>"
+
+    def sum(self) -> ElementSum:
+        """Of normals and measures, compensated. The normals of a closed contour sum to zero."""
+        found = _tegl.sum_of(self._core)
+        for name in ("normal", "absolute"):
+            found[name] = np.array(found[name][::-1] if self._is_reversed else found[name])
+        return ElementSum(**found)
+
+    @_arguments.documents("write_elements")
+    def save(self, path: str | os.PathLike, *, axes: str = "time_first", components: str = "covariant",
+             header: bool = False, progress: Progress | None = None) -> None:
+        """Writes .dat or .txt in Cornelius's columns, or .h5."""
+        _tegl.write_elements(self._core, os.fspath(path), axes, components, header, progress)
+
+
+@_arguments.documents("elements", "elements_by_cell", "Elements")
+def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
+             progress: Progress | None = None) -> Elements:
+    """Hypersurface elements of a contour: one for each simplex, or (`by_cell`) for each piece in a cell of the grid.
+
+    `by_cell` is for contours straight from `tegl.contour`, or some of their components, whose grid is known.
+    """
+    if by_cell and contour._image is None:
+        raise ValueError("by_cell of a contour whose grid is not known; expected one that tegl.contour made")
+    return Elements(_tegl.elements(contour._core, contour._image if by_cell else None, threads, progress),
+                    contour._is_reversed)
+
+
+@dataclasses.dataclass(frozen=True)
+class SimplifyStats:
+    """What a simplification did."""
+
+    simplices_before: int
+    simplices_after: int
+    vertices_before: int
+    vertices_after: int
+    error_of_original: float | None  #: no point of the original is farther than this from the result
+    error_of_result: float | None  #: and none of the result from the original
+    rounds: int
+
+
+@_arguments.documents("simplify", "SimplifyOptions", "SimplifyStats")
+def simplify(contour: Contour, *, ratio: float | None = None, count: int | None = None,
+             max_error: float | None = None, method: str = "quadric", border: str = "fixed",
+             max_curvature: float | None = None, scale: Sequence[float] | str | None = None, measure: bool = True,
+             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             return_stats: bool = False) -> typing.Any:
+    """The same contour with fewer simplices, and a bound of the error: the attribute "simplification_error".
+
+    method: "quadric", "facets", "vertices" or "fast"; border: "fixed" or "within"; scale: a number for each axis of the
+    array by which its lengths count, or "auto". With `return_stats`: (contour, SimplifyStats).
+    """
+    if isinstance(scale, str):
+        if scale != "auto":
+            raise ValueError(f"scale is '{scale}'; expected 'auto' or a number for each axis")
+        factors = _tegl.automatic_scale(contour._core)
+    else:
+        factors = None if scale is None else contour._listed(float(factor) for factor in scale)
+    options = {"method": method, "border": border, "ratio": ratio, "count": count, "max_error": max_error,
+               "max_curvature": max_curvature, "scale": factors, "measure": measure,
+               "allow_nonmanifold": allow_nonmanifold, "threads": threads}
+    core, stats = _tegl.simplify(contour._core, options, progress)
+    result = Contour._of(core, contour._is_reversed)
+    return (result, SimplifyStats(**stats)) if return_stats else result

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What becomes of the parts of a moving contour."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import typing
+
+import numpy as np
+
+from . import _arguments, _tegl
+from ._contour import Contour, Progress
+
+
+@dataclasses.dataclass(frozen=True)
+class TrackEvent:
+    """Parts appear, meet, part or vanish."""
+
+    kind: str  #: "begin", "birth", "enter", "end", "death", "leave", "merge", "split" or "exchange"
+    time: float
+    place: np.ndarray  #: the other coordinates, in the order of the array's axes
+    vertex: int
+    at_border: bool
+    segments_in: list[int]  #: that end here
+    segments_out: list[int]  #: that start here
+    euler_change: int
+
+
+@dataclasses.dataclass(frozen=True)
+class TrackHandle:
+    """The shape of a part changes while the number of parts does not."""
+
+    time: float
+    place: np.ndarray
+    vertex: int
+    at_border: bool
+    segment: int
+    euler_change: int
+
+
+@dataclasses.dataclass(frozen=True)
+class TrackSample:
+    """A part at one time."""
+
+    time: float
+    measure: float  #: area; of lines: length
+    content: float  #: volume (area) inside; NaN: open
+    centroid: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True)
+class TrackSegment:
+    """One part from one event to the next."""
+
+    event_from: int
+    event_to: int
+    start: float
+    end: float
+    track: int
+    size_at_start: int
+    size_at_end: int
+    euler_at_start: int
+    euler_at_end: int
+    samples: list[TrackSample]
+
+
+@dataclasses.dataclass(frozen=True)
+class Track:
+    """A part that goes on, as the largest one, through merges and splits."""
+
+    number: int
+    segments: list[int]
+    start: float
+    end: float
+
+
+class TrackGraph:
+    """The Reeb graph of the time on a contour: events, and the segments of parts between them."""
+
+    def __init__(self, core: _tegl.TrackGraph, is_reversed: bool, unit: str) -> None:
+        self._core = core
+        self._unit = unit
+
+        def turned(found: dict, *names: str) -> dict:
+            return {**found, **{name: np.array(found[name][::-1] if is_reversed else found[name]) for name in names}}
+
+        self.events: list[TrackEvent] = [TrackEvent(**turned(one, "place")) for one in core.events()]
+        self.handles: list[TrackHandle] = [TrackHandle(**turned(one, "place")) for one in core.handles()]
+        self.tracks: list[Track] = [Track(**one) for one in core.tracks()]
+        self.segments: list[TrackSegment] = [
+            TrackSegment(**{**one, "samples": [TrackSample(**turned(sample, "centroid", "lower", "upper"))
+                                               for sample in one["samples"]]}) for one in core.segments()]
+
+    @property
+    def first(self) -> float:
+        """When the data begin."""
+        return self._core.first
+
+    @property
+    def last(self) -> float:
+        """When the data end."""
+        return self._core.last
+
+    @property
+    def time_unit(self) -> str:
+        return self._unit
+
+    @property
+    def simplex_segments(self) -> np.ndarray:
+        """#S: the segment of each simplex, 2**32 - 1 for none; empty without `label_simplices`."""
+        return self._core.simplex_segments
+
+    def __repr__(self) -> str:
+        return f"<tegl.TrackGraph: {len(self.events)} events, {len(self.segments)} segments, {len(self.tracks)} tracks>"
+
+    def to_dict(self) -> dict[str, typing.Any]:
+        """All of it as dicts and lists of numbers, such as json takes."""
+
+        def plain(value):
+            if isinstance(value, np.ndarray):
+                return value.tolist()
+            if dataclasses.is_dataclass(value) and not isinstance(value, type):
+                return {field.name: plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+            if isinstance(value, list):
+                return [plain(one) for one in value]
+            return value
+
+        return {"first": self.first, "last": self.last, "time_unit": self._unit, "events": plain(self.events),
+                "segments": plain(self.segments), "tracks": plain(self.tracks), "handles": plain(self.handles)}
+
+    def to_networkx(self):
+        """A networkx.MultiDiGraph: events are nodes and segments edges, with what is known of them. Needs networkx."""
+        try:
+            import networkx
+        except ImportError as error:
+            raise ImportError(f"to_networkx needs networkx, which Python does not find: {error}") from error
+        graph = networkx.MultiDiGraph(first=self.first, last=self.last, time_unit=self._unit)
+        for number, event in enumerate(self.events):
+            graph.add_node(number, **{field.name: getattr(event, field.name) for field in dataclasses.fields(event)})
+        for number, segment in enumerate(self.segments):
+            known = {field.name: getattr(segment, field.name) for field in dataclasses.fields(segment)}
+            graph.add_edge(known.pop("event_from"), known.pop("event_to"), key=number, **known)
+        return graph
+
+    @_arguments.documents("write_track")
+    def save(self, path: str | os.PathLike, *, title: str = "") -> None:
+        """Writes .json, .dot (graphviz) or a picture, .svg."""
+        _tegl.write_track(self._core, os.fspath(path), title)
+
+
+@_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
+def track(contour: Contour, *, min_lifetime: float = 0.0, times=None, first: float | None = None,
+          last: float | None = None, handles: bool = True, label_simplices: bool = False, threads: int = 0,
+          progress: Progress | None = None) -> TrackGraph:
+    """Follows the parts of a contour along its time axis: births, merges, splits, deaths.
+
+    times: when to measure the parts, ascending; a whole number: at so many even times.
+    """
+    unit = contour.axis_units[contour.time_axis]
+    if times is None:
+        places: list[float] = []
+    elif isinstance(times, (int, np.integer)):
+        along = contour.vertices[:, contour.time_axis]
+        places = _tegl.even_times(float(along.min()), float(along.max()), int(times)) if len(along) else []
+    else:
+        places = [_arguments.number_on_axis(time, unit) for time in times]
+    core = _tegl.track(contour._core, min_lifetime, places, first, last, handles, label_simplices, threads, progress)
+    return TrackGraph(core, contour._is_reversed, unit)

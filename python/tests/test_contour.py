@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""tegl.contour: what it takes, what it gives, and that nothing is copied on the way."""
+
+import gc
+import sys
+
+import numpy as np
+import pytest
+import tegl
+from conftest import assert_closed_manifold, assert_same, ball, face_counts, noise, signed_content
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+TYPES = [np.uint8, np.int8, np.uint16, np.int16, np.int32, np.float32, np.float64]
+
+
+@pytest.mark.parametrize("ndim", [2, 3, 4, 5])
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_what_is_high_has_positive_content_and_normals_point_to_low(ndim, time_axis):
+    array = ball(ndim, {2: 21, 3: 21, 4: 13, 5: 7}[ndim])
+    contour = tegl.contour(array, 0.0, time_axis=time_axis, dtype=np.float64, normals=ndim < 5)
+    content = signed_content(contour.vertices, contour.simplices)
+    assert content > 0
+    assert contour.measure().content == pytest.approx(content, rel=1e-9)
+    middle = (array.shape[0] - 1) / 2
+    if ndim < 5:
+        outwards = contour.vertices - middle
+        cosines = (outwards * contour.normals).sum(axis=1) / np.linalg.norm(outwards, axis=1)
+        assert cosines.min() > 0.8
+    reverse = tegl.contour(array, 0.0, time_axis=time_axis, dtype=np.float64, direction="ascent")
+    assert signed_content(reverse.vertices, reverse.simplices) == pytest.approx(-content, rel=1e-9)
+
+
+@pytest.mark.parametrize("ndim", [2, 3, 4])
+def test_content_is_positive_whatever_way_the_coordinates_run(ndim):
+    array = ball(ndim)
+    for signs in ([1] * ndim, [-1] * ndim, [-1] + [1] * (ndim - 1), [1] * (ndim - 1) + [-1]):
+        contour = tegl.contour(array, 0.0, spacing=[2.0 * sign for sign in signs], dtype=np.float64)
+        assert signed_content(contour.vertices, contour.simplices) > 0
+
+
+@pytest.mark.parametrize("ndim", [2, 3, 4])
+def test_columns_are_in_the_order_of_the_arrays_axes(ndim):
+    array = ball(ndim, 15)[tuple(slice(0, 9 + axis) for axis in range(ndim))]  # off the middle, in another way per axis
+    array = np.pad(array, 1, constant_values=-1.0)
+    contour = tegl.contour(array, 0.0, dtype=np.float64)
+    for axis in range(ndim):
+        on_axis = np.flatnonzero((array > 0).any(axis=tuple(a for a in range(ndim) if a != axis)))
+        along = contour.vertices[:, axis]
+        assert on_axis[0] - 1 <= along.min() <= on_axis[0]
+        assert on_axis[-1] <= along.max() <= on_axis[-1] + 1
+
+
+@settings(max_examples=25, deadline=None, derandomize=True)
+@given(st.integers(2, 4), st.integers(0, 2**32 - 1), st.sampled_from(TYPES), st.booleans())
+def test_contours_of_noise_are_closed_manifolds(ndim, seed, dtype, ties):
+    shape = np.random.default_rng(seed).integers(2, {2: 12, 3: 8, 4: 5}[ndim] + 1, size=ndim)
+    values = noise(shape, seed, np.float64) * (1.2 if ties else 20)
+    array = np.abs(np.round(values)).astype(dtype) if np.dtype(dtype).kind == "u" else \
+        (np.round(values) if ties else values).astype(dtype)
+    level = 1.0
+    contour = tegl.contour(array, level, close=True)
+    assert_closed_manifold(contour.simplices)
+    assert contour.check().is_manifold and contour.check().is_closed
+    # Open, it ends at the border of the array alone.
+    open_contour = tegl.contour(array, level)
+    count, _ = face_counts(open_contour.simplices)
+    last = np.array(array.shape) - 1
+    for face, times in count.items():
+        assert times in (1, 2)
+        if times == 1:
+            corners = open_contour.vertices[list(face)]
+            assert ((corners == 0).all(axis=0) | (corners == last).all(axis=0)).any()
+
+
+@pytest.mark.parametrize("dtype", TYPES)
+def test_all_value_types_are_seen_as_they_are(dtype):
+    array = np.clip(np.round(ball(3) * 100), 0, 100).astype(dtype)
+    expected = tegl.contour(array.astype(np.float64), 20.0, dtype=np.float64)
+    contour = tegl.contour(array, 20.0, dtype=np.float64)
+    assert len(contour.simplices) > 0
+    assert_same(contour, expected)
+
+
+@pytest.mark.parametrize("dtype", [bool, np.float16, np.int64, np.uint32, np.uint64, ">i2", ">f8", "<f4"])
+def test_other_types_become_the_librarys(dtype):
+    array = (ball(3) > 0).astype(dtype)
+    assert_same(tegl.contour(array, 0.5), tegl.contour(array.astype(np.uint8), 0.5))
+
+
+def test_integers_beyond_32_bits_are_doubles():
+    array = np.array([[0, 2**40], [0, 2**40]], dtype=np.int64)
+    assert tegl.contour(array, 2.0**39, dtype=np.float64).vertices[:, 1] == pytest.approx([0.5, 0.5])
+
+
+def test_any_strides_give_the_same_contour():
+    array = noise((9, 10, 11), 5)
+    expected = tegl.contour(array, 0.1)
+    assert_same(tegl.contour(np.asfortranarray(array), 0.1), expected)
+    assert_same(tegl.contour(np.ascontiguousarray(array[::-1, :, ::-1])[::-1, :, ::-1], 0.1), expected)
+    wide = np.zeros((9, 30, 22), dtype=np.float32)
+    wide[:, ::3, ::2] = array
+    assert_same(tegl.contour(wide[:, ::3, ::2], 0.1), expected)
+    assert_same(tegl.contour(np.moveaxis(np.ascontiguousarray(np.moveaxis(array, 0, 2)), 2, 0), 0.1), expected)
+    records = np.zeros(array.shape, dtype=[("flag", "u1"), ("value", "f4")])
+    records["value"] = array
+    assert_same(tegl.contour(records["value"], 0.1), expected)
+    assert_same(tegl.contour(np.broadcast_to(array[:1], array.shape), 0.1),
+                tegl.contour(np.repeat(array[:1], 9, axis=0), 0.1))
+
+
+def test_a_view_is_not_copied():
+    array = noise((9, 10, 11), 5)
+    for view in (array, array[::-1, :, ::2], np.asfortranarray(array), array > 0):
+        prepared = tegl._arguments.prepare(view)
+        assert prepared.image.array.__array_interface__["data"][0] == view.__array_interface__["data"][0]
+        assert np.shares_memory(prepared.image.array, view)
+
+
+def test_results_look_into_the_librarys_memory():
+    contour = tegl.contour(noise((9, 10, 11), 5), 0.0, normals=True)
+    assert np.shares_memory(contour.vertices, contour.vertices)
+    assert contour.vertices.__array_interface__["data"] == contour.vertices.__array_interface__["data"]
+    for array in (contour.vertices, contour.simplices, contour.normals):
+        assert not array.flags.owndata and not array.flags.writeable
+
+
+def test_arrays_outlive_their_contour_and_contours_their_array():
+    array = noise((20, 20, 20), 7)
+    contour = tegl.contour(array, 0.0, normals=True)
+    expected = contour.vertices.copy(), contour.simplices.copy(), contour.normals.copy()
+    del array
+    kept = contour.vertices, contour.simplices, contour.normals
+    references = sys.getrefcount(contour._core)
+    del contour
+    gc.collect()
+    noise((200, 200), 1)  # something else in the memory that is free
+    for one, other in zip(kept, expected):
+        assert np.array_equal(one, other)
+    assert references > 2
+
+
+def test_the_array_is_let_go_of_with_the_contour():
+    array = noise((9, 10, 11), 5)
+    before = sys.getrefcount(array)
+    contour = tegl.contour(array, 0.0)
+    assert sys.getrefcount(array) > before  # its grid is kept for the elements of cells
+    del contour
+    gc.collect()
+    assert sys.getrefcount(array) == before
+
+
+def test_coordinates_spacing_and_affine_say_the_same():
+    array = ball(3)[:, :-1, :-2]
+    spacing, origin = (2.0, 0.5, -1.0), (10.0, -3.0, 7.0)
+    expected = tegl.contour(array, 0.0, spacing=spacing, origin=origin, dtype=np.float64)
+    unit = tegl.contour(array, 0.0, dtype=np.float64)
+    assert np.allclose(expected.vertices, unit.vertices * spacing + origin)
+    coords = [origin[axis] + spacing[axis] * np.arange(array.shape[axis]) for axis in range(3)]
+    assert_same(tegl.contour(array, 0.0, coords=coords, dtype=np.float64), expected)
+    affine = np.column_stack([np.diag(spacing), origin])
+    assert np.allclose(tegl.contour(array, 0.0, affine=affine, dtype=np.float64).vertices, expected.vertices)
+
+
+def test_an_affine_map_takes_indices_of_the_array_to_the_world():
+    array = ball(3)[:, :-1, :-2]
+    affine = np.eye(4)
+    affine[:3] = [[0.0, 2.0, 0.1, 5.0], [1.0, 0.0, 0.3, 6.0], [0.2, 0.0, 3.0, 7.0]]
+    contour = tegl.contour(array, 0.0, affine=affine, dtype=np.float64)
+    unit = tegl.contour(array, 0.0, dtype=np.float64)
+    assert np.allclose(contour.vertices, unit.vertices @ affine[:3, :3].T + affine[:3, 3])
+    assert np.linalg.det(affine[:3, :3]) < 0 and signed_content(contour.vertices, contour.simplices) > 0
+
+
+def test_coordinates_may_be_uneven_and_falling():
+    array = ball(2, 9)
+    coords = [np.arange(9)[::-1] ** 2 * 1.0, None]
+    contour = tegl.contour(array, 0.0, coords=coords, dtype=np.float64)
+    unit = tegl.contour(array, 0.0, dtype=np.float64)
+    assert np.allclose(np.sort(contour.vertices[:, 0]),
+                       np.sort(np.interp(unit.vertices[:, 0], np.arange(9), coords[0])))
+    assert signed_content(contour.vertices, contour.simplices) > 0
+
+
+def test_masked_samples_are_missing():
+    array = noise((8, 9, 10), 3)
+    mask = np.random.default_rng(4).random(array.shape) > 0.2
+    with_nan = np.where(mask, array, np.float32(np.nan))
+    expected = tegl.contour(with_nan, 0.1)
+    assert expected.check().is_manifold
+    assert_same(tegl.contour(array, 0.1, mask=mask), expected)
+    assert_same(tegl.contour(np.ma.masked_array(array, ~mask), 0.1), expected)
+    assert_same(tegl.contour(np.ma.masked_array(array, array > 9), 0.1, mask=mask), expected)
+    assert np.isfinite(array).all(), "the caller's array is not written to"
+    whole = (array * 100).astype(np.int16)
+    assert_same(tegl.contour(whole, 10, mask=mask),
+                tegl.contour(np.where(mask, whole, np.nan).astype(np.float32), 10))
+
+
+def test_the_options_reach_the_library():
+    array = np.round(noise((7, 8, 9), 11) * 2)
+    low = tegl.contour(array, 0.0)
+    assert tegl.contour(array, 0.0, ambiguity="high").check().euler != low.check().euler
+    assert len(tegl.contour(array, 0.0, triangulation="barycentric").vertices) > len(low.vertices)
+    assert low.check().degenerate_simplices > 0
+    assert tegl.contour(array, 0.0, epsilon=0.1).check().degenerate_simplices == 0
+    assert tegl.contour(array, 0.0, close=True).check().is_closed and not low.check().is_closed
+    sobel = tegl.contour(array, 0.5, normals=True, gradient="sobel").normals
+    assert not np.array_equal(sobel, tegl.contour(array, 0.5, normals=True).normals)
+    assert low.normals is None
+    assert tegl.contour(array, 0.5, ambiguity="saddle").check().is_manifold
+    for threads in (1, 3):
+        assert_same(tegl.contour(array, 0.0, threads=threads), low)
+
+
+def test_a_contour_says_what_it_is():
+    contour = tegl.contour(ball(3), 0.25, axis_names=["z", "y", "x"], axis_units=["mm", "mm", "cm"])
+    assert contour.ndim == 3 and contour.isovalue == 0.25 and contour.direction == "descent"
+    assert contour.axis_names == ("z", "y", "x") and contour.axis_units == ("mm", "mm", "cm")
+    assert contour.time_axis == 0 and tegl.contour(ball(3), 0.25, time_axis=-1).time_axis == 2
+    assert "triangles" in repr(contour) and "0.25" in repr(contour)
+    assert tegl.contour(ball(3), 5.0).vertices.shape == (0, 3)
+
+
+@pytest.mark.parametrize("arguments, error, text", [
+    (dict(array=np.zeros(5)), ValueError, "1 axes; expected 2 to 5"),
+    (dict(array=np.zeros((2,) * 6)), ValueError, "6 axes; expected 2 to 5"),
+    (dict(array=np.zeros((3, 3), complex)), TypeError, "complex128; expected real numbers"),
+    (dict(array=np.zeros((3, 0))), ValueError, "axis"),
+    (dict(level=np.nan), ValueError, "nan"),
+    (dict(level=np.inf), ValueError, "inf"),
+    (dict(epsilon=0.5), ValueError, "0.5"),
+    (dict(triangulation="other"), ValueError, "triangulation is 'other'; expected one of 'compact', 'barycentric'"),
+    (dict(ambiguity="other"), ValueError, "ambiguity is 'other'; expected one of 'low', 'high', 'mean', 'saddle'"),
+    (dict(direction="up"), ValueError, "direction is 'up'; expected one of 'descent', 'ascent'"),
+    (dict(gradient="central"), ValueError, "gradient is 'central'"),
+    (dict(dtype=np.int32), ValueError, "dtype is int32; expected float32 or float64"),
+    (dict(threads=-1), ValueError, "threads is -1"),
+    (dict(spacing=(1, 2)), ValueError, "spacing has 2 numbers; expected one for each of 3 axes"),
+    (dict(spacing=(1, 0, 1)), ValueError, "step"),
+    (dict(coords=[None, None]), ValueError, "coords has 2 entries; expected one for each of 3 axes"),
+    (dict(coords=[None, [1, 2], None]), ValueError, "axis 1 has 11 samples and 2 coordinates"),
+    (dict(coords=[None, None, np.zeros(11)]), ValueError, "strictly ascending"),
+    (dict(coords=[None] * 3, spacing=2), ValueError, "coords with spacing or origin"),
+    (dict(affine=np.eye(3)), ValueError, r"\(3, 3\); expected \(3, 4\) or \(4, 4\)"),
+    (dict(affine=np.zeros((3, 4))), ValueError, "invertible"),
+    (dict(mask=np.ones((2, 2, 2))), ValueError, r"mask has the shape \(2, 2, 2\); expected \(11, 11, 11\)"),
+    (dict(time_axis=1), ValueError, "time_axis is 1; expected 0 or -1"),
+    (dict(axis_names="zy"), ValueError, "axis_names has 2 entries; expected one for each of 3 axes"),
+])
+def test_what_is_wrong_is_said(arguments, error, text):
+    arguments = {"array": ball(3), "level": 0.0, **arguments}
+    with pytest.raises(error, match=text):
+        tegl.contour(arguments.pop("array"), arguments.pop("level"), **arguments)
+
+
+def test_5d_with_missing_values_is_refused():
+    array = ball(5, 4)
+    array[0, 0, 0, 0, 0] = np.nan
+    with pytest.raises(ValueError, match="missing"):
+        tegl.contour(array, 0.0)
+
+
+def test_a_contour_may_be_made_of_arrays():
+    made = tegl.contour(ball(3), 0.0, normals=True, axis_names="zyx")
+    contour = tegl.Contour(made.vertices, made.simplices, normals=made.normals, axis_names=made.axis_names,
+                           isovalue=0.0, vertex_attributes={"number": np.arange(len(made.vertices))})
+    assert_same(contour, made)
+    assert np.array_equal(contour.normals, made.normals) and contour.axis_names == ("z", "y", "x")
+    assert np.array_equal(contour.vertex_attributes["number"], np.arange(len(made.vertices)))
+    assert contour.check() == made.check()
+    with pytest.raises(ValueError, match="expected 0 to 2"):
+        tegl.Contour(np.zeros((3, 2)), [[0, 3]])
+    with pytest.raises(ValueError, match="attribute 'a' has 2 rows"):
+        tegl.Contour(np.zeros((3, 2)), [[0, 1]], vertex_attributes={"a": [1, 2]})
+    with pytest.raises(ValueError, match="rows of 2 numbers"):
+        tegl.Contour(np.zeros((3, 2)), [[0, 1, 2]])
+
+
+def test_the_docstrings_are_those_of_the_headers():
+    assert "separates samples >= isovalue (high) from the others" in tegl.contour.__doc__
+    assert "Keeps the points on edges at least this share of an edge away" in tegl.contour.__doc__
+    assert "Follows the parts (connected components) of the cuts" in tegl.track.__doc__
+    for name in tegl.__all__:
+        assert getattr(tegl, name).__doc__, name

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The stub of the compiled module has its names and its arguments, and no others; the rest of the package has hints."""
+
+import ast
+import inspect
+import pathlib
+import re
+import typing
+
+import pytest
+import tegl
+from tegl import _tegl
+
+STUB = ast.parse((pathlib.Path(tegl.__file__).parent / "_tegl.pyi").read_text(encoding="utf-8"))
+
+
+def stub_names(body):
+    """name -> list of argument names of a function, None of an attribute or property, dict of a class."""
+    names = {}
+    for node in body:
+        if isinstance(node, ast.ClassDef):
+            names[node.name] = stub_names(node.body)
+        elif isinstance(node, ast.FunctionDef):
+            is_property = any(isinstance(d, ast.Name) and d.id == "property" for d in node.decorator_list)
+            names[node.name] = None if is_property else [argument.arg for argument in node.args.args]
+        elif isinstance(node, ast.AnnAssign):
+            names[node.target.id] = None
+    return names
+
+
+def arguments_of(function):
+    """Argument names as pybind11 writes them into the docstring."""
+    written = re.match(r"\w+\((.*?)\) ->", function.__doc__, re.DOTALL)
+    if written is None:  # object's own __init__, of classes that functions alone make
+        return None
+    signature = written.group(1)
+    return re.findall(r"(?:^|, )(\w+)(?=:|,|$)", signature)
+
+
+def module_names(of):
+    names = {}
+    for name, value in vars(of).items():
+        if (name.startswith("_") and name not in ("__init__", "__version__")) or name.startswith("pybind11"):
+            continue
+        value = value.__func__ if isinstance(value, staticmethod) else value
+        if inspect.isclass(value):
+            names[name] = {} if issubclass(value, Exception) else module_names(value)
+        elif isinstance(value, property):
+            names[name] = None
+        elif callable(value):
+            names[name] = arguments_of(value)
+        else:
+            names[name] = None
+    return names
+
+
+def test_the_stub_says_what_the_module_has():
+    stub, module = stub_names(STUB.body), module_names(_tegl)
+    for members in module.values():
+        if isinstance(members, dict) and members.get("__init__", ()) is None:
+            del members["__init__"]
+    assert stub == module
+
+
+@pytest.mark.parametrize("name", tegl.__all__)
+def test_the_package_has_type_hints(name):
+    thing = getattr(tegl, name)
+    functions = [thing] if inspect.isfunction(thing) else [
+        member for key, member in vars(thing).items() if inspect.isfunction(member) and not key.startswith("_")
+    ] if inspect.isclass(thing) else []
+    for function in functions:
+        hints = typing.get_type_hints(function, {**vars(tegl), **function.__globals__})
+        if function.__name__ not in ("marching_cubes", "to_meshio", "to_vtk", "to_pyvista", "to_xarray", "to_networkx"):
+            assert "return" in hints, function
+
+
+def test_the_package_is_marked_as_typed():
+    assert (pathlib.Path(tegl.__file__).parent / "py.typed").exists()
