@@ -34,7 +34,7 @@ def arguments_of(function):
     if written is None:  # object's own __init__, of classes that functions alone make
         return None
     signature = written.group(1)
-    return re.findall(r"(?:^|, )(\w+)(?=:|,|$)", signature)
+    return re.findall(r"(?:^|, )(\w+): ", signature)
 
 
 def module_names(of):
