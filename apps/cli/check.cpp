@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "contour_input.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "result.hpp"
@@ -38,7 +39,7 @@ class CheckCommand final : public Command {
   ExitCode run(const Streams& streams) override {
     require_input(file());
     Stopwatch watch;
-    const Mesh mesh = read_mesh(file());
+    const Mesh mesh = read_finite_mesh(file());
     const double read_seconds = watch.lap();
     const MeshReport report = check_mesh(mesh);
     const double check_seconds = watch.lap();
@@ -50,7 +51,7 @@ class CheckCommand final : public Command {
       streams.out.write(dump(json));
     } else if (!quiet()) {
       streams.out.write(
-          fmt::format("{}\n{}{}{}", streams.out.bold(file()), check_text(streams.out, size_of(mesh), report),
+          fmt::format("{}\n{}{}{}", streams.out.bold(file()), check_text(streams.out, size_of(mesh), report, wording()),
                       missed.empty() ? "" : report_line("", streams.out.red(missed)),
                       report_line("seconds", fmt::format("read {:.3f} + check {:.3f}", read_seconds, check_seconds))));
     }
@@ -58,6 +59,13 @@ class CheckCommand final : public Command {
   }
 
  private:
+  /// The mesh may be anyone's: nothing is known of how it was made.
+  static Wording wording() {
+    Wording wording;
+    wording.no_size = "of a contour by tegl: where samples equal the isovalue, which --epsilon there avoids";
+    return wording;
+  }
+
   [[nodiscard]] std::string missed_requirement(const MeshReport& report) const {
     for (const std::string& requirement : required_) {
       if (report.simplices == 0) return fmt::format("empty, unlike --require {} demands", requirement);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -38,12 +39,25 @@ Contour<N, double> widened(Contour<N, Real> contour) {
   }
 }
 
-void require_simplices(const ContourInput& input) {
-  if (input.size().simplices > 0) return;
-  throw Error(ErrorCode::EmptyResult, "the saved contour is empty; expected one with simplices");
+}  // namespace
+
+Mesh read_finite_mesh(const std::string& file) {
+  Mesh mesh = read_mesh(file);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  const auto first = std::find_if_not(mesh.coordinates.begin(), mesh.coordinates.end(), is_finite);
+  if (first == mesh.coordinates.end()) return mesh;
+  const auto others = mesh.coordinates.end() - first - 1 - std::count_if(first + 1, mesh.coordinates.end(), is_finite);
+  throw Error(ErrorCode::MalformedFile,
+              fmt::format("a coordinate of vertex {} is {} ({} others like that); expected finite ones",
+                          (first - mesh.coordinates.begin()) / mesh.space_dim, *first, others));
 }
 
-}  // namespace
+Mesh read_saved_contour(const std::string& file) {
+  Mesh mesh = read_finite_mesh(file);
+  if (mesh.simplices.empty())
+    throw Error(ErrorCode::EmptyResult, "the saved contour is empty; expected one with simplices");
+  return mesh;
+}
 
 AnyContour to_any_contour(const Mesh& mesh) {
   // Segments of a planar mesh come back from some formats with a third coordinate, 0.
@@ -125,10 +139,9 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     std::erase(given, "--threads");
     refuse_image_options(file(), given, variable(), "none of the options for images but --threads");
     const Progress reading = bar.stage("read");
-    const Mesh mesh = read_mesh(file());
+    const Mesh mesh = read_saved_contour(file());
     result.contour = to_any_contour(mesh);
     result.isovalue = mesh.isovalue;
-    require_simplices(result);
     result.seconds.read = watch.lap();
     reading(1);
     return result;

@@ -44,6 +44,7 @@ std::string fault_text(const MeshReport& report) {
   add(report.nonmanifold_simplices, "face in more than two simplices", "faces in more than two simplices");
   add(report.bad_links, "vertex with a bad link", "vertices with a bad link");
   add(report.orientation_conflicts, "orientation conflict", "orientation conflicts");
+  add(report.nonfinite_vertices, "vertex that is not at a finite place", "vertices that are not at finite places");
   return text;
 }
 
@@ -76,10 +77,11 @@ void add_check_keys(Json& json, const MeshSize& size, const std::optional<MeshRe
   json["bad_links"] = of(&MeshReport::bad_links);
   json["orientation_conflicts"] = of(&MeshReport::orientation_conflicts);
   json["degenerate_simplices"] = of(&MeshReport::degenerate_simplices);
+  json["nonfinite_vertices"] = of(&MeshReport::nonfinite_vertices);
 }
 
 bool has_faults(const MeshReport& report) {
-  return report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts > 0;
+  return report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts + report.nonfinite_vertices > 0;
 }
 
 std::string counted_simplices(int dim, std::uint64_t count) {

@@ -37,10 +37,11 @@ struct MeshSize {
 };
 MeshSize size_of(const Mesh& mesh);
 
-/// Adds the ten keys of a mesh check; all but the sizes are null without a report.
+/// Adds the eleven keys of a mesh check; all but the sizes are null without a report.
 void add_check_keys(Json& json, const MeshSize& size, const std::optional<MeshReport>& report);
 
-/// True when the complex is no oriented manifold. A border is no fault, nor are simplices of zero size.
+/// True when the complex is no oriented manifold, or has vertices at no finite place. A border is no fault, nor are
+/// simplices of zero size.
 bool has_faults(const MeshReport& report);
 
 /// What reports say of results that are no plain contours.

@@ -329,7 +329,7 @@ class SliceCommand final : public Command {
     refuse_image_options(file(), given, variable(), "--at, --plane, --scale, --threads and --output alone");
     const Progress reading = bar.stage("read");
     Stopwatch watch;
-    const Mesh mesh = read_mesh(file());
+    const Mesh mesh = read_saved_contour(file());
     require_cuttable(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
     factors_ = parse_scale(scale_, space);

@@ -288,6 +288,10 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
   MeshReport report;
   report.dim = D;
   report.simplices = complex.size();
+  for (std::size_t v = 0; v < complex.vertex_count; ++v) {
+    const auto at = coordinates.subspan(v * static_cast<std::size_t>(space_dim), static_cast<std::size_t>(space_dim));
+    if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++report.nonfinite_vertices;
+  }
   const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count);
   LinkChecker<D> links(complex);
   detail::DisjointSets connected;

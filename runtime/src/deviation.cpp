@@ -572,8 +572,10 @@ Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, co
   require_scale<N>(options.scale);
   if (!(options.enough >= 0.0))
     throw Error(ErrorCode::InvalidArgument, fmt::format("enough is {}; expected 0 or more", options.enough));
-  require_vertices(from);
-  require_vertices(to);
+  for (const auto* contour : {&from, &to}) {
+    require_vertices(*contour);
+    require_finite(*contour);
+  }
   Deviation result;
   result.of_from.assign(from.simplices.size(), 0.0);
   result.of_to.assign(to.simplices.size(), 0.0);

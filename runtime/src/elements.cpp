@@ -174,7 +174,6 @@ void merge(const Elements<N>& simplices, std::span<const Placed> piece, std::siz
 template <int N, class Real>
 Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options) {
   detail::require_sound(contour);
-  detail::require_finite(contour);
   Elements<N> result = make_elements(contour, contour.simplices.size());
   detail::for_each_item(contour.simplices.size(), options.threads, options.progress, [&](std::size_t s) {
     const auto corners = detail::corners_of(contour, s);

@@ -59,10 +59,11 @@ void require_attributes(const Contour<N, Real>& contour) {
                                                         contour.normals.size(), contour.vertices.size()));
 }
 
-/// Both.
+/// All of that.
 template <int N, class Real>
 void require_sound(const Contour<N, Real>& contour) {
   require_vertices(contour);
+  require_finite(contour);
   require_attributes(contour);
 }
 

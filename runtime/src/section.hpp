@@ -4,8 +4,10 @@
 // what coordinates its points have.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "slice_at.hpp"
 #include "tegl/hyperplane.hpp"
@@ -14,7 +16,9 @@ namespace tegl::detail {
 
 /// The hyperplanes with a certain normal. Across a coordinate axis heights are that coordinate, or its opposite, and
 /// points have the other coordinates: no bit is changed. Else heights are <normal, x>, summed up in the order of the
-/// axes. What a cut is like as a complex depends on the order of heights alone, so rounding does it no harm.
+/// axes, divided by the power of two that makes the normal's largest component one from 1 to 2: neither huge normals
+/// nor tiny ones overflow or vanish, and no bit of others' sums changes. What a cut is like as a complex depends on
+/// the order of heights alone, so rounding does it no harm.
 template <int N>
 class Section {
  public:
@@ -25,15 +29,19 @@ class Section {
     int others = 0;
     for (int a = 0; a < N; ++a) others += a != frame_.dropped && normal[a] != 0.0;
     is_across_axis_ = others == 0;
-    length_ = is_across_axis_ ? std::abs(normal[frame_.dropped]) : 1.0;
+    const int exponent = std::ilogb(normal[frame_.dropped]);
+    for (int a = 0; a < N; ++a) normal_[a] = std::scalbn(normal[a], -exponent);
+    unit_ = is_across_axis_ ? std::abs(normal[frame_.dropped]) : std::scalbn(1.0, exponent);
     is_reversed_ = normal[frame_.dropped] < 0.0;
   }
 
   /// The height of the hyperplane <normal, x> = offset, in the precision of the vertices' heights.
   template <class Real>
   [[nodiscard]] double level(double offset) const {
-    if (is_across_axis_) return static_cast<double>(rounded_at<Real>(offset / length_));
-    return rounded_at<double>(offset);
+    constexpr double kMost = std::numeric_limits<double>::max();
+    const double within =
+        std::clamp(rounded_at<double>(offset) / unit_, -kMost, kMost);  // the quotient may be infinite
+    return is_across_axis_ ? static_cast<double>(rounded_at<Real>(within)) : within;
   }
 
   template <class Real>
@@ -48,7 +56,7 @@ class Section {
   }
 
   /// The offset of the hyperplane at height 1; heights are offsets divided by it.
-  [[nodiscard]] double unit() const noexcept { return length_; }
+  [[nodiscard]] double unit() const noexcept { return unit_; }
 
   /// What a vector of N-space is within the hyperplanes.
   [[nodiscard]] std::array<double, N - 1> within(const std::array<double, N>& x) const {
@@ -81,7 +89,7 @@ class Section {
   Vector normal_;
   bool is_across_axis_ = false;
   bool is_reversed_ = false;
-  double length_ = 1.0;
+  double unit_ = 1.0;
 };
 
 }  // namespace tegl::detail

@@ -48,7 +48,7 @@ ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::s
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("simplex {} has the vertex {}; expected one of {}", s, v, vertex_count));
       if (std::count(simplices_[s].begin(), simplices_[s].end(), v) != 1)
-        throw Error(ErrorCode::InvalidArgument,
+        throw Error(ErrorCode::UnsupportedData,
                     fmt::format("simplex {} has the vertex {} twice; expected different vertices", s, v));
       next_[s * N + i] = first_[v];
       first_[v] = static_cast<Index>(s * N + i);
@@ -72,7 +72,7 @@ void ShrinkingComplex<N>::find_border() {
         others += shares;
       }
       if (others > 1)
-        throw Error(ErrorCode::InvalidArgument,
+        throw Error(ErrorCode::UnsupportedData,
                     fmt::format("a face of simplex {} is in {} simplices; expected a manifold, where it is in 1 or 2",
                                 s, others + 1));
       if (others == 1) continue;

@@ -34,8 +34,8 @@ class ShrinkingComplex {
     std::vector<Index> both;
   };
 
-  /// Errors: InvalidArgument for a simplex that repeats a vertex or has a number beyond `vertex_count`, and for a face
-  /// of more than two simplices.
+  /// Errors: InvalidArgument for a vertex number beyond `vertex_count`; UnsupportedData for a simplex that repeats a
+  /// vertex, and for a face of more than two simplices.
   ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count);
 
   [[nodiscard]] std::size_t alive() const noexcept { return alive_; }

@@ -38,7 +38,8 @@ TEST_F(Check, OfASphereFindsNothing) {
                                    {"nonmanifold_simplices", 0},
                                    {"bad_links", 0},
                                    {"orientation_conflicts", 0},
-                                   {"degenerate_simplices", 0}};
+                                   {"degenerate_simplices", 0},
+                                   {"nonfinite_vertices", 0}};
   nlohmann::json found = run.json();
   for (const char* stage : {"read", "check", "total"}) EXPECT_GE(found["seconds"][stage], 0.0);
   found.erase("seconds");
@@ -94,6 +95,8 @@ TEST_F(Check, TellsDegenerateTriangles) {
   EXPECT_EQ(run.exit, 0) << "a manifold all the same";
   EXPECT_EQ(run.json()["degenerate_simplices"], 1);
   EXPECT_EQ(run_tegl({"check", file, "--require", "nondegenerate"}).exit, 1);
+  EXPECT_THAT(run_tegl({"check", file}).out, HasSubstr("1 triangle of zero size (of a contour by tegl: where samples"))
+      << "a mesh of another's may have other reasons";
 }
 
 TEST_F(Check, QuietlyTellsByTheExitCodeAlone) {

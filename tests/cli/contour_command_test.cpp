@@ -68,7 +68,7 @@ TEST_F(Contour, ReportsEveryKey) {
   const nlohmann::json report = contour(write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2))), "0", "out.glb");
   for (const char* key : {"dim", "vertices", "simplices", "components", "euler", "boundary_simplices",
                           "nonmanifold_simplices", "bad_links", "orientation_conflicts", "degenerate_simplices",
-                          "active_tiles", "tiles", "isovalue", "image_dim", "input", "output"}) {
+                          "nonfinite_vertices", "active_tiles", "tiles", "isovalue", "image_dim", "input", "output"}) {
     EXPECT_TRUE(report.contains(key)) << key;
     EXPECT_FALSE(report[key].is_null()) << key;
   }

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "sample_files.hpp"
+#include "tegl/io.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {
@@ -188,6 +189,68 @@ TEST_F(Errors, ASavedContourIsNoImage) {
   ASSERT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", saved}).exit, 0);
   expect_failure(4, {"info", saved}, {saved, "mesh", "expected an image"});
   expect_contour_failure(4, saved, "0", path("out.ply"), {saved, "mesh", "expected an image"});
+}
+
+/// A surface of four triangles, the last of its vertices here, and whatever triangles else.
+std::string tetrahedron_ply(const std::string& last, const std::vector<std::string>& others = {}) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+      std::to_string(4 + others.size()) +
+      "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" + last +
+      "\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  for (const std::string& other : others) text += other + "\n";
+  return text;
+}
+
+/// Everything that reads a saved contour in space.
+std::vector<std::vector<std::string>> all_of_saved_contours(const std::string& file, const std::string& out) {
+  return {{"slice", file, "--at", "z=0.5", "-o", out},
+          {"simplify", file, "--ratio", "0.5", "-o", out},
+          {"simplify", file, "--method", "vertices", "--max-error", "0.5", "-o", out},
+          {"measure", file},
+          {"components", file, "-o", out},
+          {"elements", file, "-o", out + ".dat"},
+          {"track", file, "-o", out + ".json"}};
+}
+
+TEST_F(Errors, ASavedContourAtNoFinitePlaceExitsWith4) {
+  for (const char* x : {"nan", "inf", "-inf"}) {
+    const std::string file = write("nowhere.ply", tetrahedron_ply("0 " + std::string(x) + " 1"));
+    auto all = all_of_saved_contours(file, path("out.ply"));
+    all.push_back({"check", file});
+    for (const auto& arguments : all) {
+      SCOPED_TRACE(arguments[0]);
+      expect_failure(4, arguments, {file, "a coordinate of vertex 3 is " + std::string(x), "0 others"});
+    }
+  }
+  Mesh mesh;
+  mesh.dim = 3;
+  mesh.space_dim = 4;
+  mesh.coordinates = {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, static_cast<double>(NAN)};
+  mesh.simplices = {0, 1, 2, 3};
+  write_mesh(mesh, path("nowhere.vtkhdf"));
+  expect_failure(4, {"project", path("nowhere.vtkhdf"), "-o", path("out.ply")},
+                 {path("nowhere.vtkhdf"), "a coordinate of vertex 3 is nan"});
+}
+
+TEST_F(Errors, ASavedContourWithoutSimplicesExitsWith5) {
+  const std::string file = write("empty.ply",
+                                 "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                                 "property float z\nelement face 0\nproperty list uchar int vertex_indices\n"
+                                 "end_header\n");
+  for (const auto& arguments : all_of_saved_contours(file, path("out.ply"))) {
+    SCOPED_TRACE(arguments[0]);
+    expect_failure(5, arguments, {file, "the saved contour is empty"});
+  }
+}
+
+TEST_F(Errors, WhatIsNoManifoldIsNotSimplifiedAndExitsWith4) {
+  const std::string branching = write("branching.ply", tetrahedron_ply("0 0 1", {"3 0 3 1"}));
+  expect_failure(4, {"simplify", branching, "--ratio", "0.5", "-o", path("out.ply")},
+                 {branching, "is in 3 simplices; expected a manifold"});
+  const std::string collapsed = write("collapsed.ply", tetrahedron_ply("0 0 1", {"3 1 3 1"}));
+  expect_failure(4, {"simplify", collapsed, "--ratio", "0.5", "-o", path("out.ply")},
+                 {collapsed, "has the vertex 1 twice"});
 }
 
 TEST_F(Errors, ConstantValuesExitWith5AndSaySo) {

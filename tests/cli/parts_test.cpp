@@ -177,8 +177,8 @@ TEST(Faults, AreThoseOfManifoldnessAlone) {
   report.boundary_simplices = 3;
   report.degenerate_simplices = 4;
   EXPECT_FALSE(has_faults(report));
-  for (const auto member :
-       {&MeshReport::nonmanifold_simplices, &MeshReport::bad_links, &MeshReport::orientation_conflicts}) {
+  for (const auto member : {&MeshReport::nonmanifold_simplices, &MeshReport::bad_links,
+                            &MeshReport::orientation_conflicts, &MeshReport::nonfinite_vertices}) {
     MeshReport faulty = report;
     faulty.*member = 1;
     EXPECT_TRUE(has_faults(faulty));

@@ -328,6 +328,22 @@ TEST(Check, ZeroMeasureIsDegenerateAtAnyScale) {
   EXPECT_EQ(check(2, triangle, 3, std::vector<double>{0, 0, 0, 1, 0, 0, 0, nan, 0}).degenerate_simplices, 1u);
 }
 
+TEST(Check, CountsVerticesAtNoFinitePlace) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const Rows triangle{0, 1, 2};
+  const auto count = [&](const std::vector<double>& coordinates) {
+    return check(2, triangle, 3, coordinates).nonfinite_vertices;
+  };
+  EXPECT_EQ(count({0, 0, 0, 1, 0, 0, 0, 1, 0}), 0u);
+  EXPECT_EQ(count({nan, nan, nan, 1, 0, 0, 0, 1, 0}), 1u);
+  EXPECT_EQ(count({0, 0, nan, 1, 0, -inf, 0, inf, 0}), 3u);
+  EXPECT_EQ(count({0, 0, 0, 1, 0, 0, 0, 1, 0, inf, 0, 0}), 1u) << "in no simplex, but there";
+  Contour<4, float> tetrahedron;
+  tetrahedron.vertices = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, static_cast<float>(nan)}};
+  tetrahedron.simplices = {{0, 1, 2, 3}};
+  EXPECT_EQ(check(tetrahedron).nonfinite_vertices, 1u);
+}
+
 TEST(Check, NamesTheVertexNumberThatIsOutOfRange) {
   const std::vector<double> coordinates = moment_curve(4, 3);
   try {

@@ -195,6 +195,33 @@ TEST(SliceByHyperplane, TheOtherSideAboveGivesTheSameSurface) {
   EXPECT_EQ(cut.simplices.size(), other.simplices.size());
 }
 
+TEST(SliceByHyperplane, NormalsOfAnyLengthGiveTheSameCut) {
+  const auto image = test::noise<double, 4>(5, 6);
+  const auto whole = extract<double>(image.view(), 0.5);
+  for (const Vector<4>& normal : {Vector<4>(1, 2, -3, 4), Vector<4>(0, 0, -1, 0), Vector<4>(1, 1, 0, 0)}) {
+    const auto cut = slice(whole, Hyperplane<4>{normal, 2.25});
+    ASSERT_FALSE(cut.simplices.empty());
+    for (const int exponent : {-1030, -1000, -1, 1000, 1021}) {  // sums at the last would be beyond all numbers
+      const Hyperplane<4> hyperplane{(normal.array() * std::ldexp(1.0, exponent)).matrix(), std::ldexp(2.25, exponent)};
+      EXPECT_TRUE(same_bytes(slice(whole, hyperplane), cut)) << exponent;
+      const Scrubber<4, double> scrubber(whole, hyperplane.normal);
+      EXPECT_TRUE(same_bytes(scrubber.cut(hyperplane.offset), cut)) << exponent;
+    }
+    for (const double length : {1e-300, 1e300}) {
+      const auto other = slice(whole, Hyperplane<4>{normal * length, 2.25 * length});
+      EXPECT_EQ(other.simplices.size(), cut.simplices.size()) << length;
+      EXPECT_NEAR(test::measure(other), test::measure(cut), 1e-9) << length;
+    }
+  }
+}
+
+TEST(SliceByHyperplane, BeyondAllNumbersIsEmpty) {
+  const auto whole = extract<float>(test::noise<float, 4>(4, 6).view(), 0.5);
+  EXPECT_TRUE(slice(whole, Hyperplane<4>{{1e-300, 0, 1e-300, 0}, 1e300}).simplices.empty());
+  EXPECT_TRUE(slice(whole, Hyperplane<4>::across(1, -1e300)).simplices.empty());
+  EXPECT_TRUE(slice(whole, Hyperplane<4>{{0, 1e-300, 0, 0}, 1e300}).simplices.empty());
+}
+
 template <int N, class Real>
 void expect_closed_cuts(std::uint64_t levels, std::uint64_t seed) {
   const auto image = bordered_noise<N>(N == 4 ? 6 : 9, levels, seed);

@@ -419,10 +419,10 @@ TEST(SimplifyErrors, NameWhatIsWrong) {
 
   auto broken = contour;
   broken.simplices.push_back({0, 1, 1});
-  expect_error(ErrorCode::InvalidArgument, "twice", [&] { simplify(broken, options); });
+  expect_error(ErrorCode::UnsupportedData, "twice", [&] { simplify(broken, options); });
   broken = contour;
   broken.simplices.push_back(contour.simplices[0]);
-  expect_error(ErrorCode::InvalidArgument, "3 simplices", [&] { simplify(broken, options); });
+  expect_error(ErrorCode::UnsupportedData, "3 simplices", [&] { simplify(broken, options); });
   broken = contour;
   broken.vertex_attributes.push_back({"short", "", 1, {1.0}});
   expect_error(ErrorCode::InvalidArgument, "short", [&] { simplify(broken, options); });

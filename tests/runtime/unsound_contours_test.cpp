@@ -149,7 +149,7 @@ TEST(UnsoundLabels, AreRefused) {
   expect_refusal("labels for 0 simplices; expected 1", [](auto& l) { l.simplices.clear(); });
 }
 
-TEST(UnsoundContours, CoordinatesThatAreNotFiniteAreRefusedByWhatMeasures) {
+TEST(UnsoundContours, CoordinatesThatAreNotFiniteAreRefused) {
   static const std::vector<double> at = {0.5};
   for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     Any contour = tetrahedron();
@@ -162,6 +162,12 @@ TEST(UnsoundContours, CoordinatesThatAreNotFiniteAreRefusedByWhatMeasures) {
     refuses([&] { measure_cuts(contour, at); });
     refuses([&] { elements(contour); });
     refuses([&] { track(contour); });
+    refuses([&] { deviation(contour, tetrahedron()); });
+    refuses([&] { deviation(tetrahedron(), contour); });
+    for (const auto& [name, call] : all_that_make_contours({})) {
+      SCOPED_TRACE(name);
+      refuses([&call = call, &contour] { call(contour); });
+    }
   }
 }
 

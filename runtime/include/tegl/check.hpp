@@ -10,7 +10,7 @@
 
 namespace tegl {
 
-/// What `check` found. A closed oriented manifold without degenerate simplices has zeros in the last five
+/// What `check` found. A closed oriented manifold without degenerate simplices has zeros in the last six
 /// and in `unused_vertices`. Simplices that repeat a vertex ("collapsed") span no d-dimensional piece: they are counted
 /// in `simplices` and `degenerate_simplices` and left out of all other counts.
 struct MeshReport {
@@ -25,6 +25,7 @@ struct MeshReport {
   std::uint64_t bad_links = 0;              ///< vertices whose link is neither a (d-1)-sphere nor a (d-1)-ball
   std::uint64_t orientation_conflicts = 0;  ///< (d-1)-faces that exactly two simplices run through the same way
   std::uint64_t degenerate_simplices = 0;   ///< collapsed, of measure zero, or with a coordinate that is not finite
+  std::uint64_t nonfinite_vertices = 0;     ///< with a coordinate that is infinite or no number, used or not
 };
 
 /// Counts the invariants of a complex of d-simplices (d = 1, 2, 3, 4) with d + 1 vertex numbers each in

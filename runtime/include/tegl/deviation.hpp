@@ -49,8 +49,9 @@ struct Deviation {
 /// that is so in contours that are rough as finely as they are divided. Sheets are seen where orientations are
 /// consistent; vertices at the same place count as one.
 ///
-/// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range), Cancelled. Time: about
-/// O(S log S) for contours that are close to each other. Memory: about 300 bytes for each simplex of either.
+/// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range, a coordinate that is not
+/// finite), Cancelled. Time: about O(S log S) for contours that are close to each other. Memory: about 300 bytes for
+/// each simplex of either.
 template <int N, class Real>
 Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, const DeviationOptions<N>& options = {});
 

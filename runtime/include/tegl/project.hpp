@@ -37,8 +37,8 @@ struct ProjectedContour {
 /// "side" tells the tetrahedra that the line of sight enters the contour's high part through (-1) from those where it
 /// leaves it, or that are seen edge-on (1): along t, where something arrives, and where it leaves. If the contour has
 /// an attribute of that name already, it is replaced. Throws InvalidArgument if the direction is 0 or not finite,
-/// the distance below 0 or not finite, a vertex number out of range, or attributes or normals are of another number.
-/// O(#V + #S).
+/// the distance below 0 or not finite, a coordinate not finite, a vertex number out of range, or attributes or normals
+/// are of another number. O(#V + #S).
 template <class Real>
 ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection = {});
 

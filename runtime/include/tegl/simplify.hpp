@@ -115,8 +115,9 @@ struct SimplifyStats {
 ///
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
 /// stays. It is the same for any number of threads. Errors: InvalidArgument (options; an earlier error whose unit is a
-/// scale of other numbers than N above 0; no manifold: a face in three simplices, a repeated vertex; `fast` for other
-/// than triangles, or without meshoptimizer), UnsupportedData (the result of `fast` is no manifold), Cancelled. Time:
+/// scale of other numbers than N above 0; a vertex number out of range, a coordinate that is not finite; `fast` for
+/// other than triangles, or without meshoptimizer), UnsupportedData (no manifold: a face in three simplices, a repeated
+/// vertex; or the result of `fast` is none), Cancelled. Time:
 /// O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three times
 /// that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
 /// the result, in each of up to 12 rounds if there is a `max_error`. If no round keeps that, the result is the contour

@@ -31,9 +31,9 @@ namespace tegl {
 ///    drawing points together would pinch the cut, they are left apart at the same place.
 ///
 /// Quadrilaterals are split by the shorter diagonal. The result's order depends on the contour's alone.
-/// Errors: InvalidArgument (`at` not finite, a vertex number out of range, attributes or normals of another number). An
-/// `at` beyond the contour gives an empty cut. O(#S + #V) time plus O(c log c) for a cut of c simplices; #V bytes and
-/// O(c) of memory. Thread-safe.
+/// Errors: InvalidArgument (`at` or a coordinate not finite, a vertex number out of range, attributes or normals of
+/// another number). An `at` beyond the contour gives an empty cut. O(#S + #V) time plus O(c log c) for a cut of c
+/// simplices; #V bytes and O(c) of memory. Thread-safe.
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
@@ -46,13 +46,12 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 /// is the contour of that layer, if no sample equals the isovalue. Where samples do, that is so on the last axis alone,
 /// where `extract` keeps the points between layers out of these. On others such points lie in the layer as well, at the
 /// same places as points of the layer itself, and nothing in a contour tells one from the other: there the limit may
-/// have other pieces than the layer's contour, flat in it or along samples of the isovalue. `slice_image_across` has the
-/// image to go by, and gives the layer's contour.
-/// Vertices lie on the hyperplane if <normal, x> equals the offset as computed in
-/// double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real. Orientation: the
-/// cut's positive side in the frame's coordinates is that of the contour, also where the frame is left-handed. Names
-/// and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere. Errors: those of
-/// `frame_of`, and as above. Cost: as above.
+/// have other pieces than the layer's contour, flat in it or along samples of the isovalue. `slice_image_across` has
+/// the image to go by, and gives the layer's contour. Vertices lie on the hyperplane if <normal, x> equals the offset
+/// as computed in double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real.
+/// Orientation: the cut's positive side in the frame's coordinates is that of the contour, also where the frame is
+/// left-handed. Names and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere.
+/// Errors: those of `frame_of`, and as above. Cost: as above.
 template <int N, class Real>
 Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
 
@@ -81,8 +80,8 @@ Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, doub
 
 /// The same across any axis: the cut by x_axis = at, in the other coordinates. Only a slab of layers of that axis is
 /// contoured (for normals, the layers beside it too); all said of the last axis holds for this one, but that normals
-/// are the same up to rounding. So at a sample's coordinate a cut of a 4D image is the contour of that layer, also where
-/// samples equal the isovalue, when cuts of the whole contour may differ from it.
+/// are the same up to rounding. So at a sample's coordinate a cut of a 4D image is the contour of that layer, also
+/// where samples equal the isovalue, when cuts of the whole contour may differ from it.
 template <class Real = float, Value T, int N>
 Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue, int axis, double at,
                                         const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
