@@ -323,12 +323,30 @@ class Cutter {
            }) > 0;
   }
 
-  /// Whether a boundary face of a simplex may lie in a side of the image along another axis than the cut's.
-  [[nodiscard]] bool may_lie_in_another_side(const OnFace& face) const {
+  /// How far the touching simplices reach along each axis.
+  using Reach = std::array<std::pair<Real, Real>, N>;
+  [[nodiscard]] Reach reach() const {
+    Reach result;
+    const auto& first = contour_.vertices[contour_.simplices[touching_[0]][0]];
+    for (int a = 0; a < N; ++a) result[a] = {first[a], first[a]};
+    for (const Index s : touching_)
+      for (const Index v : contour_.simplices[s])
+        for (int a = 0; a < N; ++a) {
+          result[a].first = std::min(result[a].first, contour_.vertices[v][a]);
+          result[a].second = std::max(result[a].second, contour_.vertices[v][a]);
+        }
+    return result;
+  }
+
+  /// Whether a boundary face of a simplex may lie in a side of the image along another axis than the cut's: there it
+  /// has one coordinate, and its simplex goes on inwards, or lies in the side as well, beyond which nothing reaches.
+  [[nodiscard]] bool may_lie_in_another_side(const OnFace& face, const Reach& reach) const {
     const auto& inside = contour_.vertices[contour_.simplices[face.simplex][face.omitted]];
     const auto& first = contour_.vertices[face.vertices[0]];
     for (int a = 0; a < N; ++a) {
-      if (a == section_.dropped_axis() || inside[a] == first[a]) continue;
+      const auto [low, high] = reach[a];
+      const bool may_be_side = low < high && (first[a] == low || first[a] == high);
+      if (a == section_.dropped_axis() || (inside[a] == first[a] && !may_be_side)) continue;
       if (std::all_of(face.vertices.begin(), face.vertices.end(),
                       [&](Index v) { return contour_.vertices[v][a] == first[a]; }))
         return true;
@@ -352,11 +370,13 @@ class Cutter {
       std::sort(from, to, before);
     }
     std::vector<Piece> faces;
+    if (on_faces.empty()) return faces;
+    const Reach reach = this->reach();
     for (std::size_t i = 0, j = 0; i < on_faces.size(); i = j) {
       while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
       const auto& simplex = contour_.simplices[on_faces[i].simplex];
       if (j - i != 1 || !(height(simplex[on_faces[i].omitted]) > level_)) continue;
-      if (!section_.is_along_last_axis() && may_lie_in_another_side(on_faces[i])) continue;
+      if (!section_.is_along_last_axis() && may_lie_in_another_side(on_faces[i], reach)) continue;
       Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
       for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
       faces.push_back(face);

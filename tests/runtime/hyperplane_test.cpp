@@ -14,6 +14,7 @@
 #include "measure.hpp"
 #include "simplicial_contour.hpp"
 #include "tegl/error.hpp"
+#include "tegl/scrubber.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl {
@@ -198,17 +199,19 @@ TEST(SliceByHyperplane, TheOtherSideAboveGivesTheSameSurface) {
 TEST(SliceByHyperplane, NormalsOfAnyLengthGiveTheSameCut) {
   const auto image = test::noise<double, 4>(5, 6);
   const auto whole = extract<double>(image.view(), 0.5);
-  for (const Vector<4>& normal : {Vector<4>(1, 2, -3, 4), Vector<4>(0, 0, -1, 0), Vector<4>(1, 1, 0, 0)}) {
-    const auto cut = slice(whole, Hyperplane<4>{normal, 2.25});
+  for (const auto& [normal, offset] :
+       {Hyperplane<4>{{1, 2, -3, 4}, 2.25}, Hyperplane<4>{{0, 0, -2, 0}, -2.75}, Hyperplane<4>{{1, 1, 0, 0}, 2.25}}) {
+    const auto cut = slice(whole, Hyperplane<4>{normal, offset});
     ASSERT_FALSE(cut.simplices.empty());
     for (const int exponent : {-1030, -1000, -1, 1000, 1021}) {  // sums at the last would be beyond all numbers
-      const Hyperplane<4> hyperplane{(normal.array() * std::ldexp(1.0, exponent)).matrix(), std::ldexp(2.25, exponent)};
+      const Hyperplane<4> hyperplane{(normal.array() * std::ldexp(1.0, exponent)).matrix(),
+                                     std::ldexp(offset, exponent)};
       EXPECT_TRUE(same_bytes(slice(whole, hyperplane), cut)) << exponent;
       const Scrubber<4, double> scrubber(whole, hyperplane.normal);
       EXPECT_TRUE(same_bytes(scrubber.cut(hyperplane.offset), cut)) << exponent;
     }
     for (const double length : {1e-300, 1e300}) {
-      const auto other = slice(whole, Hyperplane<4>{normal * length, 2.25 * length});
+      const auto other = slice(whole, Hyperplane<4>{normal * length, offset * length});
       EXPECT_EQ(other.simplices.size(), cut.simplices.size()) << length;
       EXPECT_NEAR(test::measure(other), test::measure(cut), 1e-9) << length;
     }
