@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // operations [--threads T] [--repetitions R] [--only TEXT] FILE ISO [FILE ISO ...]: what each operation on a 4D contour
-// costs (of those with TEXT in their names): the
-// least time of R (5) repetitions, the least processor time of all threads together (which other work on the machine
-// hardly changes), and the most memory that it had beside what was there before (image, contour, and what it works on).
+// costs (of those with TEXT in their names): the least time of R (5) repetitions, or of fewer where these take more
+// than 10 s together, the least processor time of all threads together (which other work on the machine hardly
+// changes), and the most memory that it had beside what was there before (image, contour, and what it works on).
 // A Markdown table for each file; docs/operations.md has the figures.
 //
 // A new operation is a line in `operations_on`, or in a function that it calls.
@@ -31,6 +31,7 @@
 #include "tegl/facet_hierarchy.hpp"
 #include "tegl/io.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/project.hpp"
 #include "tegl/sample.hpp"
 #include "tegl/scrubber.hpp"
 #include "tegl/simplify.hpp"
@@ -158,6 +159,11 @@ void add_fields(Subject<T>& subject, std::vector<Operation>& list) {
                     const auto facets = extract_facets<double>(subject.image, subject.isovalue, options);
                     return counted(facets.vertices.size(), "0-facets");
                   }});
+  list.push_back({"`project`", [&] { return counted(project(subject.contour).tetrahedra.size(), "tetrahedra"); }});
+  list.push_back({"`outline`", [&] {
+                    const auto seen = outline(subject.contour, {}, subject.work_options());
+                    return counted(seen.simplices.size(), "triangles");
+                  }});
 }
 
 template <Value T>
@@ -166,16 +172,16 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
     SimplifyOptions<4> options;
     options.method = method;
     options.ratio = 0.2;
-    options.measure = false;
+    options.measure = false;  // that is the row of `deviation`
     options.threads = subject.threads;
     options.scale = automatic_scale(subject.contour);
     subject.simplified = simplify(subject.contour, options);
     return counted(subject.simplified.simplices.size(), "tetrahedra");
   };
-  list.push_back({"`simplify` to a fifth, facets", [simplified] { return simplified(SimplifyMethod::facets); }});
-  list.push_back({"`simplify` to a fifth, vertices", [simplified] { return simplified(SimplifyMethod::vertices); }});
-  list.push_back({"`simplify` to a fifth, quadric", [simplified] { return simplified(SimplifyMethod::quadric); }});
-  list.push_back({"`deviation` from it (simplify), and back", [&] {
+  list.push_back({"`simplify` to a fifth, `facets`", [simplified] { return simplified(SimplifyMethod::facets); }});
+  list.push_back({"`simplify` to a fifth, `vertices`", [simplified] { return simplified(SimplifyMethod::vertices); }});
+  list.push_back({"`simplify` to a fifth, `quadric`", [simplified] { return simplified(SimplifyMethod::quadric); }});
+  list.push_back({"`deviation` from that (`simplify`), and back", [&] {
                     DeviationOptions<4> options;
                     options.threads = subject.threads;
                     options.scale = automatic_scale(subject.contour);
@@ -215,6 +221,8 @@ std::string milliseconds(double seconds) {
   return seconds < 0.01 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.0f} ms", seconds * 1e3);
 }
 
+constexpr double kLongEnough = 10.0;  ///< seconds: then an operation is not repeated any more
+
 /// Runs the operations and prints their table.
 template <Value T>
 void run(Subject<T>& subject, int repetitions, const std::string& only) {
@@ -224,8 +232,9 @@ void run(Subject<T>& subject, int repetitions, const std::string& only) {
     double least = 0;
     double least_cpu = 0;
     double most_memory = 0;
+    double all = 0;
     std::string result;
-    for (int r = 0; r < repetitions; ++r) {
+    for (int r = 0; r < repetitions && all < kLongEnough; ++r) {
       malloc_trim(0);  // so that what was freed before does not count as there
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
@@ -234,6 +243,7 @@ void run(Subject<T>& subject, int repetitions, const std::string& only) {
       result = operation.work();
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       const double cpu = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+      all += seconds.count();
       const std::uint64_t peak = memory_bytes("VmHWM");
       least = r == 0 ? seconds.count() : std::min(least, seconds.count());
       least_cpu = r == 0 ? cpu : std::min(least_cpu, cpu);
