@@ -67,7 +67,7 @@ class SimplifyCommand final : public ContourInputCommand {
             "a number for each axis, by which its lengths count: 1,1,1,0.5; or auto: axes with other units than "
             "the first by how fine the contour is along them")
         ->type_name("NUMBERS|auto");
-    app().add_flag("--no-bound", no_bound_, "leave out the bound of the error");
+    app().add_flag("--no-bound", no_bound_, "leave out the bound of the error, and the rounds that make it small");
     app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: write what is no manifold, too");
     app()
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
@@ -205,6 +205,35 @@ class SimplifyCommand final : public ContourInputCommand {
     return result;
   }
 
+  static const char* name_of(SimplifyEnd end) {
+    switch (end) {
+      case SimplifyEnd::count:
+        return "count";
+      case SimplifyEnd::error:
+        return "error";
+      case SimplifyEnd::shape:
+        return "shape";
+      case SimplifyEnd::rounds:
+        break;
+    }
+    return "rounds";
+  }
+
+  /// Why there are more simplices than were asked for, or as many as there were; empty if there is nothing to say.
+  [[nodiscard]] std::string why_not_fewer(const SimplifyStats& stats) const {
+    const bool by_count = !ratio_.empty() || !count_.empty();
+    if (stats.end == SimplifyEnd::rounds)
+      return fmt::format("none of {} rounds kept --max-error {}, and the contour is left as it was", stats.rounds,
+                         max_error_);
+    if (stats.end == SimplifyEnd::shape)
+      return "what is left may not go, for the topology, the border or the shapes of simplices";
+    if (stats.end == SimplifyEnd::error && stats.simplices_after == stats.simplices_before && !max_error_.empty())
+      return fmt::format("nothing may go within --max-error {}", max_error_);
+    if (stats.end == SimplifyEnd::error && by_count)
+      return fmt::format("fewer would go beyond {}", max_error_.empty() ? "--max-curvature" : "--max-error");
+    return {};
+  }
+
   [[nodiscard]] Json document(const ContourResult& result, const SimplifyStats& stats) const {
     const auto or_null = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
     Json json = to_json(result);
@@ -217,6 +246,7 @@ class SimplifyCommand final : public ContourInputCommand {
     json["error"] = or_null(stats.error());
     json["error_of_original"] = or_null(stats.error_of_original);
     json["error_of_result"] = or_null(stats.error_of_result);
+    json["end"] = name_of(stats.end);
     json["rounds"] = stats.rounds;
     seconds["simplify"] = stats.simplify_seconds;
     seconds["bound"] = stats.measure_seconds;
@@ -237,6 +267,8 @@ class SimplifyCommand final : public ContourInputCommand {
     lines += report_line("before", fmt::format("{}, {}", counted(stats.vertices_before, "vertex", "vertices"),
                                                counted_simplices(dim, stats.simplices_before)));
     lines += report_line("method", fmt::format("{}: {:.3g} % of the simplices are left", method_, 100.0 * share));
+    const std::string why = why_not_fewer(stats);
+    if (!why.empty()) lines += report_line("stopped", fmt::format("at {:.3g} %: {}", 100.0 * share, why));
     if (stats.error()) {
       // Scaled lengths are in no unit of the axes.
       const auto unit = scale_.empty() ? measure_unit(result.mesh.axis_units, 1) : std::nullopt;

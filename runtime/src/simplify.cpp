@@ -38,6 +38,11 @@ constexpr std::size_t kMostPlanes = 20;
 /// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
 constexpr unsigned kGentleRounds = 6;
 constexpr unsigned kMostRounds = 12;
+/// By a count alone: at first for this share of the error of one round; until that does not come down to this share of
+/// what it was in two rounds, or after so many.
+constexpr double kNextError = 0.25;
+constexpr double kLeastGain = 0.9;
+constexpr unsigned kMostRoundsOfCount = 6;
 /// Of the size of the contour: what rounding may add to an error.
 constexpr double kRounding = 1e-12;
 
@@ -77,7 +82,7 @@ class Simplifier {
   Contour<N, Real> run() {
     stats_.simplices_before = contour_.simplices.size();
     stats_.vertices_before = contour_.vertices.size();
-    Contour<N, Real> result = contour_.simplices.empty() ? contour_ : until_error_holds();
+    Contour<N, Real> result = contour_.simplices.empty() ? contour_ : run_rounds();
     stats_.simplices_after = result.simplices.size();
     stats_.vertices_after = result.vertices.size();
     return result;
@@ -160,35 +165,120 @@ class Simplifier {
     }
   }
 
-  Contour<N, Real> until_error_holds() {
-    const double allowed = options_.max_error ? *options_.max_error + kRounding * size_ : kInfinity;
+  /// A result, and what is known of it.
+  struct Round {
+    Contour<N, Real> result;
+    std::vector<double> errors;  ///< #S; empty if not measured
+    std::optional<double> error_of_original, error_of_result;
+    SimplifyEnd end = SimplifyEnd::count;
+    std::vector<Index> survivors;  ///< #V: what each vertex became part of; empty if that is not known
+    std::vector<Index> kept;       ///< the original numbers of the result's vertices
+  };
+
+  Contour<N, Real> run_rounds() {
+    // Rounding alone moves points by more than nothing: only what is left as it is has no error.
+    if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
+      return hand_out(untouched(SimplifyEnd::error));
+    if (options_.max_error) return hand_out(until_error_holds());
+    if (!options_.measure) return hand_out(one_round(infinite_tolerance(), 1.0));
+    if (options_.method == SimplifyMethod::fast) return hand_out(measured_round(infinite_tolerance()));
+    return hand_out(as_near_as_can_be());
+  }
+
+  [[nodiscard]] std::vector<double> infinite_tolerance() const {
+    return std::vector<double>(contour_.vertices.size(), kInfinity);
+  }
+
+  /// By the largest error. Nothing was near enough after all rounds: then what is sure to be is the contour itself.
+  Round until_error_holds() {
+    const double allowed = *options_.max_error + kRounding * size_;
     std::vector<double> tolerance(contour_.vertices.size(), allowed);
-    const bool measured = options_.measure || options_.max_error;
-    double from = 0.0;
     while (stats_.rounds < kMostRounds) {
-      // Nobody knows how many rounds there will be: each takes half of what is left.
-      const double to = options_.max_error ? from + 0.5 * (1.0 - from) : 1.0;
-      const double middle = measured ? 0.5 * (from + to) : to;
-      ++stats_.rounds;
-      survivors_.clear();
-      const Progress shrinking = detail::part_of(options_.progress, from, middle);
-      Contour<N, Real> result =
-          options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
-      if (!measured) return result;
-      const std::vector<double> errors = measure(result, middle, to);
-      if (*stats_.error() <= allowed) {
-        add_errors(result, errors);
-        return result;
-      }
-      tighten(tolerance, result, errors, allowed);
-      from = to;
+      Round round = measured_round(tolerance);
+      if (error(round) <= allowed) return round;
+      tighten(tolerance, round, allowed, stats_.rounds <= kGentleRounds);
     }
-    // Nothing was near enough: what is sure to be is the contour itself.
-    Contour<N, Real> result = contour_;
-    stats_.error_of_original = stats_.error_of_result = earlier_error_;
-    std::erase_if(result.vertex_attributes, [](const Attribute& attribute) { return attribute.name == kErrorName; });
-    add_errors(result, std::vector<double>(result.simplices.size(), 0.0));
-    return result;
+    return untouched(SimplifyEnd::rounds);
+  }
+
+  /// By a count: a few contractions, where parts are thin, make most of the error. So the least tolerance is searched
+  /// for by which the count is still reached, and what goes beyond it nevertheless is tightened.
+  Round as_near_as_can_be() {
+    std::vector<double> tolerance = infinite_tolerance();
+    Round best = measured_round(tolerance);
+    Round last = best;
+    double too_small = 0.0;
+    unsigned measured = 1, idle = 0;
+    while (best.end == SimplifyEnd::count && measured < kMostRoundsOfCount && idle < 2) {
+      const double most = error(best) - earlier_error_;
+      const double allowed = too_small > 0.0 ? std::sqrt(too_small * most) : kNextError * most;
+      if (!(allowed < kLeastGain * most)) break;
+      std::vector<double> trial = tolerance;
+      tighten(trial, last, earlier_error_ + allowed, true);
+      for (double& t : trial) t = std::min(t, allowed);
+      Round next = one_round(trial, part_of_rest(0.25));
+      if (next.end != SimplifyEnd::count) {
+        too_small = allowed;
+        continue;
+      }
+      measure(next, part_of_rest(1.0 / 3.0));
+      ++measured;
+      tolerance = std::move(trial);
+      last = next;
+      idle = error(next) < kLeastGain * error(best) ? 0 : idle + 1;
+      if (error(next) < error(best)) best = std::move(next);
+    }
+    return best;
+  }
+
+  static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }
+
+  /// How far the progress is after this share of what is left: nobody knows how many rounds there will be.
+  [[nodiscard]] double part_of_rest(double share) const { return progress_ + share * (1.0 - progress_); }
+
+  Round measured_round(const std::vector<double>& tolerance) {
+    Round round = one_round(tolerance, part_of_rest(0.25));
+    measure(round, part_of_rest(1.0 / 3.0));
+    return round;
+  }
+
+  /// Simplified once, which brings the progress to `to`; not measured.
+  Round one_round(const std::vector<double>& tolerance, double to) {
+    ++stats_.rounds;
+    survivors_.clear();
+    const Progress shrinking = detail::part_of(options_.progress, progress_, to);
+    progress_ = to;
+    Round round;
+    round.result =
+        options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
+    const bool by_count = options_.count || options_.ratio;
+    round.end = by_count && round.result.simplices.size() <= count_           ? SimplifyEnd::count
+                : options_.max_error || std::isfinite(options_.max_curvature) ? SimplifyEnd::error
+                                                                              : SimplifyEnd::shape;
+    if (round.result.simplices.size() == contour_.simplices.size()) return untouched(round.end);
+    round.survivors = std::move(survivors_);
+    round.kept = std::move(kept_);
+    return round;
+  }
+
+  /// The contour itself.
+  Round untouched(SimplifyEnd end) const {
+    Round round;
+    round.result = contour_;
+    std::erase_if(round.result.vertex_attributes, [](const Attribute& other) { return other.name == kErrorName; });
+    round.errors.assign(contour_.simplices.size(), 0.0);
+    round.error_of_original = round.error_of_result = earlier_error_;
+    round.end = end;
+    return round;
+  }
+
+  Contour<N, Real> hand_out(Round round) {
+    stats_.end = round.end;
+    if (!options_.measure && !options_.max_error) return std::move(round.result);
+    stats_.error_of_original = round.error_of_original;
+    stats_.error_of_result = round.error_of_result;
+    add_errors(round.result, round.errors);
+    return std::move(round.result);
   }
 
   /// One round of a method that contracts edges.
@@ -304,7 +394,9 @@ class Simplifier {
   // ---- errors ----
 
   /// The bound of each simplex of the result, both ways.
-  std::vector<double> measure(const Contour<N, Real>& result, double from, double to) {
+  void measure(Round& round, double to) {
+    if (round.error_of_original) return;  // the contour itself
+    const double from = std::exchange(progress_, to);
     const auto start = std::chrono::steady_clock::now();
     DeviationOptions<N> options;
     options.scale = options_.scale;
@@ -312,46 +404,46 @@ class Simplifier {
     options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
     // Closer bounds than half of what decides are of no use to anyone.
     if (options_.max_error) options.enough = 0.5 * *options_.max_error;
-    Deviation of_original = deviation(contour_, result, options);
+    Deviation of_original = deviation(contour_, round.result, options);
     options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
     if (!options_.max_error) options.enough = 0.5 * of_original.least;
-    const Deviation of_result = deviation(result, contour_, options);
-    std::vector<double> errors = std::move(of_original.of_to);
-    for (std::size_t s = 0; s < errors.size(); ++s) errors[s] = std::max(errors[s], of_result.of_from[s]);
-    stats_.error_of_original = of_original.bound + earlier_error_;
-    stats_.error_of_result = of_result.bound + earlier_error_;
+    const Deviation of_result = deviation(round.result, contour_, options);
+    round.errors = std::move(of_original.of_to);
+    for (std::size_t s = 0; s < round.errors.size(); ++s)
+      round.errors[s] = std::max(round.errors[s], of_result.of_from[s]);
+    round.error_of_original = of_original.bound + earlier_error_;
+    round.error_of_result = of_result.bound + earlier_error_;
     stats_.measure_seconds += seconds_since(start);
-    return errors;
   }
 
   /// Less tolerance for all that became part of a simplex with too large an error.
-  void tighten(std::vector<double>& tolerance, const Contour<N, Real>& result, const std::vector<double>& errors,
-               double allowed) const {
-    const bool gently = stats_.rounds <= kGentleRounds;
-    if (survivors_.empty()) {
-      const double factor = std::clamp(0.8 * allowed / *stats_.error(), 0.1, 0.8);
+  void tighten(std::vector<double>& tolerance, const Round& round, double allowed, bool gently) const {
+    const auto factor_for = [&](double error) { return std::clamp(0.8 * allowed / error, 0.1, 0.8); };
+    if (round.survivors.empty()) {
+      const double factor = factor_for(error(round));
       for (double& t : tolerance) t = gently || stats_.rounds + 2 < kMostRounds ? factor * t : 0.0;
       return;
     }
     std::vector<double> factors(contour_.vertices.size(), 1.0);
-    for (std::size_t s = 0; s < errors.size(); ++s) {
-      if (errors[s] + earlier_error_ <= allowed) continue;
-      const double factor = gently ? std::clamp(0.8 * allowed / errors[s], 0.1, 0.8) : 0.0;
-      for (const Index v : result.simplices[s]) factors[kept_[v]] = std::min(factors[kept_[v]], factor);
+    for (std::size_t s = 0; s < round.errors.size(); ++s) {
+      const double error = round.errors[s] + earlier_error_;
+      if (error <= allowed) continue;
+      const double factor = gently ? factor_for(error) : 0.0;
+      for (const Index v : round.result.simplices[s]) factors[round.kept[v]] = std::min(factors[round.kept[v]], factor);
     }
     // What is around may be the cause: were it left as it is, the next round would do the same once more.
-    if (!gently) widen(factors, result, std::size_t{1} << (stats_.rounds - kGentleRounds - 1));
-    for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[survivors_[v]];
+    if (!gently) widen(factors, round, std::size_t{1} << (stats_.rounds - kGentleRounds - 1));
+    for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[round.survivors[v]];
   }
 
   /// Spreads the least factors by so many rings of simplices.
-  void widen(std::vector<double>& factors, const Contour<N, Real>& result, std::size_t rings) const {
+  void widen(std::vector<double>& factors, const Round& round, std::size_t rings) const {
     for (std::size_t ring = 0; ring < rings; ++ring) {
       const std::vector<double> before = factors;
-      for (const auto& simplex : result.simplices) {
+      for (const auto& simplex : round.result.simplices) {
         double least = 1.0;
-        for (const Index v : simplex) least = std::min(least, before[kept_[v]]);
-        for (const Index v : simplex) factors[kept_[v]] = std::min(factors[kept_[v]], least);
+        for (const Index v : simplex) least = std::min(least, before[round.kept[v]]);
+        for (const Index v : simplex) factors[round.kept[v]] = std::min(factors[round.kept[v]], least);
       }
     }
   }
@@ -459,6 +551,7 @@ class Simplifier {
   std::vector<double> carried_;
   std::vector<const Attribute*> carried_attributes_;
   double earlier_error_ = 0.0;
+  double progress_ = 0.0;         ///< told so far
   std::vector<Index> survivors_;  ///< of the round: what each vertex became part of; empty if that is not known
   std::vector<Index> kept_;       ///< of the round: the original numbers of the result's vertices
   SimplifyStats stats_;

@@ -53,7 +53,8 @@ struct SimplifyOptions {
   std::optional<std::uint64_t> count;  ///< as few simplices as this
   std::optional<double> ratio;         ///< of the simplices that there are, in [0, 1]
   /// The largest distance between any point of one of the two contours and the other one. The result keeps it by its
-  /// bound: where the bound is too large for a part of the contour, that part is simplified anew with more care.
+  /// bound: where the bound is too large for a part of the contour, that part is simplified anew with more care. 0
+  /// leaves the contour as it is.
   std::optional<double> max_error;
   /// facets: no facet of more curvature (1 / radius) than this is removed.
   double max_curvature = std::numeric_limits<double>::infinity();
@@ -65,7 +66,8 @@ struct SimplifyOptions {
   /// comparable (a month and a degree).
   std::array<double, N> scale = all_one();
   /// Whether the result gets its error bounds: the vertex attribute "simplification_error". Is done anyway if
-  /// max_error is given.
+  /// max_error is given. With a count or ratio, the bounds of one round show the next one which parts to treat with more
+  /// care, so that the same count has a smaller error; without bounds there is one round.
   bool measure = true;
   /// fast: hand out what is no manifold, too.
   bool allow_nonmanifold = false;
@@ -80,6 +82,14 @@ struct SimplifyOptions {
   }
 };
 
+/// What a simplification ended at.
+enum class SimplifyEnd {
+  count,   ///< as few simplices as were asked for
+  error,   ///< max_error (or max_curvature): what is left would go beyond it
+  shape,   ///< more simplices than were asked for: what is left may not go, for topology, border, planes or shapes
+  rounds,  ///< no round kept max_error: the result is the contour as it was
+};
+
 /// What a simplification did.
 struct SimplifyStats {
   std::uint64_t simplices_before = 0;
@@ -90,7 +100,8 @@ struct SimplifyStats {
   /// of `scale`. None if not measured.
   std::optional<double> error_of_original;
   std::optional<double> error_of_result;
-  unsigned rounds = 0;  ///< how often it was simplified, to keep max_error
+  SimplifyEnd end = SimplifyEnd::count;
+  unsigned rounds = 0;  ///< how often it was simplified, to keep max_error or for a small error
   double simplify_seconds = 0;
   double measure_seconds = 0;
 
@@ -120,8 +131,9 @@ struct SimplifyStats {
 /// vertex; or the result of `fast` is none), Cancelled. Time:
 /// O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three times
 /// that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
-/// the result, in each of up to 12 rounds if there is a `max_error`. If no round keeps that, the result is the contour
-/// itself. Memory: about 200 bytes for each simplex.
+/// the result, in each of up to 12 rounds if there is a `max_error`, and of up to 6 if there is a count alone (up to
+/// twice as many without the error). If no round keeps max_error, the result is the contour itself, and
+/// SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
                           SimplifyStats* stats = nullptr);
