@@ -61,6 +61,12 @@ def _metadata():
     return "\n".join([*lines, "Description-Content-Type: text/markdown", "", readme])
 
 
+def _dist_info():
+    """What the wheel says of itself: name of a file -> its text."""
+    return {"METADATA": _metadata(), "LICENSE": (ROOT / "LICENSE").read_text(encoding="utf-8"),
+            "WHEEL": f"Wheel-Version: 1.0\nGenerator: tegl_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n"}
+
+
 def _tag():
     interpreter = f"cp{sys.version_info.major}{sys.version_info.minor}"
     return f"{interpreter}-{interpreter}-{re.sub(r'[^A-Za-z0-9]', '_', sysconfig.get_platform())}"
@@ -89,10 +95,7 @@ def _zip(folder, dist_info, wheel):
     """The wheel: the folder's files and its metadata, and RECORD, with a digest of each. Same files, same bytes."""
     files = {file.relative_to(folder).as_posix(): file.read_bytes() for file in sorted(folder.rglob("*"))
              if file.is_file()}
-    files[f"{dist_info}/METADATA"] = _metadata().encode()
-    files[f"{dist_info}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: tegl_build\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
-                                   ).encode()
-    files[f"{dist_info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files |= {f"{dist_info}/{name}": text.encode() for name, text in _dist_info().items()}
     record = io.StringIO()
     rows = csv.writer(record, lineterminator="\n")
     for name, data in files.items():
@@ -106,6 +109,17 @@ def _zip(folder, dist_info, wheel):
             entry.external_attr = (0o755 if name.endswith(".so") else 0o644) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, data)
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    if _scikit_build is not None:
+        return _scikit_build.prepare_metadata_for_build_wheel(metadata_directory, config_settings)
+    name = f"tegl-{_version()}.dist-info"
+    folder = pathlib.Path(metadata_directory) / name
+    folder.mkdir()
+    for file, text in _dist_info().items():
+        (folder / file).write_text(text, encoding="utf-8")
+    return name
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files in and out, other programs' structures, and that the program `tegl` gives the same."""
+
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+import tegl
+from conftest import assert_same, assert_same_places, ball, noise, signed_content
+
+OCEAN = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "examples/data/ocean_temperature.nc"
+PROGRAM = pathlib.Path(os.environ["TEGL_BUILD_DIR"]) / "bin/tegl"
+needs_program = pytest.mark.skipif(not PROGRAM.exists(), reason="the program tegl is not built")
+
+
+def test_an_image_from_a_file_has_its_coordinates():
+    image = tegl.read(OCEAN)
+    assert image.format == "netCDF" and image.array.ndim == 4
+    assert image.array.shape == tuple(len(coordinates) for coordinates in image.coords)
+    assert image.array.flags.c_contiguous and not image.array.flags.owndata, "the library's memory, as it is"
+    other = tegl.read(OCEAN, time_axis=-1)
+    assert np.array_equal(other.array.T, image.array, equal_nan=True) and other.axis_names == image.axis_names[::-1]
+    assert image.time_axis == 0 and other.time_axis == 3
+    assert_same(image.contour(20.0), tegl.contour(image, 20.0))
+    by_hand = tegl.contour(image.array, 20.0, coords=image.coords)
+    assert_same(by_hand, image.contour(20.0))
+    with pytest.raises(ValueError, match="no_such"):
+        tegl.read(OCEAN, "no_such")
+    with pytest.raises(FileNotFoundError, match="no_such.nc"):
+        tegl.read(OCEAN.with_name("no_such.nc"))
+
+
+@needs_program
+@pytest.mark.parametrize("suffix", [".vtkhdf", ".ply"])
+def test_the_program_gives_the_same_contour(suffix, tmp_path):
+    image = tegl.read(OCEAN)
+    path = tmp_path / f"program{suffix}"
+    if suffix == ".ply":
+        subprocess.run([PROGRAM, "slice", OCEAN, "--iso", "20", "--at", "t=7.3", "-o", path, "--quiet"], check=True)
+        mine = tegl.slice(image, 20.0, at=7.3, dtype=np.float64)
+    else:
+        subprocess.run([PROGRAM, "contour", OCEAN, "--iso", "20", "-o", path, "--quiet"], check=True)
+        mine = image.contour(20.0, dtype=np.float64)
+    theirs = tegl.load(path)
+    assert len(mine.simplices) > 1000
+    assert np.array_equal(theirs.vertices, mine.vertices) and np.array_equal(theirs.simplices, mine.simplices)
+    assert theirs.axis_names == mine.axis_names and theirs.axis_units == mine.axis_units and theirs.isovalue == 20.0
+    mine.save(tmp_path / f"python{suffix}")
+    assert path.read_bytes() == (tmp_path / f"python{suffix}").read_bytes()
+
+
+@pytest.mark.parametrize("suffix, ndim", [(".ply", 2), (".ply", 3), (".vtkhdf", 2), (".vtkhdf", 3), (".vtkhdf", 4)])
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_what_is_saved_comes_back(suffix, ndim, time_axis, tmp_path):
+    names = ["a", "b", "c", "d"][:ndim]
+    contour = tegl.contour(ball(ndim, 9)[:-1], 0.0, normals=True, axis_names=names, axis_units=["mm"] * ndim,
+                           dtype=np.float64, time_axis=time_axis)
+    path = tmp_path / f"contour{suffix}"
+    contour.save(path)
+    loaded = tegl.Contour.load(path, time_axis=time_axis)
+    assert_same(loaded, contour)
+    assert np.array_equal(loaded.normals, contour.normals)
+    assert loaded.axis_names == contour.axis_names and loaded.isovalue == 0.0
+    simplified = tegl.contour(ball(3, 21), 0.0).simplify(ratio=0.3)
+    simplified.save(tmp_path / "simplified.ply")
+    assert "simplification_error" in tegl.load(tmp_path / "simplified.ply").vertex_attributes
+
+
+def test_files_that_cannot_be(tmp_path):
+    contour = tegl.contour(ball(3), 0.0)
+    with pytest.raises(OSError):
+        contour.save(tmp_path / "no such folder" / "contour.ply")
+    with pytest.raises(ValueError, match="contour.xyz"):
+        contour.save(tmp_path / "contour.xyz")
+    with pytest.raises(FileNotFoundError, match="missing.ply"):
+        tegl.load(tmp_path / "missing.ply")
+    (tmp_path / "broken.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
+    with pytest.raises(ValueError, match="broken.ply"):
+        tegl.load(tmp_path / "broken.ply")
+
+
+# xarray.
+
+def data_array():
+    xarray = pytest.importorskip("xarray")
+    values = noise((5, 6, 7), 4)
+    return xarray.DataArray(values, dims=("time", "depth", "lon"), coords={
+        "time": np.array(["2020-01-01", "2020-02-01", "2020-03-01", "2020-04-01", "2020-05-01"], dtype="datetime64[ns]"),
+        "depth": ("depth", [0.0, 5, 20, 50, 100, 300], {"units": "m"}), "lon": ("lon", np.arange(7) * 0.5)})
+
+
+def test_an_xarray_brings_its_names_coordinates_and_units():
+    data = data_array()
+    contour = tegl.contour(data, 0.1, dtype=np.float64)
+    days = np.array([0, 31, 60, 91, 121.0])
+    expected = tegl.contour(data.values, 0.1, coords=[days, data.depth.values, data.lon.values], dtype=np.float64)
+    assert_same(contour, expected)
+    assert contour.axis_names == ("time", "depth", "lon")
+    assert contour.axis_units == ("days since 2020-01-01T00:00:00", "m", "")
+    assert contour.time_axis == 0
+    assert tegl._arguments.prepare(data).image.array.base is not None
+    assert np.shares_memory(tegl._arguments.prepare(data).image.array, data.values)
+    cut = contour.slice(np.datetime64("2020-02-15T12:00"))
+    assert len(cut.vertices) > 0
+    assert_same(cut, contour.slice(time=45.5))
+    assert_same_places(tegl.slice(data, 0.1, at=np.datetime64("2020-02-15T12:00"), dtype=np.float64), cut)
+    assert tegl.contour(data.transpose("lon", "depth", "time"), 0.1).time_axis == 2
+
+
+def test_what_is_missing_in_an_xarray_is_missing():
+    data = data_array()
+    data[2, 3, 4] = np.nan
+    contour = tegl.contour(data, 0.1)
+    assert contour.check().is_manifold
+    assert_same(contour, tegl.contour(data_array(), 0.1, mask=np.isfinite(data.values)))
+
+
+def test_an_xarray_without_coordinates_or_with_words():
+    xarray = pytest.importorskip("xarray")
+    values = noise((5, 6), 4)
+    assert_same(tegl.contour(xarray.DataArray(values), 0.1), tegl.contour(values, 0.1))
+    words = xarray.DataArray(values, dims=("run", "x"), coords={"run": list("abcde")})
+    with pytest.raises(ValueError, match="'run' has values of type <U1; expected numbers or dates"):
+        tegl.contour(words, 0.1)
+    assert_same(tegl.contour(data_array(), 0.1, spacing=1.0), tegl.contour(data_array().values, 0.1))
+
+
+def test_images_become_xarrays_and_back():
+    pytest.importorskip("xarray")
+    image = tegl.read(OCEAN)
+    data = image.to_xarray()
+    assert data.dims == image.axis_names and data.attrs["units"] == image.value_unit
+    assert_same(tegl.contour(data, 20.0), image.contour(20.0))
+
+
+# Other programs.
+
+def test_points_and_cells_are_x_y_z():
+    contour = tegl.contour(ball(3, 11), 0.0, spacing=(1, 2, 3))
+    points, cells = contour.points_and_cells()
+    assert cells[0][0] == "triangle" and np.array_equal(points, contour.vertices[:, ::-1])
+    assert signed_content(points, cells[0][1]) == pytest.approx(contour.measure().content, rel=1e-5)
+    assert tegl.contour(ball(4), 0.0).points_and_cells()[1][0][0] == "tetra"
+    assert tegl.contour(ball(2), 0.0).points_and_cells()[1][0][0] == "line"
+
+
+@pytest.mark.parametrize("ndim", [2, 3, 4])
+def test_meshio(ndim):
+    pytest.importorskip("meshio")
+    contour = tegl.contour(ball(ndim, 9), 0.0, normals=True)
+    mesh = contour.to_meshio()
+    assert mesh.points.shape == (len(contour.vertices), 3)
+    assert len(mesh.cells[0].data) == len(contour.simplices)
+    if ndim == 4:
+        assert np.array_equal(mesh.point_data["t"], contour.vertices[:, 0])
+    assert mesh.point_data["Normals"].shape[1] == max(ndim, 3)
+
+
+@pytest.mark.parametrize("ndim", [2, 3, 4])
+def test_vtk(ndim):
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    contour = tegl.contour(ball(ndim, 9), 0.0, normals=True).simplify(ratio=0.5) if ndim > 2 else \
+        tegl.contour(ball(ndim, 9), 0.0, normals=True)
+    mesh = contour.to_vtk()
+    assert mesh.GetNumberOfCells() == len(contour.simplices) and mesh.GetNumberOfPoints() == len(contour.vertices)
+    points = vtk_to_numpy(mesh.GetPoints().GetData())
+    assert np.array_equal(points[:, :min(ndim, 3)], contour.vertices[:, ::-1][:, :3])
+    ids = mesh.GetCell(3).GetPointIds()
+    assert [ids.GetId(corner) for corner in range(ndim)] == contour.simplices[3, ::-1].tolist()
+    data = mesh.GetPointData()
+    if ndim == 4:
+        assert np.array_equal(vtk_to_numpy(data.GetArray("t")), contour.vertices[:, 0])
+    if ndim > 2:
+        assert np.array_equal(vtk_to_numpy(data.GetArray("simplification_error")),
+                              contour.vertex_attributes["simplification_error"])
+    assert data.GetArray("Normals").GetNumberOfTuples() == len(contour.vertices)
+
+
+def test_volume_by_vtk_is_ours():
+    pytest.importorskip("vtkmodules")
+    from vtkmodules.vtkFiltersCore import vtkMassProperties
+    contour = tegl.contour(ball(3, 21), 0.0)
+    mass = vtkMassProperties()
+    mass.SetInputData(contour.to_vtk())
+    assert mass.GetVolume() == pytest.approx(contour.measure().content, rel=1e-3)
+    assert mass.GetSurfaceArea() == pytest.approx(contour.measure().size, rel=1e-5)
+
+
+@pytest.mark.parametrize("module, method", [("pyvista", "to_pyvista"), ("meshio", "to_meshio"),
+                                            ("vtkmodules.vtkCommonDataModel", "to_vtk")])
+def test_what_is_not_installed_is_named(module, method, monkeypatch):
+    import sys
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ImportError, match=f"{method} needs"):
+        getattr(tegl.contour(ball(3), 0.0), method)()
+
+
+def test_pyvista_gets_what_vtk_gets(monkeypatch):
+    """pyvista wraps VTK's meshes; where it is not installed, something that does the same stands in."""
+    import sys
+    import types
+    pytest.importorskip("vtkmodules")
+    if "pyvista" not in sys.modules:
+        try:
+            import pyvista  # noqa: F401
+        except ImportError:
+            monkeypatch.setitem(sys.modules, "pyvista", types.SimpleNamespace(wrap=lambda mesh: mesh))
+    mesh = tegl.contour(ball(3), 0.0).to_pyvista()
+    assert mesh.GetNumberOfCells() == len(tegl.contour(ball(3), 0.0).simplices)

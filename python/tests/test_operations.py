@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is done with contours: cuts, checks, components, measures, elements, simplification, tracking, indexes."""
+
+import itertools
+import json
+import math
+
+import numpy as np
+import pytest
+import tegl
+from conftest import assert_closed_manifold, assert_same, assert_same_places, ball, face_counts, noise, signed_content
+
+
+@pytest.fixture
+def balls(moving_balls):
+    return tegl.contour(moving_balls, 0.0, axis_names="tzyx", axis_units=["h", "mm", "mm", "mm"], dtype=np.float64)
+
+
+# Cuts.
+
+@pytest.mark.parametrize("time_axis", [0, -1])
+@pytest.mark.parametrize("ndim", [3, 4])
+def test_a_cut_at_a_sample_is_the_contour_of_that_layer(ndim, time_axis):
+    array = noise((6, 7, 8, 5)[:ndim], ndim)
+    contour = tegl.contour(array, 0.1, time_axis=time_axis)
+    for at in (0, 2, array.shape[time_axis] - 1):
+        layer = tegl.contour(np.take(array, at, axis=time_axis), 0.1, time_axis=time_axis)
+        assert_same_places(contour.slice(at), layer)
+
+
+def test_cuts_between_samples_are_closed_and_oriented(balls):
+    for at in (0.3, 3.1415, 6.9):
+        cut = balls.slice(at)
+        assert_closed_manifold(cut.simplices)
+        assert signed_content(cut.vertices, cut.simplices) == pytest.approx(cut.measure().content)
+        assert cut.measure().content > 0
+        assert cut.axis_names == ("z", "y", "x") and cut.axis_units == ("mm",) * 3 and cut.isovalue == 0.0
+
+
+def test_axes_are_cut_by_name_or_number(balls):
+    by_name = balls.slice(x=9.5)
+    assert_same(by_name, balls.slice(9.5, axis="x"))
+    assert_same(by_name, balls.slice(9.5, axis=3))
+    assert_same(by_name, balls.slice(9.5, axis=-1))
+    assert_same(by_name, tegl.slice(balls, at=9.5, axis=-1))
+    assert_same(by_name, balls.slice(normal=(0, 0, 0, 1), offset=9.5))
+    assert by_name.axis_names == ("t", "z", "y")
+    several = balls.slice([3.0, 1.5])
+    assert_same(several[0], balls.slice(3.0))
+    assert_same(several[1], balls.slice(t=1.5))
+
+
+def test_oblique_cuts_lie_in_their_plane():
+    contour = tegl.contour(ball(3, 21), 0.0, dtype=np.float64)
+    cut = contour.slice(normal=(1, 1, 0), offset=20)
+    assert_closed_manifold(cut.simplices)
+    assert cut.measure().size == pytest.approx(2 * np.pi * 7, rel=0.01)
+    assert cut.measure().content == pytest.approx(signed_content(cut.vertices, cut.simplices))
+
+
+def test_cuts_straight_from_an_array_are_those_of_the_contour(moving_balls):
+    whole = tegl.contour(moving_balls, 0.0, dtype=np.float64)
+    for arguments in (dict(at=2.25), dict(at=9.5, axis=3), dict(at=4.0)):
+        direct, cut = tegl.slice(moving_balls, 0.0, dtype=np.float64, **arguments), whole.slice(**arguments)
+        assert len(direct.simplices) == len(cut.simplices) > 0
+        assert direct.measure().content == pytest.approx(cut.measure().content, rel=1e-12)
+        assert np.array_equal(np.unique(direct.vertices, axis=0), np.unique(cut.vertices, axis=0))
+    several = tegl.slice(moving_balls, 0.0, at=[1.5, 2.5], spacing=(0.5, 1, 1, 1), close=True)
+    assert [len(cut.simplices) > 0 for cut in several] == [True, True]
+    oblique = tegl.slice(moving_balls, 0.0, normal=(0, 0, 1, 1), offset=24.2, dtype=np.float64)
+    assert_same(oblique, whole.slice(normal=(0, 0, 1, 1), offset=24.2))
+
+
+@pytest.mark.parametrize("arguments, text", [
+    (dict(), "no hyperplane"),
+    (dict(at=1, t=1), "several hyperplanes"),
+    (dict(x=1, y=1), "several hyperplanes"),
+    (dict(q=1), "no hyperplane"),
+    (dict(at=1, q=1), "no axis is named 'q'"),
+    (dict(at=1, axis="q"), "no axis is named 'q'"),
+    (dict(at=1, axis=4), "axis is 4; expected -4 to 3"),
+    (dict(normal=(1, 0, 0, 0)), "normal goes with offset"),
+    (dict(offset=1), "offset without normal"),
+    (dict(normal=(1, 0, 0), offset=1), "the normal has 3 numbers; expected one for each of 4 axes"),
+    (dict(normal=(0, 0, 0, 0), offset=1), "normal"),
+    (dict(at=np.nan), "nan"),
+    (dict(at=np.datetime64("2020-01-01")), "is a date, and the axis has the unit 'h'"),
+])
+def test_what_is_no_cut_is_said(balls, arguments, text):
+    with pytest.raises(ValueError, match=text):
+        balls.slice(**arguments)
+
+
+def test_dimensions_that_there_are_not_are_said():
+    flat, five = tegl.contour(ball(2), 0.0), tegl.contour(ball(5, 5), 0.0)
+    for contour, call in ((flat, lambda c: c.slice(1)), (five, lambda c: c.slice(1)), (five, lambda c: c.track()),
+                          (five, lambda c: c.simplify(ratio=0.5)), (five, lambda c: c.to_vtk()),
+                          (five, lambda c: c.save("five.vtkhdf")), (flat, lambda c: tegl.measure(c, at=1))):
+        with pytest.raises(ValueError, match=f"{contour.ndim}D contour; expected"):
+            call(contour)
+    with pytest.raises(ValueError, match="expected 2 to 4"):
+        tegl.Index(ball(5, 4))
+    with pytest.raises(ValueError, match="3 or 4"):
+        tegl.slice(ball(2), 0.0, at=1)
+
+
+# Checks, components, measures.
+
+def test_check_finds_what_is_wrong():
+    contour = tegl.contour(ball(3), 0.0)
+    report = contour.check()
+    assert report.is_manifold and report.is_closed and report.euler == 2 and report.components == 1
+    turned = np.array(contour.simplices)
+    turned[0] = turned[0, ::-1]
+    broken = tegl.Contour(contour.vertices, turned).check()
+    assert broken.orientation_conflicts == 3 and not broken.is_manifold
+    assert not tegl.Contour(contour.vertices, contour.simplices[1:]).check().is_closed
+
+
+@pytest.mark.parametrize("ndim", [2, 3, 4, 5])
+def test_measures_are_those_of_a_ball(ndim):
+    size = {2: 101, 3: 41, 4: 21, 5: 7}[ndim]
+    step = 2 / (size - 1)
+    contour = tegl.contour(ball(ndim, size), 0.0, spacing=step, origin=np.linspace(-1, 1, ndim), dtype=np.float64)
+    measures = contour.measure()
+    volume = math.pi ** (ndim / 2) / math.gamma(ndim / 2 + 1) * 0.7**ndim
+    error = 1.5 * step**2 * 4
+    assert measures.content == pytest.approx(volume, rel=error)
+    assert measures.size == pytest.approx(ndim * volume / 0.7, rel=error)
+    assert measures.centroid == pytest.approx(np.linspace(0, 2, ndim), abs=1e-4)
+    assert measures.lowest == pytest.approx(np.linspace(0, 2, ndim) - 0.7, abs=error)
+    assert measures.highest == pytest.approx(np.linspace(0, 2, ndim) + 0.7, abs=error)
+    assert tegl.contour(np.arange(8.0).reshape(2, 2, 2), 3.5).measure().content is None
+
+
+def test_measures_of_cuts_are_those_of_the_cuts_that_slice_makes(balls):
+    times = [0.5, 3.3, 5.0]
+    measures = tegl.measure(balls, at=times)
+    for time, size, content in zip(times, measures.size, measures.content):
+        cut = balls.slice(time).measure()
+        assert size == pytest.approx(cut.size) and content == pytest.approx(cut.content)
+    assert np.array_equal(measures.at, times)
+
+
+def test_components(moving_balls):
+    contour = tegl.contour(moving_balls[0], 0.0, spacing=(1, 1, 2), dtype=np.float64)
+    found = contour.components()
+    assert len(found) == 2 and [one.label for one in found] == [0, 1]
+    assert found.vertex_labels.shape == (len(contour.vertices),) and found.simplex_labels.max() == 1
+    for label, (one, part) in enumerate(zip(found, found.split())):
+        assert part.check().euler == one.euler == 2 and one.boundary_simplices == 0
+        assert len(part.simplices) == one.simplices == (found.simplex_labels == label).sum()
+        assert part.measure().content == pytest.approx(one.content)
+        assert one.centroid == pytest.approx(part.measure().centroid)
+        assert (part.vertices.min(axis=0) == one.lowest).all() and (part.vertices.max(axis=0) == one.highest).all()
+    assert abs(found[0].centroid[2] - found[1].centroid[2]) > 30, "the columns are the array's"
+    assert_same(found.select([1]), found.split()[1])
+    assert_same(found.select([False, True]), found.split()[1])
+    assert len(found.largest().components()) == 1
+    with pytest.raises(ValueError, match="expected 0 to 1"):
+        found.select([2])
+    with pytest.raises(ValueError, match="3"):
+        found.select([True, True, True])
+
+
+# Elements.
+
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_the_normals_of_a_closed_contour_sum_to_zero(moving_balls, time_axis):
+    contour = tegl.contour(moving_balls, 0.0, close=True, spacing=(0.5, 1, 2, 3), time_axis=time_axis, dtype=np.float64)
+    for by_cell in (False, True):
+        elements = contour.elements(by_cell=by_cell)
+        total = elements.sum()
+        assert np.abs(elements.normals.sum(axis=0)).max() < 1e-9 * total.absolute.max()
+        assert total.closure_error < 1e-12
+        assert total.measure == pytest.approx(contour.measure().size)
+        # Gauss: the flux of the position is N times the content; d sigma points out of what is high.
+        flux = (elements.centroids * elements.normals).sum()
+        assert flux == pytest.approx(4 * contour.measure().content, rel=1e-2 if by_cell else 1e-9)
+    assert len(elements) < len(contour.simplices) and elements.counts.sum() == len(contour.simplices)
+    with pytest.raises(ValueError, match="grid is not known"):
+        contour.slice(2.0).elements(by_cell=True)
+
+
+def test_elements_keep_attributes_and_are_written(tmp_path):
+    made = tegl.contour(ball(3), 0.0, dtype=np.float64)
+    contour = tegl.Contour(made.vertices, made.simplices, vertex_attributes={"height": made.vertices[:, 0]})
+    elements = contour.elements()
+    assert elements.attributes["height"] == pytest.approx(elements.centroids[:, 0])
+    elements.save(tmp_path / "surface.dat")
+    table = np.loadtxt(tmp_path / "surface.dat")
+    assert table.shape == (len(elements), 7)
+    assert np.array_equal(table[:, :3], elements.centroids[:, [0, 2, 1]])  # the time axis first, then x y
+    with pytest.raises(ValueError, match=".xyz"):
+        elements.save(tmp_path / "surface.xyz")
+
+
+# Simplification.
+
+def test_simplified_contours_keep_their_topology_and_their_bound():
+    contour = tegl.contour(ball(3, 31), 0.0, dtype=np.float64)
+    coarse, stats = contour.simplify(max_error=0.2, return_stats=True)
+    assert len(coarse.simplices) < len(contour.simplices) / 4
+    assert coarse.check().is_manifold and coarse.check().euler == 2
+    assert max(stats.error_of_original, stats.error_of_result) <= 0.2
+    assert stats.simplices_after == len(coarse.simplices)
+    radii = np.linalg.norm(coarse.vertices - 15, axis=1)
+    assert np.abs(radii - 10.5).max() < 0.25
+    assert coarse.vertex_attributes["simplification_error"].max() <= 0.2
+    assert len(contour.simplify(count=100).simplices) <= 110
+    assert tegl.simplify(contour, ratio=0.5, method="vertices", measure=False).vertex_attributes == {}
+
+
+def test_scales_of_simplification_are_by_axis_of_the_array():
+    contour = tegl.contour(ball(3, 21), 0.0, spacing=(100, 1, 1), axis_units=["s", "mm", "mm"], dtype=np.float64)
+    scaled, stats = contour.simplify(ratio=0.3, scale=(0.01, 1, 1), return_stats=True)
+    assert stats.error_of_result < 1
+    assert contour.simplify(ratio=0.3, scale="auto").check().is_closed and scaled.check().is_closed
+    with pytest.raises(ValueError, match="scale has 2 numbers"):
+        contour.simplify(ratio=0.5, scale=(1, 1))
+    with pytest.raises(ValueError, match="expected 'auto'"):
+        contour.simplify(ratio=0.5, scale="other")
+    with pytest.raises(ValueError):
+        contour.simplify()
+
+
+# Tracking.
+
+def test_events_of_balls_that_meet(balls, tmp_path):
+    graph = balls.track(times=8, first=0.0, last=7.0)
+    assert [event.kind for event in graph.events] == ["begin", "begin", "merge", "end"]
+    merge = graph.events[2]
+    assert 3.5 < merge.time < 5.5 and merge.segments_in == [0, 1] and merge.segments_out == [2]
+    # They meet in the middle of y and z; x is the last of the array's axes.
+    assert merge.place == pytest.approx([8, 8, 16], abs=0.6)
+    assert graph.time_unit == "h" and (graph.first, graph.last) == (0.0, 7.0)
+    assert len(graph.segments) == 3 and len(graph.tracks) == 2
+    for segment in graph.segments:
+        for sample in segment.samples:
+            cut = balls.slice(sample.time).components()
+            near = min(cut, key=lambda one: np.linalg.norm(one.centroid - sample.centroid))
+            assert near.size == pytest.approx(sample.measure) and near.content == pytest.approx(sample.content)
+    assert json.loads(json.dumps(graph.to_dict()))["events"][2]["kind"] == "merge"
+    graph.save(tmp_path / "graph.json")
+    assert len(json.loads((tmp_path / "graph.json").read_text())["events"]) == 4
+    assert not balls.track(label_simplices=True).simplex_segments.size == 0
+    networkx = pytest.importorskip("networkx")
+    nodes = graph.to_networkx()
+    assert nodes.nodes[2]["kind"] == "merge" and nodes.in_degree(2) == 2 and nodes.out_degree(2) == 1
+    assert networkx.is_directed_acyclic_graph(nodes)
+
+
+def test_tracking_goes_along_the_time_axis(moving_balls):
+    first = tegl.contour(moving_balls, 0.0).track()
+    last = tegl.contour(np.moveaxis(moving_balls, 0, -1), 0.0, time_axis=-1).track()
+    assert [event.kind for event in first.events] == [event.kind for event in last.events]
+    for one, other in zip(first.events, last.events):
+        assert one.time == pytest.approx(other.time, abs=1e-5)
+
+
+# Indexes.
+
+@pytest.mark.parametrize("method", ["interval-tree", "span-space", "min-max-tree", "seed-set", "full-scan"])
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_contours_by_an_index_are_the_contours(method, time_axis, tmp_path):
+    array = noise((7, 8, 9), 8)
+    index = tegl.Index(array, method, spacing=(1, 2, 3), time_axis=time_axis)
+    assert index.method == method and "7 x 8 x 9" in repr(index)
+    for level in (-1.0, 0.0, 0.7):
+        assert_same(index.contour(level), tegl.contour(array, level, spacing=(1, 2, 3), time_axis=time_axis))
+    path = tmp_path / "noise.tindex"
+    index.save(path)
+    loaded = tegl.Index.load(path, array, spacing=(1, 2, 3), time_axis=time_axis)
+    assert_same(loaded.contour(0.3, normals=True), index.contour(0.3, normals=True))
+    assert (loaded.active_tiles(0.3) == index.active_tiles(0.3)).all()
+    with pytest.raises(ValueError):
+        tegl.Index.load(path, array + 1, time_axis=time_axis)
+
+
+def test_active_tiles_are_those_that_the_level_passes():
+    array = noise((5, 6, 7), 2)
+    corners = np.stack([array[i:4 + i, j:5 + j, k:6 + k] for i, j, k in itertools.product((0, 1), repeat=3)])
+    expected = np.argwhere((corners.min(axis=0) < 0.5) & (corners.max(axis=0) >= 0.5))
+    found = tegl.Index(array).active_tiles(0.5)
+    assert sorted(map(tuple, found.tolist())) == sorted(map(tuple, expected.tolist()))
+    assert tegl.Index(array).active_tiles(99.0).shape == (0, 3)
+
+
+def test_an_index_keeps_its_array():
+    index = tegl.Index(noise((20, 20, 20), 8), "seed-set")  # looks at the values when asked
+    expected = tegl.contour(noise((20, 20, 20), 8), 0.2)
+    noise((20, 20, 20), 9)
+    assert_same(index.contour(0.2), expected)
+    with pytest.raises(ValueError, match="method is 'other'; expected one of"):
+        tegl.Index(ball(3), "other")
+
+
+def test_picking_gives_the_component_at_a_point(moving_balls):
+    index = tegl.Index(moving_balls[0], spacing=(1, 1, 0.5))
+    whole = tegl.contour(moving_balls[0], 0.0, spacing=(1, 1, 0.5)).components()
+    for one, part in zip(whole, whole.split()):
+        picked, report = index.pick(one.centroid, 0.0, return_report=True)
+        assert_same(picked, part)
+        assert report.found and report.components == 1 and len(report.tile) == 3
+    assert len(index.pick((0, 0, 0), 0.0).components()) == 1
+    with pytest.raises(ValueError):
+        index.pick((0, 0, 99), 0.0)
+    with pytest.raises(ValueError, match="the point has 2 numbers"):
+        index.pick((0, 0), 0.0)
+
+
+def test_whatever_is_cut_open_is_open_at_the_border_alone():
+    contour = tegl.contour(noise((6, 7, 8, 5), 1), 0.0)
+    cut = contour.slice(2.5)
+    count, _ = face_counts(cut.simplices)
+    for face in (face for face, times in count.items() if times == 1):
+        corners = cut.vertices[list(face)]
+        assert ((corners == 0).all(axis=0) | (corners == np.array([6, 7, 4])).all(axis=0)).any()
