@@ -107,6 +107,12 @@ def open_code(found: re.Match) -> str:
     return f"<code{kind}>{html.escape(code, quote=False)}</code>"
 
 
+def wide(table: re.Match) -> str:
+    """A table that scrolls by itself where it is wider than the page; one of many columns takes the page's whole width."""
+    columns = table[0].split("</tr>")[0].count("<th")
+    return f'<div class="wide{" columns" if columns >= 5 else ""}">{table[0]}</div>'
+
+
 def resolve(output: pathlib.Path) -> None:
     """repo:PATH becomes where that file is in the HTML, and what stands for inline code becomes code."""
     repository = Repository(output)
@@ -116,10 +122,7 @@ def resolve(output: pathlib.Path) -> None:
                          lambda found: f'{found[1]}="{repository.address(urllib.parse.unquote(found[2]))}"', text)
         changed = re.sub("tgqx([0-9a-f]*)xqgt", open_code, changed)
         changed = re.sub(r'<div class="summary">.*?</div>', "", changed, flags=re.S)  # links to what may not be there
-        # A table may be wider than a phone: it scrolls by itself.
-        changed = changed.replace('<table class="markdownTable">', '<div class="wide"><table class="markdownTable">')
-        if changed.count('<div class="wide">'):
-            changed = re.sub(r'(<div class="wide"><table class="markdownTable">.*?</table>)', r"\1</div>", changed, flags=re.S)
+        changed = re.sub(r'<table class="markdownTable">.*?</table>', wide, changed, flags=re.S)
         if changed != text:
             page.write_text(changed, encoding="utf-8")
 

@@ -22,6 +22,8 @@ def of_page(source: pathlib.Path, page: pathlib.Path) -> str:
     anchors = iter(pages.headings(text))
     # A comment before the title would keep Doxygen from seeing it.
     text = re.sub(r"\A(<!--.*-->)?\n", "\n", text)
+    if own not in ("index", "changelog") and sum(level == 2 for level, _, _ in pages.headings(text)) >= 4:
+        text = re.sub(r"\A(\n?# .*\n)\n", r"\1[TOC]\n", text)  # of longer pages, in place of the line below the title
     return "\n".join(paragraph if is_code else of_paragraph(source, page, own, anchors, paragraph)
                      for _, paragraph, is_code in pages.paragraphs(text)) + "\n"
 
