@@ -33,10 +33,9 @@ def version() -> str:
     return found[1]
 
 
-def run_doxygen(output: pathlib.Path, further: list[pathlib.Path]) -> None:
-    listed = [*pages.all_pages(SOURCE), *further]
+def run_doxygen(output: pathlib.Path) -> None:
     environment = {**os.environ, "TEGL_SOURCE": str(SOURCE), "TEGL_HTML": str(output), "TEGL_VERSION": version(),
-                   "TEGL_PAGES": " ".join(f'"{page}"' for page in listed), "PYTHONDONTWRITEBYTECODE": "1"}
+                   "TEGL_PAGES": " ".join(f'"{page}"' for page in pages.all_pages(SOURCE)), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(["doxygen", str(SOURCE / "docs/site/Doxyfile")], env=environment, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     warnings = [line for line in done.stdout.splitlines() if line.strip()]
@@ -54,6 +53,15 @@ def headers_by_path(output: pathlib.Path) -> dict[str, str]:
                 if (SOURCE / folder / path).exists():
                     found[f"{folder}/{path}"] = f"{compound.findtext('filename')}".removesuffix(".html") + ".html"
     return found
+
+
+def first_sentence(file: pathlib.Path) -> str:
+    """What a source says of itself below its licence line."""
+    if file.suffix not in {".cpp", ".hpp", ".py"}:
+        return ""
+    found = re.search(r'\A(?:#!.*\n)?(?://|#) SPDX.*\n(?://\n(?=// )((?:// .*\n)+)|"""(.*))', file.read_text(encoding="utf-8"))
+    text = re.sub(r"\n?// ", " ", found[1] or found[2]).strip() if found else ""
+    return re.split(r"(?<=[.?])\s", text)[0]
 
 
 class Repository:
@@ -87,7 +95,7 @@ class Repository:
         for file in sorted(folder.iterdir()):
             if file.is_file() and not file.name.startswith("."):
                 to = os.path.relpath(self.address(file.relative_to(SOURCE).as_posix()), pathlib.Path(where).parent)
-                rows.append(f'<li><a href="{to}">{html.escape(file.name)}</a></li>')
+                rows.append(f'<li><a href="{to}">{html.escape(file.name)}</a> {html.escape(first_sentence(file))}</li>')
         return f"<ul>{''.join(rows)}</ul>"
 
     def frame(self, title: str, where: str, text: str) -> str:
@@ -116,6 +124,7 @@ def wide(table: re.Match) -> str:
 def resolve(output: pathlib.Path) -> None:
     """repo:PATH becomes where that file is in the HTML, and what stands for inline code becomes code."""
     repository = Repository(output)
+    add_python(repository)
     for page in sorted(output.glob("*.html")):
         text = page.read_text(encoding="utf-8")
         changed = re.sub(r'(href|src)="repo:([^"]*)"',
@@ -125,6 +134,17 @@ def resolve(output: pathlib.Path) -> None:
         changed = re.sub(r'<table class="markdownTable">.*?</table>', wide, changed, flags=re.S)
         if changed != text:
             page.write_text(changed, encoding="utf-8")
+
+
+def python_page(found: re.Match) -> str:
+    return f'<a href="{found[1]}.html">{found[0]}</a>' if (SOURCE / found[0]).exists() else found[0]
+
+
+def add_python(repository: Repository) -> None:
+    text, missing = python_reference.reference(SOURCE / "python/tegl")
+    if missing:
+        sys.exit("\n".join(f"python/tegl: {name} has no docstring" for name in missing))
+    (repository.output / "python-reference.html").write_text(repository.frame("The Python package tegl", "", re.sub(r"docs/([\w-]+)\.md", python_page, text)), encoding="utf-8")
 
 
 class Links(html.parser.HTMLParser):
@@ -167,7 +187,8 @@ def main(output: pathlib.Path) -> None:
         sys.exit(f"{output}: has files, and this documentation is not among them: give a folder that may be emptied")
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)
-    run_doxygen(output, python_reference.write(SOURCE, output))
+    run_doxygen(output)
+    shutil.copyfile(SOURCE / "docs/site/style.css", output / "search/search.css")  # of what the search finds, too
     resolve(output)
     dead, count = dead_links(output)
     if dead:
