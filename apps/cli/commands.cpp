@@ -22,9 +22,12 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 }
 
 Command::Command(CLI::App& program, const std::string& name, const std::string& description,
-                 const std::string& file_help)
+                 const std::string& file_help, Files files)
     : app_(program.add_subcommand(name, description)) {
-  app_->add_option("FILE", file_, file_help)->required();
+  if (files == Files::several)
+    app_->add_option("FILE", files_, file_help)->required();
+  else
+    app_->add_option("FILE", files_.front(), file_help)->required();
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
 }
 
@@ -37,9 +40,9 @@ void Command::add_variable() {
 }
 
 ReadImageResult Command::read(const Progress& progress) const {
-  require_input(file_);
+  require_input(file());
   try {
-    return read_image(file_, {.variable = variable_, .progress = progress});
+    return read_image(file(), {.variable = variable_, .progress = progress});
   } catch (const Error& error) {
     if (error.code() != ErrorCode::VariableNotFound || !variable_.empty()) throw;
     throw Error(error.code(), fmt::format("{} (choose it with --var)", error.what()));

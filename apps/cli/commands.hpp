@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "console.hpp"
 #include "exit_codes.hpp"
@@ -26,8 +27,12 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000
 /// A command of the program: `tegl NAME FILE ...`.
 class Command {
  public:
+  /// Whether FILE may be given several times.
+  enum class Files { one, several };
+
   /// Adds the command with its FILE argument and --json to the command line.
-  Command(CLI::App& program, const std::string& name, const std::string& description, const std::string& file_help);
+  Command(CLI::App& program, const std::string& name, const std::string& description, const std::string& file_help,
+          Files files = Files::one);
   virtual ~Command() = default;
   Command(const Command&) = delete;
   Command& operator=(const Command&) = delete;
@@ -37,7 +42,8 @@ class Command {
 
   /// Whether this is the command that was named.
   [[nodiscard]] bool named() const { return app_->parsed(); }
-  [[nodiscard]] const std::string& file() const { return file_; }
+  /// FILE; where there are several, the one that is worked on.
+  [[nodiscard]] const std::string& file() const { return files_.at(current_); }
   [[nodiscard]] bool json() const { return json_; }
 
  protected:
@@ -45,6 +51,10 @@ class Command {
   [[nodiscard]] bool quiet() const { return quiet_; }
   /// Progress bars are for people who wait.
   [[nodiscard]] bool wants_progress() const { return !json_ && !quiet_; }
+  /// All of FILE...
+  [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
+  /// Turns to the file of this place among them.
+  void turn_to_file(std::size_t place) { current_ = place; }
   /// Adds --quiet.
   void add_quiet();
   /// Adds --var.
@@ -56,7 +66,8 @@ class Command {
  private:
   CLI::App* app_;
   CLI::Option* json_option_;
-  std::string file_;
+  std::vector<std::string> files_ = {""};
+  std::size_t current_ = 0;
   std::string variable_;
   bool json_ = false;
   bool quiet_ = false;
@@ -73,5 +84,7 @@ std::unique_ptr<Command> make_components_command(CLI::App& program);
 std::unique_ptr<Command> make_measure_command(CLI::App& program);
 std::unique_ptr<Command> make_track_command(CLI::App& program);
 std::unique_ptr<Command> make_simplify_command(CLI::App& program);
+/// `version`: of the program, which pages name.
+std::unique_ptr<Command> make_view_command(CLI::App& program, std::string version);
 
 }  // namespace tegl::cli

@@ -121,9 +121,23 @@ void refuse_image_options(const std::string& file, const std::vector<std::string
                                                       file, fmt::join(refused, ", "), expected));
 }
 
-ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description)
+std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const AnyImage& image) {
+  using Ends = std::pair<std::optional<double>, std::optional<double>>;
+  const auto of_owned = [](const auto& owned) -> Ends {
+    constexpr int kLast = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>) - 1;
+    for (int a = 0; a < kLast; ++a)
+      if (owned.grid.linear(kLast, a) != 0) return {};
+    const Axis& axis = owned.grid.axes[kLast];
+    const auto world = [&](double at) { return owned.grid.linear(kLast, kLast) * at + owned.grid.offset(kLast); };
+    return std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
+                                         Files files)
     : Command(program, name, description,
-              "an image (with --iso), or a contour that 'tegl contour' saved (.vtkhdf, .ply, .glb ...)") {
+              "an image (with --iso), or a contour that 'tegl contour' saved (.vtkhdf, .ply, .glb ...)", files) {
   options_.add_to(app(), false);
   add_variable();
   add_quiet();

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "commands.hpp"
@@ -72,7 +73,8 @@ Mesh mesh_of(const Contour<N, Real>& contour, const ContourInput& input) {
 class ContourInputCommand : public Command {
  protected:
   /// Adds FILE, --json, --quiet, --var and the options of the extraction.
-  ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description);
+  ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
+                      Files files = Files::one);
 
   /// --threads: 0 for all that the machine has.
   [[nodiscard]] unsigned threads() const { return options_.threads(); }
@@ -85,6 +87,9 @@ class ContourInputCommand : public Command {
  private:
   ExtractionOptions options_;
 };
+
+/// World coordinates of the first and the last sample of the last axis; none where the world map mixes it with others.
+std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const AnyImage& image);
 
 /// Throws InvalidArgument, naming them, if any of the options `given` go with the saved contour `file`, which they
 /// cannot change. `expected`: the options that would do, for the message.

@@ -149,6 +149,7 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_measure_command(program));
   commands.push_back(tegl::cli::make_track_command(program));
   commands.push_back(tegl::cli::make_simplify_command(program));
+  commands.push_back(tegl::cli::make_view_command(program, TEGL_VERSION));
   try {
     program.parse(joined_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {

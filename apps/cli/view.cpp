@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl view: contours as a page for any browser, in which the GPU cuts them at the time of a slider.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "contour_input.hpp"
+#include "numbers.hpp"
+#include "output.hpp"
+#include "view_page.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  tegl view ocean.nc --iso 20 -o ocean.html\n"
+    "  tegl contour heart.nii.gz --iso 400 --normals -o heart.vtkhdf\n"
+    "  tegl view heart.vtkhdf --title 'A beating heart' -o heart.html\n"
+    "  tegl view skull.ply skin.ply -o head.html\n"
+    "The page is one file without any link to others: open it by a double click, send it by mail. 4D contours are cut\n"
+    "at the time of a slider, continuously; with events to click on where parts are born, merge, split and die. 2D "
+    "and\n"
+    "3D contours can be turned and looked at. In the page, '?' lists the keys.";
+
+/// What a page got of one file.
+struct Shown {
+  std::string input_text;
+  Json keys;
+  Thinned thinned;
+  int dim = 0;
+};
+
+/// The segment that a part goes on as after this one ends: the only one, or that of the same track.
+Index next_segment(const TrackGraph& graph, const TrackSegment& segment) {
+  const std::vector<Index>& out = graph.events[segment.to].out;
+  if (out.size() == 1) return out.front();
+  for (const Index s : out)
+    if (graph.segments[s].track == segment.track) return s;
+  return TrackGraph::kNoSegment;
+}
+
+class ViewCommand final : public ContourInputCommand {
+ public:
+  ViewCommand(CLI::App& program, std::string version)
+      : ContourInputCommand(program, "view", "One page for a browser, with a slider for the time", Files::several),
+        version_(std::move(version)) {
+    app().add_option("-o,--output", output_, "the page: .html")->required();
+    app().add_option("--title", title_, "what stands above; by default the names of the files")->type_name("TEXT");
+    app()
+        .add_option("--limit", limit_,
+                    "most simplices that are shown of a file: of a larger one, the largest components; 0: no limit")
+        ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()))
+        ->type_name("COUNT")
+        ->capture_default_str();
+    app()
+        .add_option("--tracks", tracks_, "4D: how many tracks are drawn under the slider, those that live longest")
+        ->check(whole_number(0, 10000))
+        ->type_name("COUNT")
+        ->capture_default_str();
+    app().footer(kExamples);
+  }
+
+  ExitCode run(const Streams& streams) override {
+    require_page();
+    ProgressBar bar(streams.err, wants_progress());
+    Stopwatch watch;
+    PageNumbers numbers;
+    Json scene;
+    scene["program"] = "tegl " + version_;
+    scene["title"] = title_.empty() ? names() : title_;
+    scene["layers"] = Json::array();
+    std::vector<Shown> shown;
+    for (std::size_t i = 0; i < files().size(); ++i) {
+      turn_to_file(i);
+      scene["layers"].push_back(add_file(numbers, bar, shown));
+      require_one_space(shown);
+    }
+    const std::string packed = numbers.packed(bar.stage("pack"));
+    const std::string page = make_page(scene, scene["title"].get<std::string>(), packed);
+    bar.stage("write")(0);
+    const std::uint64_t bytes = write_file(output_, [&] { write_text(page, output_); });
+    const double seconds = watch.lap();
+    bar.clear();
+    if (json())
+      streams.out.write(dump(document(shown, bytes, seconds)));
+    else if (!quiet())
+      streams.out.write(report(streams.out, shown, bytes, seconds));
+    else
+      warn(streams.err, shown);
+    return ExitCode::Ok;
+  }
+
+ private:
+  void require_page() const {
+    for (const std::string& input : files()) {
+      require_input(input);
+      require_text_output(output_, input);
+    }
+    const std::string extension = fs::path(output_).extension().string();
+    if (!equal_ignoring_case(extension, ".html") && !equal_ignoring_case(extension, ".htm"))
+      throw Error(ErrorCode::WriteFailed,
+                  fmt::format("{}: {}; expected .html", output_,
+                              extension.empty() ? "the name has no extension"
+                                                : fmt::format("the extension '{}' is not known", extension)));
+    if (!has_viewer())
+      throw Error(ErrorCode::WriteFailed,
+                  fmt::format("{}: this build of tegl has no viewer; expected one that was configured with esbuild and "
+                              "three.js at hand (scripts/setup installs both)",
+                              output_));
+  }
+
+  /// Contours in the plane are not shown with others.
+  void require_one_space(const std::vector<Shown>& shown) const {
+    if ((shown.front().dim == 2) == (shown.back().dim == 2)) return;
+    throw Error(ErrorCode::UnsupportedData,
+                fmt::format("{}: a contour in {}D, shown with one in {}D; expected all in the plane, or none", file(),
+                            shown.back().dim, shown.front().dim));
+  }
+
+  Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
+    ContourInput input = read_contour(bar, true);
+    std::optional<double> first, last;
+    if (input.image) std::tie(first, last) = ends_of_last_axis(input.image->image);
+    input.image.reset();
+    Shown& here = shown.emplace_back();
+    here.dim = input.space_dim();
+    here.input_text = input_text(input);
+    add_input_keys(here.keys, input);
+    const auto add = [&]<int N>(Contour<N, double>& contour) {
+      here.thinned = thin(contour, limit_, {threads(), bar.stage("components")});
+      std::optional<PageTracks> tracks;
+      if constexpr (N == 4) tracks = follow(contour, first, last, bar);
+      return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
+    };
+    return std::visit([&](auto& contour) { return add(contour); }, input.contour);
+  }
+
+  [[nodiscard]] PageTracks follow(const Contour<4, double>& contour, std::optional<double> first,
+                                  std::optional<double> last, ProgressBar& bar) const {
+    TrackOptions options;
+    options.first = first;
+    options.last = last;
+    options.handles = false;
+    options.label_simplices = true;
+    options.threads = threads();
+    options.progress = bar.stage("track");
+    PageTracks result;
+    const TrackGraph graph = track(contour, options);
+    result.found = graph.tracks.size();
+    std::vector<std::size_t> order(graph.tracks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto life = [&](std::size_t t) { return graph.tracks[t].end - graph.tracks[t].start; };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return life(a) > life(b); });
+    std::vector<std::uint32_t> place(order.size());
+    std::vector<bool> keep(order.size(), false);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      place[order[i]] = static_cast<std::uint32_t>(i);
+      keep[order[i]] = i < tracks_;
+    }
+    result.simplex_segments = graph.simplex_segments;
+    for (const TrackSegment& segment : graph.segments) {
+      result.ends.push_back(segment.end);
+      result.next.push_back(next_segment(graph, segment));
+      result.tracks.push_back(place[segment.track]);
+    }
+    result.graph = select_tracks(graph, keep);
+    result.graph.simplex_segments.clear();
+    return result;
+  }
+
+  [[nodiscard]] std::string names() const {
+    std::vector<std::string> names;
+    for (const std::string& input : files()) names.push_back(fs::path(input).filename().string());
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
+  /// What a page does not show of a file; empty if it shows all.
+  [[nodiscard]] std::string left_out(const Shown& shown) const {
+    if (!shown.thinned.left_out()) return "";
+    const Thinned& thinned = shown.thinned;
+    return fmt::format("the {} largest of {} components, {} of {}: more than --limit {}", grouped(thinned.components),
+                       grouped(thinned.of_components), grouped(thinned.simplices),
+                       counted_simplices(shown.dim - 1, thinned.of_simplices), grouped(limit_));
+  }
+
+  void warn(const Console& console, const std::vector<Shown>& shown) const {
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      if (const std::string text = left_out(shown[i]); !text.empty())
+        console.write(fmt::format("tegl: {}: shown are {}\n", files()[i], text));
+  }
+
+  [[nodiscard]] Json document(const std::vector<Shown>& shown, std::uint64_t bytes, double seconds) const {
+    Json json;
+    json["output"] = output_;
+    json["bytes"] = bytes;
+    json["limit"] = limit_;
+    json["files"] = Json::array();
+    for (const Shown& one : shown) {
+      Json& keys = json["files"].emplace_back(one.keys);
+      keys["components"] = one.thinned.of_components;
+      keys["components_shown"] = one.thinned.components;
+      keys["simplices"] = one.thinned.of_simplices;
+      keys["simplices_shown"] = one.thinned.simplices;
+    }
+    json["seconds"] = seconds;
+    return json;
+  }
+
+  [[nodiscard]] std::string report(const Console& console, const std::vector<Shown>& shown, std::uint64_t bytes,
+                                   double seconds) const {
+    std::string text = fmt::format("{}\n", console.bold("Page"));
+    for (const Shown& one : shown) {
+      text += one.input_text;
+      text += report_line("components", grouped(one.thinned.of_components));
+      if (const std::string left = left_out(one); !left.empty()) text += report_line("shown", console.red(left));
+    }
+    text += report_line("seconds", fmt::format("{:.3f}", seconds));
+    text += report_line("output", fmt::format("{} ({}): open it in a browser", output_, byte_size(bytes)));
+    return text;
+  }
+
+  static constexpr std::uint64_t kDefaultLimit = 2000000;
+
+  std::string version_;
+  std::string output_;
+  std::string title_;
+  std::uint64_t limit_ = kDefaultLimit;
+  std::size_t tracks_ = 60;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_view_command(CLI::App& program, std::string version) {
+  return std::make_unique<ViewCommand>(program, std::move(version));
+}
+
+}  // namespace tegl::cli

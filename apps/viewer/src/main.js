@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The page of `tegl view`: contours of images, those with time cut by the GPU at the time of a slider, every frame.
+// M. Liversage, thesis, 1994, 10.2.11: turn the knob, and time flows, not from frame to frame.
+import { ofPart } from './colors.js';
+import { unpack } from './data.js';
+import { Layer } from './layer.js';
+import { Panel } from './panel.js';
+import { savePicture } from './picture.js';
+import { Stage } from './stage.js';
+import { grouped, TimeFormat } from './time.js';
+import { Timeline } from './timeline.js';
+
+const $ = (id) => document.getElementById(id);
+const SECONDS = 12; // from the first time to the last, at speed 1
+const REST = 120; // milliseconds without a change of time, after which the exact count is made
+
+const KEYS = [['space', 'play, pause'], ['← →', 'a little earlier, later (with shift: ten times that)'],
+  ['home, end', 'first, last time'], [', .', 'event before, next event'], ['[ ]', 'slower, faster'], ['l', 'loop'],
+  ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'view from the start'], ['s', 'save a picture'],
+  ['?', 'this list']];
+
+class App {
+  constructor(description, bytes) {
+    this.description = description;
+    this.layers = description.layers.map((layer, i) => new Layer(layer, bytes, i));
+    this.stage = new Stage($('canvas'), $('labels'), this.layers);
+    this.inTime = this.layers.filter((layer) => layer.dim === 4);
+    this.current = this.inTime[0] ?? this.layers[0];
+    this.isPlaying = false;
+    this.loops = true;
+    this.speed = 1;
+    this.event = null;
+    this.setTheme(matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
+    this.showTitles();
+    if (this.inTime.length > 0) this.addTime();
+    this.panel = new Panel(this);
+    for (const layer of this.layers) this.setColors(layer);
+    this.choose(this.current);
+    if (this.inTime.length > 0) this.setTime(this.first + (this.last - this.first) * 0.5);
+    else this.count();
+    this.listen();
+    this.togglePanel(innerWidth > 720);
+    this.before = performance.now();
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  showTitles() {
+    const { title, layers, program } = this.description;
+    document.title = $('title').textContent = title;
+    const isovalues = layers.filter((layer) => layer.isovalue !== null)
+      .map((layer) => `${layer.variable || 'isovalue'} = ${+layer.isovalue.toPrecision(7)}`);
+    const parts = layers.reduce((sum, layer) => sum + layer.components, 0);
+    $('subtitle').textContent = [[...new Set(isovalues)].join(', '), `${grouped(parts)} component${parts === 1 ? '' : 's'}`,
+      program].filter(Boolean).join(' · ');
+    const left = layers.filter((layer) => layer.components < layer.of_components).map((layer) =>
+      `${layer.file.replace(/^.*\//, '')}: too large to show all. Shown are the ${grouped(layer.components)} largest of ` +
+      `${grouped(layer.of_components)} components, ${grouped(layer.simplices)} of ${grouped(layer.of_simplices)} simplices.`);
+    if (left.length === 0) return;
+    $('notice').textContent = left.join(' ');
+    const close = document.createElement('button');
+    close.textContent = '×';
+    close.setAttribute('aria-label', 'Close');
+    close.addEventListener('click', () => ($('notice').hidden = true));
+    $('notice').append(close);
+    $('notice').hidden = false;
+  }
+
+  addTime() {
+    this.first = Math.min(...this.inTime.map((layer) => layer.firstTime));
+    this.last = Math.max(...this.inTime.map((layer) => layer.lastTime));
+    this.format = new TimeFormat(this.current.description.axes[3], this.first, this.last);
+    $('time').hidden = false;
+    this.timeline = new Timeline({ slider: $('slider'), graph: $('graph'), format: this.format, first: this.first,
+      last: this.last, onTime: (t) => this.setTime(t), onEvent: (event) => this.goTo(event) });
+  }
+
+  setColors(layer) {
+    layer.uniforms.uColor.value.setRGB(...ofPart(layer.index).map((channel) => channel / 255), '');
+    const id = this.layers.length > 1 || layer.description.components < 2 ? 'plain' : 'component';
+    layer.colorBy(layer.description.arrays.segment && this.layers.length === 1 ? 'track' : id);
+  }
+
+  choose(layer) {
+    this.current = layer;
+    this.panel.show(layer);
+    if (!this.timeline) return;
+    this.timeline.show(layer);
+    const { graph, tracks_found: found } = layer.description;
+    $('graph-note').textContent = !graph ? '' : graph.tracks.length < found
+      ? `${grouped(graph.tracks.length)} of ${grouped(found)} tracks: those that live longest.` : '';
+    $('before').hidden = $('after').hidden = this.timeline.events().length === 0;
+  }
+
+  colorBy(id) {
+    this.current.colorBy(id);
+    this.panel.show(this.current);
+    this.stage.redraw();
+  }
+
+  setSmooth(isSmooth) {
+    for (const layer of this.layers) layer.uniforms.uSmooth.value = isSmooth;
+    this.stage.redraw();
+  }
+
+  setVisible(layer, isVisible) {
+    layer.isVisible = layer.mesh.visible = isVisible;
+    this.count();
+    this.stage.redraw();
+  }
+
+  setTime(t) {
+    if (!this.timeline) return;
+    this.t = Math.min(this.last, Math.max(this.first, t));
+    for (const layer of this.inTime) layer.setTime(this.t);
+    this.timeline.setTime(this.t);
+    this.panel.setTime(this.t);
+    if (this.event && this.event.time !== this.t) this.setEvent(null);
+    const meaning = this.event ? this.timeline.describe(this.event) : this.format.meaning(this.t);
+    $('now').textContent = this.format.text(this.t);
+    if (meaning) $('now').append(Object.assign(document.createElement('small'), { textContent: meaning }));
+    this.panel.showCount(this.visible().reduce((sum, layer) => sum + layer.quickCount(), 0),
+      this.inTime.every((layer) => !layer.level.isOn));
+    clearTimeout(this.rest);
+    if (!this.isPlaying) this.rest = setTimeout(() => this.count(), REST);
+    this.stage.redraw();
+  }
+
+  visible() {
+    return this.layers.filter((layer) => layer.isVisible);
+  }
+
+  /** The exact number of simplices shown. */
+  count() {
+    clearTimeout(this.rest);
+    const count = this.visible().reduce((sum, layer) => sum + layer.settle(), 0);
+    this.panel.showCount(count, true);
+    this.stage.redraw();
+    return count;
+  }
+
+  setEvent(event) {
+    this.event = event;
+    this.stage.setMarker(event ? event.place : null);
+  }
+
+  goTo(event) {
+    this.play(false);
+    this.setEvent(event);
+    this.setTime(event.time);
+  }
+
+  nextEvent(step) {
+    const times = this.timeline.events();
+    const found = step > 0 ? times.find(({ time }) => time > this.t) : times.findLast(({ time }) => time < this.t);
+    if (found) this.goTo(found);
+  }
+
+  play(isPlaying) {
+    if (!this.timeline) return;
+    if (isPlaying && this.t >= this.last) this.setTime(this.first);
+    this.isPlaying = isPlaying;
+    $('play').setAttribute('aria-pressed', isPlaying);
+    $('play').setAttribute('aria-label', isPlaying ? 'Pause' : 'Play');
+    if (!isPlaying) this.count();
+  }
+
+  advance(seconds) {
+    let t = this.t + ((this.last - this.first) / SECONDS) * this.speed * seconds;
+    if (t >= this.last) {
+      if (this.loops) t = this.first + ((t - this.first) % (this.last - this.first || 1));
+      else {
+        this.setTime(this.last);
+        return this.play(false);
+      }
+    }
+    this.setTime(t);
+  }
+
+  frame(now) {
+    const seconds = Math.min(0.25, (now - this.before) / 1000);
+    this.before = now;
+    if (this.isPlaying) this.advance(seconds);
+    this.stage.frame();
+    requestAnimationFrame((next) => this.frame(next));
+  }
+
+  setTheme(theme) {
+    document.documentElement.dataset.theme = theme;
+    this.theme = theme;
+    this.stage.setTheme(theme);
+  }
+
+  togglePanel(isShown = $('app').classList.contains('no-panel')) {
+    $('app').classList.toggle('no-panel', !isShown);
+    $('more').setAttribute('aria-expanded', isShown);
+  }
+
+  toggleLoop() {
+    this.loops = !this.loops;
+    $('loop').setAttribute('aria-pressed', this.loops);
+  }
+
+  changeSpeed(step) {
+    const { options, selectedIndex } = $('speed');
+    $('speed').selectedIndex = Math.min(options.length - 1, Math.max(0, selectedIndex + step));
+    this.speed = Number($('speed').value);
+  }
+
+  nextColor() {
+    const sources = this.current.sources();
+    this.colorBy(sources[(sources.findIndex(({ id }) => id === this.current.source.id) + 1) % sources.length].id);
+  }
+
+  picture() {
+    return savePicture(this);
+  }
+
+  listen() {
+    const on = (id, action) => $(id).addEventListener('click', action);
+    on('theme', () => this.toggleTheme());
+    on('shot', () => this.picture());
+    on('reset', () => this.stage.reset());
+    on('help', () => $('keys').showModal());
+    on('more', () => this.togglePanel());
+    on('play', () => this.play(!this.isPlaying));
+    on('loop', () => this.toggleLoop());
+    on('before', () => this.nextEvent(-1));
+    on('after', () => this.nextEvent(1));
+    $('speed').addEventListener('change', () => this.changeSpeed(0));
+    $('canvas').addEventListener('pointerdown', () => innerWidth <= 720 && this.togglePanel(false));
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', ({ matches }) =>
+      this.setTheme(matches ? 'dark' : 'light'));
+    for (const [key, what] of KEYS)
+      for (const [name, text] of [['dt', key], ['dd', what]])
+        $('key-list').append(Object.assign(document.createElement(name), { textContent: text }));
+    addEventListener('keydown', (event) => this.key(event));
+  }
+
+  toggleTheme() {
+    this.setTheme(this.theme === 'dark' ? 'light' : 'dark');
+  }
+
+  key(event) {
+    const { target, key, shiftKey } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
+    const isOther = target.closest('select, #panel input');
+    const step = ((this.last - this.first) / 400) * (shiftKey ? 10 : 1);
+    const ofTime = { ' ': () => this.play(!this.isPlaying), ArrowLeft: () => this.setTime(this.t - step),
+      ArrowRight: () => this.setTime(this.t + step), Home: () => this.setTime(this.first),
+      End: () => this.setTime(this.last), ',': () => this.nextEvent(-1), '.': () => this.nextEvent(1),
+      '[': () => this.changeSpeed(-1), ']': () => this.changeSpeed(1), l: () => this.toggleLoop() };
+    const always = { d: () => this.toggleTheme(), s: () => this.picture(), r: () => this.stage.reset(),
+      c: () => this.nextColor(), m: () => this.togglePanel(), '?': () => $('keys').showModal() };
+    const action = always[key] ?? (this.timeline ? ofTime[key] : undefined);
+    const isOwn = key === ' ' && target.closest('button, input');
+    if (!action || isOther || (isOwn && target.id !== 'slider')) return;
+    event.preventDefault();
+    action();
+  }
+}
+
+/** What scripts (and tests) may do with the page: window.tegl. */
+function interfaceOf(app) {
+  return {
+    get time() { return app.t; },
+    set time(t) { app.setTime(t); },
+    get range() { return [app.first, app.last]; },
+    /** Simplices shown: for 4D contours the triangles of tegl slice at this time. */
+    count: () => app.count(),
+    play: (isPlaying) => app.play(isPlaying),
+    colorBy: (id) => app.colorBy(id),
+    colorings: () => app.current.sources().map(({ id }) => id),
+    clip: (axis, from, to) => app.panel.setClip(axis, from, to),
+    theme: (theme) => app.setTheme(theme),
+    picture: () => app.picture(),
+    /** Draws now; gives how many tetrahedra were drawn, in how many ranges. */
+    draw: () => {
+      app.stage.render();
+      return app.inTime.map((layer) => ({ tetrahedra: layer.drawn, ranges: layer.ranges }));
+    },
+    get frames() { return app.stage.frames; },
+    app,
+  };
+}
+
+async function start() {
+  // The first paint comes before the work.
+  await new Promise((done) => setTimeout(done, 0));
+  const description = JSON.parse($('scene').textContent);
+  const bytes = await unpack($('numbers').textContent);
+  $('numbers').remove();
+  const app = new App(description, bytes);
+  $('busy').hidden = true;
+  window.tegl = interfaceOf(app);
+}
+
+start().catch((error) => {
+  document.documentElement.dataset.theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
+  $('fatal').querySelector('p').textContent = error.message;
+  $('fatal').hidden = false;
+  window.teglError = error.message;
+});

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The picture: camera, box with its axes, clipping, and when to draw.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+import { colorTexels } from './colors.js';
+import { number } from './time.js';
+
+const GROUNDS = { light: 0xf6f7f9, dark: 0x11151c };
+const EDGES = { light: 0x8a94a6, dark: 0x5b6678 };
+
+/** How long a unit of each axis is drawn: alike where units are, else so that the box has good proportions. */
+function scales(axes, extents) {
+  const units = axes.map((axis) => axis.unit.trim().toLowerCase());
+  const result = extents.map((_, a) => {
+    const alike = extents.map((extent, b) => (units[b] === units[a] ? extent : 0));
+    const wanted = units[a] === units[0] ? 2 : axes.length === 2 ? 1.3 : 0.7;
+    return wanted / (Math.max(...alike) || 1);
+  });
+  while (result.length < 3) result.push(result[0]);
+  // Depths grow downwards.
+  return result.map((scale, a) => (a < axes.length && /depth/i.test(axes[a].name) ? -scale : scale));
+}
+
+export class Stage {
+  constructor(canvas, labels, layers) {
+    const context = canvas.getContext('webgl2', { antialias: true, powerPreference: 'high-performance' });
+    if (!context)
+      throw new Error('this browser shows no WebGL 2, which the picture is drawn with; expected one that has it ' +
+        'enabled, on a computer with a graphics driver');
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
+    this.canvas = canvas;
+    this.labels = labels;
+    this.layers = layers;
+    this.isFlat = layers.every((layer) => layer.dim === 2);
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 200);
+    this.camera.up.set(0, this.isFlat ? 1 : 0, this.isFlat ? 0 : 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    this.controls.enableRotate = !this.isFlat;
+    this.controls.screenSpacePanning = true;
+    this.controls.zoomToCursor = true;
+    if (this.isFlat) {
+      this.controls.mouseButtons.LEFT = THREE.MOUSE.PAN;
+      this.controls.touches.ONE = THREE.TOUCH.PAN;
+    }
+    this.controls.addEventListener('change', () => this.redraw());
+    this.stretch = 1;
+    this.frames = 0;
+    this.marker = null;
+    this.measure();
+    const colors = new THREE.DataTexture(colorTexels(), 256, 2);
+    colors.needsUpdate = true;
+    for (const layer of layers) {
+      layer.uniforms.uColors.value = colors;
+      this.scene.add(layer.mesh);
+    }
+    this.addBox();
+    this.arrange();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+    canvas.addEventListener('webglcontextrestored', () => this.redraw());
+  }
+
+  /** The box around all contours in space. */
+  measure() {
+    const axes = this.layers[0].description.axes.slice(0, this.isFlat ? 2 : 3);
+    this.axes = axes;
+    this.lower = axes.map((_, a) => Math.min(...this.layers.map((layer) => layer.description.axes[a].lowest)));
+    this.upper = axes.map((_, a) => Math.max(...this.layers.map((layer) => layer.description.axes[a].highest)));
+    this.center = axes.map((_, a) => (this.lower[a] + this.upper[a]) / 2);
+    this.extents = axes.map((_, a) => this.upper[a] - this.lower[a]);
+  }
+
+  addBox() {
+    const edges = new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1));
+    this.boxMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
+    this.box = new THREE.LineSegments(edges, this.boxMaterial);
+    this.scene.add(this.box);
+    this.axisLabels = this.axes.map((axis, a) =>
+      ['lowest', 'name', 'highest'].map((kind) => {
+        const label = document.createElement('span');
+        label.className = `axis-label ${kind}`;
+        label.textContent = kind === 'name' ? axis.name + (axis.unit ? ` (${axis.unit})` : '')
+          : number(kind === 'lowest' ? this.lower[a] : this.upper[a], this.extents[a] / 4 || 1);
+        this.labels.append(label);
+        return label;
+      }));
+    this.markerElement = document.createElement('div');
+    this.markerElement.className = 'marker';
+    this.markerElement.hidden = true;
+    this.labels.append(this.markerElement);
+  }
+
+  /** Places all by the scale of the axes. */
+  arrange() {
+    this.scale = scales(this.axes, this.extents);
+    this.scale[this.isFlat ? 1 : 2] *= this.stretch;
+    for (const layer of this.layers) layer.place(this.center, this.scale);
+    this.sides = this.extents.map((extent, a) => Math.max(1e-6, Math.abs(extent * this.scale[a])));
+    this.box.scale.set(this.sides[0], this.sides[1], this.sides[2] ?? 1e-6);
+    this.redraw();
+  }
+
+  reset() {
+    const flat = !this.isFlat && this.sides[2] < 0.5 * Math.max(this.sides[0], this.sides[1]);
+    const direction = this.isFlat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.55, -1.5, flat ? 1.15 : 0.75);
+    this.controls.target.set(0, 0, 0);
+    this.camera.position.copy(direction.normalize());
+    this.camera.lookAt(this.controls.target);
+    this.camera.updateMatrix();
+    this.camera.position.multiplyScalar(this.fittingDistance());
+    this.controls.update();
+    this.redraw();
+  }
+
+  /** How far from the middle the box fills the picture, with room for its labels. */
+  fittingDistance() {
+    const [right, up, back] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrix, k));
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
+    const room = [Math.max(0.5, 1 - 110 / width), Math.max(0.5, 1 - 90 / height)];
+    let distance = 1e-3;
+    for (const x of [-0.5, 0.5])
+      for (const y of [-0.5, 0.5])
+        for (const z of [-0.5, 0.5]) {
+          const corner = new THREE.Vector3(x * this.sides[0], y * this.sides[1], z * (this.sides[2] ?? 0));
+          const depth = corner.dot(back);
+          distance = Math.max(distance, depth + Math.abs(corner.dot(right)) / (tangent * this.camera.aspect * room[0]),
+            depth + Math.abs(corner.dot(up)) / (tangent * room[1]));
+        }
+    return distance;
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    const before = this.camera.aspect;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    for (const layer of this.layers)
+      if (layer.dim === 2) {
+        layer.uniforms.uViewport.value.set(width, height);
+        layer.uniforms.uWidth.value = 2;
+      }
+    if (!this.wasReset || Math.abs(before - this.camera.aspect) > 0.3) this.reset();
+    this.wasReset = true;
+    this.redraw();
+  }
+
+  setTheme(theme) {
+    this.renderer.setClearColor(GROUNDS[theme], 1);
+    this.boxMaterial.color.set(EDGES[theme]);
+    this.redraw();
+  }
+
+  /** Shows what lies from lower[a] to upper[a] alone. */
+  setClip(lower, upper) {
+    // A little more than the box, as its own sides are rounded.
+    const margin = (a) => 1e-5 * (this.extents[a] || 1);
+    for (const { uniforms } of this.layers) {
+      uniforms.uLower.value.set(...[0, 1, 2].map((a) => (a < lower.length ? lower[a] - this.center[a] - margin(a) : -1)));
+      uniforms.uUpper.value.set(...[0, 1, 2].map((a) => (a < upper.length ? upper[a] - this.center[a] + margin(a) : 1)));
+    }
+    this.redraw();
+  }
+
+  setMarker(place) {
+    this.marker = place;
+    this.markerElement.hidden = place === null;
+    this.redraw();
+  }
+
+  redraw() {
+    this.isDirty = true;
+  }
+
+  /** Draws if anything has changed; true if it did. */
+  frame() {
+    this.controls.update();
+    if (!this.isDirty || !this.wasReset) return false;
+    this.isDirty = false;
+    this.render();
+    return true;
+  }
+
+  render() {
+    ++this.frames;
+    this.renderer.render(this.scene, this.camera);
+    this.placeLabels();
+  }
+
+  /** Where on the screen a point of the box is, by its place there (each from -1/2 to 1/2). */
+  onScreen(share) {
+    const point = new THREE.Vector3(...[0, 1, 2].map((a) => share[a] * (this.sides[a] ?? 0))).project(this.camera);
+    const { clientWidth, clientHeight } = this.canvas;
+    return { x: ((point.x + 1) / 2) * clientWidth, y: ((1 - point.y) / 2) * clientHeight, z: point.z };
+  }
+
+  /** Labels of an axis stand along the edge that is farthest out on the screen: below, of upright ones to the left. */
+  placeLabels() {
+    const middle = this.onScreen([0, 0, 0]);
+    this.axes.forEach((_, a) => {
+      const others = [0, 1, 2].filter((b) => b !== a);
+      const edges = [-0.5, 0.5].flatMap((i) => (this.isFlat ? [i] : [-0.5, 0.5]).map((j) => {
+        const at = (along) => {
+          const share = [0, 0, 0];
+          share[a] = along * Math.sign(this.scale[a]);
+          share[others[0]] = i;
+          share[others[1]] = this.isFlat ? 0 : j;
+          return this.onScreen(share);
+        };
+        return { from: at(-0.46), middle: at(0), to: at(0.46) };
+      }));
+      const isUpright = a === 2 || (this.isFlat && a === 1);
+      const best = edges.reduce((one, other) =>
+        (isUpright ? other.middle.x < one.middle.x : other.middle.y > one.middle.y + 0.5) ? other : one);
+      const out = { x: best.middle.x - middle.x, y: best.middle.y - middle.y };
+      const length = Math.hypot(out.x, out.y) || 1;
+      const show = (label, at, distance) => {
+        const isIn = at.z < 1 && this.box.visible;
+        label.style.display = isIn ? '' : 'none';
+        if (!isIn) return;
+        const half = label.textContent.length * 3.3 + 3;
+        const x = Math.min(this.canvas.clientWidth - half, Math.max(half, at.x + (out.x / length) * distance));
+        const y = at.y + (out.y / length) * distance;
+        label.style.transform = `translate(-50%, -50%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      };
+      const [lowest, name, highest] = this.axisLabels[a];
+      show(lowest, best.from, 14);
+      show(name, best.middle, isUpright ? 46 : 24);
+      show(highest, best.to, 14);
+    });
+    if (!this.marker) return;
+    const at = this.onScreen(this.marker.map((x, a) =>
+      ((x - this.center[a]) / (this.extents[a] || 1)) * Math.sign(this.scale[a])));
+    this.markerElement.style.transform = `translate(-50%, -50%) translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;
+  }
+}

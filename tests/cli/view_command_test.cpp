@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl view, but for what a browser shows of its pages (tests/viewer).
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "sample_files.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class View : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    file_ = write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 2}));
+    if (run_tegl({"view", file_, "--iso", "0", "-o", path("probe.html"), "-q"}).err.find("no viewer") !=
+        std::string::npos)
+      GTEST_SKIP() << "this build has no viewer";
+  }
+  [[nodiscard]] const std::string& file() const { return file_; }
+  /// What the page knows of itself.
+  [[nodiscard]] static nlohmann::json scene(const std::string& page) {
+    const std::string text = content(page);
+    const std::string start = "<script type=\"application/json\" id=\"scene\">";
+    const std::size_t from = text.find(start) + start.size();
+    return nlohmann::json::parse(text.substr(from, text.find("</script>", from) - from));
+  }
+  /// Two balls of which one is larger, in 3D.
+  std::string two_balls() {
+    const auto balls = [](const std::vector<double>& x) {
+      return std::max(4.25 - std::hypot(x[0] - 9.0, x[1] - 9.5, x[2] - 9.5),
+                      6.25 - std::hypot(x[0] - 29.0, x[1] - 9.5, x[2] - 9.5));
+    };
+    return write("two.nrrd", nrrd_bytes(sample({40, 20, 20}, balls)));
+  }
+
+ private:
+  std::string file_;
+};
+
+TEST_F(View, WritesOnePageThatRefersToNothingElse) {
+  const RunResult run = run_tegl({"view", file(), "--iso", "0", "-o", path("page.html"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.json()["files"].size(), 1);
+  EXPECT_EQ(run.json()["files"][0]["image_dim"], 4);
+  const std::string page = content(path("page.html"));
+  EXPECT_EQ(run.json()["bytes"], page.size());
+  EXPECT_THAT(page.substr(0, 500), HasSubstr("default-src 'none'"));
+  EXPECT_THAT(page, HasSubstr("three.js authors"));  // the licence asks for it
+  EXPECT_FALSE(std::regex_search(page.substr(0, page.find("id=\"scene\"")), std::regex("(src|href)=\"(?!data:,)")));
+}
+
+TEST_F(View, TellsUnitsSizesAndEvents) {
+  ASSERT_EQ(run_tegl({"view", file(), "--iso", "0", "-o", path("page.html"), "--title", "a < b", "-q"}).exit, 0);
+  EXPECT_THAT(content(path("page.html")), HasSubstr("<title>a &lt; b</title>"));
+  const nlohmann::json page = scene(path("page.html"));
+  EXPECT_EQ(page["title"], "a < b");
+  const nlohmann::json& layer = page["layers"][0];
+  EXPECT_EQ(layer["axes"][3]["unit"], "s");
+  EXPECT_EQ(layer["axes"][0]["unit"], "mm");
+  EXPECT_EQ(layer["axes"][3]["highest"], 8.0);
+  EXPECT_EQ(layer["arrays"]["simplices"]["rows"], layer["simplices"]);
+  const auto& events = layer["graph"]["events"];
+  EXPECT_EQ(std::count_if(events.begin(), events.end(), [](const auto& event) { return event["kind"] == "merge"; }), 1);
+}
+
+TEST_F(View, IsTheSameByteByByteWithAnyNumberOfThreads) {
+  for (const char* const threads : {"1", "3"})
+    ASSERT_EQ(
+        run_tegl({"view", file(), "--iso", "0", "-o", path(std::string(threads) + ".html"), "--threads", threads, "-q"})
+            .exit,
+        0);
+  EXPECT_EQ(content(path("1.html")), content(path("3.html")));
+}
+
+TEST_F(View, ShowsTwoAndThreeDimensionsAndSeveralFiles) {
+  const std::string two = two_balls();
+  EXPECT_EQ(run_tegl({"view", file(), two, "--iso", "0", "-o", path("both.html"), "-q"}).exit, 0);
+  const nlohmann::json both = scene(path("both.html"));
+  EXPECT_EQ(both["layers"].size(), 2);
+  EXPECT_EQ(both["layers"][1]["components"], 2);
+  const std::string flat = write("flat.nrrd", nrrd_bytes(ball({12, 12}, 4)));
+  EXPECT_EQ(run_tegl({"view", flat, "--iso", "0", "-o", path("flat.html"), "-q"}).exit, 0);
+  const RunResult mixed = run_tegl({"view", two, flat, "--iso", "0", "-o", path("mixed.html")});
+  EXPECT_EQ(mixed.exit, 4);
+  EXPECT_THAT(mixed.err, HasSubstr("flat.nrrd: a contour in 2D, shown with one in 3D"));
+  EXPECT_THAT(files(), Not(testing::Contains("mixed.html")));
+}
+
+TEST_F(View, LeavesOutTheSmallerComponentsBeyondTheLimitAndSaysSo) {
+  const std::string two = two_balls();
+  const RunResult all = run_tegl({"view", two, "--iso", "0", "-o", path("all.html"), "--json"});
+  const auto count = all.json()["files"][0]["simplices"].get<int>();
+  const std::string limit = std::to_string(count - 1);
+  const RunResult less = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit, "--json"});
+  ASSERT_EQ(less.exit, 0) << less.err;
+  EXPECT_EQ(less.json()["files"][0]["components"], 2);
+  EXPECT_EQ(less.json()["files"][0]["components_shown"], 1);
+  EXPECT_GT(less.json()["files"][0]["simplices_shown"], count / 2);  // the larger one
+  EXPECT_EQ(scene(path("less.html"))["layers"][0]["of_simplices"], count);
+  const RunResult told = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit});
+  EXPECT_THAT(told.out, HasSubstr("the 1 largest of 2 components"));
+  const RunResult quiet = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit, "-q"});
+  EXPECT_THAT(quiet.err, HasSubstr("the 1 largest of 2 components"));
+  const RunResult none = run_tegl({"view", two, "--iso", "0", "-o", path("none.html"), "--limit", "10"});
+  EXPECT_EQ(none.exit, 4);
+  EXPECT_THAT(none.err, HasSubstr("two.nrrd: the largest component has"));
+  EXPECT_THAT(none.err, HasSubstr("expected at most 10"));
+}
+
+TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {
+  const auto view = [&](const std::string& input, const std::string& output) {
+    return run_tegl({"view", input, "--iso", "0", "-o", output});
+  };
+  EXPECT_EQ(view(path("missing.nii"), path("a.html")).exit, 3);
+  const RunResult extension = view(file(), path("a.png"));
+  EXPECT_EQ(extension.exit, 6);
+  EXPECT_THAT(extension.err, HasSubstr("the extension '.png' is not known; expected .html"));
+  EXPECT_EQ(view(file(), path("no/folder.html")).exit, 6);
+  EXPECT_EQ(view(file(), "/dev/full/page.html").exit, 6);
+  EXPECT_EQ(run_tegl({"view", file(), "--iso", "1000", "-o", path("a.html")}).exit, 5);
+  EXPECT_EQ(run_tegl({"view", file(), "-o", path("a.html")}).exit, 2);
+  // The second file's name stands in messages about it.
+  const std::string flat = write("zero.nrrd", nrrd_bytes(sample({4, 4, 4}, [](const auto&) { return 5.0; })));
+  const RunResult second = run_tegl({"view", file(), flat, "--iso", "0", "-o", path("a.html")});
+  EXPECT_EQ(second.exit, 5);
+  EXPECT_THAT(second.err, HasSubstr("zero.nrrd: all values are 5"));
+  EXPECT_THAT(files(), ElementsAre("balls.nii", "probe.html", "zero.nrrd"));
+}
+
+}  // namespace
+}  // namespace tegl::test
