@@ -118,7 +118,7 @@ class App {
     if (this.event && this.event.time !== this.t) this.setEvent(null);
     const meaning = this.event ? this.timeline.describe(this.event) : this.format.meaning(this.t);
     $('now').textContent = this.format.text(this.t);
-    if (meaning) $('now').append(Object.assign(document.createElement('small'), { textContent: meaning }));
+    if (meaning) $('now').append(' ', Object.assign(document.createElement('small'), { textContent: meaning }));
     this.panel.showCount(this.visible().reduce((sum, layer) => sum + layer.quickCount(), 0),
       this.inTime.every((layer) => !layer.level.isOn));
     clearTimeout(this.rest);

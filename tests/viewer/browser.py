@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pages in Chromium without a screen, and images to make pages of."""
+
+import array
+import itertools
+import math
+import random
+import time
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+
+SOFTWARE = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+
+
+class Browser:
+    """Chromium; `gpu`: what it is told about graphics."""
+
+    def __init__(self, chromium, driver, gpu=SOFTWARE, downloads=None):
+        options = Options()
+        options.binary_location = chromium
+        for argument in ["--headless=new", "--no-sandbox", "--hide-scrollbars", "--window-size=1280,940", *gpu]:
+            options.add_argument(argument)
+        if downloads:
+            options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(service=Service(driver), options=options)
+        self.driver.set_script_timeout(60)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.driver.quit()
+
+    def size(self, width, height, ratio=1.0):
+        """What the page has, in its own pixels; below 500 as a phone."""
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": height, "deviceScaleFactor": ratio, "mobile": width < 500})
+
+    def prefer(self, scheme):
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                                    {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+
+    def open(self, page):
+        """Opens a file and waits until it is ready, or says why it is not."""
+        self.driver.get(page.resolve().as_uri())
+        self.until("window.tegl !== undefined || window.teglError !== undefined")
+        return self.run("return window.teglError ?? ''")
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def until(self, condition, seconds=30):
+        end = time.monotonic() + seconds
+        while not self.run(f"return {condition}"):
+            assert time.monotonic() < end, f"not after {seconds} s: {condition}"
+            time.sleep(0.02)
+
+    def element(self, selector):
+        return self.driver.find_element("css selector", selector)
+
+    def errors(self):
+        """What the page has complained of since the last time."""
+        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+
+
+def write_nrrd(path, sizes, value):
+    """An image of floats, axis 0 fastest; `value` of the index."""
+    values = array.array("f", (value(*reversed(index)) for index in itertools.product(*map(range, reversed(sizes)))))
+    header = f"NRRD0004\ntype: float\ndimension: {len(sizes)}\nsizes: {' '.join(map(str, sizes))}\n"
+    path.write_bytes((header + "encoding: raw\nendian: little\n\n").encode() + values.tobytes())
+
+
+def write_balls(path, size=16, steps=7):
+    """Two balls that come together and merge; in 4D."""
+    middle = (size - 1) / 2
+
+    def value(x, y, z, t):
+        away = (steps - 1 - t) * 0.75
+        return 3.4 - min(math.hypot(x - middle - s * away, y - middle, z - middle) for s in (-1, 1))
+
+    write_nrrd(path, (size, size, size, steps), value)
+
+
+def write_noise(path, sizes, seed):
+    """Few different values, so that many samples equal the isovalue."""
+    numbers = random.Random(seed)
+    write_nrrd(path, sizes, lambda *_: numbers.randrange(4))

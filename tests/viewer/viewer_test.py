@@ -1,0 +1,339 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pages of `tegl view` as a browser shows them.
+
+    viewer_test.py TEGL CHROMIUM CHROMEDRIVER OCEAN
+"""
+
+import base64
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+
+from browser import SOFTWARE, Browser, write_balls, write_noise, write_nrrd
+
+TEGL, CHROMIUM, CHROMEDRIVER, OCEAN = sys.argv[1:5]
+
+
+def tegl(*arguments):
+    done = subprocess.run([TEGL, *map(str, arguments)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def count_of_cut(contour, t, folder):
+    """Triangles of the library's cut; at the very ends, beyond which there is no contour, as well."""
+    return json.loads(tegl("slice", contour, "--at", f"t={t!r}", "-o", folder / "cut.ply", "--no-check", "--json"))["simplices"]
+
+
+def pixels(png):
+    """Rows of (r, g, b) of a PNG of 8 bits without interlace."""
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    at, data = 8, b""
+    while at < len(png):
+        length, kind = struct.unpack(">I4s", png[at:at + 8])
+        if kind == b"IHDR":
+            width, height, _, color = struct.unpack(">IIBB", png[at + 8:at + 18])
+        if kind == b"IDAT":
+            data += png[at + 8:at + 8 + length]
+        at += 12 + length
+    step = {2: 3, 6: 4}[color]
+    raw, rows, before = zlib.decompress(data), [], bytearray(width * step)
+    for y in range(height):
+        kind, line = raw[y * (width * step + 1)], bytearray(raw[y * (width * step + 1) + 1:(y + 1) * (width * step + 1)])
+        for i in range(len(line)):
+            a, b, c = (line[i - step] if i >= step else 0), before[i], (before[i - step] if i >= step else 0)
+            if kind == 1:
+                line[i] = (line[i] + a) & 255
+            elif kind == 2:
+                line[i] = (line[i] + b) & 255
+            elif kind == 3:
+                line[i] = (line[i] + (a + b) // 2) & 255
+            elif kind == 4:
+                p = a + b - c
+                line[i] = (line[i] + min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]) & 255
+        rows.append(line)
+        before = line
+    return [[tuple(row[i:i + 3]) for i in range(0, len(row), step)] for row in rows]
+
+
+class Viewer(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.keep = tempfile.TemporaryDirectory()
+        cls.folder = folder = pathlib.Path(cls.keep.name)
+        write_balls(folder / "balls.nrrd")
+        tegl("contour", folder / "balls.nrrd", "--iso", 0, "--normals", "-o", folder / "balls.vtkhdf", "-q")
+        tegl("view", folder / "balls.vtkhdf", "-o", folder / "balls.html", "-q")
+        cls.downloads = folder / "downloads"
+        cls.downloads.mkdir()
+        cls.browser = Browser(CHROMIUM, CHROMEDRIVER, downloads=cls.downloads)
+        cls.browser.size(800, 480)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.driver.quit()
+        cls.keep.cleanup()
+
+    def setUp(self):
+        self.browser.size(800, 480)
+        self.browser.prefer("light")
+        self.browser.errors()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.errors(), [])
+
+    def open(self, name="balls.html"):
+        self.assertEqual(self.browser.open(self.folder / name), "")
+        return self.browser
+
+    def picture(self):
+        """Pixels of the canvas, drawn anew, without labels and frames."""
+        self.browser.run("document.getElementById('box').checked = false; tegl.app.stage.box.visible = false")
+        url = self.browser.run("tegl.draw(); return document.getElementById('canvas').toDataURL()")
+        return pixels(base64.b64decode(url.split(",")[1]))
+
+    def drawn(self, picture):
+        """How many pixels are not of the ground, which the corner has."""
+        return sum(pixel != picture[0][0] for row in picture for pixel in row)
+
+    def different(self, one, other):
+        return sum(a != b for p, q in zip(one, other) for a, b in zip(p, q))
+
+    def test_renders_from_a_file_and_the_slider_changes_the_picture(self):
+        browser = self.open()
+        self.assertTrue(browser.run("return location.protocol") == "file:")
+        browser.run("tegl.time = 1")
+        apart = self.picture()
+        self.assertGreater(self.drawn(apart), 2000)
+        slider = browser.element("#slider")
+        browser.run("arguments[0].value = 0.93; arguments[0].dispatchEvent(new Event('input'))", slider)
+        self.assertAlmostEqual(browser.run("return tegl.time"), browser.run("return 0.07 * tegl.range[0] + 0.93 * tegl.range[1]"))
+        self.assertGreater(self.different(apart, self.picture()), 1000)
+        # Continuously: a hundredth of a step is another picture too.
+        browser.run("tegl.time = 1.01")
+        self.assertGreater(self.different(apart, self.picture()), 20)
+
+    def same_counts(self, name, iso, times, *options):
+        contour = self.folder / f"{name}.vtkhdf"
+        tegl("contour", self.folder / f"{name}.nrrd", "--iso", iso, *options, "-o", contour, "-q")
+        tegl("view", contour, "-o", self.folder / f"{name}.html", "-q")
+        browser = self.open(f"{name}.html")
+        counts = [(t, browser.run("tegl.time = arguments[0]; return tegl.count()", t)) for t in times]
+        self.assertEqual(counts, [(t, count_of_cut(contour, t, self.folder)) for t in times])
+
+    def test_counts_of_triangles_are_the_librarys(self):
+        times = [0, 0.1, 1, 1.5, 2, 2.25, 3, 3.999, 4, 5]
+        write_noise(self.folder / "noise.nrrd", (8, 8, 8, 6), seed=7)
+        self.same_counts("noise", 2, times)
+        self.same_counts("noise", 2, times, "--close", "--precision", "float")
+        browser = self.browser
+        exact = browser.run("""const { times } = tegl.app.layers[0].cuts;
+            return [1, 3, 5, 7].map((i) => times[Math.floor(i * times.length / 8)])""")
+        self.assertEqual([browser.run("tegl.time = arguments[0]; return tegl.count()", t) for t in exact],
+                         [count_of_cut(self.folder / "noise.vtkhdf", t, self.folder) for t in exact])
+
+    def test_counts_beside_missing_values(self):
+        def value(x, y, z, t):
+            if (x, y, z, t) == (3, 3, 3, 2) or t < 2 and x > 4:
+                return float("nan")
+            return (x * 7 + y * 5 + z * 3 + t * 11) % 6
+
+        write_nrrd(self.folder / "missing.nrrd", (8, 7, 7, 5), value)
+        self.same_counts("missing", 3, [0, 0.5, 1, 1.25, 2, 2.001, 2.5, 3, 3.7, 4])
+
+    def test_the_cut_looks_like_the_librarys(self):
+        browser = self.open()
+        browser.run("tegl.time = 2.3; tegl.colorBy('plain')")
+        here = self.picture()
+        tegl("slice", self.folder / "balls.vtkhdf", "--at", "t=2.3", "-o", self.folder / "cut.ply", "-q")
+        tegl("view", self.folder / "cut.ply", "-o", self.folder / "cut.html", "-q")
+        camera = browser.run("""const { camera, sides, scale } = tegl.app.stage;
+            return { position: camera.position.toArray(), aspect: camera.aspect, center: tegl.app.stage.center, scale }""")
+        self.open("cut.html")
+        # As far from the same point, in the same scale, in a picture of the same size.
+        browser.run("""const { stage } = tegl.app;
+            document.getElementById('time').hidden = false;
+            document.getElementById('time').style.height = '0';
+            tegl.colorBy('plain');
+            const given = arguments[0];
+            stage.center = given.center;
+            for (const layer of stage.layers) layer.place(given.center, given.scale);
+            for (const { uniforms } of stage.layers) { uniforms.uLower.value.set(-1e9, -1e9, -1e9); uniforms.uUpper.value.set(1e9, 1e9, 1e9); }
+            stage.camera.aspect = given.aspect;
+            stage.camera.position.set(...given.position);
+            stage.camera.updateProjectionMatrix();
+            stage.controls.update();
+            stage.resize = () => {};
+            stage.renderer.setSize(arguments[1], arguments[2], false);""", camera, len(here[0]), len(here))
+        there = self.picture()
+        self.assertEqual((len(here), len(here[0])), (len(there), len(there[0])))
+        ground = here[0][0]
+        outlines = sum((a == ground) != (b == ground) for p, q in zip(here, there) for a, b in zip(p, q))
+        self.assertLess(outlines, 0.01 * self.drawn(here))
+        apart = sum(max(abs(i - j) for i, j in zip(a, b)) > 12 for p, q in zip(here, there) for a, b in zip(p, q))
+        self.assertLess(apart, 0.02 * self.drawn(here))
+
+    def test_play_flows_loops_and_stops(self):
+        browser = self.open()
+        browser.run("tegl.time = 1")
+        browser.element("#play").click()
+        browser.until("tegl.time > 1.02")
+        frames = browser.run("return tegl.frames")
+        browser.until(f"tegl.frames > {frames} + 3")
+        browser.run("tegl.time = tegl.range[1] - 0.01")
+        browser.until("tegl.time < 4")  # around
+        browser.element("#loop").click()
+        browser.run("tegl.time = tegl.range[1] - 0.01")
+        browser.until("tegl.time === tegl.range[1] && document.getElementById('play').ariaPressed === 'false'")
+
+    def test_events_are_clicked_on(self):
+        browser = self.open()
+        merge = browser.element("#graph .event.merge")
+        merge.click()
+        self.assertEqual(merge.get_attribute("aria-label").split(" at ")[0], "merge")
+        event = browser.run("return tegl.app.event")
+        self.assertEqual(event["kind"], "merge")
+        self.assertEqual(browser.run("return tegl.time"), event["time"])
+        self.assertIn("2 parts merge", browser.element("#now").text)
+        self.assertTrue(browser.element(".marker").is_displayed())
+        browser.element("#before").click()
+        self.assertLess(browser.run("return tegl.time"), event["time"])
+
+    def test_colors_have_legends(self):
+        browser = self.open()
+        self.assertEqual(browser.run("return tegl.colorings()"), ["plain", "component", "track", "axis0", "axis1", "axis2", "time"])
+        browser.run("tegl.time = 0.5")
+        pictures = []
+        for id in ("plain", "track", "axis0", "time"):
+            browser.run("tegl.colorBy(arguments[0])", id)
+            pictures.append(self.picture())
+            self.assertEqual(browser.element("#legend").is_displayed(), id != "plain")
+        for i, one in enumerate(pictures):
+            for j, other in enumerate(pictures[:i]):
+                self.assertGreater(self.different(one, other), 500, (i, j))
+        self.assertIn("t", browser.element("#legend").text)
+
+    def test_clipping_leaves_out(self):
+        browser = self.open()
+        browser.run("tegl.time = 1")
+        whole = self.drawn(self.picture())
+        for axis in range(3):
+            browser.run("tegl.clip(arguments[0], 0.5, 1)", axis)
+            self.assertLess(self.drawn(self.picture()), 0.95 * whole)
+            browser.element("#unclip").click()
+        self.assertEqual(self.drawn(self.picture()), whole)
+
+    def test_turns_zooms_and_moves(self):
+        browser = self.open()
+        seen = [self.picture()]
+        for script in ("tegl.app.stage.controls._rotateLeft(0.7)", "tegl.app.stage.camera.position.multiplyScalar(0.8)",
+                       "tegl.app.stage.controls._panLeft(0.2, tegl.app.stage.camera.matrix)"):
+            browser.run(f"{script}; tegl.app.stage.controls.update()")
+            seen.append(self.picture())
+            self.assertGreater(self.different(*seen[-2:]), 500)
+        browser.element("#reset").click()
+
+    def test_keys(self):
+        browser = self.open()
+        press = lambda key: browser.run("dispatchEvent(new KeyboardEvent('keydown', {key: arguments[0], bubbles: true}))"
+                                        .replace("dispatchEvent(", "document.body.dispatchEvent("), key)
+        press("Home")
+        self.assertEqual(browser.run("return tegl.time === tegl.range[0]"), True)
+        press("ArrowRight")
+        self.assertGreater(browser.run("return tegl.time"), browser.run("return tegl.range[0]"))
+        press("End")
+        self.assertEqual(browser.run("return tegl.time === tegl.range[1]"), True)
+        press("d")
+        self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark")
+        press("l")
+        self.assertEqual(browser.run("return tegl.app.loops"), False)
+        press("]")
+        self.assertEqual(browser.run("return tegl.app.speed"), 2)
+        press("?")
+        self.assertTrue(browser.element("#keys").is_displayed())
+
+    def test_light_and_dark(self):
+        self.browser.prefer("dark")
+        browser = self.open()
+        brightness = lambda: sum(self.picture()[0][0])
+        self.assertLess(brightness(), 150)
+        browser.element("#theme").click()
+        self.assertGreater(brightness(), 600)
+
+    def test_fits_a_phone(self):
+        self.browser.size(390, 844, 2.0)
+        browser = self.open()
+        self.assertEqual(browser.run("return [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), [390, 844])
+        out = """return [...document.querySelectorAll('header *, footer *, #legend')].filter((element) => {
+            const box = element.getBoundingClientRect();
+            const isSeen = box.width > 0 && !element.closest('#graph') && !element.closest('option');
+            return isSeen && (box.left < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5);
+        }).map((element) => element.outerHTML.slice(0, 80))"""
+        self.assertEqual(browser.run(out), [])
+        self.assertFalse(browser.element("#panel").is_displayed())
+        browser.element("#more").click()
+        self.assertTrue(browser.element("#panel").is_displayed())
+        self.assertEqual(browser.run(out), [])
+        small = browser.run("""return [...document.querySelectorAll('header button, footer button')].filter((button) =>
+            button.offsetWidth > 0 && Math.min(button.offsetWidth, button.offsetHeight) < 34).length""")
+        self.assertEqual(small, 0)
+
+    def test_the_screenshot_is_a_png_of_the_canvas(self):
+        browser = self.open()
+        browser.element("#shot").click()
+        end = time.monotonic() + 20
+        while not (saved := list(self.downloads.glob("*.png"))):
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.02)
+        rows = pixels(saved[0].read_bytes())
+        self.assertEqual([len(rows[0]), len(rows)], browser.run("return [tegl.app.stage.canvas.width, tegl.app.stage.canvas.height]"))
+        self.assertGreater(self.drawn(rows), 1000)
+
+    def test_three_and_two_dimensions_and_several_files(self):
+        tegl("slice", self.folder / "balls.vtkhdf", "--at", "t=1", "-o", self.folder / "apart.ply", "-q")
+        tegl("view", self.folder / "apart.ply", "-o", self.folder / "apart.html", "-q")
+        browser = self.open("apart.html")
+        self.assertGreater(self.drawn(self.picture()), 2000)
+        self.assertFalse(browser.element("#time").is_displayed())
+        tegl("view", self.folder / "apart.ply", self.folder / "balls.vtkhdf", "-o", self.folder / "both.html", "-q")
+        browser = self.open("both.html")
+        browser.run("tegl.time = 6")
+        both = self.drawn(self.picture())
+        browser.element("#layers input").click()
+        self.assertLess(self.drawn(self.picture()), both)
+        write_nrrd(self.folder / "flat.nrrd", (12, 12), lambda x, y: 4 - ((x - 5.5)**2 + (y - 5.5)**2)**0.5)
+        tegl("view", self.folder / "flat.nrrd", "--iso", 0, "-o", self.folder / "flat.html", "-q")
+        self.open("flat.html")
+        self.assertGreater(self.drawn(self.picture()), 300)
+
+    def test_real_data_have_their_units_and_say_what_is_left_out(self):
+        tegl("view", OCEAN, "--iso", 20, "-o", self.folder / "ocean.html", "--limit", 590000, "--tracks", 5, "-q")
+        browser = self.open("ocean.html")
+        browser.run("tegl.time = 7.25")
+        self.assertEqual(browser.element("#now").text.split(), ["time", "7.25", "month", "July"])
+        labels = [label.get_attribute("textContent") for label in browser.driver.find_elements("css selector", ".axis-label.name")]
+        self.assertEqual(labels, ["lon (degrees_east)", "lat (degrees_north)", "depth (m)"])
+        self.assertIn("too large to show all", browser.element("#notice").text)
+        self.assertIn("5 of ", browser.element("#graph-note").text)
+        # Few are drawn beside those that are cut: between two of twelve months.
+        drawn = browser.run("return tegl.draw()")[0]
+        self.assertLess(drawn["tetrahedra"], 590000 / 6)
+        self.assertLess(drawn["ranges"], 20)
+        self.assertGreater(drawn["tetrahedra"], browser.run("return tegl.count()") / 2)
+
+    def test_says_so_without_webgl(self):
+        with Browser(CHROMIUM, CHROMEDRIVER, gpu=["--disable-gpu", "--disable-3d-apis"]) as blind:
+            blind.open(self.folder / "balls.html")
+            self.assertIn("WebGL 2", blind.element("#fatal").text)
+            self.assertTrue(blind.element("#fatal").is_displayed())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
