@@ -463,18 +463,20 @@ void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, co
     BitWalk walk(room.active);
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
+    const ResolvedCubes& cubes = ResolvedCubes::instance();
+    RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active});
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
       if (!ambiguous[signature]) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
-      const ResolvedTile tile = resolved_tile(*estimator_, base, signature);
-      const ResolvedSize filling = tesseract.size(tile.key);
+      const ResolvedTile tile = tiles.resolve(base, i, signature);
+      const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
       count.simplices += filling.simplices;
       count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
       count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
       if (found == nullptr) continue;
       const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
-        if (const unsigned own = detail::cube_vertices(tile.cubes[cube]); own != 0)
+        if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
           plane.add(row, at, tile.cubes[cube], own);
       };
       take(found->in_slab[0], 0, base[0]);

@@ -143,6 +143,7 @@ class TileWriter {
       VertexRun<Vertex> vertices;
       BitWalk active;
       Index next;
+      RowOfTesseracts* tesseracts;  ///< N = 4, where data decide, but not a caller
 
       static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids,
                             Simplex* out) noexcept {
@@ -152,8 +153,9 @@ class TileWriter {
         std::copy_n(edge_ids, tables::edge_count(N), ids.data());
         if constexpr (N == 4)
           if (own.writer.is_estimated_tile(key))
-            return own.writer.write_resolved(own.view, own.row, own.index, key, ids, own.next, own.vertices,
-                                             own.scratch, out);
+            return own.writer.write_resolved(
+                own.view, own.row, own.index, key, own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
+                ids, own.next, own.vertices, *own.scratch.tesseract, out);
         const SimplexList<N> list(own.writer.table_, key);
         SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
         own.writer.write_own(list, places, own.index, own.next, own.vertices);
@@ -169,7 +171,14 @@ class TileWriter {
             start,
             vertices,
             BitWalk(view.slab->active.data() + row * view.shape->words()),
-            view.slab->first_own(row)};
+            view.slab->first_own(row),
+            nullptr};
+    if constexpr (N == 4)
+      if (estimator_ != nullptr && !estimator_->is_callers()) {
+        RowOfTesseracts tesseracts(*estimator_, start, view.shape->size(0), tiles);
+        own.tesseracts = &tesseracts;
+        return write_tile_row<N>(output, *rows_, {&Own::write, &own});
+      }
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
@@ -197,7 +206,8 @@ class TileWriter {
         edges.ids(bit, ids.data());
         if constexpr (N == 4)
           if (is_estimated_tile(signature)) {
-            out = write_resolved(view, row, index, signature, ids, own, vertices, scratch, out);
+            out = write_resolved(view, row, index, signature, tile_of(scratch.answers, index, signature), ids, own,
+                                 vertices, *scratch.tesseract, out);
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
@@ -250,7 +260,7 @@ class TileWriter {
         if constexpr (N == 4)
           if (is_estimated_tile(key)) {
             const ResolvedTile& tile = answers.tesseracts.emplace_back(resolved_tile(*estimator_, index, key));
-            const ResolvedSize size = scratch.tesseract->size(tile.key);
+            const ResolvedSize size = scratch.tesseract->size(tile.key, tile.lists);
             simplices += size.simplices;
             own_vertices += size.own_vertices;
             if (!has_listed_cubes(view, row, index[0], tile)) return false;
@@ -283,17 +293,26 @@ class TileWriter {
     return N == 4 && estimator_ != nullptr && ambiguous_signatures<4>()[signature];
   }
 
-  /// A tile of four dimensions that data decide on; its own vertices are numbered from `own` on, which moves on. `ids`:
-  /// those of its edges.
+  /// A tile of four dimensions that data decide on, by what a caller answered or by itself.
+  [[nodiscard]] ResolvedTile tile_of(RowAnswers& answers, const typename RowShape<N>::Index& index,
+                                     unsigned signature) const noexcept {
+    return estimator_->is_callers() ? answers.tesseracts[answers.taken++] : resolved_tile(*estimator_, index, signature);
+  }
+  /// The same of number `ordinal` of a row's active tiles.
+  template <class Own>
+  [[nodiscard]] ResolvedTile tile_of(Own& own, std::uint32_t ordinal, unsigned signature) const noexcept {
+    if (own.tesseracts != nullptr) return own.tesseracts->resolve(own.index, ordinal, signature);
+    return tile_of(own.scratch.answers, own.index, signature);
+  }
+
+  /// Its own vertices are numbered from `own` on, which moves on. `ids`: those of its edges.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
-                          unsigned signature, Ids& ids, Index& own, VertexRun<Vertex> vertices, CountScratch& scratch,
-                          Simplex* out) const noexcept {
-    RowAnswers& answers = scratch.answers;
-    const ResolvedTile tile =
-        estimator_->is_callers() ? answers.tesseracts[answers.taken++] : resolved_tile(*estimator_, index, signature);
-    const ResolvedView& filling = scratch.tesseract->find(tile.key);
+                          unsigned signature, const ResolvedTile& tile, Ids& ids, Index& own,
+                          VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
+    const ResolvedCubes& cubes = ResolvedCubes::instance();
+    const ResolvedView& filling = tesseract.find(tile.key, tile.lists);
     for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
-      const unsigned count = detail::cube_vertices(tile.cubes[cube]);
+      const unsigned count = cubes.own_vertices(tile.lists[cube]);
       if (count == 0) continue;
       const unsigned axis = cube / 2, side = cube % 2;
       const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);

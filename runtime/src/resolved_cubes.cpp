@@ -139,6 +139,7 @@ void ResolvedCubes::number_lists() {
           list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
           lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
           is_low_.push_back(high == 0 && choice == 0 ? 1 : 0);
+          own_vertices_.push_back(static_cast<std::uint8_t>(lists[choice]->own_vertices));
         } else {
           list_of_[3 * entry + choice] = list_of_[3 * entry + same];
         }

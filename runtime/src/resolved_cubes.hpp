@@ -43,6 +43,8 @@ class ResolvedCubes {
     std::uint8_t cube;
   };
 
+  using Lists = std::array<std::uint16_t, kCubes>;  ///< of each cube of a tile
+
   static const ResolvedCubes& instance();
 
   /// Byte f: the signature of cube f.
@@ -61,6 +63,14 @@ class ResolvedCubes {
     const Signature of = of_signatures_[signature];
     const unsigned entry = of.first_entry + compressed_[of.ambiguous << 6 | high_squares];
     return list_of_[3 * entry + static_cast<unsigned>(choice)];
+  }
+  /// The same by entry of tables::kTile3Resolved.
+  [[nodiscard]] std::uint16_t list_of_entry(unsigned entry, facets::Choice choice) const noexcept {
+    return list_of_[3 * entry + static_cast<unsigned>(choice)];
+  }
+  /// How many vertices of its own a list has; of kNone none.
+  [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept {
+    return list == kNone ? 0 : own_vertices_[list];
   }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
   /// Whether a list is that of the low-connected contour.
@@ -102,6 +112,7 @@ class ResolvedCubes {
   std::vector<CubeList> lists_;
   std::vector<std::uint16_t> list_of_;
   std::vector<std::uint8_t> is_low_;
+  std::vector<std::uint8_t> own_vertices_;
   std::vector<std::uint32_t> first_part_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> triangles_;

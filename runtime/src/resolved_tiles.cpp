@@ -65,8 +65,8 @@ bool ResolvedTesseract::Component::is_sphere() const noexcept {
 
 ResolvedTesseract::ResolvedTesseract() : cubes_(ResolvedCubes::instance()) {}
 
-const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key) {
-  find_cubes(key);
+const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
+  find_cubes(lists);
   simplex_count_ = 0;
   masks_.clear();
   if (is_in_table(key))
@@ -78,8 +78,8 @@ const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key) {
   return view_;
 }
 
-ResolvedSize ResolvedTesseract::size(const ResolvedKey& key) {
-  find_cubes(key);
+ResolvedSize ResolvedTesseract::size(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
+  find_cubes(lists);
   if (is_in_table(key)) {
     const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[key.signature]];
     return {list.simplex_count, std::uint32_t{list.cone_vertices} + list.side_vertices};
@@ -102,16 +102,23 @@ ResolvedSize ResolvedTesseract::size(const ResolvedKey& key) {
   return size;
 }
 
-void ResolvedTesseract::find_cubes(const ResolvedKey& key) {
+ResolvedCubes::Lists ResolvedTesseract::lists_of(const ResolvedKey& key) const noexcept {
   const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
+  ResolvedCubes::Lists lists;
+  for (unsigned f = 0; f < kCubes; ++f)
+    lists[f] = cubes_.list(signatures >> (8 * f) & 255u, squares >> (8 * f) & 63u, choice_of(key, f));
+  return lists;
+}
+
+void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
   const ResolvedCubes::Part** out = parts_.data();
   std::uint64_t vertices = 0;  // of what hangs together with the first part
   std::uint32_t connected = 0, part_bit = 1;
   bool as_low = true;
   triangle_count_ = 0;
+  lists_ = lists;
   for (unsigned f = 0; f < kCubes; ++f) {
-    const std::uint16_t list = cubes_.list(signatures >> (8 * f) & 255u, squares >> (8 * f) & 63u, choice_of(key, f));
-    lists_[f] = list;
+    const std::uint16_t list = lists[f];
     if (list == ResolvedCubes::kNone) continue;
     as_low = as_low && cubes_.is_low(list);
     for (const ResolvedCubes::Part& part : cubes_.parts(f, list)) {
@@ -426,7 +433,7 @@ bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
       if (!none) continue;
       ResolvedKey key;
       key.signature = static_cast<std::uint16_t>(s);
-      tile.find_cubes(key);
+      tile.find_cubes(tile.lists_of(key));
       result[s] = tile.component_count_ == 0 || (tile.component_count_ == 1 && tile.components_[0].is_sphere());
     }
     return result;

@@ -75,10 +75,13 @@ class ResolvedTesseract {
   ResolvedTesseract();
 
   /// Valid until the next call.
-  const ResolvedView& find(const ResolvedKey& key);
+  const ResolvedView& find(const ResolvedKey& key) { return find(key, lists_of(key)); }
+  /// The same where the lists of the tile's cubes are known.
+  const ResolvedView& find(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
 
   /// The size of what `find` finds, in half the time. What `find` returned is as it was.
-  [[nodiscard]] ResolvedSize size(const ResolvedKey& key);
+  [[nodiscard]] ResolvedSize size(const ResolvedKey& key) { return size(key, lists_of(key)); }
+  [[nodiscard]] ResolvedSize size(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
 
   /// Whether neither signs nor choices matter: no square is ambiguous, no cube has several polygons, and Sigma is one
   /// sphere (or there is none). Then the contour is that of the compact table.
@@ -95,7 +98,8 @@ class ResolvedTesseract {
     [[nodiscard]] bool is_sphere() const noexcept;
   };
 
-  void find_cubes(const ResolvedKey& key);
+  [[nodiscard]] ResolvedCubes::Lists lists_of(const ResolvedKey& key) const noexcept;
+  void find_cubes(const ResolvedCubes::Lists& lists);
   void find_components(std::uint64_t vertices, std::uint32_t connected);
   void take_from_table(const ResolvedKey& key);
   [[nodiscard]] bool is_in_table(const ResolvedKey& key) const;
@@ -119,7 +123,7 @@ class ResolvedTesseract {
 
   const ResolvedCubes& cubes_;
   // Of the tile at hand.
-  std::array<std::uint16_t, 8> lists_{};
+  ResolvedCubes::Lists lists_{};
   std::array<const ResolvedCubes::Part*, 32> parts_{};
   std::array<Component, 32> components_{};
   unsigned part_count_ = 0, component_count_ = 0;

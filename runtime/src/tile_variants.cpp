@@ -513,6 +513,15 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   }
 }
 
+namespace {
+
+std::uint16_t list_of_cube(const ResolvedCubes& cubes, unsigned signature, unsigned entry,
+                           facets::Choice choice) noexcept {
+  return signature == 0 || signature == 255 ? ResolvedCubes::kNone : cubes.list_of_entry(entry, choice);
+}
+
+}  // namespace
+
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
                            unsigned signature) noexcept {
   const auto& table = tables::kTile3Resolved;
@@ -537,6 +546,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   for (unsigned f = 0; f < 8; ++f) {
     const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
     tile.cubes[f] = static_cast<std::uint16_t>(in_cube);
+    tile.lists[f] = list_of_cube(cubes, in_cube, table.first_entry[in_cube], facets::Choice::separate);
     if (!ambiguous_cubes[in_cube]) continue;
     const unsigned r =
         packed_squares(static_cast<unsigned>(squares >> (8 * f) & 255), table.ambiguous_squares[in_cube]);
@@ -547,11 +557,102 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
       choice = estimator.choice(moved(base, corner), axes, values_at(values, kCubesIn4D[f]));
     }
     tile.cubes[f] = static_cast<std::uint16_t>(in_cube | (1 + 3 * r + static_cast<unsigned>(choice)) << 8);
+    tile.lists[f] = cubes.list_of_entry(table.first_entry[in_cube] + r, choice);
     if (choice == facets::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
     if (choice == facets::Choice::high) tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | 1u << f);
   }
   tile.key.tile = estimator.choice(base, 15, values);
   return tile;
+}
+
+/// The centres of a tile's cubes by the trilinear interpolant, `entries` being those of its cubes; none where rounding
+/// could decide.
+static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isovalue,
+                           const std::array<std::uint16_t, 8>& entries,
+                           std::array<facets::Choice, 8>& choices) noexcept {
+  const auto& joins = cube_joins();
+  const auto value = [&](unsigned f, unsigned corner) {
+    const unsigned of_tile = kCubesIn4D[f][corner];
+    return block.samples[of_tile >> 1][bit + (of_tile & 1u)];
+  };
+  JoinQuestions questions;
+  std::array<std::uint8_t, 8> asked;
+  for (unsigned f = 0; f < 8; ++f) {
+    const CubeJoin& join = joins[entries[f]];
+    if (join.pairs == 1) {
+      for (std::size_t e = 0; e < 8; ++e) questions.ends[e][questions.count] = value(f, join.corners[e]);
+      questions.sign[questions.count] = join.high ? 1.0 : -1.0;
+      asked[questions.count++] = static_cast<std::uint8_t>(f);
+    } else if (join.pairs > 1) {
+      std::array<double, 8> values;
+      for (unsigned corner = 0; corner < 8; ++corner) values[corner] = value(f, corner);
+      choices[f] = detail::decide_centre(values, isovalue, entries[f]);
+    }
+  }
+  answer(questions, isovalue);
+  for (std::size_t q = 0; q < questions.count; ++q) {
+    if (questions.answers[q] == JoinQuestions::unsure) return false;
+    const auto joined = joins[entries[asked[q]]].high ? facets::Choice::high : facets::Choice::low;
+    if (questions.answers[q] == JoinQuestions::yes) choices[asked[q]] = joined;
+  }
+  return true;
+}
+
+bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
+             ResolvedTile& tile) noexcept {
+  if (block.unsure[bit] != 0) return false;
+  const auto& table = tables::kTile3Resolved;
+  const ResolvedCubes& cubes = ResolvedCubes::instance();
+  const auto& ambiguous_cubes = ambiguous_signatures<3>();
+  const std::uint64_t high = block.high[bit];
+  tile.key = {};
+  tile.key.signature = static_cast<std::uint16_t>(signature);
+  tile.key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
+  tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? facets::Choice::high : facets::Choice::low;
+  const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
+  std::array<std::uint16_t, 8> entries;
+  for (unsigned f = 0; f < 8; ++f) {
+    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
+    entries[f] = static_cast<std::uint16_t>(
+        table.first_entry[in_cube] +
+        packed_squares(static_cast<unsigned>(squares >> (8 * f)), table.ambiguous_squares[in_cube]));
+  }
+  std::array<facets::Choice, 8> choices{};
+  if (!estimator.is_by_means() && !decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
+  unsigned low = 0, joined = 0;
+  for (unsigned f = 0; f < 8; ++f) {
+    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
+    if (estimator.is_by_means() && table.entries[entries[f]].components > 1)
+      choices[f] = (high >> (kFirstCube<4> + f) & 1u) != 0 ? facets::Choice::high : facets::Choice::low;
+    low |= (choices[f] == facets::Choice::low ? 1u : 0u) << f;
+    joined |= (choices[f] == facets::Choice::high ? 1u : 0u) << f;
+    const unsigned variant =
+        ambiguous_cubes[in_cube]
+            ? 1 + 3 * (unsigned{entries[f]} - table.first_entry[in_cube]) + static_cast<unsigned>(choices[f])
+            : 0;
+    tile.cubes[f] = static_cast<std::uint16_t>(in_cube | variant << 8);
+    tile.lists[f] = list_of_cube(cubes, in_cube, entries[f], choices[f]);
+  }
+  tile.key.low_cubes = static_cast<std::uint8_t>(low);
+  tile.key.high_cubes = static_cast<std::uint8_t>(joined);
+  return true;
+}
+
+ResolvedTile RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
+                                      unsigned signature) noexcept {
+  if (!at_once_) return resolved_tile(estimator_, base, signature);
+  const std::size_t word = base[0] / kWordBits;
+  if (word != word_) {
+    word_ = word;
+    const auto& ambiguous = ambiguous_signatures<4>();
+    std::size_t found = 0;
+    for (std::uint32_t i = ordinal; i < tiles_.count && tiles_.at[i] / kWordBits == word; ++i)
+      found += ambiguous[tiles_.signatures[i]] ? 1 : 0;
+    has_many_ = found >= RowFaces<4>::kMany;
+  }
+  ResolvedTile tile;
+  if (has_many_ && detail::resolve(estimator_, faces_.look_at(word), base[0] % kWordBits, signature, tile)) return tile;
+  return resolved_tile(estimator_, base, signature);
 }
 
 unsigned list_of_key(unsigned key) noexcept {

@@ -20,10 +20,11 @@
 
 namespace tegl::detail {
 
-/// What a tile of four dimensions is filled with: how it is resolved, and the keys of its cubes.
+/// What a tile of four dimensions is filled with: how it is resolved, and the keys and lists of its cubes.
 struct ResolvedTile {
   ResolvedKey key;
   std::array<std::uint16_t, 8> cubes{};
+  ResolvedCubes::Lists lists{};
 };
 
 /// The table of all keys, N = 2 or 3. In the barycentric triangulation what is no tunnel is coned from its barycentre.
@@ -76,6 +77,9 @@ unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_
 /// The filling of an ambiguous tile of four dimensions.
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
                            unsigned signature) noexcept;
+/// The same of tile `bit` of a block; false where it is to be asked for by itself.
+bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
+             ResolvedTile& tile) noexcept;
 
 /// The compact table of four dimensions; all tiles that data decide on are marked as those with vertices of their own.
 const RowTable& estimated_tesseracts();
@@ -110,6 +114,28 @@ class RowFaces {
   std::size_t samples_;
   std::size_t word_ = ~std::size_t{0};
   FaceBlock<N> block_;
+};
+
+/// The ambiguous tiles of a row of tesseracts, one after the other: decided a word at a time where that pays.
+class RowOfTesseracts {
+ public:
+  /// Of the row through `base`, which has `samples`; `tiles`: its active tiles.
+  RowOfTesseracts(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base, std::size_t samples,
+                  const ActiveTiles& tiles) noexcept
+      : estimator_(estimator),
+        tiles_(tiles),
+        at_once_(samples <= kMostListed && RowFaces<4>::can_use(estimator)),
+        faces_(estimator, base, samples) {}
+  /// Number `ordinal` of the active tiles, which is at `base`; numbers rise from call to call.
+  ResolvedTile resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal, unsigned signature) noexcept;
+
+ private:
+  const FaceEstimator<4>& estimator_;
+  ActiveTiles tiles_;
+  bool at_once_;
+  std::size_t word_ = ~std::size_t{0};
+  bool has_many_ = false;  ///< whether the word is decided at once
+  RowFaces<4> faces_;
 };
 
 /// Tiles at a word, with ambiguous signatures, and what becomes of them: with key 0, that it is to be asked for by
