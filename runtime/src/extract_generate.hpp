@@ -153,9 +153,9 @@ class TileWriter {
         std::copy_n(edge_ids, tables::edge_count(N), ids.data());
         if constexpr (N == 4)
           if (own.writer.is_estimated_tile(key))
-            return own.writer.write_resolved(
-                own.view, own.row, own.index, key, own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key),
-                ids, own.next, own.vertices, *own.scratch.tesseract, out);
+            return own.writer.write_resolved(own.view, own.row, own.index, key,
+                                             own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key), ids,
+                                             own.next, own.vertices, *own.scratch.tesseract, out);
         const SimplexList<N> list(own.writer.table_, key);
         SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
         own.writer.write_own(list, places, own.index, own.next, own.vertices);
@@ -296,7 +296,8 @@ class TileWriter {
   /// A tile of four dimensions that data decide on, by what a caller answered or by itself.
   [[nodiscard]] ResolvedTile tile_of(RowAnswers& answers, const typename RowShape<N>::Index& index,
                                      unsigned signature) const noexcept {
-    return estimator_->is_callers() ? answers.tesseracts[answers.taken++] : resolved_tile(*estimator_, index, signature);
+    return estimator_->is_callers() ? answers.tesseracts[answers.taken++]
+                                    : resolved_tile(*estimator_, index, signature);
   }
   /// The same of number `ordinal` of a row's active tiles.
   template <class Own>
@@ -320,7 +321,8 @@ class TileWriter {
       for (unsigned j = 0; j < count; ++j) ids[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] = first + j;
     }
     if (filling.own_vertices != 0) {
-      const EdgePlaces<N, kAll> places(source_, index, signature);
+      const EdgePlaces<N, kAll> alphas(source_, index, signature);
+      const auto places = [&](unsigned edge) { return edge_point_at_once<N>(edge, alphas.alpha(edge)); };
       for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
         ids[ResolvedTesseract::kFirstOwn + j] = own;
         const TilePoint<N> place = mask_place<N>(filling.masks[j], std::identity(), places, true);

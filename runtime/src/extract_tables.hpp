@@ -90,6 +90,19 @@ template <int K>
   return point;
 }
 
+/// The same without a store at a place that is not known, for which loads of the whole point would have to wait.
+template <int K>
+[[gnu::always_inline]] inline TilePoint<K> edge_point_at_once(unsigned edge, double alpha) noexcept {
+  static constexpr auto kUnits = [] {
+    std::array<TilePoint<K>, K> units{};
+    for (std::size_t a = 0; a < K; ++a) units[a][a] = 1.0;
+    return units;
+  }();
+  TilePoint<K> point = kEdgeBases<K>[edge];
+  for (std::size_t a = 0; a < K; ++a) point[a] += alpha * kUnits[edge >> (K - 1)][a];
+  return point;
+}
+
 /// A point of the 3-face `cube` in the frame of its 4-tile.
 inline TilePoint<4> cube_point(unsigned cube, const TilePoint<3>& inside) noexcept {
   TilePoint<4> point;

@@ -68,10 +68,10 @@ class ResolvedCubes {
   [[nodiscard]] std::uint16_t list_of_entry(unsigned entry, facets::Choice choice) const noexcept {
     return list_of_[3 * entry + static_cast<unsigned>(choice)];
   }
+  /// Whether an entry's choice matters.
+  [[nodiscard]] bool has_choice(unsigned entry) const noexcept { return has_choice_[entry] != 0; }
   /// How many vertices of its own a list has; of kNone none.
-  [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept {
-    return list == kNone ? 0 : own_vertices_[list];
-  }
+  [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept { return list == kNone ? 0 : own_vertices_[list]; }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
   /// Whether a list is that of the low-connected contour.
   [[nodiscard]] bool is_low(unsigned list) const noexcept { return is_low_[list] != 0; }
@@ -113,6 +113,7 @@ class ResolvedCubes {
   std::vector<std::uint16_t> list_of_;
   std::vector<std::uint8_t> is_low_;
   std::vector<std::uint8_t> own_vertices_;
+  std::vector<std::uint8_t> has_choice_;  ///< by entry
   std::vector<std::uint32_t> first_part_;
   std::vector<Part> parts_;
   std::vector<std::uint32_t> triangles_;

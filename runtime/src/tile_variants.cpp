@@ -513,15 +513,6 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   }
 }
 
-namespace {
-
-std::uint16_t list_of_cube(const ResolvedCubes& cubes, unsigned signature, unsigned entry,
-                           facets::Choice choice) noexcept {
-  return signature == 0 || signature == 255 ? ResolvedCubes::kNone : cubes.list_of_entry(entry, choice);
-}
-
-}  // namespace
-
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
                            unsigned signature) noexcept {
   const auto& table = tables::kTile3Resolved;
@@ -546,7 +537,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   for (unsigned f = 0; f < 8; ++f) {
     const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
     tile.cubes[f] = static_cast<std::uint16_t>(in_cube);
-    tile.lists[f] = list_of_cube(cubes, in_cube, table.first_entry[in_cube], facets::Choice::separate);
+    tile.lists[f] = cubes.list_of_entry(table.first_entry[in_cube], facets::Choice::separate);
     if (!ambiguous_cubes[in_cube]) continue;
     const unsigned r =
         packed_squares(static_cast<unsigned>(squares >> (8 * f) & 255), table.ambiguous_squares[in_cube]);
@@ -603,7 +594,6 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   if (block.unsure[bit] != 0) return false;
   const auto& table = tables::kTile3Resolved;
   const ResolvedCubes& cubes = ResolvedCubes::instance();
-  const auto& ambiguous_cubes = ambiguous_signatures<3>();
   const std::uint64_t high = block.high[bit];
   tile.key = {};
   tile.key.signature = static_cast<std::uint16_t>(signature);
@@ -618,20 +608,22 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
         packed_squares(static_cast<unsigned>(squares >> (8 * f)), table.ambiguous_squares[in_cube]));
   }
   std::array<facets::Choice, 8> choices{};
-  if (!estimator.is_by_means() && !decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
+  if (estimator.is_by_means())
+    for (unsigned f = 0; f < 8; ++f) {
+      const auto is_high = static_cast<unsigned>(high >> (kFirstCube<4> + f) & 1u);
+      choices[f] = static_cast<facets::Choice>(cubes.has_choice(entries[f]) ? 1 + is_high : 0);
+    }
+  else if (!decide_centres(block, bit, estimator.isovalue(), entries, choices))
+    return false;
   unsigned low = 0, joined = 0;
   for (unsigned f = 0; f < 8; ++f) {
-    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
-    if (estimator.is_by_means() && table.entries[entries[f]].components > 1)
-      choices[f] = (high >> (kFirstCube<4> + f) & 1u) != 0 ? facets::Choice::high : facets::Choice::low;
     low |= (choices[f] == facets::Choice::low ? 1u : 0u) << f;
     joined |= (choices[f] == facets::Choice::high ? 1u : 0u) << f;
-    const unsigned variant =
-        ambiguous_cubes[in_cube]
-            ? 1 + 3 * (unsigned{entries[f]} - table.first_entry[in_cube]) + static_cast<unsigned>(choices[f])
-            : 0;
-    tile.cubes[f] = static_cast<std::uint16_t>(in_cube | variant << 8);
-    tile.lists[f] = list_of_cube(cubes, in_cube, entries[f], choices[f]);
+    tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
+    if (cubes.own_vertices(tile.lists[f]) == 0) continue;
+    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
+    const unsigned r = unsigned{entries[f]} - table.first_entry[in_cube];
+    tile.cubes[f] = static_cast<std::uint16_t>(in_cube | (1 + 3 * r + static_cast<unsigned>(choices[f])) << 8);
   }
   tile.key.low_cubes = static_cast<std::uint8_t>(low);
   tile.key.high_cubes = static_cast<std::uint8_t>(joined);

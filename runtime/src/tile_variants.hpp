@@ -20,7 +20,8 @@
 
 namespace tegl::detail {
 
-/// What a tile of four dimensions is filled with: how it is resolved, and the keys and lists of its cubes.
+/// What a tile of four dimensions is filled with: how it is resolved, and the lists of its cubes, and the keys of those
+/// that have vertices of their own.
 struct ResolvedTile {
   ResolvedKey key;
   std::array<std::uint16_t, 8> cubes{};
