@@ -121,6 +121,7 @@ ResolvedCubes::ResolvedCubes() {
     }
     first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
   }
+  parts_.resize(parts_.size() + kMostParts);
 }
 
 void ResolvedCubes::number_lists() {

@@ -28,8 +28,9 @@ std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsign
 class ResolvedCubes {
  public:
   static constexpr unsigned kCubes = 8;
-  static constexpr unsigned kEdges = 32;   ///< of the tile
-  static constexpr unsigned kMostOwn = 3;  ///< of a list
+  static constexpr unsigned kEdges = 32;     ///< of the tile
+  static constexpr unsigned kMostOwn = 3;    ///< of a list
+  static constexpr unsigned kMostParts = 4;  ///< likewise; so many stand behind the parts of each, whatever they are
   static constexpr unsigned kVertices = kEdges + kCubes * kMostOwn;
   static constexpr std::uint16_t kNone = 0xffff;  ///< a cube without a contour
 

@@ -35,15 +35,6 @@ constexpr std::array<std::uint32_t, 8> kCornersOfCubes = [] {
   return result;
 }();
 
-/// Whether two opposite corners of a square, and no others, are in the set: the one thing that makes it ambiguous.
-constexpr bool is_ambiguous(unsigned q, std::uint32_t corners) {
-  const std::uint32_t in = corners & kCornersOfSquares[q];
-  if (std::popcount(in) != 2) return false;
-  const auto first = static_cast<unsigned>(std::countr_zero(in)),
-             last = 31u - static_cast<unsigned>(std::countl_zero(in));
-  return (first ^ last) == kTesseractSquares[q].axes;
-}
-
 /// The corners of a set and those that an edge joins with it.
 constexpr std::uint32_t grown(std::uint32_t corners) {
   constexpr std::array<std::uint32_t, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};
@@ -111,25 +102,30 @@ ResolvedCubes::Lists ResolvedTesseract::lists_of(const ResolvedKey& key) const n
 }
 
 void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
-  const ResolvedCubes::Part** out = parts_.data();
-  std::uint64_t vertices = 0;  // of what hangs together with the first part
-  std::uint32_t connected = 0, part_bit = 1;
-  bool as_low = true;
-  triangle_count_ = 0;
+  unsigned others = 0;
   lists_ = lists;
+  part_count_ = 0;
   for (unsigned f = 0; f < kCubes; ++f) {
     const std::uint16_t list = lists[f];
     if (list == ResolvedCubes::kNone) continue;
-    as_low = as_low && cubes_.is_low(list);
-    for (const ResolvedCubes::Part& part : cubes_.parts(f, list)) {
-      *out++ = &part;
-      triangle_count_ += part.triangle_count;
-      if (vertices == 0 || (part.vertices & vertices) != 0) vertices |= part.vertices, connected |= part_bit;
-      part_bit <<= 1;
-    }
+    others += cubes_.is_low(list) ? 0 : 1;
+    // As many as a cube can have, without a branch for how many it has: those behind are written over.
+    const auto parts = cubes_.parts(f, list);
+    for (unsigned i = 0; i < ResolvedCubes::kMostParts; ++i) parts_[part_count_ + i] = parts.data() + i;
+    part_count_ += static_cast<unsigned>(parts.size());
   }
-  part_count_ = static_cast<unsigned>(out - parts_.data());
-  as_low_ = as_low;
+  as_low_ = others == 0;
+  // What hangs together with the first part, as far as it is seen in one go.
+  std::uint64_t vertices = part_count_ == 0 ? 0 : parts_[0]->vertices;
+  std::uint32_t connected = 0;
+  triangle_count_ = 0;
+  for (unsigned i = 0; i < part_count_; ++i) {
+    const ResolvedCubes::Part& part = *parts_[i];
+    triangle_count_ += part.triangle_count;
+    const std::uint64_t meets = (part.vertices & vertices) != 0 ? 1 : 0;
+    vertices |= part.vertices & (0 - meets);
+    connected |= static_cast<std::uint32_t>(meets << i);
+  }
   find_components(vertices, connected);
 }
 
@@ -205,14 +201,19 @@ std::uint32_t ResolvedTesseract::region_of(const ResolvedKey& key, const Compone
   const std::uint32_t from = 1u << edge_base(4, edge);
   std::uint32_t reached = (corners & from) != 0 ? from : from << (1u << edge / 8);
   const std::uint8_t joining = high ? key.high_cubes & static_cast<std::uint8_t>(~key.low_cubes) : key.low_cubes;
+  const std::uint32_t joining_squares = high ? key.squares : ~key.squares;
   for (std::uint32_t before = 0; reached != before;) {
     for (; reached != before; reached = grown(reached) & corners) before = reached;
     if (reached == corners) break;
-    for (unsigned f = 0; f < kCubes; ++f)
-      if ((joining >> f & 1u) != 0 && (reached & kCornersOfCubes[f]) != 0) reached |= corners & kCornersOfCubes[f];
-    for (unsigned q = 0; q < kCornersOfSquares.size(); ++q)
-      if (((key.squares >> q & 1u) != 0) == high && (reached & kCornersOfSquares[q]) != 0 && is_ambiguous(q, corners))
-        reached |= corners & kCornersOfSquares[q];
+    for (unsigned rest = joining; rest != 0; rest &= rest - 1) {
+      const std::uint32_t in = corners & kCornersOfCubes[std::countr_zero(rest)];
+      reached |= (reached & in) != 0 ? in : 0;
+    }
+    // Squares that are not ambiguous join what edges join as well. No branch, for noise would mislead it.
+    for (unsigned q = 0; q < kCornersOfSquares.size(); ++q) {
+      const std::uint32_t in = (joining_squares >> q & 1u) != 0 ? corners & kCornersOfSquares[q] : 0;
+      reached |= (reached & in) != 0 ? in : 0;
+    }
   }
   return reached;
 }

@@ -124,7 +124,7 @@ class ResolvedTesseract {
   const ResolvedCubes& cubes_;
   // Of the tile at hand.
   ResolvedCubes::Lists lists_{};
-  std::array<const ResolvedCubes::Part*, 32> parts_{};
+  std::array<const ResolvedCubes::Part*, 32 + ResolvedCubes::kMostParts> parts_{};
   std::array<Component, 32> components_{};
   unsigned part_count_ = 0, component_count_ = 0;
   std::uint32_t triangle_count_ = 0;  ///< of Sigma
