@@ -16,11 +16,13 @@
 namespace tegl::test {
 namespace {
 
-/// The kinds of tables, and one that the data choose from.
+/// The kinds of tables, and one that the data choose from, in either way.
 std::vector<ExtractOptions> all_variants() {
   auto result = variants();
-  result.push_back(result.front());
-  result.back().ambiguity = Ambiguity::mean;
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+    result.push_back(result.front());
+    result.back().ambiguity = ambiguity;
+  }
   return result;
 }
 

@@ -129,6 +129,19 @@ TEST(SameBytes, HolesAndInfinitiesWhateverTheProcessorAndTheThreads) {
   expect_same_bytes_of_holes<double, double, 4>({21, 3, 4, 5}, 85);
 }
 
+TEST(SameBytes, OfFacesThatTheDataDecide) {
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+    ExtractOptions options;
+    options.ambiguity = ambiguity;
+    expect_same_bytes<float>(noise<float, 3>({130, 6, 7}, 94).view(), 0.5, options);
+    expect_same_bytes<float>(coarse_noise<std::uint8_t, 3>(Grid<3>::unit({67, 9, 5}), 95, 2).view(), 0.5, options);
+    expect_same_bytes<float>(coarse_noise<float, 3>(Grid<3>::unit({67, 5, 9}), 96, 5).view(), 1.3, options);
+    expect_same_bytes<float>(noise_with_missing<float, 3>(Grid<3>::unit({67, 6, 7}), 97, 0.02).view(), 0.5, options);
+    expect_same_bytes<float>(noise<float, 4>({67, 3, 4, 3}, 98).view(), 0.5, options);
+    expect_same_bytes<float>(coarse_noise<double, 4>(Grid<4>::unit({9, 4, 3, 4}), 99, 2).view(), 0.5, options);
+  }
+}
+
 TEST(SameBytes, OfManyBatchesOfRows) {
   expect_same_bytes<float>(noise<float, 2>({600, 2000}, 91).view(), 0.5, {});
   expect_same_bytes<float>(noise<float, 3>(80, 92).view(), 0.5, {});
