@@ -156,7 +156,8 @@ TEST(Scrubber, RefusesWhatIsNotFiniteAndStopsWhenAsked) {
   expect_error(ErrorCode::Cancelled, "cancelled",
                [&] { const Scrubber<3, double> none(contour, Vector<3>::Unit(2), options); });
   contour.vertices[1][2] = nan;
-  expect_error(ErrorCode::InvalidArgument, "a coordinate of vertex 1 is nan", [&] { const Scrubber<3, double> none(contour); });
+  expect_error(ErrorCode::InvalidArgument, "a coordinate of vertex 1 is nan",
+               [&] { const Scrubber<3, double> none(contour); });
 }
 
 }  // namespace
