@@ -23,9 +23,12 @@ class LevelSweep {
   }
 
   LevelSweepResult run() {
-    std::vector<std::uint32_t> links(graph_.links.size());
-    for (std::uint32_t i = 0; i < links.size(); ++i) links[i] = i;
-    if (!events_.empty()) descend(1, 0, leaves_, links);
+    waiting_.reserve(2 * graph_.links.size());
+    for (const SeedLink& link : graph_.links) {
+      const auto [from, to] = span(link.first, link.end);
+      waiting_.push_back({link.a, link.b, from, to});
+    }
+    if (!events_.empty()) descend(1, 0, leaves_, 0);
     std::sort(result_.picked.begin(), result_.picked.end());
     return std::move(result_);
   }
@@ -67,6 +70,11 @@ class LevelSweep {
       const std::uint32_t gone = span(link.first, link.end).second;
       if (gone < tree_span(link.a).second) events_.emplace_back(gone, link.a);
       if (gone < tree_span(link.b).second) events_.emplace_back(gone, link.b);
+    }
+    for (const PickedElsewhere& pick : options_.elsewhere) {
+      const auto [first, gone] = span(pick.first, pick.end);
+      mark_levels(pick.tree, first, gone);
+      if (gone < tree_span(pick.tree).second) events_.emplace_back(gone, pick.tree);
     }
     std::sort(events_.begin(), events_.end());
     events_.erase(std::unique(events_.begin(), events_.end()), events_.end());
@@ -123,29 +131,36 @@ class LevelSweep {
     }
   }
 
-  /// Node `node` has levels first ... end - 1; `links` are all that have some of them and were not joined above.
-  void descend(std::size_t node, std::uint32_t first, std::uint32_t end, const std::vector<std::uint32_t>& links) {
+  /// Node `node` has levels first ... end - 1; links from `links` on in `waiting_` are all that have some of them and
+  /// were not joined above. Puts nothing there that stays.
+  void descend(std::size_t node, std::uint32_t first, std::uint32_t end, std::size_t links) {
     if (next_event_ == events_.size() || events_[next_event_].first >= end) return;
     const std::size_t before = undo_.size();
-    std::vector<std::uint32_t> rest;
-    for (const std::uint32_t i : links) {
-      const SeedLink& link = graph_.links[i];
-      const auto [from, to] = span(link.first, link.end);
-      if (from <= first && end <= to)
+    const std::size_t links_end = waiting_.size();
+    for (std::size_t i = links; i < links_end; ++i) {
+      const SeedLink link = waiting_[i];
+      if (link.first <= first && end <= link.end)
         join(link.a, link.b);
-      else if (from < end && first < to)
-        rest.push_back(i);
+      else if (link.first < end && first < link.end)
+        waiting_.push_back(link);
     }
-    // Ends that are joined here are so for all levels of the node.
-    std::erase_if(rest, [&](std::uint32_t i) { return find(graph_.links[i].a) == find(graph_.links[i].b); });
+    // Sets that are joined here are so for all levels of the node: further down a link need only know these, and none
+    // that joins a set to itself.
+    std::size_t kept = links_end;
+    for (std::size_t i = links_end; i < waiting_.size(); ++i) {
+      const SeedLink link{find(waiting_[i].a), find(waiting_[i].b), waiting_[i].first, waiting_[i].end};
+      if (link.a != link.b) waiting_[kept++] = link;
+    }
+    waiting_.resize(kept);
     for (const std::uint32_t tree : picks_of_node_[node]) mark_picked(tree);
     if (end - first == 1) {
       visit(first);
     } else {
       const std::uint32_t middle = first + (end - first) / 2;
-      descend(2 * node, first, middle, rest);
-      descend(2 * node + 1, middle, end, rest);
+      descend(2 * node, first, middle, links_end);
+      descend(2 * node + 1, middle, end, links_end);
     }
+    waiting_.resize(links_end);
     undo_to(before);
   }
 
@@ -171,8 +186,10 @@ class LevelSweep {
   /// At this level, and at those to come.
   void pick(std::uint32_t tree, std::uint32_t level) {
     mark_picked(tree);
-    const std::uint32_t end = tree_span(tree).second;
-    std::size_t low = std::size_t{leaves_} + level + 1;
+    mark_levels(tree, level + 1, tree_span(tree).second);
+  }
+  void mark_levels(std::uint32_t tree, std::uint32_t first, std::uint32_t end) {
+    std::size_t low = std::size_t{leaves_} + first;
     std::size_t high = std::size_t{leaves_} + end;
     for (; low < high; low /= 2, high /= 2) {
       if (low % 2 == 1) picks_of_node_[low++].push_back(tree);
@@ -188,6 +205,7 @@ class LevelSweep {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> events_;  ///< level, tree; ascending
   std::size_t next_event_ = 0;
   std::vector<Undo> undo_;
+  std::vector<SeedLink> waiting_;  ///< of the nodes on the way to the one at hand, in the levels that the sweep meets
   LevelSweepResult result_;
 };
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "seed_graph.hpp"
@@ -18,16 +19,26 @@ namespace tegl::detail {
 
 enum class SweepDirection { up, down };
 
+inline SweepDirection opposite(SweepDirection direction) noexcept {
+  return direction == SweepDirection::up ? SweepDirection::down : SweepDirection::up;
+}
+
 enum class SweepPick {
   farthest,  ///< of a component without picks, the tree that is active for longest from there on
   all,       ///< all of its trees: then each time is a component that shares no tree with the others, a packing
 };
 
+/// Levels first ... end - 1 at which a tree's component has a pick that the graph does not show.
+struct PickedElsewhere {
+  std::uint32_t tree, first, end;
+};
+
 struct LevelSweepOptions {
   SweepDirection direction = SweepDirection::up;
   SweepPick pick = SweepPick::farthest;
-  /// Of each tree, whether it may be picked; null: all may. They have to meet every component.
+  /// Of each tree, whether it may be picked; null: all may. Components without any get none.
   const std::vector<bool>* allowed = nullptr;
+  std::span<const PickedElsewhere> elsewhere;  ///< these components need no pick
   Progress progress;
 };
 

@@ -12,15 +12,22 @@ namespace tegl::detail {
 
 namespace {
 
+constexpr int kMostSparing = 8;  ///< sweeps, of which the last ones gain least
+
 /// Sweeps among `picked` alone, up and down in turn, as long as picks can be spared.
-std::vector<std::uint32_t> spare(const SeedGraph& graph, std::vector<std::uint32_t> picked, SweepDirection last) {
+std::vector<std::uint32_t> spare(const SeedGraph& graph, std::vector<std::uint32_t> picked, SweepDirection last,
+                                 const Progress& progress) {
   std::vector<bool> allowed(graph.roots.size());
-  for (int in_vain = 0; in_vain < 2;) {
+  for (int sweep = 0, in_vain = 0; in_vain < 2 && sweep < kMostSparing; ++sweep) {
     std::fill(allowed.begin(), allowed.end(), false);
     for (const std::uint32_t tree : picked) allowed[tree] = true;
-    last = last == SweepDirection::up ? SweepDirection::down : SweepDirection::up;
-    auto fewer =
-        sweep_levels(graph, {.direction = last, .pick = SweepPick::farthest, .allowed = &allowed, .progress = {}});
+    last = opposite(last);
+    auto fewer = sweep_levels(
+        graph, {.direction = last,
+                .pick = SweepPick::farthest,
+                .allowed = &allowed,
+                .elsewhere = {},
+                .progress = part_of(progress, sweep / double{kMostSparing}, (sweep + 1) / double{kMostSparing})});
     in_vain = fewer.picked.size() < picked.size() ? 0 : in_vain + 1;
     if (fewer.picked.size() < picked.size()) picked = std::move(fewer.picked);
   }
@@ -114,7 +121,11 @@ class Whole2 {
 
 SeedCover cover_components(const SeedGraph& graph, const Progress& progress) {
   const auto sweep = [&](SweepDirection direction, SweepPick pick, double done) {
-    return sweep_levels(graph, {.direction = direction, .pick = pick, .progress = part_of(progress, done, done + 0.2)});
+    return sweep_levels(graph, {.direction = direction,
+                                .pick = pick,
+                                .allowed = nullptr,
+                                .elsewhere = {},
+                                .progress = part_of(progress, done, done + 0.2)});
   };
   SeedCover cover;
   // Where cover and bound meet nothing is left to be gained, and that is often so at once.
@@ -128,7 +139,8 @@ SeedCover cover_components(const SeedGraph& graph, const Progress& progress) {
   const bool fewer = other.size() < cover.trees.size();
   if (fewer) cover.trees.swap(other);
   if (cover.trees.size() == cover.bound) return cover;
-  cover.trees = spare(graph, std::move(cover.trees), fewer ? SweepDirection::down : SweepDirection::up);
+  cover.trees = spare(graph, std::move(cover.trees), fewer ? SweepDirection::down : SweepDirection::up,
+                      part_of(progress, 0.8, 1.0));
   return cover;
 }
 
@@ -138,7 +150,7 @@ std::uint64_t pack_components(const SeedGraph& graph, const Progress& progress) 
   for (const SweepDirection direction : {SweepDirection::up, SweepDirection::down}) {
     const auto part = part_of(progress, done, done + 0.5);
     most =
-        std::max(most, sweep_levels(graph, {.direction = direction, .pick = SweepPick::all, .progress = part}).times);
+        std::max(most, sweep_levels(graph, {.direction = direction, .pick = SweepPick::all, .allowed = nullptr, .elsewhere = {}, .progress = part}).times);
     done += 0.5;
   }
   return most;

@@ -37,7 +37,7 @@ class GraphMaker {
     std::vector<KeyLink<Key>> links;
     if (options_.with_links) links = collect_links();
     report_progress(options_.progress, 0.8);
-    put_in_levels(map_, links, graph_);
+    put_in_levels(map_, links, {}, graph_);
     return std::move(graph_);
   }
 

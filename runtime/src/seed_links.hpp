@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -26,10 +27,13 @@ struct KeyLink {
 template <class Key>
 class LinkCollector {
  public:
-  LinkCollector() : recent_(kRecent, Link{0, 0, 0, 0}) {}
+  /// Keeps about so many at hand, but not more than stay near the processor.
+  explicit LinkCollector(std::size_t at_hand = kMostAtHand)
+      : recent_(std::bit_ceil(std::clamp<std::size_t>(at_hand, 64, kMostAtHand)), Link{0, 0, 0, 0}),
+        shift_(static_cast<unsigned>(32 - std::countr_zero(recent_.size()))) {}
 
   void add(const KeyLink<Key>& link) {
-    Link& recent = recent_[(link.a * 0x9e3779b1u ^ link.b * 0x85ebca6bu) >> kShift];
+    Link& recent = recent_[(link.a * 0x9e3779b1u ^ link.b * 0x85ebca6bu) >> shift_];
     const bool one = recent.a == link.a && recent.b == link.b && recent.least <= link.greatest &&
                      link.least <= recent.greatest && recent.least != recent.greatest;
     if (one) {
@@ -47,8 +51,7 @@ class LinkCollector {
 
  private:
   using Link = KeyLink<Key>;
-  static constexpr std::size_t kRecent = 1u << 13;
-  static constexpr unsigned kShift = 19;
+  static constexpr std::size_t kMostAtHand = std::size_t{1} << 13;
 
   void keep(const Link& link) {
     if (link.least == link.greatest) return;
@@ -74,6 +77,7 @@ class LinkCollector {
 
   static constexpr std::size_t kMostUnsorted = std::size_t{1} << 22;
   std::vector<Link> recent_;
+  unsigned shift_;
   std::vector<Link> links_;
   std::size_t wanted_ = kMostUnsorted;
 };
@@ -85,32 +89,50 @@ class Levels {
   Levels(std::vector<Key> keys) : keys_(std::move(keys)) {
     std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+    if (keys_.empty()) return;
+    const auto all = static_cast<std::uint64_t>(keys_.back() - keys_.front());
+    const auto wanted = static_cast<int>(std::bit_width(keys_.size()));
+    shift_ = std::max(0, static_cast<int>(std::bit_width(all)) - wanted);
+    first_.resize((all >> shift_) + 2, static_cast<std::uint32_t>(keys_.size()));
+    for (std::size_t i = keys_.size(); i-- > 0;) first_[bucket(keys_[i])] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = first_.size() - 1; i-- > 0;) first_[i] = std::min(first_[i], first_[i + 1]);
   }
+  /// Of a key that occurs.
   [[nodiscard]] std::uint32_t operator[](Key key) const noexcept {
-    return static_cast<std::uint32_t>(std::lower_bound(keys_.begin(), keys_.end(), key) - keys_.begin());
+    const std::size_t at = bucket(key);
+    return static_cast<std::uint32_t>(
+        std::lower_bound(keys_.begin() + first_[at], keys_.begin() + first_[at + 1], key) - keys_.begin());
   }
   [[nodiscard]] std::uint32_t count() const noexcept {
     return keys_.empty() ? 0 : static_cast<std::uint32_t>(keys_.size() - 1);
   }
 
  private:
+  [[nodiscard]] std::size_t bucket(Key key) const noexcept {
+    return static_cast<std::size_t>(static_cast<std::uint64_t>(key - keys_.front()) >> shift_);
+  }
+
   std::vector<Key> keys_;
+  int shift_ = 0;
+  std::vector<std::uint32_t> first_;  ///< key of a bucket, as many as there are keys or so
 };
 
-/// Gives a graph that has roots their levels, and links.
+/// Gives a graph that has roots their levels, and links. Ends of `others` are levels too.
 template <class Key>
-void put_in_levels(const RangeMap<Key>& map, const std::vector<KeyLink<Key>>& links, SeedGraph& graph) {
+Levels<Key> put_in_levels(const RangeMap<Key>& map, const std::vector<KeyLink<Key>>& links,
+                          const std::vector<KeyLink<Key>>& others, SeedGraph& graph) {
   std::vector<Key> keys;
-  keys.reserve(2 * (graph.roots.size() + links.size()));
+  keys.reserve(2 * (graph.roots.size() + links.size() + others.size()));
   for (const Place root : graph.roots) {
     keys.push_back(map.least[root]);
     keys.push_back(map.greatest[root]);
   }
-  for (const auto& link : links) {
-    keys.push_back(link.least);
-    keys.push_back(link.greatest);
-  }
-  const Levels<Key> levels(std::move(keys));
+  for (const auto* some : {&links, &others})
+    for (const auto& link : *some) {
+      keys.push_back(link.least);
+      keys.push_back(link.greatest);
+    }
+  Levels<Key> levels(std::move(keys));
   graph.levels = levels.count();
   for (const Place root : graph.roots) {
     graph.first.push_back(levels[map.least[root]]);
@@ -119,6 +141,7 @@ void put_in_levels(const RangeMap<Key>& map, const std::vector<KeyLink<Key>>& li
   graph.links.reserve(links.size());
   for (const auto& link : links) graph.links.push_back({link.a, link.b, levels[link.least], levels[link.greatest]});
   merge_links(graph.links);
+  return levels;
 }
 
 }  // namespace tegl::detail

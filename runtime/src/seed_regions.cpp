@@ -61,7 +61,7 @@ class Widths {
   }
 
  private:
-  static constexpr std::uint64_t kBins = std::uint64_t{1} << 20;
+  static constexpr std::uint64_t kBins = std::uint64_t{1} << 16;  // stays near the processor
   [[nodiscard]] std::size_t bin(Key key) const noexcept {
     if (key <= least_) return 0;
     return std::min(static_cast<std::uint64_t>(key - least_) >> shift_, last_);
@@ -82,17 +82,24 @@ class Ownership {
   [[nodiscard]] bool has(std::uint32_t i) const noexcept { return parts_of_[i] != kNone; }
 
   /// What is asked next may be covered by i from `least` to `greatest`, in which it has that range at least.
-  void offer(std::uint32_t i, Key least, Key greatest) { offers_.push_back({least, greatest, parts_of_[i]}); }
+  void offer(std::uint32_t i, Key least, Key greatest) {
+    lowest_ = std::min(lowest_, least);
+    highest_ = std::max(highest_, greatest);
+    offers_.push_back({least, greatest, parts_of_[i]});
+  }
   /// Whether the offers cover i: then it belongs to whom these belong to; otherwise to itself. Forgets the offers.
   bool give_up(std::uint32_t i, Key least, Key greatest) {
     const std::uint64_t first = parts_.size();
     parts_of_[i] = first;
-    const bool covered = divide(least, greatest, first);
+    // Most that are not covered are not so at an end.
+    const bool covered = lowest_ <= least && greatest <= highest_ && divide(least, greatest, first);
     if (!covered) {
       parts_.resize(first);
       parts_.push_back({greatest, i});
     }
     offers_.clear();
+    lowest_ = std::numeric_limits<Key>::max();
+    highest_ = 0;
     return covered;
   }
   /// Not given up.
@@ -174,13 +181,8 @@ class Ownership {
   std::vector<std::uint64_t> parts_of_;  ///< where they start; the last one ends with the range
   std::vector<Part> parts_;
   std::vector<Offer> offers_;
-};
-
-/// Trees, in the order of their numbers, and links between them, which may overlap.
-template <class Key>
-struct Regions {
-  std::vector<Place> roots;
-  std::vector<KeyLink<Key>> links;
+  Key lowest_ = std::numeric_limits<Key>::max();  ///< of the offers
+  Key highest_ = 0;
 };
 
 /// Numbers in the order of their classes, those of a class in the order in which they come: a counting sort.
@@ -219,7 +221,7 @@ class Coarsening {
       coarse_.roots.push_back(fine.roots[tree]);
       if (tree < loose) ++loose_;
     }
-    LinkCollector<Key> collector;
+    LinkCollector<Key> collector(fine.links.size() / 2);
     for (const KeyLink<Key>& link : fine.links)
       owners_.add_links(
           link.a, link.b, link.least, link.greatest, [&](std::uint32_t tree) { return number_[tree]; }, collector);
@@ -236,32 +238,49 @@ class Coarsening {
   }
 
  private:
+  /// A link, as one of its ends has it.
+  struct Neighbour {
+    std::uint32_t tree;
+    Key least, greatest;
+  };
+
+  /// Neighbours of trees before `loose`, tree by tree, and where each tree's start.
+  static std::pair<std::vector<Neighbour>, std::vector<std::size_t>> find_neighbours(const Regions<Key>& fine,
+                                                                                     std::size_t loose) {
+    std::vector<std::size_t> first_of(loose + 2);
+    for (const KeyLink<Key>& link : fine.links) {
+      if (link.a < loose) ++first_of[link.a + 2];
+      if (link.b < loose) ++first_of[link.b + 2];
+    }
+    for (std::size_t i = 2; i < first_of.size(); ++i) first_of[i] += first_of[i - 1];
+    std::vector<Neighbour> neighbours(first_of.back());
+    for (const KeyLink<Key>& link : fine.links) {
+      if (link.a < loose) neighbours[first_of[link.a + 1]++] = {link.b, link.least, link.greatest};
+      if (link.b < loose) neighbours[first_of[link.b + 1]++] = {link.a, link.least, link.greatest};
+    }
+    return {std::move(neighbours), std::move(first_of)};
+  }
+
   void give_up(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, std::size_t loose,
                unsigned round) {
-    const auto both_ends = [&](const auto& visit) {
-      for (std::uint32_t i = 0; i < fine.links.size(); ++i) {
-        if (fine.links[i].a < loose) visit(i, fine.links[i].a);
-        if (fine.links[i].b < loose) visit(i, fine.links[i].b);
-      }
-    };
-    const std::vector<std::uint32_t> links_of = sort_by_class(loose, both_ends);
-    std::vector<std::size_t> first_of(loose + 1);
-    both_ends([&](std::uint32_t, std::uint32_t tree) { ++first_of[tree + 1]; });
-    for (std::size_t i = 0; i < loose; ++i) first_of[i + 1] += first_of[i];
+    const auto [neighbours, first_of] = find_neighbours(fine, loose);
     given_up_.resize(loose);
+    std::vector<std::uint8_t> classes;
     for (std::size_t first = 0; first < loose; first += kTreesAtOnce) {
+      const std::size_t end = std::min(loose, first + kTreesAtOnce);
+      classes.clear();
+      for (std::size_t i = first; i < end; ++i) {
+        const Place root = fine.roots[i];
+        const std::size_t of_width = widths.class_of(map.least[root], map.greatest[root]);
+        classes.push_back(static_cast<std::uint8_t>(8 * of_width + half_of(static_cast<std::uint32_t>(i), round)));
+      }
       const auto order = sort_by_class(8 * Widths<Key>::kClasses, [&](const auto& visit) {
-        for (std::size_t i = first; i < std::min(loose, first + kTreesAtOnce); ++i) {
-          const Place root = fine.roots[i];
-          const auto tree = static_cast<std::uint32_t>(i);
-          visit(tree, 8 * widths.class_of(map.least[root], map.greatest[root]) + half_of(tree, round));
-        }
+        for (std::size_t i = first; i < end; ++i) visit(static_cast<std::uint32_t>(i), classes[i - first]);
       });
       for (const std::uint32_t tree : order) {
         for (std::size_t i = first_of[tree]; i < first_of[tree + 1]; ++i) {
-          const KeyLink<Key>& link = fine.links[links_of[i]];
-          const std::uint32_t other = link.a == tree ? link.b : link.a;
-          if (owners_.has(other)) owners_.offer(other, link.least, link.greatest);
+          const Neighbour& other = neighbours[i];
+          if (owners_.has(other.tree)) owners_.offer(other.tree, other.least, other.greatest);
         }
         const Place root = fine.roots[tree];
         given_up_[tree] = owners_.give_up(tree, map.least[root], map.greatest[root]) ? 1 : 0;
@@ -402,7 +421,7 @@ class RegionMaker {
 
   /// Links of the block's tiles to each other and to those of blocks before; numbers the trees of these.
   void link(const Block& block, std::uint64_t mark, Regions<Key>& trees) {
-    LinkCollector<Key> collector;
+    LinkCollector<Key> collector(block.tiles.size() / 2);
     const auto number = [&](Place root) {
       if (number_[root] == kNoNumber) {
         trees.roots.push_back(root);
@@ -476,8 +495,7 @@ class RegionMaker {
 }  // namespace
 
 template <class Key>
-SeedGraph make_region_graph(const RangeMap<Key>& map, Neighbourhood neighbourhood, std::size_t most_links,
-                            const Progress& progress) {
+Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, const Progress& progress) {
   const Widths<Key> widths(map);
   report_progress(progress, 0.1);
   const Progress of_tiles = part_of(progress, 0.1, 0.7);
@@ -489,15 +507,12 @@ SeedGraph make_region_graph(const RangeMap<Key>& map, Neighbourhood neighbourhoo
     if (regions.roots.size() > before - before / 32) break;
   }
   report_progress(progress, 0.9);
-  SeedGraph graph;
-  graph.roots = std::move(regions.roots);
-  if (regions.links.size() <= most_links) put_in_levels(map, regions.links, graph);
-  return graph;
+  return regions;
 }
 
-template SeedGraph make_region_graph(const RangeMap<std::uint8_t>&, Neighbourhood, std::size_t, const Progress&);
-template SeedGraph make_region_graph(const RangeMap<std::uint16_t>&, Neighbourhood, std::size_t, const Progress&);
-template SeedGraph make_region_graph(const RangeMap<std::uint32_t>&, Neighbourhood, std::size_t, const Progress&);
-template SeedGraph make_region_graph(const RangeMap<std::uint64_t>&, Neighbourhood, std::size_t, const Progress&);
+template Regions<std::uint8_t> make_regions(const RangeMap<std::uint8_t>&, Neighbourhood, const Progress&);
+template Regions<std::uint16_t> make_regions(const RangeMap<std::uint16_t>&, Neighbourhood, const Progress&);
+template Regions<std::uint32_t> make_regions(const RangeMap<std::uint32_t>&, Neighbourhood, const Progress&);
+template Regions<std::uint64_t> make_regions(const RangeMap<std::uint64_t>&, Neighbourhood, const Progress&);
 
 }  // namespace tegl::detail

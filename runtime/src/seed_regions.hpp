@@ -5,17 +5,29 @@
 // part of it, wide tiles last. What is left are fewer trees by far, with the same components at every isovalue.
 #pragma once
 
+#include <vector>
+
 #include "seed_graph.hpp"
+#include "seed_links.hpp"
 
 namespace tegl::detail {
 
-/// As make_seed_graph, with all links, in any order of the axes. Each tile belongs, from part to part of its range, to
-/// trees that are active there; links are between those of neighbours. So a component of the graph is a component of
-/// tiles, and a set of roots that meets all components of the graph is a seed set; a smallest one may be larger than
-/// one of all tiles. Without levels and links if there are more of these than `most_links`: hardly a root can be spared
-/// then. Near linear: a tile is looked at a few times, and what is left is fewer by half or more from round to round.
+/// Trees, in the order of their numbers, and links between them, which may overlap. Each tile belongs, from part to
+/// part of its range, to trees that are active there; links are between those of neighbours. So a component of trees
+/// and links is a component of tiles, and a set of roots that meets all of the former is a seed set; a smallest one may
+/// be larger than one of all tiles.
 template <class Key>
-SeedGraph make_region_graph(const RangeMap<Key>& map, Neighbourhood neighbourhood, std::size_t most_links,
-                            const Progress& progress);
+struct Regions {
+  std::vector<Place> roots;
+  std::vector<KeyLink<Key>> links;
+};
+
+/// Near linear: a tile is looked at a few times, and what is left is fewer by half or more from round to round.
+template <class Key>
+Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, const Progress& progress);
+
+/// Roots that meet all components. Linear in links: trees with numbers in a row are chosen from at a time.
+template <class Key>
+std::vector<Place> cover_regions(const RangeMap<Key>& map, const Regions<Key>& regions, const Progress& progress);
 
 }  // namespace tegl::detail

@@ -120,13 +120,11 @@ class SeedFinder {
         return places(*graph, cover.trees);
       }
     stats_.reduced = true;
-    const auto graph = detail::make_region_graph(map_, options_.neighbourhood, kMostLinks, after(progress_, 0.0, 0.8));
-    if (graph.links.empty()) return graph.roots;
-    return places(graph, detail::cover_components(graph, after(progress_, 0.8, 1.0)).trees);
+    const auto regions = detail::make_regions(map_, options_.neighbourhood, after(progress_, 0.0, 0.8));
+    return detail::cover_regions(map_, regions, after(progress_, 0.8, 1.0));
   }
 
   static constexpr std::uint64_t kMostTilesCounted = std::uint64_t{1} << 20;
-  static constexpr std::size_t kMostLinks = std::size_t{1} << 20;
 
   const detail::RangeMap<Key>& map_;
   const SeedSetOptions& options_;
