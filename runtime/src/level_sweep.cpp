@@ -180,6 +180,8 @@ class LevelSweep {
         } while (tree != set);
       }
     }
+    if (level < next_report_) return;
+    next_report_ = level + std::max(1u, leaves_ / 1024);
     report_progress(options_.progress, static_cast<double>(level) / static_cast<double>(leaves_));
   }
 
@@ -204,6 +206,7 @@ class LevelSweep {
   std::vector<std::vector<std::uint32_t>> picks_of_node_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> events_;  ///< level, tree; ascending
   std::size_t next_event_ = 0;
+  std::uint32_t next_report_ = 0;  ///< level
   std::vector<Undo> undo_;
   std::vector<SeedLink> waiting_;  ///< of the nodes on the way to the one at hand, in the levels that the sweep meets
   LevelSweepResult result_;

@@ -19,10 +19,10 @@ namespace tegl::detail {
 
 namespace {
 
-constexpr std::size_t kEnoughTrees = std::size_t{1} << 13;  ///< a cover of so many is found at once
+constexpr std::size_t kEnoughTrees = std::size_t{1} << 15;  ///< a cover of so many is found at once
 constexpr std::size_t kTreesAtOnce = std::size_t{1} << 14;
 constexpr unsigned kMostRounds = 16;
-constexpr unsigned kMostRoundsOfBlocks = 8;
+constexpr unsigned kMostRoundsOfBlocks = 3;
 
 /// How wide ranges are, counted in ends of ranges of a sample: so the order does not depend on the scale of the values.
 template <class Key>
@@ -308,7 +308,10 @@ class RegionMaker {
         progress_(progress),
         neighbours_(map.tiles.neighbours(neighbourhood)),
         owners_(map.tiles.room()),
-        number_(map.tiles.room()) {}
+        number_(map.tiles.room()) {
+    for (const std::ptrdiff_t distance : neighbours_)
+      if (distance > 0) ahead_.push_back(distance);
+  }
 
   Regions<Key> make() {
     for_blocks([&](const Block& block) { add(block); });
@@ -329,6 +332,7 @@ class RegionMaker {
     std::vector<std::uint32_t> border;  ///< of `tiles`
   };
   static constexpr std::uint32_t kNoNumber = 0;  ///< others are one more than in a block
+  static constexpr std::uint32_t kKept = 1, kGone = 2;  ///< of tiles of the block, before trees are numbered
 
   template <class Visit>
   void for_blocks(const Visit& visit) const {
@@ -403,12 +407,87 @@ class RegionMaker {
       for (std::size_t i = 0; i < block.tiles.size(); ++i) visit(block.tiles[i], classes_[i]);
     });
     for (const Place tile : order)
-      if (!is_given_up(tile)) number_[tile] = 1;
+      if (!is_given_up(tile)) number_[tile] = kKept;
+    give_up_again(order);
     for (const Place tile : block.tiles) {
-      if (number_[tile] == kNoNumber) continue;
+      if (number_[tile] != kKept) {
+        number_[tile] = kNoNumber;
+        continue;
+      }
       trees.roots.push_back(tile);
       number_[tile] = static_cast<std::uint32_t>(trees.roots.size());
     }
+  }
+  /// Calls visit(root, end) for those that a tile belongs to, from below, now that some have gone.
+  template <class Visit>
+  void for_roots(Place tile, Key level, Key end, const Visit& visit) const {
+    owners_.for_owners(tile, level, end, [&](Place owner, Key to) {
+      if (number_[owner] == kGone)
+        for_roots(owner, level, to, visit);
+      else
+        visit(owner, to);
+      level = to;
+    });
+  }
+  /// Narrow ones first: those that were kept, and that tiles given up later have between them.
+  void give_up_again(const std::vector<Place>& order) {
+    bool any = false;
+    for (auto tile = order.rbegin(); tile != order.rend(); ++tile) {
+      if (number_[*tile] != kKept || !is_covered_by_others(*tile)) continue;
+      owners_.set(*tile, parts_);
+      number_[*tile] = kGone;
+      any = true;
+    }
+    if (!any) return;
+    for (const Place tile : order) {
+      bool stays = true;
+      owners_.for_owners(tile, map_.least[tile], map_.greatest[tile],
+                         [&](Place owner, Key) { stays = stays && number_[owner] != kGone; });
+      if (stays) continue;
+      parts_.clear();
+      for_roots(tile, map_.least[tile], map_.greatest[tile], [&](Place root, Key end) {
+        if (!parts_.empty() && parts_.back().first == root)
+          parts_.back().second = end;
+        else
+          parts_.emplace_back(root, end);
+      });
+      owners_.set(tile, parts_);
+    }
+  }
+  /// Then `parts_` are those that have it.
+  bool is_covered_by_others(Place tile) {
+    const Key least = map_.least[tile];
+    const Key greatest = map_.greatest[tile];
+    offered_.clear();
+    Key lowest = greatest, highest = least;
+    for (const std::ptrdiff_t distance : neighbours_) {
+      const auto other = static_cast<Place>(tile + distance);
+      if (!owners_.has(other) || !map_.overlap(tile, other)) continue;
+      Key from = std::max(least, map_.least[other]);
+      for_roots(other, from, std::min(greatest, map_.greatest[other]), [&](Place root, Key to) {
+        if (root != tile) {
+          offered_.push_back({root, 0, from, to});
+          lowest = std::min(lowest, from);
+          highest = std::max(highest, to);
+        }
+        from = to;
+      });
+    }
+    if (lowest > least || highest < greatest) return false;
+    parts_.clear();
+    for (Key level = least; level < greatest;) {
+      Key farthest = level;
+      Place by = tile;
+      for (const KeyLink<Key>& offer : offered_)
+        if (offer.least <= level && offer.greatest > farthest) {
+          farthest = offer.greatest;
+          by = offer.a;
+        }
+      if (by == tile) return false;
+      parts_.emplace_back(by, farthest);
+      level = farthest;
+    }
+    return true;
   }
   bool is_given_up(Place tile) {
     for (const std::ptrdiff_t distance : neighbours_) {
@@ -433,13 +512,18 @@ class RegionMaker {
       const Place tile = block.tiles[i];
       owners_.for_owners(tile, map_.least[tile], map_.greatest[tile], [&](Place root, Key) { number(root); });
     }
+    const auto add_links = [&](Place tile, Place other) {
+      if (map_.overlap(tile, other))
+        owners_.add_links(tile, other, std::max(map_.least[tile], map_.least[other]),
+                          std::min(map_.greatest[tile], map_.greatest[other]), number, collector);
+    };
     for (const Place tile : block.tiles)
-      for (const std::ptrdiff_t distance : neighbours_) {
-        const auto other = static_cast<Place>(tile + distance);
-        const bool once = owners_.has(other) && (distance > 0 || !owners_.since(mark, other));
-        if (once && map_.overlap(tile, other))
-          owners_.add_links(tile, other, std::max(map_.least[tile], map_.least[other]),
-                            std::min(map_.greatest[tile], map_.greatest[other]), number, collector);
+      for (const std::ptrdiff_t distance : ahead_)
+        if (const auto other = static_cast<Place>(tile + distance); owners_.has(other)) add_links(tile, other);
+    for (const std::uint32_t i : block.border)
+      for (const std::ptrdiff_t distance : ahead_) {
+        const auto other = static_cast<Place>(block.tiles[i] - distance);
+        if (owners_.has(other) && !owners_.since(mark, other)) add_links(block.tiles[i], other);
       }
     trees.links = collector.take();
   }
@@ -486,9 +570,12 @@ class RegionMaker {
   const Widths<Key>& widths_;
   const Progress& progress_;
   std::vector<std::ptrdiff_t> neighbours_;
+  std::vector<std::ptrdiff_t> ahead_;  ///< of these one of each pair
   Ownership<Key> owners_;
   std::vector<std::uint32_t> number_;  ///< of a root's tree in the block at hand
   std::vector<std::uint8_t> classes_;
+  std::vector<KeyLink<Key>> offered_;  ///< a: by which root
+  std::vector<std::pair<Place, Key>> parts_;
   Regions<Key> regions_;
 };
 
