@@ -23,6 +23,7 @@
 #include "memory.hpp"
 #include "tegl/active_tiles_io.hpp"
 #include "timing.hpp"
+#include "usage.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -125,7 +126,10 @@ OwnedImage<float, 3> few_balls(std::size_t n) {
   return image;
 }
 
+constexpr const char* kUsage = "active_tiles_bench [--queries N] [--csv FILE] IMAGE|balls:N ...";
+
 int run(int argc, char** argv) {
+  if (tells_usage(argc, argv, kUsage)) return 0;
   int queries = 256;
   std::FILE* csv = nullptr;
   std::vector<std::string> files;
@@ -137,11 +141,14 @@ int run(int argc, char** argv) {
     else if (argument == "--csv" && more) {
       csv = std::fopen(argv[++i], "w");
       if (csv == nullptr) throw std::system_error(errno, std::generic_category(), argv[i]);
-    } else
+    } else if (argument.rfind("--", 0) == 0) {
+      throw Error(ErrorCode::InvalidArgument, fmt::format("'{}'; expected {}", argument, kUsage));
+    } else {
       files.push_back(argument);
+    }
   }
   if (files.empty()) {
-    fmt::print(stderr, "usage: active_tiles_bench [--queries N] [--csv FILE] IMAGE|balls:N ...\n");
+    fmt::print(stderr, "usage: {}\n", kUsage);
     return 2;
   }
   if (csv != nullptr) fmt::print(csv, "image,method,isovalue,active_tiles,find_seconds,extract_seconds\n");

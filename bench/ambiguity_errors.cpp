@@ -13,6 +13,7 @@
 #include "support/random_fields.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -47,6 +48,10 @@ void measure(const char* name, std::size_t count, std::size_t samples, bool padd
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv,
+                               "ambiguity_errors [FIELDS [CELLS]]: contours of noise that have another topology than "
+                               "the interpolant's, as CSV"))
+    return 0;
   const std::size_t fields = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10'000;
   const std::size_t cells = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 10 * fields;
   std::printf("fields,count,ambiguity,wrong,percent,not manifold\n");

@@ -15,6 +15,7 @@
 #include "run.hpp"
 #include "tegl/check.hpp"
 #include "tegl/slice.hpp"
+#include "usage.hpp"
 
 /// The function that is counted: by a C name, so that it can be found; and no tail call, which would leave it before
 /// the work begins.
@@ -173,8 +174,10 @@ int run(const std::string& name) {
 
 int main(int argc, char** argv) {
   try {
+    constexpr const char* kUsage = "instruction_bench --list | --list-large | NAME";
+    if (tegl::bench::tells_usage(argc, argv, kUsage)) return 0;
     if (argc == 2) return tegl::bench::run(argv[1]);
-    std::fprintf(stderr, "usage: instruction_bench --list | --list-large | NAME\n");
+    std::fprintf(stderr, "usage: %s\n", kUsage);
     return 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "instruction_bench: %s\n", error.what());

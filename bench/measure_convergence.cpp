@@ -10,6 +10,7 @@
 #include "support/fields.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/measure.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -50,7 +51,9 @@ void measure_expanding_ball(const std::vector<std::size_t>& tiles) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv, "measure_convergence: errors of contours by the number of tiles, as CSV"))
+    return 0;
   std::printf("field,tiles,size,content\n");
   const tegl::test::RingTube<3> torus;
   const tegl::test::TorusTube torus4;

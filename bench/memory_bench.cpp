@@ -6,8 +6,11 @@
 #include <exception>
 
 #include "bandwidth.hpp"
+#include "usage.hpp"
 
-int main() {
+int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv, "memory_bench: how fast memory is read and written, by number of threads"))
+    return 0;
   constexpr std::size_t kBytes = std::size_t{512} << 20U;
   constexpr double kGiga = 1e-9;
   try {

@@ -13,6 +13,7 @@
 
 #include "tegl/extract.hpp"
 #include "tegl/normals.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -117,7 +118,8 @@ void print_all(const std::vector<std::size_t>& sizes) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv, "normal_errors: how exact normals are, as CSV")) return 0;
   std::printf("dim,grid,samples,noise,kind,degrees\n");
   print_all<2>({17, 33, 65, 129});
   print_all<3>({17, 33, 65, 129});

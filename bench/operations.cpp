@@ -37,6 +37,7 @@
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/track.hpp"
+#include "usage.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -311,6 +312,9 @@ int run_all(std::vector<std::string> arguments) {
 }  // namespace tegl::bench
 
 int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv,
+                               "operations [--threads T] [--repetitions R] [--only TEXT] FILE ISO [FILE ISO ...]"))
+    return 0;
   try {
     return tegl::bench::run_all({argv + 1, argv + argc});
   } catch (const std::exception& error) {

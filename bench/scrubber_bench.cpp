@@ -17,6 +17,7 @@
 #include "run.hpp"
 #include "tegl/scrubber.hpp"
 #include "tegl/slice.hpp"
+#include "usage.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -96,6 +97,9 @@ void measure(std::size_t samples, std::size_t steps, int cuts) {
 }  // namespace tegl::bench
 
 int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv,
+                               "scrubber_bench [STEPS [SAMPLES [CUTS]]]: what cuts of a 4D contour by Scrubber cost"))
+    return 0;
   const auto number = [&](int i, int otherwise) { return argc > i ? std::max(2, std::atoi(argv[i])) : otherwise; };
   const auto steps = static_cast<std::size_t>(number(1, 86));
   const auto samples = static_cast<std::size_t>(number(2, 36));

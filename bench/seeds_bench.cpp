@@ -3,21 +3,26 @@
 // Seed sets: how many seeds each method finds, how many there must be, what that takes, and what it costs to pick a
 // component. Writes the tables of docs/seed-sets.md in Markdown.
 //
-//   seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] IMAGE...
+//   seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--scaling] IMAGE...
 //
-// An image "metaballs:N" is made: N^3 samples of float; "metaballs:N^D" in D dimensions. So are "gyroid", "noise", and
-// the others that bench/fields.hpp names. `--orders`: over all scan orders, the least and the most seeds. `--picks`: so
-// many components, each at a random point and an isovalue of the middle half.
-// One thread; times are those of the processor.
+// An image "metaballs:N" is made: N^3 samples of float; "metaballs:N^D" in D dimensions, "metaballs:N@uint8" of 8 bits.
+// So are "gyroid", "noise", and the others that bench/fields.hpp names, and three more: "sines" (of a wavelength of
+// about 40 samples, whatever their number), "smooth-noise" (large waves and a tenth of noise), and "plateaus" (the same
+// in 20 steps).
+// `--orders`: over all scan orders, the least and the most seeds. `--picks`: so many components, each at a random point
+// and an isovalue of the middle half. `--scaling`: images in one table, without bounds. One thread; times are those of
+// the processor, the least of `--runs`.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fields.hpp"
@@ -26,6 +31,7 @@
 #include "tegl/pick.hpp"
 #include "tegl/seed_set.hpp"
 #include "timing.hpp"
+#include "usage.hpp"
 
 namespace tegl::bench {
 namespace {
@@ -35,6 +41,8 @@ struct Arguments {
   std::vector<Neighbourhood> neighbourhoods{Neighbourhood::all};
   bool orders = false;
   int picks = 0;
+  int runs = 1;
+  bool scaling = false;
   std::vector<std::string> images;
 };
 
@@ -55,6 +63,29 @@ std::string count_seeds(const Image<T, N>& image, SeedSetOptions options, bool o
 }
 
 template <Value T, int N>
+void measure_scaling(const std::string& name, const Image<T, N>& image, const Arguments& arguments) {
+  for (const Neighbourhood neighbourhood : arguments.neighbourhoods)
+    for (const SeedMethod method : arguments.methods) {
+      SeedSetOptions options;
+      options.method = method;
+      options.neighbourhood = neighbourhood;
+      options.threads = 1;
+      SeedSetStats stats;
+      std::size_t seeds = 0;
+      reset_peak_memory();
+      const std::uint64_t before = memory_bytes("VmRSS");
+      const double seconds =
+          least_seconds([&] { seeds = find_seeds(image, options, &stats).tiles.size(); }, arguments.runs);
+      const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
+      const auto tiles = static_cast<double>(stats.tiles);
+      fmt::print("| `{}` | {} | `{}` | {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", name, neighbourhood_name(neighbourhood),
+                 seed_method_name(method), stats.tiles, seeds, seconds, 1e6 * seconds / tiles,
+                 static_cast<double>(peak) / tiles);
+      std::fflush(stdout);
+    }
+}
+
+template <Value T, int N>
 void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
   fmt::print(
       "| neighbourhood | method | seeds | bound | seconds | most memory while found |\n|---|---|---|---|---|---|\n");
@@ -67,9 +98,9 @@ void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
       const std::uint64_t before = memory_bytes("VmRSS");
       reset_peak_memory();
       SeedSetStats stats;
-      const double start = worked_seconds();
-      const std::size_t found = find_seeds(image, options, &stats).tiles.size();
-      const double seconds = worked_seconds() - start;
+      std::size_t found = 0;
+      const double seconds =
+          least_seconds([&] { found = find_seeds(image, options, &stats).tiles.size(); }, arguments.runs);
       const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
       fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", neighbourhood_name(neighbourhood),
                  seed_method_name(method), count_seeds(image, options, arguments.orders, found),
@@ -130,20 +161,77 @@ void measure_picks(const OwnedImage<T, N>& owned, int picks) {
 template <Value T, int N>
 void measure(const std::string& name, const OwnedImage<T, N>& owned, const Arguments& arguments) {
   const auto image = owned.view();
+  if (arguments.scaling) return measure_scaling(name, image, arguments);
   fmt::print("\n## {}\n\n{} samples of {} bits\n\n", name, fmt::join(image.grid().sizes(), " x "), 8 * sizeof(T));
   measure_seeds(image, arguments);
   if (arguments.picks > 0) measure_picks(owned, arguments.picks);
 }
 
+constexpr std::array<std::string_view, 3> kOwnFields = {"sines", "smooth-noise", "plateaus"};
+
+bool is_own(const std::string& name) {
+  return std::find(kOwnFields.begin(), kOwnFields.end(), name) != kOwnFields.end();
+}
+bool is_field(const std::string& name) {
+  const auto fields = field_names(3);
+  return is_own(name) || std::find(fields.begin(), fields.end(), name) != fields.end();
+}
+
+/// One of kOwnFields, or of bench/fields.hpp.
+template <int N>
+OwnedImage<float, N> make_any_field(const std::string& name, std::size_t samples) {
+  auto image = make_field<N>(name == "sines" ? "empty" : is_own(name) ? "noise" : name, samples);
+  if (!is_own(name)) return image;
+  std::array<std::size_t, N> index{};
+  for (float& value : image.values) {
+    double product = 1.0, sum = 0.0;
+    for (int a = 0; a < N; ++a) {
+      const auto x = static_cast<double>(index[a]);
+      product *= std::sin(6.28 * (a + 2) * x / static_cast<double>(samples) + a);
+      sum += std::sin(0.2 * x + 0.3 * a) * std::cos(0.13 * static_cast<double>(index[(a + 1) % N]));
+    }
+    const double noise = static_cast<double>(value);
+    value = static_cast<float>(name == "sines"      ? sum
+                               : name == "plateaus" ? std::floor(20.0 * (product + 0.05 * noise))
+                                                    : product + 0.1 * noise);
+    for (int a = 0; a < N && ++index[a] == samples; ++a) index[a] = 0;
+  }
+  return image;
+}
+
+/// Scaled to all values of a type.
+template <Value T, int N>
+OwnedImage<T, N> as_type(const OwnedImage<float, N>& image) {
+  const auto [least, greatest] = std::minmax_element(image.values.begin(), image.values.end());
+  const double scale = static_cast<double>(std::numeric_limits<T>::max()) / static_cast<double>(*greatest - *least);
+  OwnedImage<T, N> result{image.grid, std::vector<T>(image.values.size())};
+  std::transform(image.values.begin(), image.values.end(), result.values.begin(),
+                 [&](float value) { return static_cast<T>(std::lround(scale * static_cast<double>(value - *least))); });
+  return result;
+}
+
+template <int N>
+void measure_field_in(const std::string& name, const std::string& field, std::size_t samples, const std::string& type,
+                      const Arguments& arguments) {
+  const auto image = make_any_field<N>(field, samples);
+  if (type == "float") return measure(name, image, arguments);
+  if (type == "uint8") return measure(name, as_type<std::uint8_t>(image), arguments);
+  if (type == "uint16") return measure(name, as_type<std::uint16_t>(image), arguments);
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{}: type '{}'; expected float, uint8 or uint16", name, type));
+}
+
+/// FIELD:N[^D][@TYPE]
 void measure_field(const std::string& name, const Arguments& arguments) {
   const std::size_t colon = name.find(':');
   const std::size_t hat = name.find('^');
+  const std::size_t at = name.find('@');
   const std::string field = name.substr(0, colon);
   const std::size_t samples = std::stoul(name.substr(colon + 1));
   const int dim = hat == std::string::npos ? 3 : std::stoi(name.substr(hat + 1));
-  if (dim == 2) return measure(name, make_field<2>(field, samples), arguments);
-  if (dim == 3) return measure(name, make_field<3>(field, samples), arguments);
-  if (dim == 4) return measure(name, make_field<4>(field, samples), arguments);
+  const std::string type = at == std::string::npos ? "float" : name.substr(at + 1);
+  if (dim == 2) return measure_field_in<2>(name, field, samples, type, arguments);
+  if (dim == 3) return measure_field_in<3>(name, field, samples, type, arguments);
+  if (dim == 4) return measure_field_in<4>(name, field, samples, type, arguments);
   throw Error(ErrorCode::InvalidArgument, fmt::format("{}: {} dimensions; expected 2, 3 or 4", name, dim));
 }
 
@@ -162,7 +250,12 @@ std::vector<Each> choose(const std::string& list, const std::vector<Each>& all, 
   return chosen;
 }
 
+constexpr const char* kUsage =
+    "seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--scaling] "
+    "IMAGE|FIELD:N[^D][@TYPE] ...";
+
 int run(int argc, char** argv) {
+  if (tells_usage(argc, argv, kUsage)) return 0;
   Arguments arguments;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -176,18 +269,26 @@ int run(int argc, char** argv) {
       arguments.orders = true;
     else if (argument == "--picks" && more)
       arguments.picks = std::stoi(argv[++i]);
+    else if (argument == "--runs" && more)
+      arguments.runs = std::max(1, std::stoi(argv[++i]));
+    else if (argument == "--scaling")
+      arguments.scaling = true;
+    else if (argument.rfind("--", 0) == 0)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("'{}'; expected {}", argument, kUsage));
     else
       arguments.images.push_back(argument);
   }
   if (arguments.images.empty()) {
-    fmt::print(stderr,
-               "usage: seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] "
-               "IMAGE|FIELD:N[^D] ...\n");
+    fmt::print(stderr, "usage: {}\n", kUsage);
     return 2;
   }
+  if (arguments.scaling)
+    fmt::print(
+        "| image | neighbourhood | method | tiles | seeds | seconds | microseconds per tile | bytes per tile while "
+        "found "
+        "|\n|---|---|---|---|---|---|---|---|\n");
   for (const std::string& name : arguments.images) {
-    const auto fields = field_names(3);
-    if (std::find(fields.begin(), fields.end(), name.substr(0, name.find(':'))) != fields.end()) {
+    if (is_field(name.substr(0, name.find(':')))) {
       measure_field(name, arguments);
       continue;
     }

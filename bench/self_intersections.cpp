@@ -22,6 +22,7 @@
 #include "support/random_fields.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
+#include "usage.hpp"
 
 namespace {
 
@@ -123,6 +124,9 @@ void measure(std::size_t count, Ambiguity ambiguity, Triangulation triangulation
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (tegl::bench::tells_usage(argc, argv,
+                               "self_intersections [FIELDS]: triangles of contours of noise that intersect, as CSV"))
+    return 0;
   const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 2000;
   std::printf("way,fields,triangles,fields with pairs,pairs,causes\n");
   for (const auto& [triangulation, suffix] :

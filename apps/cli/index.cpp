@@ -170,7 +170,7 @@ bool is_index_file(const std::filesystem::path& path) {
 }
 
 std::string index_info(const Console& console, const std::filesystem::path& path, bool json) {
-  const ActiveTilesHead head = read_active_tiles_head(path);
+  const ActiveTilesHead head = check_active_tiles(path);
   const std::uint64_t bytes = std::filesystem::file_size(path);
   if (json) {
     Json document;

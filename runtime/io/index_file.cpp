@@ -71,6 +71,10 @@ ActiveTilesHead read_active_tiles_head(const fs::path& path) {
   return with_file(path, [](ByteSource& source) { return read_active_tiles_head(source); });
 }
 
+ActiveTilesHead check_active_tiles(const fs::path& path) {
+  return with_file(path, [](ByteSource& source) { return check_active_tiles(source); });
+}
+
 #define TEGL_INSTANTIATE_ONE(T, N)                                                                      \
   template std::unique_ptr<ActiveTiles<N>> read_active_tiles<T, N>(const fs::path&, const Image<T, N>&, \
                                                                    const ActiveTilesOptions&);

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 #include <fmt/format.h>
@@ -55,6 +56,15 @@ void put_in_order(std::vector<TileNumber>& tiles, TileNumber end) {
 std::uint64_t high_half(std::uint64_t a, std::uint64_t b) noexcept {
   __extension__ using Wide = unsigned __int128;
   return static_cast<std::uint64_t>(static_cast<Wide>(a) * b >> 64);
+}
+
+/// Of a value of the type with that name; throws MalformedFile where there is none.
+std::size_t bytes_of_value(std::string_view type) {
+  std::size_t bytes = 0;
+  const auto compare = [&]<Value... T>() { ((bytes = detail::value_type_name<T>() == type ? sizeof(T) : bytes), ...); };
+  compare.operator()<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::int32_t, float, double>();
+  if (bytes == 0) detail::IndexReader::damaged(fmt::format("it is of values of type '{}'", type));
+  return bytes;
 }
 
 void require_finite(double isovalue) {
@@ -192,6 +202,36 @@ void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t
 ActiveTilesHead read_active_tiles_head(ByteSource& from) {
   detail::IndexReader reader(from);
   return detail::read_head(reader);
+}
+
+ActiveTilesHead check_active_tiles(ByteSource& from) {
+  detail::IndexReader reader(from);
+  ActiveTilesHead head = detail::read_head(reader);
+  const std::size_t value = bytes_of_value(head.value_type);
+  constexpr std::size_t kPlace = 8, kTile = 4;
+  const auto pass = [&](std::initializer_list<std::size_t> arrays) {
+    for (const std::size_t bytes : arrays) reader.pass_array(bytes, "arrays of the method");
+  };
+  switch (head.method) {
+    case ActiveMethod::full_scan:
+      break;
+    case ActiveMethod::interval_tree:
+      pass({value, kPlace, kTile, value, kTile, value});
+      break;
+    case ActiveMethod::span_space:
+      pass({value, kPlace, kTile, value, value});
+      break;
+    case ActiveMethod::min_max_tree:
+      reader.value<std::array<std::uint32_t, 2>>("sizes of bricks");
+      while (reader.pass_array(value, "least values") > 1) pass({value});  // the greatest ones
+      pass({value});
+      break;
+    case ActiveMethod::seed_set:
+      pass({sizeof(TileNumber)});
+      break;
+  }
+  reader.finish();
+  return head;
 }
 
 #define TEGL_INSTANTIATE(N)      \

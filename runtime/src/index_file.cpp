@@ -89,6 +89,16 @@ void IndexReader::bytes(void* data, std::size_t bytes, const char* what) {
   sum_ = hash_bytes(data, bytes, sum_);
 }
 
+std::uint64_t IndexReader::pass_array(std::size_t element_bytes, const char* what) {
+  const auto count = value<std::uint64_t>(what);
+  std::vector<char> piece;
+  for (std::uint64_t passed = 0; passed < count; passed += kPieceElements) {
+    piece.resize(std::min<std::uint64_t>(count - passed, kPieceElements) * element_bytes);
+    bytes(piece.data(), piece.size(), what);
+  }
+  return count;
+}
+
 std::string IndexReader::text(std::size_t most, const char* what) {
   const auto count = value<std::uint64_t>(what);
   if (count > most) too_many(what, count, most);

@@ -84,6 +84,8 @@ class IndexReader {
     }
     return values;
   }
+  /// Reads an array whose elements have so many bytes, and keeps none. How many there were.
+  std::uint64_t pass_array(std::size_t element_bytes, const char* what);
   std::string text(std::size_t most, const char* what);
   /// Compares the checksum, and that nothing comes behind it.
   void finish();

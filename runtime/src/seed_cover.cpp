@@ -149,8 +149,12 @@ std::uint64_t pack_components(const SeedGraph& graph, const Progress& progress) 
   double done = 0;
   for (const SweepDirection direction : {SweepDirection::up, SweepDirection::down}) {
     const auto part = part_of(progress, done, done + 0.5);
-    most =
-        std::max(most, sweep_levels(graph, {.direction = direction, .pick = SweepPick::all, .allowed = nullptr, .elsewhere = {}, .progress = part}).times);
+    most = std::max(
+        most,
+        sweep_levels(
+            graph,
+            {.direction = direction, .pick = SweepPick::all, .allowed = nullptr, .elsewhere = {}, .progress = part})
+            .times);
     done += 0.5;
   }
   return most;

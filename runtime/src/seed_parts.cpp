@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which of the trees of seed_regions.hpp are seeds: sweeps over the levels of a few thousand trees at a time, as a sweep
-// over all takes longer than its share for each of many, and hardly finds fewer.
+// Which of the trees of seed_regions.hpp are seeds: sweeps over the levels of a few thousand trees at a time, as a
+// sweep over all takes longer than its share for each of many, and hardly finds fewer.
 #include <algorithm>
 
 #include "level_sweep.hpp"

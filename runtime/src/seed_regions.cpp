@@ -331,7 +331,7 @@ class RegionMaker {
     std::vector<Place> tiles;
     std::vector<std::uint32_t> border;  ///< of `tiles`
   };
-  static constexpr std::uint32_t kNoNumber = 0;  ///< others are one more than in a block
+  static constexpr std::uint32_t kNoNumber = 0;         ///< others are one more than in a block
   static constexpr std::uint32_t kKept = 1, kGone = 2;  ///< of tiles of the block, before trees are numbered
 
   template <class Visit>

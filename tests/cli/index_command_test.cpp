@@ -113,7 +113,14 @@ TEST_F(Index, ThatIsDamagedOrNoneIsRefused) {
   EXPECT_EQ(contour(file()).exit, 4);
   EXPECT_THAT(contour(file()).err, HasSubstr("not an index of active tiles"));
   EXPECT_EQ(contour(path("none.tindex")).exit, 3);
-  EXPECT_EQ(run_tegl({"info", path("cut.tindex")}).exit, 0) << "its head is whole";
+  for (const bool json : {false, true}) {
+    std::vector<std::string> arguments{"info", path("cut.tindex")};
+    if (json) arguments.emplace_back("--json");
+    const RunResult info = run_tegl(arguments);
+    EXPECT_EQ(info.exit, 4) << "its head is whole, but not the rest";
+    EXPECT_THAT(info.err, HasSubstr("cut.tindex: the index is damaged"));
+    EXPECT_EQ(info.out, "");
+  }
 }
 
 TEST_F(Index, RefusesWrongUsage) {

@@ -2,17 +2,19 @@
 //
 // Indexes of measured and simulated images, at every value that occurs: active tiles as a count of all ranges has them,
 // and contours as without an index. Where the folder with the files is there. With TEGL_ALL_ISOVALUES in the
-// environment (minutes) at every isovalue of every image of 8 bits, and of floats at 1 000 and at as many values of
-// extremes; else at some of those of the large ones.
+// environment (minutes) at every isovalue of every image of 8 bits, and of floats at 1 000 and at extremes and saddles,
+// thinned to 2 000 or so; else at some of those of the large ones.
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <variant>
 #include <vector>
 
@@ -37,34 +39,47 @@ struct File {
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
 
-/// Values of samples that none beside them exceeds, or none is below: where components begin and end. About so many at
-/// most, evenly.
+/// Values at which components of samples at and above them begin or meet, and of samples at and below them: extremes
+/// and saddles. From the largest value down, and from the smallest up, by joining each sample with its neighbours.
 template <Value T, int N>
-std::vector<double> extremes_of(const OwnedImage<T, N>& image, std::size_t most) {
-  std::vector<double> extremes;
-  const auto view = image.view();
+std::vector<double> critical_values(const OwnedImage<T, N>& image) {
   const auto sizes = image.grid.sizes();
-  for_each_sample<N>(image.grid, [&](std::size_t i, const std::array<std::size_t, N>& index) {
-    bool none_above = true, none_below = true;
-    for (int a = 0; a < N; ++a)
-      for (const int by : {-1, 1}) {
-        auto beside = index;
-        beside[a] += static_cast<std::size_t>(by);
-        if (beside[a] >= sizes[a]) continue;
-        none_above = none_above && !(view(beside) > image.values[i]);
-        none_below = none_below && !(view(beside) < image.values[i]);
-      }
-    const bool finite = std::isfinite(static_cast<double>(image.values[i]));
-    if (finite && (none_above || none_below)) extremes.push_back(static_cast<double>(image.values[i]));
-  });
-  std::sort(extremes.begin(), extremes.end());
-  extremes.erase(std::unique(extremes.begin(), extremes.end()), extremes.end());
-  std::vector<double> chosen;
-  for (std::size_t i = 0; i < extremes.size(); i += 1 + extremes.size() / most) chosen.push_back(extremes[i]);
-  return chosen;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < image.values.size(); ++i)
+    if (std::isfinite(static_cast<double>(image.values[i]))) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return image.values[a] < image.values[b]; });
+  std::vector<double> critical;
+  for (int direction = 0; direction < 2; ++direction, std::reverse(order.begin(), order.end())) {
+    constexpr auto kNone = static_cast<std::size_t>(-1);
+    std::vector<std::size_t> parent(image.values.size(), kNone);
+    const auto find = [&](std::size_t i) {
+      while (parent[i] != i) i = parent[i] = parent[parent[i]];
+      return i;
+    };
+    for (const std::size_t i : order) {
+      int met = 0;
+      parent[i] = i;
+      std::size_t stride = 1;
+      for (int a = 0; a < N; stride *= sizes[a], ++a)
+        for (const bool up : {false, true}) {
+          const std::size_t at = i / stride % sizes[a];
+          if (up ? at + 1 == sizes[a] : at == 0) continue;
+          const std::size_t beside = up ? i + stride : i - stride;
+          if (parent[beside] == kNone || find(beside) == find(i)) continue;
+          parent[find(beside)] = i;
+          ++met;
+        }
+      if (met != 1) critical.push_back(static_cast<double>(image.values[i]));
+    }
+  }
+  std::sort(critical.begin(), critical.end());
+  critical.erase(std::unique(critical.begin(), critical.end()), critical.end());
+  return critical;
 }
 
-/// Every value that occurs (images of 8 bits), or quantiles of them, and between them; of floats, extremes too.
+/// Every value that occurs (images of 8 bits), or quantiles of them, and between them; of floats, critical ones too:
+/// of more than some thousand as many, evenly.
 template <Value T, int N>
 std::vector<double> isovalues_of(const OwnedImage<T, N>& image, std::size_t most) {
   std::vector<double> values = distinct_values(image);
@@ -77,8 +92,8 @@ std::vector<double> isovalues_of(const OwnedImage<T, N>& image, std::size_t most
     if (kAllIsovalues && i + 1 < values.size()) isovalues.push_back((values[i] + values[i + 1]) / 2);
   }
   if (sizeof(T) > 1 && kAllIsovalues) {
-    const auto extremes = extremes_of(image, 1000);
-    isovalues.insert(isovalues.end(), extremes.begin(), extremes.end());
+    const auto critical = critical_values(image);
+    for (std::size_t i = 0; i < critical.size(); i += 1 + critical.size() / 2000) isovalues.push_back(critical[i]);
   }
   return isovalues;
 }
@@ -103,6 +118,17 @@ class ActiveCounts {
   std::vector<double> least_, greatest_;
 };
 
+template <int N>
+void expect_active(const std::vector<std::unique_ptr<ActiveTiles<N>>>& indexes, const PlainRanges<N>& plain,
+                   const ActiveCounts& counts, double isovalue) {
+  const auto expected = indexes.front()->find(isovalue);  // the full scan
+  ASSERT_EQ(expected.size(), counts.at(isovalue));
+  for (const TileNumber tile : expected)
+    ASSERT_TRUE(plain.least[tile] < isovalue && isovalue <= plain.greatest[tile]) << "tile " << tile;
+  for (const auto& index : indexes)
+    ASSERT_EQ(index->find(isovalue), expected) << active_method_name(index->method()) << " at " << isovalue;
+}
+
 template <Value T, int N>
 void expect_right(const OwnedImage<T, N>& image, std::size_t most) {
   const auto view = image.view();
@@ -110,14 +136,15 @@ void expect_right(const OwnedImage<T, N>& image, std::size_t most) {
   const ActiveCounts counts(plain);
   std::vector<std::unique_ptr<ActiveTiles<N>>> indexes;
   for (const ActiveMethod method : active_methods()) indexes.push_back(build_active_tiles(view, method));
-  for (const double isovalue : isovalues_of(image, most)) {
-    const auto expected = indexes.front()->find(isovalue);  // the full scan
-    ASSERT_EQ(expected.size(), counts.at(isovalue));
-    for (const TileNumber tile : expected)
-      ASSERT_TRUE(plain.least[tile] < isovalue && isovalue <= plain.greatest[tile]) << "tile " << tile;
-    for (const auto& index : indexes)
-      ASSERT_EQ(index->find(isovalue), expected) << active_method_name(index->method()) << " at " << isovalue;
-  }
+  const auto isovalues = isovalues_of(image, most);
+  std::atomic<std::size_t> next{0};
+  std::vector<std::thread> workers;  // as many isovalues at a time: an index is only read
+  for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
+    workers.emplace_back([&] {
+      for (std::size_t at; !::testing::Test::HasFailure() && (at = next++) < isovalues.size();)
+        expect_active(indexes, plain, counts, isovalues[at]);
+    });
+  for (std::thread& worker : workers) worker.join();
 }
 
 /// Some contours by each method, against those without.
@@ -201,6 +228,30 @@ TEST_F(IndexFile, ComesBackAsItWas) {
     EXPECT_EQ(head.method, method);
     EXPECT_EQ(head.sizes, (std::vector<std::uint64_t>{9, 8, 5, 4}));
   }
+}
+
+TEST_F(IndexFile, ThatIsCutOrChangedAnywhereIsNoticedWithoutTheImage) {
+  const auto expect_noticed = [&](const auto& image) {
+    for (const ActiveMethod method : active_methods()) {
+      write_active_tiles(*build_active_tiles(image.view(), method), path("whole.tindex"));
+      EXPECT_EQ(check_active_tiles(path("whole.tindex")).method, method);
+      std::ifstream file(path("whole.tindex"), std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+      for (std::size_t end = 0; end < bytes.size(); end += 1 + bytes.size() / 97) {
+        std::ofstream(path("cut.tindex"), std::ios::binary) << bytes.substr(0, end);
+        expect_error(ErrorCode::MalformedFile, "cut.tindex", [&] { check_active_tiles(path("cut.tindex")); });
+        std::string changed = bytes;
+        changed[end] = static_cast<char>(changed[end] ^ 4);
+        std::ofstream(path("changed.tindex"), std::ios::binary) << changed;
+        EXPECT_THROW(check_active_tiles(path("changed.tindex")), Error) << active_method_name(method) << " at " << end;
+      }
+      std::ofstream(path("whole.tindex"), std::ios::binary | std::ios::app) << 'a';
+      expect_error(ErrorCode::MalformedFile, "behind its end", [&] { check_active_tiles(path("whole.tindex")); });
+    }
+  };
+  expect_noticed(noise<double, 3>({19, 8, 5}, 4));
+  expect_noticed(noise<std::uint8_t, 2>({30, 21}, 5));
+  expect_noticed(noise<std::int16_t, 3>({1, 8, 5}, 6));  // no tiles
 }
 
 TEST_F(IndexFile, ErrorsNameTheFile) {

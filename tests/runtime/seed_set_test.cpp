@@ -207,6 +207,21 @@ TEST(SeedSet, OfManyDifferentValuesMeetsAllComponents) {
   expect_reduced_covers(holes, 6);
 }
 
+TEST(SeedSet, ChosenPartByPartMeetsAllComponents) {
+  // More trees than are chosen from at a time: noise leaves one of eight tiles.
+  const auto image = noise<float, 2>({760, 760}, 12);
+  const AllComponents<float, 2> all(image, Neighbourhood::faces, 9);
+  SeedSetOptions options;
+  options.neighbourhood = Neighbourhood::faces;
+  SeedSetStats stats;
+  const SeedSet set = find_seeds(image.view(), options, &stats);
+  EXPECT_TRUE(stats.reduced);
+  EXPECT_GT(set.tiles.size(), std::size_t{40000});
+  EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
+  options.method = SeedMethod::climbing;
+  EXPECT_LT(10 * set.tiles.size(), 7 * find_seeds(image.view(), options).tiles.size());
+}
+
 TEST(SeedSet, InEveryScanOrderMeetsAllComponents) {
   const auto image = coarse_noise<std::uint8_t, 3>(Grid<3>::unit({10, 9, 8}), 11, 9);
   const AllComponents<std::uint8_t, 3> all(image, Neighbourhood::all, 100);

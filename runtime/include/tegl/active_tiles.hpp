@@ -144,6 +144,10 @@ struct ActiveTilesHead {
 /// Reads the beginning of an index, whatever its image. Errors: MalformedFile, UnsupportedFormat as load_active_tiles.
 ActiveTilesHead read_active_tiles_head(ByteSource& from);
 
+/// The same, and makes sure that nothing is missing behind it or has changed: reads all of the index, but needs no
+/// image. Errors: as above, MalformedFile for a damaged or cut index among them.
+ActiveTilesHead check_active_tiles(ByteSource& from);
+
 namespace detail {
 class IndexWriter;
 }

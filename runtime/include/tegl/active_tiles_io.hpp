@@ -27,4 +27,7 @@ std::unique_ptr<ActiveTiles<N>> read_active_tiles(const std::filesystem::path& p
 /// What the beginning of an index file says. Errors, naming the file: FileNotFound, MalformedFile, UnsupportedFormat.
 ActiveTilesHead read_active_tiles_head(const std::filesystem::path& path);
 
+/// The same, once all of the file has been read and found undamaged.
+ActiveTilesHead check_active_tiles(const std::filesystem::path& path);
+
 }  // namespace tegl
