@@ -222,7 +222,8 @@ ActiveTilesHead check_active_tiles(ByteSource& from) {
       pass({value, kPlace, kTile, value, value});
       break;
     case ActiveMethod::min_max_tree:
-      reader.value<std::array<std::uint32_t, 2>>("sizes of bricks");
+      reader.value<std::uint32_t>("length of bricks");
+      reader.value<std::uint32_t>("width of bricks");
       while (reader.pass_array(value, "least values") > 1) pass({value});  // the greatest ones
       pass({value});
       break;

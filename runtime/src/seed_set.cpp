@@ -214,7 +214,7 @@ std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& o
   for (std::size_t levels = 255;; levels /= 4) {
     const auto some = at_some_levels(map, levels);
     SeedFinder<std::uint8_t> of_some(some, options, stats);
-    if (const auto graph = of_some.make_small_graph(levels > 1 ? 2 * kMostWork<std::uint8_t> : ~std::uint64_t{0}))
+    if (const auto graph = of_some.make_small_graph(levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0}))
       return detail::pack_components(*graph, after(options.progress, 0.5, 1.0));
   }
 }
