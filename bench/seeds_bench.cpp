@@ -202,11 +202,12 @@ OwnedImage<float, N> make_any_field(const std::string& name, std::size_t samples
 /// Scaled to all values of a type.
 template <Value T, int N>
 OwnedImage<T, N> as_type(const OwnedImage<float, N>& image) {
-  const auto [least, greatest] = std::minmax_element(image.values.begin(), image.values.end());
-  const double scale = static_cast<double>(std::numeric_limits<T>::max()) / static_cast<double>(*greatest - *least);
+  const auto ends = std::minmax_element(image.values.begin(), image.values.end());
+  const float least = *ends.first;
+  const double scale = static_cast<double>(std::numeric_limits<T>::max()) / static_cast<double>(*ends.second - least);
   OwnedImage<T, N> result{image.grid, std::vector<T>(image.values.size())};
   std::transform(image.values.begin(), image.values.end(), result.values.begin(),
-                 [&](float value) { return static_cast<T>(std::lround(scale * static_cast<double>(value - *least))); });
+                 [&](float value) { return static_cast<T>(std::lround(scale * static_cast<double>(value - least))); });
   return result;
 }
 
