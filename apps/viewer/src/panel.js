@@ -32,6 +32,10 @@ export class Panel {
       stage.stretch = 10 ** Number($('stretch').value);
       stage.arrange();
     });
+    $('flip').addEventListener('change', () => {
+      stage.isFlipped = $('flip').checked;
+      stage.arrange();
+    });
     $('stretch').addEventListener('dblclick', () => {
       $('stretch').value = 0;
       $('stretch').dispatchEvent(new Event('input'));

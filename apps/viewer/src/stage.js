@@ -49,6 +49,7 @@ export class Stage {
     }
     this.controls.addEventListener('change', () => this.redraw());
     this.stretch = 1;
+    this.isFlipped = false;
     this.frames = 0;
     this.marker = null;
     this.measure();
@@ -98,7 +99,7 @@ export class Stage {
   /** Places all by the scale of the axes. */
   arrange() {
     this.scale = scales(this.axes, this.extents);
-    this.scale[this.isFlat ? 1 : 2] *= this.stretch;
+    this.scale[this.isFlat ? 1 : 2] *= this.isFlipped ? -this.stretch : this.stretch;
     for (const layer of this.layers) layer.place(this.center, this.scale);
     this.sides = this.extents.map((extent, a) => Math.max(1e-6, Math.abs(extent * this.scale[a])));
     this.box.scale.set(this.sides[0], this.sides[1], this.sides[2] ?? 1e-6);

@@ -62,7 +62,8 @@ export class TimeFormat {
   meaning(t) {
     const date = dateOf(t, this.unit);
     if (date && !Number.isNaN(date.getTime())) {
-      const text = `${date.getUTCDate()} ${MONTHS[date.getUTCMonth()].slice(0, 3)} ${date.getUTCFullYear()}`;
+      const year = date.getUTCFullYear(); // 0 and 1 stand for a year of means, which is no year
+      const text = `${date.getUTCDate()} ${MONTHS[date.getUTCMonth()].slice(0, 3)}${year > 1 ? ` ${year}` : ''}`;
       const clock = `${String(date.getUTCHours()).padStart(2, '0')}:${String(date.getUTCMinutes()).padStart(2, '0')}`;
       return this.days < 40 ? `${text}, ${clock}` : text;
     }
