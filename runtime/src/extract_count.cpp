@@ -393,8 +393,10 @@ static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* pl
   return j - first;
 }
 
+// Apart from what calls it, which is to have no large frame where no data decide; so below.
 template <int N>
-void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const {
+[[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
+                                                 TileCount& count) const {
   if constexpr (N < 4) {
     const bool is_listed = shape_.size(0) <= kMostListed;
     auto base = shape_.index_of(row);
@@ -443,7 +445,7 @@ void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const T
         const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
         for (std::uint32_t j = 0; j < found;) {
           const std::uint32_t tiles = at_once ? count_at_word(room, places.data(), j, found) : 1;
-          if (tiles >= RowFaces<N>::kMany)
+          if (tiles >= 2 * RowFaces<N>::kMany)  // a single cube takes less than a single tesseract
             resolve_word(places.data() + j, tiles);
           else
             for (std::uint32_t k = j; k < j + tiles; ++k) resolve(places.data()[k]);
@@ -455,8 +457,9 @@ void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const T
 }
 
 template <int N>
-void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
-                                    ResolvedTesseract& tesseract, const FoundCubes* found) const {
+[[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
+                                                      TileCount& count, ResolvedTesseract& tesseract,
+                                                      const FoundCubes* found) const {
   if constexpr (N == 4) {
     const auto& ambiguous = ambiguous_signatures<N>();
     const bool is_listed = shape_.size(0) <= kMostListed;

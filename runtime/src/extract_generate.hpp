@@ -174,11 +174,16 @@ class TileWriter {
             view.slab->first_own(row),
             nullptr};
     if constexpr (N == 4)
-      if (estimator_ != nullptr && !estimator_->is_callers()) {
-        RowOfTesseracts tesseracts(*estimator_, start, view.shape->size(0), tiles);
-        own.tesseracts = &tesseracts;
-        return write_tile_row<N>(output, *rows_, {&Own::write, &own});
-      }
+      if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
+    write_tile_row<N>(output, *rows_, {&Own::write, &own});
+  }
+
+  /// Where data decide. Apart, for its frame is large.
+  template <class Own>
+  [[gnu::noinline]] void write_tesseracts(const TileOutput<N>& output, const typename RowShape<N>::Index& start,
+                                          const ActiveTiles& tiles, Own& own) const noexcept {
+    RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
+    own.tesseracts = &tesseracts;
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 

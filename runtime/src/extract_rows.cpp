@@ -597,9 +597,16 @@ bool RowTable::can_use(const tables::TileTable& table) noexcept {
          table.simplex_count < (1u << (32 - kFirstShift));
 }
 
+static std::uint32_t make_entry(const tables::List& list) {
+  const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
+  return list.first_simplex << RowTable::kFirstShift | (own ? RowTable::kOwnFlag : 0) | list.simplex_count;
+}
+
 RowTable::RowTable(const tables::TileTable& table, std::size_t keys)
     : table_(&table), entries_(keys), simplices_(table.simplices) {
-  for (std::size_t s = 0; s < entries_.size(); ++s) entries_[s] = entry_of_list(static_cast<unsigned>(s));
+  // Of four dimensions there are 65 536, made for each contour.
+  std::uint32_t* const entries = entries_.data();
+  for (std::size_t s = 0; s < keys; ++s) entries[s] = make_entry(table.lists[table.list_of[s]]);
   count_simplices();
   if (table.dim == 2) choose_segment_bytes();
 }
@@ -617,11 +624,7 @@ RowTable::RowTable(const tables::TileTable& table, const std::array<unsigned, 25
   count_simplices();
 }
 
-std::uint32_t RowTable::entry_of_list(unsigned key) const {
-  const tables::List& list = table_->lists[table_->list_of[key]];
-  const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
-  return list.first_simplex << kFirstShift | (own ? kOwnFlag : 0) | list.simplex_count;
-}
+std::uint32_t RowTable::entry_of_list(unsigned key) const { return make_entry(table_->lists[table_->list_of[key]]); }
 
 void RowTable::count_simplices() {
   for (std::size_t s = 0; s < counts_.size() && table_->dim <= 3 && s < entries_.size(); ++s)
