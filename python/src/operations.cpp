@@ -8,6 +8,7 @@
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/sample.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 
@@ -224,6 +225,27 @@ Numbers automatic_scale_any(const AnyContour& contour) {
       contour.contour);
 }
 
+/// Adds an image's values at the vertices as an attribute. Arrays of others that Python has stay where they are.
+void sample_any(AnyContour& contour, const AnyImage& image, const std::string& name, const std::string& unit,
+                unsigned threads, const py::object& progress) {
+  Call call(progress);
+  const WorkOptions options{threads, call.progress()};
+  std::visit(
+      [&]<int N, class Real>(Contour<N, Real>& c) {
+        const auto* views = std::get_if<ViewsOf<N>>(&image.view);
+        if (views == nullptr)
+          throw Error(ErrorCode::InvalidArgument,
+                      fmt::format("the image has {} axes; expected {}, as the contour", image.view.index() + 2, N));
+        for (const Attribute& attribute : c.vertex_attributes)
+          if (attribute.name == name)
+            throw Error(ErrorCode::InvalidArgument, fmt::format("the contour has an attribute '{}' already", name));
+        Attribute made = call.run(
+            [&] { return std::visit([&](const auto& view) { return sample(view, c, name, unit, options); }, *views); });
+        c.vertex_attributes.push_back(std::move(made));
+      },
+      contour.contour);
+}
+
 }  // namespace
 
 void bind_operations(py::module_& m) {
@@ -254,6 +276,8 @@ void bind_operations(py::module_& m) {
         doc::select_components);
   m.def("simplify", &simplify_any, py::arg("contour"), py::arg("options"), py::arg("progress"), doc::simplify);
   m.def("automatic_scale", &automatic_scale_any, py::arg("contour"), doc::automatic_scale);
+  m.def("sample", &sample_any, py::arg("contour"), py::arg("image"), py::arg("name"), py::arg("unit"),
+        py::arg("threads"), py::arg("progress"), doc::sample);
   m.def("has_fast_simplify", &has_fast_simplify, "Whether the method 'fast' is there.");
 }
 

@@ -186,6 +186,21 @@ class Contour:
         from . import _track
         return _track.track(self, **options)
 
+    @_arguments.documents("sample")
+    def sample(self, array, name: str, unit: str = "", *, threads: int = 0, progress: Progress | None = None,
+               **grid) -> np.ndarray:
+        """The values of another array at the vertices, which become the attribute `name`: #V numbers.
+
+        The array, with spacing, origin, coords, ... as `tegl.contour` takes them, has the contour's number of axes, in the
+        same order, and the same world coordinates; its grid may be another. What is cut, split or simplified from the
+        contour afterwards has the attribute, too, and so have its elements.
+        """
+        prepared = _arguments.prepare(array, **{"time_axis": self.time_axis, **grid})
+        if prepared.is_reversed != self._is_reversed:
+            raise ValueError(f"time_axis of the array is another than that of the contour, {self.time_axis}")
+        _tegl.sample(self._core, prepared.image, name, unit, threads, progress)
+        return self.vertex_attributes[name]
+
     @_arguments.documents("write_mesh")
     def save(self, path: str | os.PathLike, *, progress: Progress | None = None) -> None:
         """Writes a file, in the format of its suffix: .ply, .gltf, .glb (2D, 3D) or .vtkhdf (4D too).

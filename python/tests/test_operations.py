@@ -195,6 +195,24 @@ def test_elements_keep_attributes_and_are_written(tmp_path):
         elements.save(tmp_path / "surface.xyz")
 
 
+def test_other_fields_are_sampled_at_the_vertices(moving_balls):
+    contour = tegl.contour(moving_balls, 0.0, spacing=(0.5, 1, 2, 3), dtype=np.float64)
+    t, z, y, x = np.indices((4, 17, 17, 33), dtype=np.float64)  # every other time
+    height = contour.sample(2 * z + y - x + t, "height", spacing=(1, 1, 2, 3))
+    places = contour.vertices / (1, 1, 2, 3)
+    inside = contour.vertices[:, 0] <= 3
+    assert height[inside] == pytest.approx((places @ [1, 2, 1, -1])[inside])
+    assert np.isnan(height[~inside]).all() and not inside.all()
+    assert np.array_equal(contour.vertex_attributes["height"], height, equal_nan=True)
+    cut = contour.slice(1.25)
+    assert cut.vertex_attributes["height"] == pytest.approx(1.25 + (cut.vertices / (1, 2, 3)) @ [2, 1, -1])
+    assert "height" in contour.elements().attributes
+    with pytest.raises(ValueError, match="attribute 'height' already"):
+        contour.sample(z, "height", spacing=(1, 1, 2, 3))
+    with pytest.raises(ValueError, match="3 axes; expected 4"):
+        contour.sample(z[0], "other")
+
+
 # Simplification.
 
 def test_simplified_contours_keep_their_topology_and_their_bound():

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Python that docs/python.md and the package's docstring show runs, from top to bottom."""
+
+import os
+import pathlib
+import re
+import textwrap
+
+import pytest
+import tegl
+
+SOURCE = pathlib.Path(os.environ["TEGL_SOURCE_DIR"])
+PAGES = [page for page in sorted(SOURCE.glob("docs/*.md")) if "```python" in page.read_text(encoding="utf-8")]
+
+
+def test_pages_with_python_were_found():
+    assert SOURCE / "docs/python.md" in PAGES
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_blocks_of_a_page_run_one_after_the_other(page, tmp_path, monkeypatch):
+    (tmp_path / "examples").symlink_to(SOURCE / "examples")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    text = page.read_text(encoding="utf-8")
+    for block in re.finditer(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        line = text[:block.start()].count("\n") + 1
+        exec(compile("\n" * line + block.group(1), str(page), "exec"), names)
+
+
+def test_the_docstring_of_the_package_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code = re.search(r"\n\n((?:    .*\n|\n)+)", tegl.__doc__).group(1)
+    exec(compile(textwrap.dedent(code), "tegl", "exec"), {})
+    assert (tmp_path / "surface.ply").exists()
+
+
+def test_the_page_names_all_of_the_package():
+    text = (SOURCE / "docs/python.md").read_text(encoding="utf-8")
+    for name in ("contour", "slice", "track", "components", "measure", "elements", "simplify", "check", "Index", "read",
+                 "load", "marching_cubes", "Cancelled"):
+        assert re.search(rf"\b{name}\b", text), name
