@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -42,15 +41,6 @@ struct Shown {
   Thinned thinned;
   int dim = 0;
 };
-
-/// The segment that a part goes on as after this one ends: the only one, or that of the same track.
-Index next_segment(const TrackGraph& graph, const TrackSegment& segment) {
-  const std::vector<Index>& out = graph.events[segment.to].out;
-  if (out.size() == 1) return out.front();
-  for (const Index s : out)
-    if (graph.segments[s].track == segment.track) return s;
-  return TrackGraph::kNoSegment;
-}
 
 class ViewCommand final : public ContourInputCommand {
  public:
@@ -142,43 +132,10 @@ class ViewCommand final : public ContourInputCommand {
     const auto add = [&]<int N>(Contour<N, double>& contour) {
       here.thinned = thin(contour, limit_, {threads(), bar.stage("components")});
       std::optional<PageTracks> tracks;
-      if constexpr (N == 4) tracks = follow(contour, first, last, bar);
+      if constexpr (N == 4) tracks = page_tracks(contour, first, last, tracks_, {threads(), bar.stage("track")});
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };
     return std::visit([&](auto& contour) { return add(contour); }, input.contour);
-  }
-
-  [[nodiscard]] PageTracks follow(const Contour<4, double>& contour, std::optional<double> first,
-                                  std::optional<double> last, ProgressBar& bar) const {
-    TrackOptions options;
-    options.first = first;
-    options.last = last;
-    options.handles = false;
-    options.label_simplices = true;
-    options.threads = threads();
-    options.progress = bar.stage("track");
-    PageTracks result;
-    const TrackGraph graph = track(contour, options);
-    result.found = graph.tracks.size();
-    std::vector<std::size_t> order(graph.tracks.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto life = [&](std::size_t t) { return graph.tracks[t].end - graph.tracks[t].start; };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return life(a) > life(b); });
-    std::vector<std::uint32_t> place(order.size());
-    std::vector<bool> keep(order.size(), false);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      place[order[i]] = static_cast<std::uint32_t>(i);
-      keep[order[i]] = i < tracks_;
-    }
-    result.simplex_segments = graph.simplex_segments;
-    for (const TrackSegment& segment : graph.segments) {
-      result.ends.push_back(segment.end);
-      result.next.push_back(next_segment(graph, segment));
-      result.tracks.push_back(place[segment.track]);
-    }
-    result.graph = select_tracks(graph, keep);
-    result.graph.simplex_segments.clear();
-    return result;
   }
 
   [[nodiscard]] std::string names() const {

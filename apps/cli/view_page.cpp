@@ -286,6 +286,8 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
       numbers.add(std::span<const std::uint32_t>(components_by_size<N>(label_components(contour, options))), 1);
   if (tracks) {
     arrays["segment"] = numbers.add(std::span<const std::uint32_t>(tracks->simplex_segments), 1);
+    arrays["segment_after"] = numbers.add(std::span<const std::uint32_t>(tracks->simplex_after), 1);
+    arrays["segment_splits"] = numbers.add(std::span<const std::uint32_t>(tracks->splits), 1);
     arrays["segment_ends"] = numbers.add(std::span<const double>(tracks->ends), 1);
     arrays["segment_next"] = numbers.add(std::span<const std::uint32_t>(tracks->next), 1);
     arrays["segment_tracks"] = numbers.add(std::span<const std::uint32_t>(tracks->tracks), 1);

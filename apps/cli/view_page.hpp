@@ -62,14 +62,22 @@ Thinned thin(Contour<N, double>& contour, std::uint64_t limit, const WorkOptions
 struct PageTracks {
   TrackGraph graph;       ///< of the tracks that are shown
   std::size_t found = 0;  ///< how many there are
-  // Of all of them, to colour each simplex by the part that it is in at any time: #S, the segment that it first appears
-  // in; and of each segment its end, the segment that goes on after it, and the place of its track when ordered by how
-  // long they live, the longest first. kNoSegment for none.
+  // Of all of them, to colour each simplex by the part that it is in at any time. #S: the segment that it first appears
+  // in, and the one after the first split that it passes. And of each segment its end, whether it splits there (1; else
+  // 0), the segment that goes on after it, and the place of its track when ordered by how long they live, the longest
+  // first. kNoSegment for none.
   std::vector<std::uint32_t> simplex_segments;
+  std::vector<std::uint32_t> simplex_after;
   std::vector<double> ends;
+  std::vector<std::uint32_t> splits;
   std::vector<std::uint32_t> next;
   std::vector<std::uint32_t> tracks;
 };
+
+/// Follows the parts of a contour. `first`, `last`: when the data begin and end, if it is known; `most`: how many
+/// tracks are shown, those that live longest.
+PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> first, std::optional<double> last,
+                       std::size_t most, const WorkOptions& options);
 
 /// Describes a contour, with its numbers added to `numbers`. `input` is what it was read from.
 template <int N>

@@ -73,12 +73,12 @@ def write_nrrd(path, sizes, value):
     path.write_bytes((header + "encoding: raw\nendian: little\n\n").encode() + values.tobytes())
 
 
-def write_balls(path, size=16, steps=7):
-    """Two balls that come together and merge; in 4D."""
+def write_balls(path, size=16, steps=7, is_backwards=False):
+    """Two balls that come together and merge, or backwards; in 4D."""
     middle = (size - 1) / 2
 
     def value(x, y, z, t):
-        away = (steps - 1 - t) * 0.75
+        away = (t if is_backwards else steps - 1 - t) * 0.75
         return 3.4 - min(math.hypot(x - middle - s * away, y - middle, z - middle) for s in (-1, 1))
 
     write_nrrd(path, (size, size, size, steps), value)

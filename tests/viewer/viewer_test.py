@@ -220,6 +220,20 @@ class Viewer(unittest.TestCase):
                 self.assertGreater(self.different(one, other), 500, (i, j))
         self.assertIn("t", browser.element("#legend").text)
 
+    def test_parts_have_their_colors_right_after_a_split(self):
+        write_balls(self.folder / "split.nrrd", is_backwards=True)
+        tegl("view", self.folder / "split.nrrd", "--iso", 0, "-o", self.folder / "split.html", "-q")
+        browser = self.open("split.html")
+        split = browser.run("return tegl.app.timeline.events().find(({ kind }) => kind === 'split').time")
+        self.assertTrue(5 < split < 5.5)  # the picture is in the same step of the data
+        browser.run("tegl.time = 5.9; tegl.colorBy('track')")
+        picture = self.picture()
+        ground = picture[0][0]
+        kinds = [{pixel[2] > pixel[0] for pixel in column if pixel != ground} for column in zip(*picture)]
+        self.assertGreater(sum(kind == {True} for kind in kinds), 40)
+        self.assertGreater(sum(kind == {False} for kind in kinds), 40)
+        self.assertLess(sum(len(kind) == 2 for kind in kinds), 10)
+
     def test_clipping_leaves_out(self):
         browser = self.open()
         browser.run("tegl.time = 1")
@@ -336,4 +350,4 @@ class Viewer(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[5:]], verbosity=2)

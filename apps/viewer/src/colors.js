@@ -15,8 +15,8 @@ export function ofShare(share) {
 /** How many colours parts have before they repeat. */
 export const PART_COLORS = 64;
 
-// Okabe and Ito's first, which colour-blind people tell apart; then hues by the golden angle.
-const FIRST = [[86, 160, 220], [230, 159, 0], [0, 158, 115], [204, 121, 167], [213, 94, 0], [240, 228, 66], [0, 114, 178]];
+// Six of Okabe and Ito, which colour-blind people tell apart, and a violet; then hues by the golden angle.
+const FIRST = [[86, 160, 220], [230, 159, 0], [0, 158, 115], [204, 121, 167], [213, 94, 0], [240, 228, 66], [134, 104, 214]];
 
 /** The colour [r, g, b] of the i-th part. */
 export function ofPart(i) {

@@ -73,6 +73,7 @@ export class Layer {
       uOffset: { value: new THREE.Vector3() },
       uScale: { value: new THREE.Vector3(1, 1, 1) },
       uSegments: { value: floats(this.segments(arrays), 4) },
+      uAfter: { value: floats(new Float32Array(1), 1) },
       uTime: { value: 0 },
       uSource: { value: 0 },
       uValue: { value: 0 },
@@ -105,14 +106,15 @@ export class Layer {
     if (this.dim === 4) this.addFaces();
   }
 
-  /** Of each segment of the graph of tracks: its end, the segment that it becomes, and the number of its track. */
+  /** Of each segment of the graph of tracks: its end, the segment that it becomes, the number of its track, whether it
+   *  splits. */
   segments(arrays) {
     if (!arrays.segment_ends) return new Float32Array(4);
-    const [ends, next, tracks] = ['segment_ends', 'segment_next', 'segment_tracks'].map((name) =>
-      arrayOf(this.bytes, arrays[name]));
+    const [ends, next, tracks, splits] = ['ends', 'next', 'tracks', 'splits'].map((name) =>
+      arrayOf(this.bytes, arrays[`segment_${name}`]));
     const result = new Float32Array(4 * Math.max(1, ends.length));
     for (let s = 0; s < ends.length; ++s)
-      result.set([ends[s] - this.firstTime, next[s] === NONE ? -1 : next[s], tracks[s] % PART_COLORS, 0], 4 * s);
+      result.set([ends[s] - this.firstTime, next[s] === NONE ? -1 : next[s], tracks[s] % PART_COLORS, splits[s]], 4 * s);
     return result;
   }
 
@@ -213,6 +215,10 @@ export class Layer {
       const old = uniforms.uValues.value;
       uniforms.uValues.value = floats(this.values(source), 1);
       old.dispose();
+      if (source.id === 'track' && !this.hasAfter) {
+        uniforms.uAfter.value = floats(this.values({ ...source, array: this.description.arrays.segment_after }), 1);
+        this.hasAfter = true;
+      }
       uniforms.uSource.value = source.id === 'track' ? 6 : source.of === 'simplex' ? 2 : 1;
     } else if (source.id === 'time') {
       uniforms.uValue.value = this.level ? this.level.t : source.lowest;

@@ -23,6 +23,7 @@ uniform vec3 uScale;
 uniform int uSource;
 uniform float uValue;
 uniform sampler2D uSegments;
+uniform sampler2D uAfter;
 uniform float uTime;
 #if DIM == 4
 uniform usampler2D uKeys;
@@ -44,11 +45,14 @@ ivec2 texel(uint i) { return texel(int(i)); }
 // The part that a simplex is in now: it appears in a segment of the graph, and goes on with what that becomes.
 float part(int simplex) {
   float segment = texelFetch(uValues, texel(simplex), 0).r;
+  float after = texelFetch(uAfter, texel(simplex), 0).r;  // the first split that it passes
   float number = -1.0;
   for (int i = 0; i < 64 && segment >= 0.0; ++i) {
-    vec4 found = texelFetch(uSegments, texel(int(segment)), 0);  // end, next, number of its track
+    vec4 found = texelFetch(uSegments, texel(int(segment)), 0);  // end, next, number of its track, whether it splits
     number = found.z;
-    segment = uTime < found.x ? -1.0 : found.y;
+    bool isSplit = found.w > 0.5 && after >= 0.0;
+    segment = uTime < found.x ? -1.0 : isSplit ? after : found.y;
+    if (isSplit) after = -1.0;
   }
   return number;
 }
