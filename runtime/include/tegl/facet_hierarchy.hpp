@@ -34,15 +34,19 @@ struct FacetPlace {
 /// a cube, a polyhedron in a tesseract. Points, segments and polygons are balls, polyhedra too, but for those that are
 /// solid tori (facet_euler tells).
 ///
+/// Where the data decide (Ambiguity::mean, saddle, custom), a cube's contour may have a tunnel, which is no ball: its
+/// triangles are the polygons there, and the points and segments between them are 0- and 1-facets that lie in a cube.
+/// Polyhedra may be balls with any number of handles, and have a boundary of several parts.
+///
 /// Facets of each dimension are numbered from 0 on, in the order of layers of the image along its last axis: first what
 /// lies in the layer, then what lies between it and the next; row by row, for rows along axis 0; in a row by the bits
-/// of `axes`; and then along the row. Caps come last. Points have the numbers that `extract` gives to its vertices
-/// (which has others between them, where it needs some that are not on edges).
+/// of `axes`; and then along the row. Caps come last. Points come in the order of the vertices of
+/// `extract` (which has others between them, where it needs more).
 ///
 /// Orientation: k-facets with k < N - 1 followed by a normal towards high are positive in their face, its axes
 /// ascending; (N-1)-facets are oriented as the simplices of `extract`, by ExtractOptions::direction. Points have no
-/// orientation. The incidence number of a facet in the boundary of another is +1 or -1; the boundary of a boundary is
-/// zero.
+/// orientation; nor have segments inside of cubes but that of their start and end. The incidence number of a facet in
+/// the boundary of another is +1 or -1; the boundary of a boundary is zero.
 template <int N, class Real = float>
 struct FacetHierarchy {
   static_assert(N >= 2 && N <= 4);
@@ -113,7 +117,8 @@ struct FacetHierarchy {
 
 /// The facets of the contour {value = isovalue} of an image. `options` as for `extract`, but that `triangulation` means
 /// nothing. Every triangulation that `extract` makes is a subdivision of the result: same points on edges, same
-/// components, same Euler characteristic.
+/// components, same Euler characteristic. A caller's estimator is asked once for each ambiguous cube and tesseract, and
+/// for an ambiguous square once and once more for each such cube around it.
 ///
 /// Next to missing values, points and segments where facets touch that do not hang together are doubled. (In 4D the
 /// border of a contour may still touch itself in a point or along a segment there, which `extract` parts by simplices
@@ -121,11 +126,13 @@ struct FacetHierarchy {
 ///
 /// Errors: those of `extract`, TooLarge as well for 2^32 incidences of one dimension. O(samples + output), on
 /// options.threads threads; the same bytes for any number. Memory beside the result, in 4D: 3 bytes per sample, 240 per
-/// row along axis 0 and 4 per facet; half of that in 3D, a fifth in 2D; twice as much for closed contours.
+/// row along axis 0 and 4 per facet; half of that in 3D, a fifth in 2D; twice as much for closed contours. Where the
+/// data decide, 100 more per row and 2 per face of two dimensions or more.
 template <class Real = float, Value T, int N>
 FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {});
 
-/// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus.
+/// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus; of a polyhedron
+/// half of that of its boundary: 1 less for each handle, 1 more for each part of the boundary beside the first.
 template <int N, class Real>
 int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f);
 
@@ -134,7 +141,7 @@ struct FacetReport {
   std::array<std::uint64_t, 4> facets{};  ///< by dimension
   std::int64_t euler = 0;                 ///< sum over all facets of (-1)^k facet_euler
   std::uint64_t components = 0;           ///< of facets that share others
-  std::uint64_t tori = 0;                 ///< polyhedra that are solid tori
+  std::uint64_t tori = 0;                 ///< facets of Euler characteristic 0: polyhedra that are solid tori
   std::uint64_t border = 0;               ///< (N-2)-facets in one (N-1)-facet
   std::uint64_t branching = 0;            ///< fault: (N-2)-facets in no or more than two (N-1)-facets
   std::uint64_t conflicts = 0;            ///< fault: (N-2)-facets twice with the same sign
