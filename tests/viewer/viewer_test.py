@@ -108,7 +108,9 @@ class Viewer(unittest.TestCase):
 
     def test_renders_from_a_file_and_the_slider_changes_the_picture(self):
         browser = self.open()
-        self.assertTrue(browser.run("return location.protocol") == "file:")
+        self.assertEqual(browser.run("return location.protocol"), "file:")
+        self.assertEqual(browser.run("return performance.getEntriesByType('resource').map(({ name }) => name)"
+                                     ".filter((name) => !name.startsWith('data:'))"), [])
         browser.run("tegl.time = 1")
         apart = self.picture()
         self.assertGreater(self.drawn(apart), 2000)
@@ -218,7 +220,12 @@ class Viewer(unittest.TestCase):
         for i, one in enumerate(pictures):
             for j, other in enumerate(pictures[:i]):
                 self.assertGreater(self.different(one, other), 500, (i, j))
-        self.assertIn("t", browser.element("#legend").text)
+        tegl("contour", OCEAN, "--iso", 27, "--attribute", f"{OCEAN}:temperature", "-o", self.folder / "warm.vtkhdf", "-q")
+        tegl("view", self.folder / "warm.vtkhdf", "-o", self.folder / "warm.html", "-q")
+        browser = self.open("warm.html")
+        for id, title in (("vertex0", "temperature (degC)"), ("time", "time (month)"), ("axis2", "depth (m)")):
+            browser.run("tegl.colorBy(arguments[0])", id)
+            self.assertEqual(browser.element("#legend .legend-title").text, title)
 
     def test_parts_have_their_colors_right_after_a_split(self):
         write_balls(self.folder / "split.nrrd", is_backwards=True)
@@ -244,15 +251,47 @@ class Viewer(unittest.TestCase):
             browser.element("#unclip").click()
         self.assertEqual(self.drawn(self.picture()), whole)
 
-    def test_turns_zooms_and_moves(self):
+    def test_the_mouse_turns_zooms_and_moves(self):
         browser = self.open()
         seen = [self.picture()]
-        for script in ("tegl.app.stage.controls._rotateLeft(0.7)", "tegl.app.stage.camera.position.multiplyScalar(0.8)",
-                       "tegl.app.stage.controls._panLeft(0.2, tegl.app.stage.camera.matrix)"):
-            browser.run(f"{script}; tegl.app.stage.controls.update()")
+
+        def mouse(kind, x, y, **more):
+            browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, **more})
+
+        for button in ("left", "right"):
+            mouse("mousePressed", 200, 150, button=button, clickCount=1)
+            for x in (220, 240, 260):
+                mouse("mouseMoved", x, 160, button=button, buttons=1 if button == "left" else 2)
+            mouse("mouseReleased", 260, 160, button=button, clickCount=1)
             seen.append(self.picture())
             self.assertGreater(self.different(*seen[-2:]), 500)
+        before = browser.run("return tegl.app.stage.camera.position.distanceTo(tegl.app.stage.controls.target)")
+        mouse("mouseWheel", 200, 150, deltaX=0, deltaY=-240)
+        browser.until(f"tegl.app.stage.camera.position.distanceTo(tegl.app.stage.controls.target) < {0.95 * before}")
         browser.element("#reset").click()
+        self.assertLess(self.different(seen[0], self.picture()), 200)
+
+    def test_fingers_turn_and_pinch(self):
+        self.browser.size(390, 844)
+        browser = self.open()
+        place = "tegl.app.stage.camera.position"
+        before = browser.run(f"return {place}.toArray()")
+
+        def touch(kind, *points):
+            browser.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                "type": kind, "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+
+        touch("touchStart", (150, 300))
+        for x in (170, 190, 210):
+            touch("touchMove", (x, 300))
+        touch("touchEnd")
+        browser.until(f"{place}.distanceTo({{x: {before[0]}, y: {before[1]}, z: {before[2]}}}) > 0.3")
+        away = browser.run(f"return {place}.length()")
+        touch("touchStart", (180, 300), (200, 300))
+        for out in (20, 40, 60):
+            touch("touchMove", (180 - out, 300), (200 + out, 300))
+        touch("touchEnd")
+        browser.until(f"{place}.distanceTo(tegl.app.stage.controls.target) < {0.8 * away}")
 
     def test_keys(self):
         browser = self.open()
@@ -342,11 +381,14 @@ class Viewer(unittest.TestCase):
         self.assertLess(drawn["ranges"], 20)
         self.assertGreater(drawn["tetrahedra"], browser.run("return tegl.count()") / 2)
 
-    def test_says_so_without_webgl(self):
+    def test_says_so_where_the_browser_cannot_show_it(self):
         with Browser(CHROMIUM, CHROMEDRIVER, gpu=["--disable-gpu", "--disable-3d-apis"]) as blind:
             blind.open(self.folder / "balls.html")
             self.assertIn("WebGL 2", blind.element("#fatal").text)
             self.assertTrue(blind.element("#fatal").is_displayed())
+            blind.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument",
+                                         {"source": "delete window.DecompressionStream"})
+            self.assertIn("DecompressionStream", blind.open(self.folder / "balls.html"))
 
 
 if __name__ == "__main__":

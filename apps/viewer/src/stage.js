@@ -109,6 +109,10 @@ export class Stage {
   reset() {
     const flat = !this.isFlat && this.sides[2] < 0.5 * Math.max(this.sides[0], this.sides[1]);
     const direction = this.isFlat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.55, -1.5, flat ? 1.15 : 0.75);
+    // What is left of the last movement is not to go on.
+    this.controls.enableDamping = false;
+    this.controls.update();
+    this.controls.enableDamping = true;
     this.controls.target.set(0, 0, 0);
     this.camera.position.copy(direction.normalize());
     this.camera.lookAt(this.controls.target);
@@ -147,7 +151,7 @@ export class Stage {
     for (const layer of this.layers)
       if (layer.dim === 2) {
         layer.uniforms.uViewport.value.set(width, height);
-        layer.uniforms.uWidth.value = 2;
+        layer.uniforms.uWidth.value = 2.5;
       }
     if (!this.wasReset || Math.abs(before - this.camera.aspect) > 0.3) this.reset();
     this.wasReset = true;
