@@ -56,11 +56,11 @@ constexpr std::uint32_t first_tile_vertex(std::uint32_t n) {
 
 /// One triangulated list of facets.
 struct List {
-  std::uint32_t first_simplex;   ///< index into TileTable::simplices, in simplices (not bytes)
-  std::uint16_t simplex_count;
-  std::uint8_t cone_vertices;    ///< the tile's own vertices that are barycentres
-  std::uint8_t side_vertices;    ///< the tile's own vertices of side fillings, numbered after them
-  std::uint32_t first_side;      ///< index into TileTable::side_masks
+  std::uint32_t first_simplex;           ///< index into TileTable::simplices, in simplices (not bytes)
+  std::uint16_t simplex_count;           ///< how many
+  std::uint8_t cone_vertices;            ///< the tile's own vertices that are barycentres
+  std::uint8_t side_vertices;            ///< the tile's own vertices of side fillings, numbered after them
+  std::uint32_t first_side;              ///< index into TileTable::side_masks
 };
 
 /// All facets of all 2^(2^n) signatures, low-connected alternative, one triangulation.
@@ -73,10 +73,10 @@ struct List {
 /// Where reverses[g] is 1, the last two vertices of each simplex are to be exchanged. The tile's own
 /// vertices keep their numbers.
 struct TileTable {
-  std::uint32_t version;
-  std::uint32_t dim;
-  std::uint32_t list_count;
-  std::uint32_t simplex_count;
+  std::uint32_t version;                 ///< kContractVersion
+  std::uint32_t dim;                     ///< n
+  std::uint32_t list_count;              ///< how many
+  std::uint32_t simplex_count;           ///< how many, over all lists
   std::uint32_t element_count;           ///< number of group elements, 0 in the flat layout
   std::uint32_t permutation_stride;      ///< 2^n + first_tile_vertex(n), or 0
   std::uint32_t max_simplices;           ///< over all signatures
@@ -103,10 +103,10 @@ struct TileTable {
 /// The position of a region's barycentre is the mean of the corners (bit v) and edge points
 /// (bit 2^k + e) in its mask. Simplices are oriented by det[v_1 - v_0, ..., v_k - v_0] > 0.
 struct RegionList {
-  std::uint32_t first_simplex;
-  std::uint16_t simplex_count;
-  std::uint16_t own_vertices;
-  std::uint32_t first_mask;
+  std::uint32_t first_simplex;           ///< index into RegionTable::simplices, in simplices
+  std::uint16_t simplex_count;           ///< how many
+  std::uint16_t own_vertices;            ///< the tile's own vertices
+  std::uint32_t first_mask;              ///< index into RegionTable::masks
 };
 
 /// First local id of a k-tile's own region vertices.
@@ -114,10 +114,11 @@ constexpr std::uint32_t first_region_vertex(std::uint32_t k) {
   return (1u << k) + edge_count(k) + (k == 3 ? kFaceSlots + 6 : 0);
 }
 
+/// The regions of all signatures of a k-tile.
 struct RegionTable {
-  std::uint32_t version;
+  std::uint32_t version;                 ///< kContractVersion
   std::uint32_t dim;                     ///< k
-  std::uint32_t max_own_vertices;
+  std::uint32_t max_own_vertices;        ///< over all signatures
   const RegionList* lists;               ///< 2^(2^k)
   const std::uint8_t* simplices;         ///< x (k + 1) local vertices
   const std::uint32_t* masks;            ///< bit v: corner v; bit 2^k + e: edge e
@@ -136,20 +137,24 @@ struct RegionTable {
 /// segments are the same in all entries that resolve it the same way. Orientation as above. With no square or all
 /// ambiguous ones high, `separate` is what the compact table has for that alternative; with none ambiguous, for low.
 struct ResolvedList {
-  std::uint16_t first_triangle;
-  std::uint8_t triangle_count;
-  std::uint8_t own_vertices;
-  std::uint16_t first_mask;
+  std::uint16_t first_triangle;          ///< index into ResolvedTable::triangles, in triangles
+  std::uint8_t triangle_count;           ///< how many
+  std::uint8_t own_vertices;             ///< the list's own vertices
+  std::uint16_t first_mask;              ///< index into ResolvedTable::masks
 };
 
+/// One resolution of the squares of one signature.
 struct ResolvedEntry {
-  ResolvedList separate, low, high;
+  ResolvedList separate;                 ///< the polygons apart
+  ResolvedList low;                      ///< the cube's centre is low
+  ResolvedList high;                     ///< the cube's centre is high
   std::uint8_t components;               ///< polygons
 };
 
+/// All resolutions of all signatures of the cube.
 struct ResolvedTable {
-  std::uint32_t version;
-  std::uint32_t entry_count;
+  std::uint32_t version;                 ///< kContractVersion
+  std::uint32_t entry_count;             ///< 656
   const std::uint16_t* first_entry;      ///< 256
   const std::uint8_t* ambiguous_squares; ///< 256
   const ResolvedEntry* entries;          ///< entry_count

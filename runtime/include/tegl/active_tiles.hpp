@@ -26,7 +26,7 @@ using TileNumber = std::uint64_t;
 template <int N>
 class TileGrid {
  public:
-  using Index = std::array<std::size_t, N>;
+  using Index = std::array<std::size_t, N>;  ///< of a tile's lowest corner, or sizes, by axis
 
   TileGrid() = default;
   /// Of an image of so many samples. An axis of one sample (or none) leaves no tiles.
@@ -42,9 +42,11 @@ class TileGrid {
   [[nodiscard]] std::size_t size(int axis) const noexcept { return sizes_[axis]; }
   /// How much the number grows from a tile to the next along an axis.
   [[nodiscard]] TileNumber stride(int axis) const noexcept { return strides_[axis]; }
-  [[nodiscard]] TileNumber count() const noexcept { return count_; }
+  [[nodiscard]] TileNumber count() const noexcept { return count_; }  ///< all tiles
+  /// All lines of tiles along axis 0.
   [[nodiscard]] std::size_t rows() const noexcept { return count_ == 0 ? 0 : count_ / sizes_[0]; }
 
+  /// The number of a tile by its lowest corner.
   [[nodiscard]] TileNumber number(const Index& index) const noexcept {
     TileNumber number = 0;
     for (int a = 0; a < N; ++a) number += index[a] * strides_[a];
@@ -68,15 +70,18 @@ class TileGrid {
 /// Rows of tiles, a bit each.
 class TileRowSet {
  public:
+  /// So many rows, none of them in the set.
   explicit TileRowSet(std::size_t rows) : rows_(rows), words_((rows + 63) / 64) {}
-  void add(std::size_t row) noexcept { words_[row / 64] |= std::uint64_t{1} << (row % 64); }
+  void add(std::size_t row) noexcept { words_[row / 64] |= std::uint64_t{1} << (row % 64); }  ///< puts it in
+  /// Puts all of them in.
   void add_all() noexcept;
   /// As `find` tells them, or in any other order. O(tiles).
   template <int N>
   void add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) noexcept;
+  /// Is it in?.
   [[nodiscard]] bool has(std::size_t row) const noexcept { return (words_[row / 64] >> (row % 64) & 1u) != 0; }
-  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
-  [[nodiscard]] std::size_t count() const noexcept;
+  [[nodiscard]] std::size_t rows() const noexcept { return rows_; }  ///< in it or not
+  [[nodiscard]] std::size_t count() const noexcept;                  ///< how many are in
   /// ceil(rows / 64) words, lowest bit first; bits behind the last row are 0.
   [[nodiscard]] const std::vector<std::uint64_t>& words() const noexcept { return words_; }
 
@@ -106,7 +111,7 @@ struct IndexedImage {
   std::uint64_t digest = 0;            ///< of sizes, type and the bits of all values
   bool any_missing = false;            ///< whether any value is NaN
 
-  bool operator==(const IndexedImage&) const = default;
+  bool operator==(const IndexedImage&) const = default;  ///< member by member
 };
 
 /// What `image` is to an index. Reads all values: as fast as memory. Errors: Cancelled.
@@ -120,8 +125,10 @@ class ByteSink {
   ByteSink(const ByteSink&) = delete;
   ByteSink& operator=(const ByteSink&) = delete;
   virtual ~ByteSink() = default;
+  /// Takes so many bytes.
   virtual void write(const void* data, std::size_t bytes) = 0;
 };
+/// Where an index is loaded from.
 class ByteSource {
  public:
   ByteSource() = default;
@@ -134,12 +141,12 @@ class ByteSource {
 
 /// What the file of an index says of it.
 struct ActiveTilesHead {
-  std::uint32_t version = 0;
-  ActiveMethod method = ActiveMethod::full_scan;
-  std::vector<std::uint64_t> sizes;  ///< of the image: 2 to 5 axes, axis 0 first
-  std::string value_type;            ///< as in IndexedImage
-  std::uint64_t digest = 0;
-  bool any_missing = false;
+  std::uint32_t version = 0;                      ///< of the format
+  ActiveMethod method = ActiveMethod::full_scan;  ///< how tiles are found
+  std::vector<std::uint64_t> sizes;               ///< of the image: 2 to 5 axes, axis 0 first
+  std::string value_type;                         ///< as in IndexedImage
+  std::uint64_t digest = 0;                       ///< as in IndexedImage
+  bool any_missing = false;                       ///< as in IndexedImage
 };
 /// Reads the beginning of an index, whatever its image. Errors: MalformedFile, UnsupportedFormat as load_active_tiles.
 ActiveTilesHead read_active_tiles_head(ByteSource& from);
@@ -164,11 +171,13 @@ class ActiveTiles {
   ActiveTiles(const ActiveTiles&) = delete;
   ActiveTiles& operator=(const ActiveTiles&) = delete;
 
+  /// How tiles are found.
   [[nodiscard]] virtual ActiveMethod method() const noexcept = 0;
-  [[nodiscard]] const IndexedImage<N>& image() const noexcept { return image_; }
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
+  [[nodiscard]] const IndexedImage<N>& image() const noexcept { return image_; }  ///< what it was built for
+  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }        ///< the image's tiles
   /// Bytes that the index holds beside the image.
   [[nodiscard]] virtual std::size_t memory_bytes() const noexcept = 0;
+  /// Whether `find` looks at the image's values.
   [[nodiscard]] virtual bool needs_image() const noexcept { return false; }
   /// Whether all active tiles are found. Otherwise (`choose_tiles`) `extract` makes the contour in those that are, as
   /// if there were no others.
@@ -184,6 +193,7 @@ class ActiveTiles {
   void save(ByteSink& to) const;
 
  protected:
+  /// For methods: of this image.
   explicit ActiveTiles(IndexedImage<N> image) : image_(std::move(image)), grid_(image_.sizes) {}
 
   /// Appends the active tiles, each once, in any order. `isovalue` is finite.
@@ -200,14 +210,15 @@ class ActiveTiles {
 
 enum class SeedMethod : std::uint8_t;  // tegl/seed_set.hpp
 
+/// How an index is built.
 struct ActiveTilesOptions {
   /// How many threads build; 0, or more than there are: all that the machine has.
   unsigned threads = 0;
-  Progress progress = {};
+  Progress progress = {};  ///< see Progress
   /// Of `seed_set` alone, as in SeedSetOptions: how seeds are found (`cover` unless said otherwise), and in which order
   /// of the axes. Neighbours are those that share a face.
   SeedMethod seed_method{};
-  std::vector<int> scan_order = {};
+  std::vector<int> scan_order = {};  ///< all axes, the one that a scan runs along first
 };
 
 /// Builds an index. About linear in the number of tiles, in time and in memory while it is built. Errors: Cancelled;

@@ -18,17 +18,16 @@ namespace tegl {
 /// A square with two high corners across from each other is ambiguous: are they joined in it, or apart? So is a cube in
 /// which the contour has several loops on the boundary (does a tunnel join them?), and so on upwards. However it is
 /// resolved, tiles agree in the faces that they share, and the contour is a closed manifold.
-/// - low, high: the consistent method, by table. low: high corners that meet only across a diagonal are kept apart;
-/// high:
-///   they are joined. Loops in a cube are never joined.
+/// - low, high: the consistent method, by table. low keeps high corners apart that meet only across a diagonal, high
+///   joins them. Loops in a cube are never joined.
 /// - mean: the estimation method. The centre of every ambiguous face is high if the mean of the face's corners is at or
 ///   above the isovalue, low otherwise, and what has the centre's sign hangs together in the face. Exactly, without
 ///   rounding, but where the sum of the corners is too large for a double, or one is infinite: then the sum of the
 ///   corners divided by 1024, rounded, is compared; with infinities of both signs the centre is high.
-/// - saddle: as the multilinear interpolant has it, exactly in squares and cubes (tegl/saddle.hpp); in faces of four
-/// and
-///   more dimensions, by the sign of their centre as `mean`.
+/// - saddle: as the multilinear interpolant has it, exactly in squares and cubes (tegl/saddle.hpp). In faces of higher
+///   dimension, by the sign of their centre as `mean`.
 /// - custom: as ExtractOptions::estimator says.
+///
 /// Faces that are not ambiguous come from the tables in any case. Where few faces are ambiguous, as in smooth images,
 /// all of them cost about the same; in noise, mean and saddle look at samples again (docs/ambiguity.md), and `count`,
 /// which otherwise looks at bits alone, takes up to 30 times as long as with low.
@@ -43,16 +42,19 @@ class AmbiguousFace {
   /// Called by extractions. `origin`: the place in the image of sample 0 of what is read; `first`, `end`: the samples
   /// that there are along each axis, counted from there.
   struct Surroundings {
-    const void* image = nullptr;
-    Reader read = nullptr;
-    std::array<std::ptrdiff_t, 5> origin{}, first{}, end{};
+    const void* image = nullptr;             ///< as Reader takes it
+    Reader read = nullptr;                   ///< reads one sample
+    std::array<std::ptrdiff_t, 5> origin{};  ///< by axis, see above
+    std::array<std::ptrdiff_t, 5> first{};   ///< likewise
+    std::array<std::ptrdiff_t, 5> end{};     ///< likewise
   };
+  /// Called by extractions: a face by its first corner, axes and corners' values. What it refers to must outlive it.
   AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
                 const Surroundings& around);
 
   /// Dimensions of the image, and of the face: 2 or more.
   [[nodiscard]] int image_dim() const noexcept { return image_dim_; }
-  [[nodiscard]] int dim() const noexcept { return dim_; }
+  [[nodiscard]] int dim() const noexcept { return dim_; }  ///< of the face: 2 or more
   /// Bit a: whether the face extends along axis a.
   [[nodiscard]] unsigned axes() const noexcept { return axes_; }
   /// The index of its first corner in the image, by axis: the face goes from there to the next sample along its axes.
@@ -61,7 +63,7 @@ class AmbiguousFace {
   }
   /// At its 2^dim corners; corner v is one step along the j-th of its axes where bit j of v is set.
   [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
-  [[nodiscard]] double isovalue() const noexcept { return isovalue_; }
+  [[nodiscard]] double isovalue() const noexcept { return isovalue_; }  ///< the isovalue of the contour
   /// The value at `base` + `steps`, steps by axis of the image; beyond the image's border that of the nearest sample
   /// inside. NaN where it is missing. How far it may go: Estimator::reach.
   [[nodiscard]] double sample(std::span<const std::ptrdiff_t> steps) const noexcept;

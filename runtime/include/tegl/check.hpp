@@ -14,9 +14,9 @@ namespace tegl {
 /// and in `unused_vertices`. Simplices that repeat a vertex ("collapsed") span no d-dimensional piece: they are counted
 /// in `simplices` and `degenerate_simplices` and left out of all other counts.
 struct MeshReport {
-  int dim = 0;                 ///< dimension d of the simplices (2 for triangles)
-  std::uint64_t vertices = 0;  ///< vertices used by at least one simplex that is not collapsed
-  std::uint64_t unused_vertices = 0;
+  int dim = 0;                              ///< dimension d of the simplices (2 for triangles)
+  std::uint64_t vertices = 0;               ///< vertices used by at least one simplex that is not collapsed
+  std::uint64_t unused_vertices = 0;        ///< vertices that no simplex has, or collapsed ones alone
   std::uint64_t simplices = 0;              ///< as listed; one listed twice counts twice, here and in `euler`
   std::uint64_t components = 0;             ///< connected components of the used vertices
   std::int64_t euler = 0;                   ///< Euler characteristic: the alternating sum of the numbers of k-faces

@@ -22,7 +22,7 @@ inline constexpr Index kNoComponent = std::numeric_limits<Index>::max();
 /// simplices, with a label for a vertex in no simplex or none for one in a simplex, with a simplex whose vertices have
 /// other labels, or with a component without simplices.
 struct ComponentLabels {
-  Index count = 0;
+  Index count = 0;          ///< how many components
   Buffer<Index> vertices;   ///< #V; kNoComponent for vertices in no simplex
   Buffer<Index> simplices;  ///< #S
 };
@@ -41,17 +41,17 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
 /// What is known of one component.
 template <int N>
 struct Component {
-  Index label = 0;
-  std::uint64_t vertices = 0;
-  std::uint64_t simplices = 0;
+  Index label = 0;              ///< its number, as in ComponentLabels
+  std::uint64_t vertices = 0;   ///< how many
+  std::uint64_t simplices = 0;  ///< how many
   /// Length (N = 2), area (3), 3-volume (4) or 4-volume (5), in the units of the coordinates, as Euclid has it.
   double size = 0.0;
   /// The enclosed area (N = 2), volume (3), 4-volume (4) …: positive where the component's inside is high, negative for
   /// a cavity in it; none where it is open. The sum over the components is that of the whole.
   std::optional<double> content;
-  std::array<double, N> centroid{};  ///< of its points, each as much as any other; of size 0: the middle of the box
-  std::array<double, N> lowest{};    ///< bounding box
-  std::array<double, N> highest{};
+  std::array<double, N> centroid{};      ///< of its points, each as much as any other; of size 0: the middle of the box
+  std::array<double, N> lowest{};        ///< bounding box
+  std::array<double, N> highest{};       ///< the other corner
   std::int64_t euler = 0;                ///< Euler characteristic
   std::uint64_t boundary_simplices = 0;  ///< (N-2)-faces in exactly one simplex; 0: closed
 

@@ -55,21 +55,23 @@ struct DefaultInitAllocator {
 };
 }  // namespace detail
 
+/// A vector that leaves new numbers unset when it grows: what is written to once is not cleared first.
 template <class T>
 using Buffer = std::vector<T, detail::DefaultInitAllocator<T>>;
 
+/// The number of a vertex.
 using Index = std::uint32_t;
 
 /// How large a contour is.
 struct ContourSize {
-  std::uint64_t vertices = 0;
-  std::uint64_t simplices = 0;
-  bool operator==(const ContourSize&) const = default;
+  std::uint64_t vertices = 0;                           ///< how many points
+  std::uint64_t simplices = 0;                          ///< how many segments, triangles, tetrahedra or 4-simplices
+  bool operator==(const ContourSize&) const = default;  ///< both numbers alike
 };
 
 /// Named numbers of every vertex, or of every simplex.
 struct Attribute {
-  std::string name;
+  std::string name;       ///< such as "temperature"; not empty
   std::string unit;       ///< may be empty
   int width = 1;          ///< how many numbers each has
   Buffer<double> values;  ///< #V (or #S) x width, row = vertex (or simplex)
@@ -82,25 +84,27 @@ enum class GradientDirection { descent, ascent };
 /// N = 2: segments, 3: triangles, 4: tetrahedra, 5: 4-simplices.
 template <int N, class Real = float>
 struct Contour {
-  using Vertex = std::array<Real, N>;
+  using Vertex = std::array<Real, N>;  ///< a point, N coordinates
+  /// N vertex numbers.
   using Simplex = std::array<Index, N>;
-  using VertexMatrix = Eigen::Matrix<Real, Eigen::Dynamic, N, Eigen::RowMajor>;
-  using SimplexMatrix = Eigen::Matrix<Index, Eigen::Dynamic, N, Eigen::RowMajor>;
+  using VertexMatrix = Eigen::Matrix<Real, Eigen::Dynamic, N, Eigen::RowMajor>;    ///< #V x N, row = vertex
+  using SimplexMatrix = Eigen::Matrix<Index, Eigen::Dynamic, N, Eigen::RowMajor>;  ///< #S x N, row = simplex
 
   Buffer<Vertex> vertices;                ///< #V x N world coordinates, row = vertex; for time-varying images t is last
   Buffer<Simplex> simplices;              ///< #S x N vertex numbers, row = simplex, consistently oriented
   Buffer<Vertex> normals;                 ///< #V x N of length 1, if asked for (ExtractOptions::normals); else empty
   std::array<std::string, N> axis_names;  ///< taken from the grid
-  std::array<std::string, N> axis_units;
-  GradientDirection direction = GradientDirection::descent;
-  std::vector<Attribute> vertex_attributes;   ///< `extract` makes none
-  std::vector<Attribute> simplex_attributes;  ///< likewise
+  std::array<std::string, N> axis_units;  ///< likewise; such as "mm"
+  GradientDirection direction = GradientDirection::descent;  ///< which side simplices and normals face
+  std::vector<Attribute> vertex_attributes;                  ///< `extract` makes none
+  std::vector<Attribute> simplex_attributes;                 ///< likewise
 
   /// The vertices as an Eigen matrix without a copy; valid while `vertices` is unchanged.
   [[nodiscard]] auto vertex_matrix() const {
     return Eigen::Map<const VertexMatrix>(vertices.empty() ? nullptr : vertices.data()->data(),
                                           static_cast<Eigen::Index>(vertices.size()), N);
   }
+  /// The simplices, likewise.
   [[nodiscard]] auto simplex_matrix() const {
     return Eigen::Map<const SimplexMatrix>(simplices.empty() ? nullptr : simplices.data()->data(),
                                            static_cast<Eigen::Index>(simplices.size()), N);

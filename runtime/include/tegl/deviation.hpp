@@ -11,6 +11,7 @@
 
 namespace tegl {
 
+/// How distances are measured.
 template <int N>
 struct DeviationOptions {
   /// Distances are taken after coordinates were multiplied by these: what makes axes of different units comparable.
@@ -18,7 +19,7 @@ struct DeviationOptions {
   /// No bound of a simplex has to be less than that: where it is, closer ones cost time. They hold all the same.
   double enough = 0.0;
   unsigned threads = 0;  ///< 0: all that the machine has. The result is the same, byte by byte.
-  Progress progress;
+  Progress progress;     ///< see Progress
 
  private:
   static constexpr std::array<double, N> all_one() {

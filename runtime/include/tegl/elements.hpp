@@ -22,16 +22,16 @@ namespace tegl {
 /// high (ascent).
 template <int N>
 struct Elements {
-  using Point = std::array<double, N>;
+  using Point = std::array<double, N>;  ///< coordinates, or components of a vector
 
-  Buffer<Point> centroids;            ///< #E x N world coordinates, row = element
-  Buffer<Point> normals;              ///< #E x N, row = element
-  Buffer<double> measures;            ///< #E: lengths, areas or volumes, as Euclid has them
-  Buffer<Index> counts;               ///< #E: of how many simplices the element is made
-  std::vector<Attribute> attributes;  ///< of elements: the contour's, of vertices first, then of simplices
-  std::array<std::string, N> axis_names;
-  std::array<std::string, N> axis_units;
-  GradientDirection direction = GradientDirection::descent;
+  Buffer<Point> centroids;                ///< #E x N world coordinates, row = element
+  Buffer<Point> normals;                  ///< #E x N, row = element
+  Buffer<double> measures;                ///< #E: lengths, areas or volumes, as Euclid has them
+  Buffer<Index> counts;                   ///< #E: of how many simplices the element is made
+  std::vector<Attribute> attributes;      ///< of elements: the contour's, of vertices first, then of simplices
+  std::array<std::string, N> axis_names;  ///< the contour's
+  std::array<std::string, N> axis_units;  ///< likewise
+  GradientDirection direction = GradientDirection::descent;  ///< which side dsigma points to
 };
 
 /// One element per simplex, in the order of the simplices. Attributes of vertices are interpolated to the centroid:
@@ -64,6 +64,7 @@ struct ElementSum {
   [[nodiscard]] double closure_error() const noexcept;
 };
 
+/// Their sum, compensated, in their order. O(#E).
 template <int N>
 ElementSum<N> sum_of(const Elements<N>& elements);
 

@@ -21,11 +21,12 @@ enum class ElementAxes { time_first, as_is };
 /// the last axis: all components but that one change their sign. (In units where the speed of light is 1.)
 enum class ElementComponents { covariant, contravariant };
 
+/// What an element file holds, and how.
 struct ElementFileOptions {
-  ElementAxes axes = ElementAxes::time_first;
-  ElementComponents components = ElementComponents::covariant;
-  bool header = false;  ///< of text: a first line that names the columns, behind a '#'
-  Progress progress = {};
+  ElementAxes axes = ElementAxes::time_first;                   ///< which axis leads
+  ElementComponents components = ElementComponents::covariant;  ///< how normals are written
+  bool header = false;     ///< of text: a first line that names the columns, behind a '#'
+  Progress progress = {};  ///< see Progress
 };
 
 /// Writes by extension.

@@ -9,6 +9,7 @@
 
 namespace tegl {
 
+/// What went wrong, of which kind.
 enum class ErrorCode {
   InvalidArgument,    ///< an option or parameter outside of what it may be
   InvalidGrid,        ///< sizes, strides or axes that make no grid
@@ -31,8 +32,9 @@ const char* error_name(ErrorCode code) noexcept;
 /// std::bad_alloc passes through it: nothing is lost then, and no half-written file is left.
 class Error : public std::runtime_error {
  public:
+  /// `message`: the actual and the expected value, and the file or option by name.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }  ///< of which kind
 
  private:
   ErrorCode code_;
@@ -44,8 +46,8 @@ using Progress = std::function<bool(double fraction)>;
 
 /// What every long operation on contours takes.
 struct WorkOptions {
-  unsigned threads = 0;  ///< how many work; 0: all that the machine has. The result is the same, byte by byte.
-  Progress progress = {};
+  unsigned threads = 0;    ///< how many work; 0: all that the machine has. The result is the same, byte by byte.
+  Progress progress = {};  ///< called now and then
 };
 
 }  // namespace tegl

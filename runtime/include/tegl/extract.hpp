@@ -14,7 +14,8 @@
 
 namespace tegl {
 
-/// In 5D there is one triangulation, the barycentric one, and both names mean it.
+/// How facets become simplices: with few of them, or coned from barycentres, more and evener ones. In 5D there is the
+/// barycentric triangulation alone, and both names mean it.
 enum class Triangulation { compact, barycentric };
 
 /// How the gradient at a sample is made, which normals follow. differences: the mean of the difference quotients
@@ -22,11 +23,12 @@ enum class Triangulation { compact, barycentric };
 /// their nearness (docs/normals.md): noise is damped, at ten times the cost.
 enum class GradientKind { differences, sobel };
 
+/// What a contour is made of, and how.
 struct ExtractOptions {
-  Triangulation triangulation = Triangulation::compact;
-  Ambiguity ambiguity = Ambiguity::low;  ///< how ambiguous faces are resolved
-  Estimator estimator = {};              ///< for Ambiguity::custom, else not looked at
-  GradientDirection direction = GradientDirection::descent;
+  Triangulation triangulation = Triangulation::compact;      ///< how facets become simplices
+  Ambiguity ambiguity = Ambiguity::low;                      ///< how ambiguous faces are resolved
+  Estimator estimator = {};                                  ///< for Ambiguity::custom, else not looked at
+  GradientDirection direction = GradientDirection::descent;  ///< which side it faces
   /// Close the contour at the image's border by the high part of the border itself. Where the border
   /// of the *data* lies inside the image (missing values), the contour stays open.
   bool close = false;
@@ -37,27 +39,27 @@ struct ExtractOptions {
   /// Whether vertices get normals: in the contour's `direction`, along the image's gradient there; of length 1, or 0
   /// where it vanishes. At samples it is the mean of the difference quotients forward and backward, at
   /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
-  /// along edges). Normals of a vertex are as exact as its type allows. Where a 4D contour is taken apart next to missing
-  /// values, vertices put in the middle between two have the mean of their normals, of length 1.
+  /// along edges). Normals of a vertex are as exact as its type allows. Where a 4D contour is taken apart next to
+  /// missing values, vertices put in the middle between two have the mean of their normals, of length 1.
   bool normals = false;
   GradientKind gradient = GradientKind::differences;  ///< what normals are made of
   /// How many threads work; 0, or more than there are: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
   /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
-  /// axis) at least once, and within large ones, with fractions that do not fall; how often depends on the threads' pace.
-  /// It may use threads (TBB) itself: while it waits for them, it is not called again.
+  /// axis) at least once, and within large ones, with fractions that do not fall; how often depends on the threads'
+  /// pace. It may use threads (TBB) itself: while it waits for them, it is not called again.
   Progress progress;
 };
 
 /// What an extraction did, for reports.
 struct ExtractStats {
-  std::uint64_t tiles = 0;
-  std::uint64_t active_tiles = 0;
-  double read_seconds = 0;      ///< layers, where they come one by one (tegl/stream.hpp)
-  double classify_seconds = 0;  ///< samples against the isovalue
-  double find_seconds = 0;      ///< active tiles, counts, places in the output
-  double generate_seconds = 0;  ///< vertices and simplices
-  double close_seconds = 0;     ///< caps
+  std::uint64_t tiles = 0;         ///< of the image
+  std::uint64_t active_tiles = 0;  ///< those with high and low corners
+  double read_seconds = 0;         ///< layers, where they come one by one (tegl/stream.hpp)
+  double classify_seconds = 0;     ///< samples against the isovalue
+  double find_seconds = 0;         ///< active tiles, counts, places in the output
+  double generate_seconds = 0;     ///< vertices and simplices
+  double close_seconds = 0;        ///< caps
 };
 
 /// The contour {value = isovalue} of an image: separates samples >= isovalue (high) from the others.
@@ -68,9 +70,9 @@ struct ExtractStats {
 /// of the last axis are kept off the layers by the least that Real can show, so that `slice` finds the contour of a
 /// layer in it even where samples equal the isovalue. An image with an axis of one sample has no tiles, hence an empty
 /// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for
-/// 5D images with missing values. Cost: one pass over the samples plus the output. Memory beside both, up to 4D: 1/16 of
-/// an image of float, or 128 KiB where that is more; and at least one slab's bits and lists (docs/cost.md). Real: float
-/// or double.
+/// 5D images with missing values. Cost: one pass over the samples plus the output. Memory beside both, up to 4D: 1/16
+/// of an image of float, or 128 KiB where that is more; and at least one slab's bits and lists (docs/cost.md). Real:
+/// float or double.
 ///
 /// 5D: no tables; a tile is built when its signature is first met, up to symmetry: 0.1 to 0.3 ms for each where the
 /// image is smooth, 3 ms in noise. That is little for smooth images, which have few kinds of tiles, and nearly all for
@@ -95,8 +97,8 @@ concept VertexNumber = std::is_same_v<I, std::uint32_t> || std::is_same_v<I, std
 /// Memory of the caller's for a contour.
 template <int N, class Real, VertexNumber I = Index>
 struct ContourRoom {
-  std::span<std::array<Real, N>> vertices;
-  std::span<std::array<I, N>> simplices;
+  std::span<std::array<Real, N>> vertices;      ///< at least as many as `count` says
+  std::span<std::array<I, N>> simplices;        ///< likewise
   std::span<std::array<Real, N>> normals = {};  ///< used with ExtractOptions::normals alone: as many as vertices
 };
 

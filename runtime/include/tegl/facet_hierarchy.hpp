@@ -50,7 +50,7 @@ struct FacetPlace {
 template <int N, class Real = float>
 struct FacetHierarchy {
   static_assert(N >= 2 && N <= 4);
-  using Vertex = std::array<Real, N>;
+  using Vertex = std::array<Real, N>;  ///< a point, N coordinates
 
   /// Facets of one dimension.
   struct Level {
@@ -63,14 +63,15 @@ struct FacetHierarchy {
     Buffer<std::int8_t> up_signs;    ///< the incidence numbers of this facet in them
   };
 
-  std::array<Level, N> levels;            ///< by dimension k
-  Buffer<Vertex> vertices;                ///< #0-facets x N world coordinates, row = 0-facet
-  Buffer<Vertex> normals;                 ///< as many, of length 1 or 0, if asked for; else empty
-  std::array<std::size_t, N> sizes{};     ///< of the image
-  std::array<std::string, N> axis_names;  ///< taken from the grid
-  std::array<std::string, N> axis_units;
-  GradientDirection direction = GradientDirection::descent;
+  std::array<Level, N> levels;                               ///< by dimension k
+  Buffer<Vertex> vertices;                                   ///< #0-facets x N world coordinates, row = 0-facet
+  Buffer<Vertex> normals;                                    ///< as many, of length 1 or 0, if asked for; else empty
+  std::array<std::size_t, N> sizes{};                        ///< of the image
+  std::array<std::string, N> axis_names;                     ///< taken from the grid
+  std::array<std::string, N> axis_units;                     ///< likewise
+  GradientDirection direction = GradientDirection::descent;  ///< which side facets face
 
+  /// Facets of dimension k.
   [[nodiscard]] std::size_t count(int k) const noexcept { return levels[k].places.size(); }
 
   /// The facets that bound facet f of dimension k >= 1. Of a segment: its start and its end. Of a polygon: its segments
@@ -86,6 +87,7 @@ struct FacetHierarchy {
   [[nodiscard]] std::span<const Index> up(int k, std::size_t f) const noexcept {
     return part(levels[k].up, levels[k].up_first, f);
   }
+  /// As many incidence numbers: the sign that f has in the boundary of each.
   [[nodiscard]] std::span<const std::int8_t> up_signs(int k, std::size_t f) const noexcept {
     return part(levels[k].up_signs, levels[k].up_first, f);
   }
@@ -146,7 +148,7 @@ struct FacetReport {
   std::uint64_t branching = 0;            ///< fault: (N-2)-facets in no or more than two (N-1)-facets
   std::uint64_t conflicts = 0;            ///< fault: (N-2)-facets twice with the same sign
   std::uint64_t open_boundaries = 0;      ///< fault: facets the boundary of whose boundary is not zero
-  bool operator==(const FacetReport&) const = default;
+  bool operator==(const FacetReport&) const = default;  ///< member by member
 };
 
 /// Looks at all facets. O(size).

@@ -27,9 +27,9 @@ class Axis {
   /// Samples at the given coordinates. Throws InvalidGrid unless they are finite and strictly monotone.
   static Axis rectilinear(std::vector<double> coordinates);
 
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] bool is_uniform() const noexcept { return coordinates_.empty(); }
-  [[nodiscard]] double origin() const noexcept { return (*this)[0]; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }                ///< samples
+  [[nodiscard]] bool is_uniform() const noexcept { return coordinates_.empty(); }  ///< one step for all
+  [[nodiscard]] double origin() const noexcept { return (*this)[0]; }              ///< coordinate of sample 0
   /// Uniform axes: the step. Rectilinear axes: the mean step.
   [[nodiscard]] double step() const noexcept;
   /// True when coordinates fall with the index.
@@ -57,9 +57,9 @@ class Axis {
 /// World position of index i: linear * (axes[0][i_0], ..., axes[N-1][i_{N-1}]) + offset.
 template <int N>
 struct Grid {
-  std::array<Axis, N> axes;
-  Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();
-  Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();
+  std::array<Axis, N> axes;                                                      ///< axis 0 first; time last
+  Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();  ///< the world map's matrix
+  Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();      ///< and what it adds
 
   /// A uniform grid of step 1 from the origin.
   static Grid unit(const std::array<std::size_t, N>& sizes) {
@@ -67,6 +67,7 @@ struct Grid {
     for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a]);
     return grid;
   }
+  /// Samples along each axis.
   [[nodiscard]] std::array<std::size_t, N> sizes() const {
     std::array<std::size_t, N> result;
     for (int a = 0; a < N; ++a) result[a] = axes[a].size();

@@ -12,9 +12,9 @@ namespace tegl {
 /// The points x with <normal, x> = offset. The normal may have any length but 0; the side that it points to is above.
 template <int N>
 struct Hyperplane {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  Vector normal = Vector::Unit(N - 1);
-  double offset = 0.0;
+  using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
+  Vector normal = Vector::Unit(N - 1);         ///< a, of any length but 0
+  double offset = 0.0;                         ///< b
 
   /// x_axis = at.
   static Hyperplane across(int axis, double at) { return {Vector::Unit(axis), at}; }

@@ -24,8 +24,8 @@ concept Value = std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::int8_t
 template <Value T, int N>
 class Image {
  public:
-  using value_type = T;
-  using Strides = std::array<std::ptrdiff_t, N>;
+  using value_type = T;                           ///< the type of a sample
+  using Strides = std::array<std::ptrdiff_t, N>;  ///< by axis, counted in elements
 
   /// A dense view, axis 0 fastest. Throws InvalidGrid for a null pointer, an axis without samples, or a map to the
   /// world that is singular or not finite.
@@ -33,11 +33,13 @@ class Image {
   /// A view by any strides.
   Image(const T* data, Grid<N> grid, const Strides& strides);
 
-  [[nodiscard]] const T* data() const noexcept { return data_; }
-  [[nodiscard]] const Grid<N>& grid() const noexcept { return grid_; }
-  [[nodiscard]] const Strides& strides() const noexcept { return strides_; }
+  [[nodiscard]] const T* data() const noexcept { return data_; }              ///< the sample of index 0, ..., 0
+  [[nodiscard]] const Grid<N>& grid() const noexcept { return grid_; }        ///< the samples' coordinates
+  [[nodiscard]] const Strides& strides() const noexcept { return strides_; }  ///< by axis, in elements
+  /// Samples along an axis.
   [[nodiscard]] std::size_t size(int axis) const noexcept { return grid_.axes[axis].size(); }
 
+  /// The sample of an index; it has to be inside.
   [[nodiscard]] T operator()(const std::array<std::size_t, N>& index) const noexcept {
     std::ptrdiff_t at = 0;
     for (int a = 0; a < N; ++a) at += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
@@ -57,9 +59,10 @@ class Image {
 /// An image that owns its values, axis 0 fastest.
 template <Value T, int N>
 struct OwnedImage {
-  Grid<N> grid;
-  std::vector<T> values;
+  Grid<N> grid;           ///< the samples' coordinates
+  std::vector<T> values;  ///< axis 0 fastest
 
+  /// The image, to be handed on; valid while this one lives.
   [[nodiscard]] Image<T, N> view() const { return Image<T, N>(values.data(), grid); }
 };
 

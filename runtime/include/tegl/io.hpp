@@ -43,14 +43,16 @@ struct ImageInfo {
   std::string stored_type;             ///< value type in the file, before any conversion
 };
 
+/// An image, and what its file says of it.
 struct ReadImageResult {
-  AnyImage image;
-  ImageInfo info;
+  AnyImage image;  ///< values and grid
+  ImageInfo info;  ///< beyond these
 };
 
+/// What to read of a file.
 struct ReadImageOptions {
   std::string variable;  ///< netCDF: which; empty: the only one with at least two axes longer than 1
-  Progress progress;
+  Progress progress;     ///< see Progress
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
@@ -72,7 +74,7 @@ ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOpt
 
 /// A variable that can be read as an image.
 struct ImageVariable {
-  std::string name;
+  std::string name;                ///< as ReadImageOptions::variable takes it
   std::vector<std::size_t> sizes;  ///< of its axes longer than 1, as in the image: axis 0, which runs fastest, first
   std::string unit;                ///< may be empty
   std::string long_name;           ///< may be empty
@@ -92,9 +94,10 @@ using AnyLayersN =
 /// The layers of an image of any value type in 2, 3 or 4 dimensions.
 using AnyLayers = std::variant<AnyLayersN<2>, AnyLayersN<3>, AnyLayersN<4>>;
 
+/// An image to be read layer by layer, and what its file says of it.
 struct OpenLayersResult {
-  AnyLayers layers;
-  ImageInfo info;
+  AnyLayers layers;  ///< of whatever type and dimension
+  ImageInfo info;    ///< beyond values and grid
 };
 
 /// Opens a variable of a netCDF file, or a dataset of an HDF5 file, to be read layer by layer: what read_image reads
@@ -109,7 +112,7 @@ struct RawLayout {
   std::vector<std::size_t> sizes;  ///< of 2 to 4 axes
   std::string type;                ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
   std::uint64_t offset = 0;        ///< bytes before the first value
-  bool big_endian = false;
+  bool big_endian = false;         ///< the order of a value's bytes
 };
 
 /// The same of a file that holds nothing but values, on a grid of step 1. Errors: FileNotFound; InvalidArgument (the
@@ -118,13 +121,13 @@ OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLay
 
 /// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.
 struct Mesh {
-  int dim = 2;
-  int space_dim = 3;
-  Buffer<double> coordinates;           ///< #V x space_dim, row = vertex
-  Buffer<double> normals;               ///< as many, of length 1 or 0; or none
-  Buffer<Index> simplices;              ///< #S x (dim + 1), row = simplex
-  std::vector<std::string> axis_names;  ///< space_dim names, may be empty
-  std::vector<std::string> axis_units;
+  int dim = 2;                                ///< of the simplices
+  int space_dim = 3;                          ///< of the coordinates
+  Buffer<double> coordinates;                 ///< #V x space_dim, row = vertex
+  Buffer<double> normals;                     ///< as many, of length 1 or 0; or none
+  Buffer<Index> simplices;                    ///< #S x (dim + 1), row = simplex
+  std::vector<std::string> axis_names;        ///< space_dim names, may be empty
+  std::vector<std::string> axis_units;        ///< as many, may be empty
   std::vector<Attribute> vertex_attributes;   ///< rows as many as vertices; names not empty and different
   std::vector<Attribute> simplex_attributes;  ///< likewise, as many as simplices
   std::optional<double> isovalue;             ///< of the contour, where it is known; finite
@@ -134,7 +137,7 @@ struct Mesh {
 struct MeshFileFormat {
   std::string_view extension;  ///< with its dot, in lower case
   int most_dim;                ///< simplices up to this dimension; 3: in 4-space as well
-  bool writable;
+  bool writable;               ///< by write_mesh; all can be read
 };
 
 /// The formats of read_mesh and write_mesh, by extension.
@@ -143,6 +146,7 @@ std::span<const MeshFileFormat> mesh_file_formats() noexcept;
 /// The format that a file's extension tells, in upper or lower case; null if it tells none.
 const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 
+/// The contour as files hold it, with names, units, normals and attributes. Copies all of them.
 template <int N, class Real>
 Mesh to_mesh(const Contour<N, Real>& contour);
 /// The contour of a mesh with dim = N - 1 and space_dim = N (planar meshes read back from 3D files:

@@ -15,12 +15,13 @@ namespace tegl {
 template <Value T, int N>
 class LayerReader {
  public:
-  using value_type = T;
+  using value_type = T;  ///< the type of a sample
   LayerReader() = default;
   LayerReader(const LayerReader&) = delete;
   LayerReader& operator=(const LayerReader&) = delete;
   virtual ~LayerReader() = default;
 
+  /// Coordinates of the whole image.
   [[nodiscard]] virtual const Grid<N>& grid() const noexcept = 0;
 
   /// Writes layer `k` to `to`, dense, axis 0 fastest: as many values as the other axes have samples. NaN is a missing
@@ -33,10 +34,11 @@ class LayerReader {
 template <Value T, int N>
 class FunctionLayers final : public LayerReader<T, N> {
  public:
-  using Function = std::function<void(std::size_t k, T* to)>;
+  using Function = std::function<void(std::size_t k, T* to)>;  ///< writes layer `k` to `to`, as LayerReader::read
+  /// Layers of an image on `grid`, as `function` writes them.
   FunctionLayers(Grid<N> grid, Function function) : grid_(std::move(grid)), function_(std::move(function)) {}
-  [[nodiscard]] const Grid<N>& grid() const noexcept override { return grid_; }
-  void read(std::size_t k, T* to) override { function_(k, to); }
+  [[nodiscard]] const Grid<N>& grid() const noexcept override { return grid_; }  ///< coordinates of the whole image
+  void read(std::size_t k, T* to) override { function_(k, to); }                 ///< asks the function
 
  private:
   Grid<N> grid_;

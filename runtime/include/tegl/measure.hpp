@@ -22,9 +22,9 @@ struct Measures {
   /// The enclosed area (N = 2), volume (3) or N-volume, in the product of the axes' units; none where the contour is
   /// open. Positive where high samples are inside.
   std::optional<double> content;
-  std::array<double, N> centroid{};  ///< of the contour's points; of an empty contour 0
-  std::array<double, N> lowest{};    ///< bounding box
-  std::array<double, N> highest{};
+  std::array<double, N> centroid{};      ///< of the contour's points; of an empty contour 0
+  std::array<double, N> lowest{};        ///< bounding box
+  std::array<double, N> highest{};       ///< the other corner
   std::uint64_t boundary_simplices = 0;  ///< (N-2)-faces in exactly one simplex
   /// (N-2)-faces whose simplices' orientations do not cancel. With none the divergence theorem holds, and there is a
   /// content. As many as boundary simplices for what `extract` gives.
@@ -41,7 +41,7 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options 
 
 /// Measures of one cut "last coordinate = at".
 struct CutMeasures {
-  double at = 0.0;
+  double at = 0.0;    ///< the value of the last coordinate
   double size = 0.0;  ///< length (N = 3), area (4) or 3-volume (5) of the cut, in the units of the other axes
   /// The enclosed area (N = 3), volume (4) or 4-volume (5); none where the cut is open.
   std::optional<double> content;

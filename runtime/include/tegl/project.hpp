@@ -22,10 +22,10 @@ struct Projection {
 /// The projected tetrahedra of a contour. They overlap.
 template <class Real>
 struct ProjectedContour {
-  Buffer<std::array<Real, 3>> vertices;     ///< #V x 3, row = vertex, numbered as in the contour
-  Buffer<std::array<Index, 4>> tetrahedra;  ///< #S x 4, as in the contour
-  std::array<std::string, 3> axis_names;    ///< where an axis of the result is one of the contour's
-  std::array<std::string, 3> axis_units;
+  Buffer<std::array<Real, 3>> vertices;       ///< #V x 3, row = vertex, numbered as in the contour
+  Buffer<std::array<Index, 4>> tetrahedra;    ///< #S x 4, as in the contour
+  std::array<std::string, 3> axis_names;      ///< where an axis of the result is one of the contour's
+  std::array<std::string, 3> axis_units;      ///< likewise
   std::vector<Attribute> vertex_attributes;   ///< the contour's, and the height along the direction (see `project`)
   std::vector<Attribute> simplex_attributes;  ///< the contour's, and "side": -1 for the near side, 1 for the far side
 };

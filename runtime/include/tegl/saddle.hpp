@@ -36,7 +36,7 @@ struct CubeDecision {
   /// joined.
   facets::Choice centre = facets::Choice::separate;
 
-  bool operator==(const CubeDecision&) const = default;
+  bool operator==(const CubeDecision&) const = default;  ///< member by member
 };
 
 namespace detail {

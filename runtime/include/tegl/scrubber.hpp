@@ -29,7 +29,7 @@ namespace tegl {
 template <int N, class Real>
 class Scrubber {
  public:
-  using Vector = Eigen::Matrix<double, N, 1>;
+  using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
 
   /// `normal`: of the hyperplanes. Throws InvalidArgument if it is 0 or not finite, or a coordinate of the contour is
   /// not finite, a vertex number out of range, or attributes or normals are of another number; Cancelled.

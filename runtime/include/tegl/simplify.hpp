@@ -49,16 +49,16 @@ std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
 /// the first that is reached ends it.
 template <int N>
 struct SimplifyOptions {
-  SimplifyMethod method = SimplifyMethod::quadric;
-  std::optional<std::uint64_t> count;  ///< as few simplices as this
-  std::optional<double> ratio;         ///< of the simplices that there are, in [0, 1]
+  SimplifyMethod method = SimplifyMethod::quadric;  ///< what is removed, in which order
+  std::optional<std::uint64_t> count;               ///< as few simplices as this
+  std::optional<double> ratio;                      ///< of the simplices that there are, in [0, 1]
   /// The largest distance between any point of one of the two contours and the other one. The result keeps it by its
   /// bound: where the bound is too large for a part of the contour, that part is simplified anew with more care. 0
   /// leaves the contour as it is.
   std::optional<double> max_error;
   /// facets: no facet of more curvature (1 / radius) than this is removed.
   double max_curvature = std::numeric_limits<double>::infinity();
-  SimplifyBorder border = SimplifyBorder::fixed;
+  SimplifyBorder border = SimplifyBorder::fixed;  ///< what happens to an open contour's border
   /// Vertices that lie in one of these hyperplanes stay in it, and those in several stay in all. Up to 20. To these are
   /// added the sides of the contour's bounding box that whole simplices, or parts of the border, lie in.
   std::vector<Hyperplane<N>> planes;
@@ -66,13 +66,13 @@ struct SimplifyOptions {
   /// comparable (a month and a degree).
   std::array<double, N> scale = all_one();
   /// Whether the result gets its error bounds: the vertex attribute "simplification_error". Is done anyway if
-  /// max_error is given. With a count or ratio, the bounds of one round show the next one which parts to treat with more
-  /// care, so that the same count has a smaller error; without bounds there is one round.
+  /// max_error is given. With a count or ratio, the bounds of one round show the next one which parts to treat with
+  /// more care, so that the same count has a smaller error; without bounds there is one round.
   bool measure = true;
   /// fast: hand out what is no manifold, too.
   bool allow_nonmanifold = false;
   unsigned threads = 0;  ///< for the bounds; 0: all that the machine has. The result is the same, byte by byte.
-  Progress progress;
+  Progress progress;     ///< see Progress
 
  private:
   static constexpr std::array<double, N> all_one() {
@@ -92,18 +92,18 @@ enum class SimplifyEnd {
 
 /// What a simplification did.
 struct SimplifyStats {
-  std::uint64_t simplices_before = 0;
-  std::uint64_t simplices_after = 0;
-  std::uint64_t vertices_before = 0;
-  std::uint64_t vertices_after = 0;
+  std::uint64_t simplices_before = 0;  ///< of the contour given
+  std::uint64_t simplices_after = 0;   ///< of the result
+  std::uint64_t vertices_before = 0;   ///< of the contour given
+  std::uint64_t vertices_after = 0;    ///< of the result
   /// No point of the original is farther than this from the result, and none of the result from the original; in units
   /// of `scale`. None if not measured.
   std::optional<double> error_of_original;
-  std::optional<double> error_of_result;
-  SimplifyEnd end = SimplifyEnd::count;
-  unsigned rounds = 0;  ///< how often it was simplified, to keep max_error or for a small error
-  double simplify_seconds = 0;
-  double measure_seconds = 0;
+  std::optional<double> error_of_result;  ///< likewise, from the result to the original
+  SimplifyEnd end = SimplifyEnd::count;   ///< why it has as many simplices as it has
+  unsigned rounds = 0;                    ///< how often it was simplified, to keep max_error or for a small error
+  double simplify_seconds = 0;            ///< time to remove simplices
+  double measure_seconds = 0;             ///< time to bound the error
 
   /// The larger of the two: a bound of the Hausdorff distance.
   [[nodiscard]] std::optional<double> error() const {

@@ -17,7 +17,8 @@ namespace tegl {
 template <int N, class Real>
 class ContourSink {
  public:
-  using Vertex = std::array<Real, N>;
+  using Vertex = std::array<Real, N>;  ///< a point, N coordinates
+  /// N vertex numbers.
   using Simplex = std::array<std::uint64_t, N>;
   ContourSink() = default;
   ContourSink(const ContourSink&) = delete;

@@ -22,6 +22,7 @@ std::size_t face_number(unsigned base, unsigned axes);
 /// How many faces the N-cube has, itself and its corners included: 3^N.
 template <int N>
 inline constexpr std::size_t kFaceCount = 3 * kFaceCount<N - 1>;
+/// A point is its own one face.
 template <>
 inline constexpr std::size_t kFaceCount<0> = 1;
 

@@ -34,46 +34,46 @@ const char* event_name(TrackEventKind kind) noexcept;
 
 /// Parts appear, meet, part or vanish.
 struct TrackEvent {
-  TrackEventKind kind = TrackEventKind::birth;
-  double time = 0;
-  std::array<double, 3> place{};  ///< the vertex's coordinates but the last; space_dim - 1 of them
-  Index vertex = 0;               ///< of the contour: where it happens
-  bool at_border = false;         ///< whether that vertex lies in the contour's border
-  std::vector<Index> in;          ///< the segments that end here, ascending
-  std::vector<Index> out;         ///< the segments that start here, ascending
+  TrackEventKind kind = TrackEventKind::birth;  ///< what happens
+  double time = 0;                              ///< the vertex's last coordinate
+  std::array<double, 3> place{};                ///< the vertex's coordinates but the last; space_dim - 1 of them
+  Index vertex = 0;                             ///< of the contour: where it happens
+  bool at_border = false;                       ///< whether that vertex lies in the contour's border
+  std::vector<Index> in;                        ///< the segments that end here, ascending
+  std::vector<Index> out;                       ///< the segments that start here, ascending
   std::int64_t euler_change = 0;  ///< by how much the Euler characteristic of the cut through them changes
 };
 
 /// The shape of a part changes while the number of parts does not: a handle opens or closes (by -2 or 2, in 4D), or the
 /// part meets the image's border.
 struct TrackHandle {
-  double time = 0;
-  std::array<double, 3> place{};
-  Index vertex = 0;
-  bool at_border = false;
-  Index segment = 0;
-  std::int64_t euler_change = 0;
+  double time = 0;                ///< the vertex's last coordinate
+  std::array<double, 3> place{};  ///< its other coordinates
+  Index vertex = 0;               ///< of the contour: where it happens
+  bool at_border = false;         ///< whether that vertex lies in the contour's border
+  Index segment = 0;              ///< the part whose shape changes
+  std::int64_t euler_change = 0;  ///< of that part
 };
 
 /// A part at one time. N = 4: of triangles in 3-space; N = 3: of segments in the plane; N = 2: points on a line.
 struct TrackSample {
-  double time = 0;
+  double time = 0;     ///< the value of the last coordinate
   double measure = 0;  ///< area; N = 3: length; N = 2: number of points
   /// Volume (N = 3: area) that the part encloses, negative around a cavity; NaN where the part is open, as where it
   /// ends at the image's border, and for N = 2.
   double content = std::numeric_limits<double>::quiet_NaN();
   std::array<double, 3> centroid{};  ///< of the surface, by area
   std::array<double, 3> lower{};     ///< the corners of the box around it
-  std::array<double, 3> upper{};
+  std::array<double, 3> upper{};     ///< likewise
 };
 
 /// One part from one event to the next: an arc of the graph.
 struct TrackSegment {
-  Index from = 0;  ///< event
-  Index to = 0;    ///< event
-  double start = 0;
-  double end = 0;
-  Index track = 0;
+  Index from = 0;                    ///< event
+  Index to = 0;                      ///< event
+  double start = 0;                  ///< time of `from`
+  double end = 0;                    ///< time of `to`
+  Index track = 0;                   ///< the track that it is a piece of
   std::uint64_t size_at_start = 0;   ///< simplices of the contour that the part consists of just after `start`
   std::uint64_t size_at_end = 0;     ///< just before `end`
   std::int64_t euler_at_start = 0;   ///< Euler characteristic just after `start`; closed, without handles, in 4D: 2
@@ -85,28 +85,29 @@ struct TrackSegment {
 struct Track {
   Index number = 0;             ///< in the graph as it was found; `select_tracks` leaves it as it is
   std::vector<Index> segments;  ///< one after the other
-  double start = 0;
-  double end = 0;
+  double start = 0;             ///< time of its first event
+  double end = 0;               ///< time of its last one
 };
 
 /// The Reeb graph of the last coordinate on a contour.
 struct TrackGraph {
   int space_dim = 0;                      ///< N
   std::array<std::string, 4> axis_names;  ///< the contour's
-  std::array<std::string, 4> axis_units;
-  double first = 0;                    ///< when the data begin
-  double last = 0;                     ///< and end
-  std::vector<TrackEvent> events;      ///< by time, then vertex
-  std::vector<TrackSegment> segments;  ///< by start, then the vertex there
-  std::vector<Track> tracks;           ///< by start, then the vertex there
-  std::vector<TrackHandle> handles;    ///< by time, then vertex
+  std::array<std::string, 4> axis_units;  ///< likewise
+  double first = 0;                       ///< when the data begin
+  double last = 0;                        ///< and end
+  std::vector<TrackEvent> events;         ///< by time, then vertex
+  std::vector<TrackSegment> segments;     ///< by start, then the vertex there
+  std::vector<Track> tracks;              ///< by start, then the vertex there
+  std::vector<TrackHandle> handles;       ///< by time, then vertex
   /// #S, if asked for: the segment that each of the contour's simplices is in when it first appears; kNoSegment for
   /// those that are never cut (flat in time) and those of parts that were filtered out.
   std::vector<Index> simplex_segments;
 
-  static constexpr Index kNoSegment = std::numeric_limits<Index>::max();
+  static constexpr Index kNoSegment = std::numeric_limits<Index>::max();  ///< no segment
 };
 
+/// What is followed, and what of it is shown.
 struct TrackOptions {
   /// Parts that live shorter than this, from birth to merge, from split to death, from birth to death or from a split
   /// to the merge of the same two, are left out. 0: all are shown but those that last no longer than rounding may let
@@ -116,14 +117,14 @@ struct TrackOptions {
   std::vector<double> times = {};
   /// When the data begin and end; by default the least and the greatest last coordinate of the contour.
   std::optional<double> first = {};
-  std::optional<double> last = {};
+  std::optional<double> last = {};  ///< see `first`
   /// Whether to list the changes of shape between events too.
   bool handles = true;
   /// Whether to fill TrackGraph::simplex_segments.
   bool label_simplices = false;
   /// How many threads work where several can; 0: all that the machine has. The result is the same, byte by byte.
   unsigned threads = 0;
-  Progress progress = {};
+  Progress progress = {};  ///< see Progress
 };
 
 /// `count` times at even distances in the middle of as many parts of [first, last].

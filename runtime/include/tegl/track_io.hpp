@@ -20,9 +20,12 @@ std::string track_dot(const TrackGraph& graph);
 /// Tables with a line of names, fields separated by commas, lists in a field by blanks: a row for each event, for each
 /// segment, and for each sample of each segment. Empty where there is no number.
 std::string track_events_csv(const TrackGraph& graph);
+/// See track_events_csv.
 std::string track_segments_csv(const TrackGraph& graph);
+/// See track_events_csv.
 std::string track_samples_csv(const TrackGraph& graph);
 
+/// What the picture of a graph looks like.
 struct TrackPicture {
   std::string title = {};        ///< may be empty
   double width = 960;            ///< in pixels

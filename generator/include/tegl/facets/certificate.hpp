@@ -23,6 +23,7 @@ enum class Fault : std::uint8_t {
   in_tile_boundary,  ///< (4) a simplex in the tile's boundary that is not one of Sigma's own
 };
 
+/// The name of a fault as in the enumeration, for messages.
 const char* fault_name(Fault fault) noexcept;
 
 /// Checks tiles, one after the other; its memory is kept. One thread at a time.
@@ -30,8 +31,8 @@ class Certifier {
  public:
   Certifier();
   ~Certifier();
-  Certifier(Certifier&&) noexcept;
-  Certifier& operator=(Certifier&&) noexcept;
+  Certifier(Certifier&&) noexcept;             ///< moved from: good for nothing but to be assigned to
+  Certifier& operator=(Certifier&&) noexcept;  ///< likewise
 
   /// Checks the contour of one tile of dimension n >= 2: (1) its boundary is Sigma exactly, and Sigma is what the
   /// contours in the tile's faces make, with the signs of the faces in the tile's boundary; no component is without

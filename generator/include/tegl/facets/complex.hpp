@@ -13,12 +13,16 @@ namespace tegl::facets {
 
 /// Number of a vertex within one tile.
 using VertexId = std::uint16_t;
+/// No vertex.
 inline constexpr VertexId kNoVertex = 0xffff;
+/// Of a simplex.
 inline constexpr int kMaxVertices = 7;
 
 /// The vertices of a simplex; what is not used is kNoVertex, at the end.
 using Simplex = std::array<VertexId, kMaxVertices>;
+/// A simplex without vertices.
 inline constexpr Simplex kNoSimplex = {kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex};
+/// A complex, by its simplices of the highest dimension.
 using Simplices = std::vector<Simplex>;
 
 /// Number of vertices.
@@ -56,6 +60,7 @@ constexpr int sort_vertices(Simplex& simplex) noexcept {
   return sign;
 }
 
+/// What a complex is shown to be.
 enum class Shape { other, ball, sphere };
 
 /// The shape of the pure complex of some simplices of equal size, 1 to 6, their vertices sorted, none twice.

@@ -25,9 +25,10 @@ namespace tegl::facets {
 /// Set of corners of a tile: bit v = corner v.
 using Signature = std::uint64_t;
 
+/// A face of a polytope.
 struct Face {
-  int dim = 0;
-  Signature corners = 0;
+  int dim = 0;                         ///< its dimension
+  Signature corners = 0;               ///< the tile's corners that it has
   std::vector<std::uint32_t> faces{};  ///< those of codimension one, by index, ascending
   std::vector<int> signs{};            ///< their incidence numbers in this face's boundary, outward normal first
 };
@@ -45,8 +46,9 @@ class FaceLattice {
   static FaceLattice simplex(int n);     ///< n = 1 ... 6; n + 1 corners
   static FaceLattice octahedron(int n);  ///< n = 2 ... 6; corners 2 a and 2 a + 1 are the ends of axis a
 
-  [[nodiscard]] int dim() const { return faces_.back().dim; }
-  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
+  [[nodiscard]] int dim() const { return faces_.back().dim; }              ///< of the polytope
+  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }  ///< all of them
+  /// The polytope itself, as a face.
   [[nodiscard]] std::uint32_t tile() const { return static_cast<std::uint32_t>(faces_.size() - 1); }
 
  private:
@@ -63,14 +65,16 @@ enum class Choice : std::uint8_t {
   high,      ///< the centre is high: the same of the low regions
 };
 
+/// The sign of a centre that nothing else decides.
 enum class Alternative : std::uint8_t { low, high };
 
 /// How the ambiguities of a tile are resolved.
 struct Resolution {
-  std::span<const Choice> choices{};  ///< one per face of the lattice, or empty: all separate
-  Alternative alternative = Alternative::low;
+  std::span<const Choice> choices{};           ///< one per face of the lattice, or empty: all separate
+  Alternative alternative = Alternative::low;  ///< where choices say nothing
 };
 
+/// Where a vertex comes from.
 enum class VertexKind : std::uint8_t {
   corner,      ///< corner of the tile; in no contour
   edge,        ///< where the contour meets a critical edge
@@ -83,34 +87,37 @@ enum class VertexKind : std::uint8_t {
 
 /// A vertex. `face` and `number` depend on the face alone (its signature and choices), so that tiles share them.
 struct Vertex {
-  VertexKind kind = VertexKind::corner;
-  std::uint32_t face = 0;    ///< index of the smallest face that contains it
-  std::uint32_t number = 0;  ///< among the face's centres, or among its other vertices
-  VertexId copied = kNoVertex;
-  std::vector<Simplex> of{};  ///< barycentre: Sigma's component; centre: simplices around it
+  VertexKind kind = VertexKind::corner;  ///< where it comes from
+  std::uint32_t face = 0;                ///< index of the smallest face that contains it
+  std::uint32_t number = 0;              ///< among the face's centres, or among its other vertices
+  VertexId copied = kNoVertex;           ///< side: the vertex that it is a copy of
+  std::vector<Simplex> of{};             ///< barycentre: Sigma's component; centre: simplices around it
 };
 
+/// How a facet is filled: it is a simplex; a cone over its boundary; a copy of one side of it.
 enum class Filling : std::uint8_t { simplex, cone, side };
 
+/// A piece of the contour: a manifold of dimension n - 1.
 struct Facet {
-  Filling filling = Filling::simplex;
-  int boundary_euler = 0;  ///< Euler characteristic of the part of Sigma that it bounds
-  Simplices simplices{};   ///< oriented: the simplex followed by a normal towards high is positive
+  Filling filling = Filling::simplex;  ///< how it was filled
+  int boundary_euler = 0;              ///< Euler characteristic of the part of Sigma that it bounds
+  Simplices simplices{};               ///< oriented: the simplex followed by a normal towards high is positive
 };
 
 /// The contour of one tile of dimension n.
 struct TileFacets {
-  std::vector<Vertex> vertices;
-  std::vector<Facet> facets;  ///< simplices of n vertices
-  Simplices sigma;            ///< simplices of n - 1 vertices
-  std::vector<int> sigma_sign;
+  std::vector<Vertex> vertices;  ///< all that the tile's facets and faces have
+  std::vector<Facet> facets;     ///< simplices of n vertices
+  Simplices sigma;               ///< simplices of n - 1 vertices
+  std::vector<int> sigma_sign;   ///< +1 or -1 for each simplex of Sigma
   std::vector<int> sigma_euler;  ///< Euler characteristics of Sigma's components
   /// The contour in each face of codimension one, in the order of the tile's `faces`, vertices ascending, and for each
   /// simplex its sign: of the orientation that it has as a part of the face's own contour.
   std::vector<Simplices> in_face;
-  std::vector<std::vector<int>> in_face_sign;
+  std::vector<std::vector<int>> in_face_sign;  ///< see above
 };
 
+/// Whether it is told where vertices lie.
 enum class Geometry : std::uint8_t {
   with,
   without,  ///< vertices lack `copied` and `of`: enough for topology, and faster
@@ -123,10 +130,10 @@ class FacetBuilder {
   /// `max_kept_bytes`: the limit. Throws std::invalid_argument for a lattice of dimension less than 2.
   explicit FacetBuilder(FaceLattice lattice, std::size_t max_kept_bytes = std::size_t{1} << 28);
   ~FacetBuilder();
-  FacetBuilder(FacetBuilder&&) noexcept;
-  FacetBuilder& operator=(FacetBuilder&&) noexcept;
+  FacetBuilder(FacetBuilder&&) noexcept;             ///< moved from: good for nothing but to be assigned to
+  FacetBuilder& operator=(FacetBuilder&&) noexcept;  ///< likewise
 
-  [[nodiscard]] const FaceLattice& lattice() const;
+  [[nodiscard]] const FaceLattice& lattice() const;  ///< what tiles are made of
   /// What is kept of faces of dimension 4 and more.
   [[nodiscard]] std::size_t kept_bytes() const;
 

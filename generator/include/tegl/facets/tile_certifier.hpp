@@ -26,10 +26,10 @@ class TileCertifier {
   /// With tiles from elsewhere; what they have in their faces is built by FacetBuilder, alone.
   TileCertifier(FaceLattice lattice, Build build);
   ~TileCertifier();
-  TileCertifier(TileCertifier&&) noexcept;
-  TileCertifier& operator=(TileCertifier&&) noexcept;
+  TileCertifier(TileCertifier&&) noexcept;             ///< moved from: good for nothing but to be assigned to
+  TileCertifier& operator=(TileCertifier&&) noexcept;  ///< likewise
 
-  [[nodiscard]] const FaceLattice& lattice() const;
+  [[nodiscard]] const FaceLattice& lattice() const;  ///< what tiles are made of
 
   /// Builds and certifies a tile. Errors: as FacetBuilder::build.
   Fault certify(Signature signature, const Resolution& resolution);

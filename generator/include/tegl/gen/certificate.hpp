@@ -18,6 +18,7 @@ class TableCertifier {
   /// `builder` must outlive it; n = 2, 3, 4.
   explicit TableCertifier(const ContourBuilder& builder);
 
+  /// What is wrong with a tile's contour, if anything; for all signatures one after the other.
   facets::Fault certify(Signature signature, const TileContour& contour);
 
  private:

@@ -21,7 +21,7 @@ struct CycleType {
   std::vector<int> negative;        ///< descending; together they sum to n
   std::uint64_t elements = 0;       ///< number of elements of B_n of this type
   std::uint64_t corner_cycles = 0;  ///< number of cycles on the 2^n corners
-  int det = 1;
+  int det = 1;                      ///< -1 for those that reverse the orientation of space
   /// Whether all cycles on the corners have even length, so that each can alternate between high and low.
   [[nodiscard]] bool corner_cycles_all_even() const noexcept { return !negative.empty(); }
 };

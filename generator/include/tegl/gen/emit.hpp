@@ -14,17 +14,18 @@ namespace tegl::gen {
 
 /// Everything that one run of `gen --dim N --out DIR` writes.
 struct TableSet {
-  TileKind tile = TileKind::cube;
-  int dim = 0;
-  std::string command;  ///< the command line, for the banner
-  std::uint64_t group_order = 0;
-  std::uint64_t orbits = 0;
-  std::vector<CertifiedFigures> figures;  ///< one per certified alternative and triangulation
-  std::vector<TileTables> tiles;
+  TileKind tile = TileKind::cube;          ///< the kind of tile
+  int dim = 0;                             ///< its dimension
+  std::string command;                     ///< the command line, for the banner
+  std::uint64_t group_order = 0;           ///< symmetries of the tile
+  std::uint64_t orbits = 0;                ///< classes of signatures under them
+  std::vector<CertifiedFigures> figures;   ///< one per certified alternative and triangulation
+  std::vector<TileTables> tiles;           ///< one for each triangulation
   std::vector<RegionTables> regions;       ///< of the (dim - 1)-tile
   std::optional<ResolvedCube> resolved{};  ///< 3D cubes
 };
 
+/// A file to be written.
 struct EmittedFile {
   std::string name;  ///< relative to the output folder
   std::string text;  ///< bytes, for files of packed words
@@ -32,13 +33,14 @@ struct EmittedFile {
 
 /// What the tables are written in.
 enum class Language { cpp, json, glsl, wgsl, cuda };
+/// All of them.
 inline constexpr Language kLanguages[] = {Language::cpp, Language::json, Language::glsl, Language::wgsl,
                                           Language::cuda};
 
 /// The files of one language: emit_cpp and emit_manifest, emit_json or emit_packed.
 std::vector<EmittedFile> emit(const TableSet& set, Language language);
 
-/// C++ sources that define kTile<N><Triangulation> and kRegion<N-1><Triangulation><Alternative> in
+/// C++ sources that define the tables kTileN... and kRegionK..., by triangulation and alternative, in
 /// tegl::tables (declared in tegl/generated/tables.hpp), one file per tile table and one for the regions.
 std::vector<EmittedFile> emit_cpp(const TableSet& set);
 

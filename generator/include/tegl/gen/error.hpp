@@ -21,8 +21,9 @@ enum class ErrorCode {
 /// `what()` says the actual and the expected value.
 class Error : public std::runtime_error {
  public:
+  /// `message`: the actual and the expected value.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }  ///< of which kind
 
  private:
   ErrorCode code_;

@@ -16,7 +16,9 @@
 
 namespace tegl::gen {
 
+/// How ambiguous squares are resolved: the high corners apart (low), or joined (high).
 enum class Alternative { low, high };
+/// How facets become simplices: coned from barycentres, or with few vertices more.
 enum class Triangulation { barycentric, compact };
 
 /// How a facet fills its component of Sigma.
@@ -31,22 +33,23 @@ enum class Filling {
 /// An oriented simplex by local vertices as in the table contract; the first n count for an n-tile.
 using Simplex = std::array<std::uint8_t, 4>;
 
+/// A piece of the contour: a manifold of dimension n - 1.
 struct Facet {
-  Filling filling = Filling::simplex;
-  int sign = 1;                      ///< dimension 1 only: +1 if the edge's second end is high
-  int boundary_euler = 0;            ///< Euler characteristic of its component of Sigma
-  std::vector<std::uint8_t> points;  ///< its edge points; n = 3: in cyclic order, n = 2: from, to; else ascending
-  std::vector<Simplex> simplices{};
-  std::uint32_t boundary_facets = 0;  ///< number of (n-2)-facets around it
+  Filling filling = Filling::simplex;  ///< how it was filled
+  int sign = 1;                        ///< dimension 1 only: +1 if the edge's second end is high
+  int boundary_euler = 0;              ///< Euler characteristic of its component of Sigma
+  std::vector<std::uint8_t> points;    ///< its edge points; n = 3: in cyclic order, n = 2: from, to; else ascending
+  std::vector<Simplex> simplices{};    ///< its triangulation, by local vertices
+  std::uint32_t boundary_facets = 0;   ///< number of (n-2)-facets around it
 };
 
 /// All facets of a tile, the positive side facing the high corners.
 struct TileContour {
-  std::vector<Facet> facets;
+  std::vector<Facet> facets;               ///< the pieces
   std::vector<Simplex> boundary;           ///< Sigma: oriented (n-2)-simplices, n - 1 vertices each
   std::vector<std::int8_t> boundary_sign;  ///< n = 2 only (0-simplices): +1 or -1
-  std::uint32_t cone_vertices = 0;
-  std::vector<std::uint64_t> side_masks;  ///< one per side vertex: corners and edges to average
+  std::uint32_t cone_vertices = 0;         ///< vertices of its own that are barycentres
+  std::vector<std::uint64_t> side_masks;   ///< one per side vertex: corners and edges to average
 };
 
 class HullContours;
@@ -56,6 +59,7 @@ class RegionBuilder;
 /// The result depends on the signature alone, and in each face on the face's own signature alone.
 class ContourBuilder {
  public:
+  /// For n-tiles of a lattice, n at most its dimension. The lattice must outlive it.
   ContourBuilder(const Lattice& lattice, int n, Alternative alternative, Triangulation triangulation);
   ~ContourBuilder();
   ContourBuilder(const ContourBuilder&) = delete;
@@ -64,10 +68,10 @@ class ContourBuilder {
   /// Thread safe. Throws std::logic_error where a component could not be filled (never for n <= 4).
   [[nodiscard]] TileContour build(Signature signature) const;
 
-  [[nodiscard]] const Tile& tile() const { return *tile_; }
-  [[nodiscard]] int dim() const { return tile_->dim; }
-  [[nodiscard]] Alternative alternative() const { return alternative_; }
-  [[nodiscard]] Triangulation triangulation() const { return triangulation_; }
+  [[nodiscard]] const Tile& tile() const { return *tile_; }                     ///< what is built
+  [[nodiscard]] int dim() const { return tile_->dim; }                          ///< of the tile
+  [[nodiscard]] Alternative alternative() const { return alternative_; }        ///< where squares are ambiguous
+  [[nodiscard]] Triangulation triangulation() const { return triangulation_; }  ///< how facets become simplices
   /// Sign between the boundary of the contour and the lifted, signed contours of the faces.
   [[nodiscard]] int orientation() const { return orientation_; }
   /// First local id of the tile's own vertices.

@@ -31,16 +31,17 @@ struct SubTile {
   int sign;                          ///< incidence number in the tile's boundary, outward normal first
 };
 
+/// A tile of some dimension with all that is below it.
 struct Tile {
-  TileKind kind = TileKind::cube;
-  int dim = 0;
+  TileKind kind = TileKind::cube;                  ///< the kind of tile
+  int dim = 0;                                     ///< its dimension
   std::vector<std::array<double, 4>> corners;      ///< coordinates; the first `dim` count
   std::vector<std::array<std::uint8_t, 2>> edges;  ///< from the end with coordinate 0 to the one with 1
   std::vector<std::string> edge_names;  ///< cubes: ternary, highest axis first, 'e' = free axis; else the two corners
   std::vector<SubTile> faces;           ///< codimension one; empty for dim 0
 
-  [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }
-  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }
+  [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }  ///< how many
+  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }      ///< how many
   /// All corners.
   [[nodiscard]] Signature full() const { return ~Signature{0} >> (32 - corner_count()); }
   /// The signature that `signature` leaves on face f.
@@ -63,8 +64,8 @@ class Lattice {
   Lattice(const Lattice&) = delete;
   Lattice& operator=(const Lattice&) = delete;
 
-  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }
-  [[nodiscard]] const Tile& tile(int k) const { return tiles_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }                ///< the highest
+  [[nodiscard]] const Tile& tile(int k) const { return tiles_[static_cast<std::size_t>(k)]; }  ///< that of dimension k
 
  private:
   std::vector<Tile> tiles_;
@@ -73,6 +74,7 @@ class Lattice {
 /// The unit cubes of dimension 0 to n (n <= 4).
 class CubeLattice : public Lattice {
  public:
+  /// Cubes of dimension 0 to n.
   explicit CubeLattice(int n) : Lattice(TileKind::cube, n) {}
 };
 

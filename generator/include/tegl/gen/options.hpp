@@ -38,7 +38,7 @@ enum class TriangulationChoice { Barycentric, Compact, All };
 
 /// One checked command line. Defaults are those of the command line.
 struct Options {
-  Command command = Command::Help;
+  Command command = Command::Help;                               ///< what to do
   int dim = 0;                                                   ///< --dim; 0 for --help and --version
   TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal
   GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class

@@ -29,14 +29,21 @@
 
 namespace tegl::gen {
 
+/// The first word.
 inline constexpr std::uint32_t kPackedMagic = 0x4c474554;
+/// Words of the header.
 inline constexpr std::uint32_t kPackedHeader = 18;
 
 /// The words, and where their parts are (the header's numbers again, by name).
 struct PackedTable {
-  std::uint32_t list_stride = 0;
-  std::uint32_t signatures = 0, lists = 0, simplices = 0, permutations = 0, reversals = 0, side_masks = 0;
-  std::vector<std::uint32_t> words;
+  std::uint32_t list_stride = 0;     ///< words from a list to the next
+  std::uint32_t signatures = 0;      ///< where the entries of signatures begin, in words
+  std::uint32_t lists = 0;           ///< where lists begin, in words
+  std::uint32_t simplices = 0;       ///< where simplices begin, in words
+  std::uint32_t permutations = 0;    ///< where permutations begin, in words
+  std::uint32_t reversals = 0;       ///< where reversals begin, in words
+  std::uint32_t side_masks = 0;      ///< where side masks begin, in words
+  std::vector<std::uint32_t> words;  ///< the table
 };
 
 /// Errors: Internal if a number does not fit its bits (none does for n <= 4).

@@ -22,9 +22,9 @@ struct PairFigures {
   std::uint64_t pairs = 0;      ///< pairs of signatures, along every axis
   std::uint64_t unmatched = 0;  ///< those whose contours do not close on the shared face
   // The first of these, by axis, the face's signature and the pair; meaningless if there is none.
-  int axis = 0;
+  int axis = 0;         ///< the axis across which they lie
   Signature below = 0;  ///< of the tile with the smaller coordinate along the axis
-  Signature above = 0;
+  Signature above = 0;  ///< of the one with the larger
 };
 
 /// Counts the pairs of neighbours whose contours do not match. `contours` has the contour of every signature of the

@@ -18,8 +18,8 @@ using Place = std::array<double, 3>;
 
 /// A tile of a picture. Nothing is copied: tile and contour must outlive it.
 struct PlacedTile {
-  const Tile* tile;
-  Signature signature;
+  const Tile* tile;            ///< what it is
+  Signature signature;         ///< which corners are high
   const TileContour* contour;  ///< null: none but the patches
   Place at{};                  ///< of the tile's frame
   std::vector<std::array<Place, 3>>
@@ -28,11 +28,11 @@ struct PlacedTile {
 
 /// Tiles of dimension 2 or 3 in one picture, and segments drawn over them as marks.
 struct Picture {
-  std::string title;    ///< for readers that cannot see it
-  std::string caption;  ///< below the picture; may be empty
-  std::vector<PlacedTile> tiles;
-  std::vector<std::array<Place, 2>> marks;
-  double scale = 130;  ///< pixels per unit
+  std::string title;                        ///< for readers that cannot see it
+  std::string caption;                      ///< below the picture; may be empty
+  std::vector<PlacedTile> tiles;            ///< in any order
+  std::vector<std::array<Place, 2>> marks;  ///< drawn over all
+  double scale = 130;                       ///< pixels per unit
 };
 
 /// Where the local vertices of a contour's facet lie in a tile of size one: edge points half way, a facet's barycentre

@@ -26,14 +26,16 @@ struct TileRegions {
 /// Builds the regions of any signature of the k-cube, k = 1, 2, 3.
 class RegionBuilder {
  public:
+  /// For k-tiles of a lattice, which must outlive it.
   RegionBuilder(const Lattice& lattice, int k, Alternative alternative, Triangulation triangulation, RegionStyle style);
   ~RegionBuilder();
   RegionBuilder(const RegionBuilder&) = delete;
   RegionBuilder& operator=(const RegionBuilder&) = delete;
 
+  /// Those of a signature.
   [[nodiscard]] const TileRegions& regions(Signature signature) const { return regions_[signature]; }
-  [[nodiscard]] const Tile& tile() const { return *tile_; }
-  [[nodiscard]] std::uint32_t own_base() const;
+  [[nodiscard]] const Tile& tile() const { return *tile_; }  ///< what is built
+  [[nodiscard]] std::uint32_t own_base() const;              ///< first local number of a tile's own vertices
   /// The corners (bit v) and edge points (bit 2^k + e) whose mean a local vertex is, for any but the barycentres of
   /// the contour's facets.
   [[nodiscard]] std::uint32_t mask_of(Signature signature, std::uint8_t vertex) const;

@@ -22,11 +22,11 @@ struct ResolutionFigures {
   std::uint64_t orbits = 0;          ///< pairs up to all symmetries of the tile
   std::uint64_t tiles = 0;           ///< built and certified
   std::uint64_t non_spherical = 0;   ///< even n: pairs with a component of Sigma that is no sphere
-  std::uint64_t classes_with_non_spherical = 0;
-  std::uint64_t simplices = 0;  ///< in all certified tiles
-  std::uint64_t max_simplices = 0;
-  std::array<std::uint64_t, 3> by_filling{};  ///< facets of all certified tiles, by facets::Filling
-  std::map<int, std::uint64_t> euler{};       ///< Euler characteristic of a component of Sigma -> components
+  std::uint64_t classes_with_non_spherical = 0;  ///< classes of which some resolution has one
+  std::uint64_t simplices = 0;                   ///< in all certified tiles
+  std::uint64_t max_simplices = 0;               ///< of a tile
+  std::array<std::uint64_t, 3> by_filling{};     ///< facets of all certified tiles, by facets::Filling
+  std::map<int, std::uint64_t> euler{};          ///< Euler characteristic of a component of Sigma -> components
 };
 
 /// Called now and then, from any thread but never from two at a time, with how much is done: 0 to 1.

@@ -13,13 +13,14 @@
 
 namespace tegl::gen {
 
+/// The table of the cube with every ambiguity resolved freely.
 struct ResolvedCube {
   std::vector<std::array<std::uint8_t, 4>> squares;  ///< the corners of each of the 6 squares
   std::vector<std::uint16_t> first_entry;            ///< by signature: its entry of resolution 0
   std::vector<std::uint8_t> ambiguous;               ///< by signature: set of its ambiguous squares
-  std::vector<tables::ResolvedEntry> entries;
-  std::vector<std::uint8_t> triangles;  ///< 3 local vertices each
-  std::vector<std::uint16_t> masks;     ///< own vertex: set of the edges whose points it is the mean of
+  std::vector<tables::ResolvedEntry> entries;        ///< the lists of every resolution
+  std::vector<std::uint8_t> triangles;               ///< 3 local vertices each
+  std::vector<std::uint16_t> masks;                  ///< own vertex: set of the edges whose points it is the mean of
 };
 
 /// A polygon that the compact table has for the signature is triangulated as there. Else searches, for every entry and

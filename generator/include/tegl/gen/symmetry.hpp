@@ -33,8 +33,8 @@ enum class GroupKind { Full, Rotations };
 /// About the cube's centre that is the signed permutation matrix M with M[axis[i]][i] = +-1 (- where flip has bit
 /// axis[i]) and zeros elsewhere; `det` is its determinant. axis[i] = i for n <= i < 8.
 struct Element {
-  std::array<std::uint8_t, kMaxDim> axis{0, 1, 2, 3, 4, 5, 6, 7};
-  std::uint32_t flip = 0;
+  std::array<std::uint8_t, kMaxDim> axis{0, 1, 2, 3, 4, 5, 6, 7};  ///< where each axis goes
+  std::uint32_t flip = 0;                                          ///< image axes that are reversed
   int det = 1;           ///< +1 for a rotation, -1 for a reflection; inversion does not count
   bool inverts = false;  ///< also complements the signature
 
@@ -45,7 +45,7 @@ struct Element {
   /// Whether the element turns facets inside out: exactly one of a reflection and an inversion does.
   [[nodiscard]] bool reverses_orientation() const noexcept { return (det < 0) != inverts; }
 
-  friend bool operator==(const Element&, const Element&) = default;
+  friend bool operator==(const Element&, const Element&) = default;  ///< member by member
 };
 
 /// The determinant of the signed permutation matrix that `axis` and `flip` describe.

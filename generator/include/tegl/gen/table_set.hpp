@@ -18,9 +18,9 @@ Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation);
 
 /// What to make.
 struct TableRequest {
-  TileKind tile = TileKind::cube;
-  int dim = 0;
-  std::vector<Triangulation> triangulations{Triangulation::barycentric, Triangulation::compact};
+  TileKind tile = TileKind::cube;                                                                 ///< the kind of tile
+  int dim = 0;                                                                                    ///< its dimension
+  std::vector<Triangulation> triangulations{Triangulation::barycentric, Triangulation::compact};  ///< which to make
   std::function<Layout(Triangulation)> layout;  ///< empty: preferred_layout
   std::string command;                          ///< for the banner
 };

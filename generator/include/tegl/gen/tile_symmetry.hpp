@@ -16,6 +16,7 @@
 
 namespace tegl::gen {
 
+/// A symmetry of a tile, by what it does to the corners.
 struct TileSymmetry {
   std::vector<std::uint32_t> corner;  ///< the images of the corners
   int det = 1;                        ///< -1 for one that reverses the orientation of space

@@ -16,58 +16,63 @@
 
 namespace tegl::gen {
 
+/// How lists are stored: one for each class, or one for each signature.
 enum class Layout { by_class, flat };
 
 /// The owning form of tables::TileTable; see there for every member's meaning.
 struct TileTables {
-  TileKind tile = TileKind::cube;
-  std::vector<std::array<double, 4>> corners;      ///< coordinates; the first `dim` count
-  std::vector<std::array<std::uint8_t, 2>> edges;  ///< corners at the lower and upper end
-  std::vector<std::vector<std::uint8_t>> faces;    ///< corners of each face
-  std::uint32_t first_tile_vertex = 0;
-  int dim = 0;
-  Triangulation triangulation = Triangulation::barycentric;
-  Layout layout = Layout::flat;
-  std::uint32_t permutation_stride = 0;
-  std::uint32_t max_simplices = 0;
-  std::uint32_t max_tile_vertices = 0;
-  std::uint64_t total_simplices = 0;  ///< over all signatures, whatever the layout
-  std::vector<std::uint16_t> list_of, element_of;
-  std::vector<std::uint8_t> slot_swaps, permutations, reverses;
-  std::vector<tables::List> lists;
-  std::vector<std::uint8_t> simplices;
-  std::vector<std::uint64_t> side_masks;
+  TileKind tile = TileKind::cube;                            ///< the kind of tile
+  std::vector<std::array<double, 4>> corners;                ///< coordinates; the first `dim` count
+  std::vector<std::array<std::uint8_t, 2>> edges;            ///< corners at the lower and upper end
+  std::vector<std::vector<std::uint8_t>> faces;              ///< corners of each face
+  std::uint32_t first_tile_vertex = 0;                       ///< first local number of a tile's own vertices
+  int dim = 0;                                               ///< of the tile
+  Triangulation triangulation = Triangulation::barycentric;  ///< how facets become simplices
+  Layout layout = Layout::flat;                              ///< how lists are stored
+  std::uint32_t permutation_stride = 0;                      ///< as in tables::TileTable
+  std::uint32_t max_simplices = 0;                           ///< of a tile
+  std::uint32_t max_tile_vertices = 0;                       ///< of a tile
+  std::uint64_t total_simplices = 0;                         ///< over all signatures, whatever the layout
+  std::vector<std::uint16_t> list_of;                        ///< as in tables::TileTable
+  std::vector<std::uint16_t> element_of;                     ///< likewise
+  std::vector<std::uint8_t> slot_swaps;                      ///< likewise
+  std::vector<std::uint8_t> permutations;                    ///< likewise
+  std::vector<std::uint8_t> reverses;                        ///< likewise
+  std::vector<tables::List> lists;                           ///< likewise
+  std::vector<std::uint8_t> simplices;                       ///< likewise
+  std::vector<std::uint64_t> side_masks;                     ///< likewise
 
+  /// The same as the runtime's tables are; valid while this one lives.
   [[nodiscard]] tables::TileTable view() const;
 };
 
 /// The owning form of tables::RegionTable.
 struct RegionTables {
-  int dim = 0;
-  Triangulation triangulation = Triangulation::barycentric;
-  Alternative alternative = Alternative::low;
-  std::uint32_t max_own_vertices = 0;
-  std::vector<tables::RegionList> lists;
-  std::vector<std::uint8_t> simplices;
-  std::vector<std::uint32_t> masks;
+  int dim = 0;                                               ///< of the tile whose regions these are
+  Triangulation triangulation = Triangulation::barycentric;  ///< how regions become simplices
+  Alternative alternative = Alternative::low;                ///< where squares are ambiguous
+  std::uint32_t max_own_vertices = 0;                        ///< of a tile
+  std::vector<tables::RegionList> lists;                     ///< as in tables::RegionTable
+  std::vector<std::uint8_t> simplices;                       ///< likewise
+  std::vector<std::uint32_t> masks;                          ///< likewise
 };
 
 /// What was counted while certifying one triangulation of one alternative.
 struct CertifiedFigures {
-  Alternative alternative = Alternative::low;
-  Triangulation triangulation = Triangulation::barycentric;
-  std::uint64_t signatures = 0;  ///< certified, all of them
-  std::uint64_t simplices = 0;
-  std::uint32_t max_simplices = 0;
-  std::uint64_t facets = 0;
-  std::uint32_t max_facets = 0;
-  std::uint64_t spheres = 0;        ///< components of Sigma
-  std::uint64_t others = 0;         ///< components of Sigma that are no spheres
-  std::uint32_t highest_genus = 0;  ///< n = 4
-  std::uint64_t signatures_with_others = 0;
-  std::vector<Signature> classes_with_others;  ///< representatives, ascending
-  std::uint64_t by_filling[5] = {};            ///< facets by Filling
-  PairFigures pairs;                           ///< of neighbours; all 0 where pairs were not looked at
+  Alternative alternative = Alternative::low;                ///< where squares are ambiguous
+  Triangulation triangulation = Triangulation::barycentric;  ///< how facets become simplices
+  std::uint64_t signatures = 0;                              ///< certified, all of them
+  std::uint64_t simplices = 0;                               ///< over all signatures
+  std::uint32_t max_simplices = 0;                           ///< of a signature
+  std::uint64_t facets = 0;                                  ///< over all signatures
+  std::uint32_t max_facets = 0;                              ///< of a signature
+  std::uint64_t spheres = 0;                                 ///< components of Sigma
+  std::uint64_t others = 0;                                  ///< components of Sigma that are no spheres
+  std::uint32_t highest_genus = 0;                           ///< n = 4
+  std::uint64_t signatures_with_others = 0;                  ///< signatures with a facet that is no ball
+  std::vector<Signature> classes_with_others;                ///< representatives, ascending
+  std::uint64_t by_filling[5] = {};                          ///< facets by Filling
+  PairFigures pairs;                                         ///< of neighbours; all 0 where pairs were not looked at
 };
 
 /// The contours of all signatures of one builder, each with its certificate. Uses all processors; the result does
@@ -87,6 +92,7 @@ RegionTables make_region_tables(const RegionBuilder& builder, Triangulation tria
 
 /// FNV-1a (64 bit) over all entries of a table: what MANIFEST.json records.
 std::uint64_t digest(const TileTables& table);
+/// Likewise.
 std::uint64_t digest(const RegionTables& table);
 
 }  // namespace tegl::gen

@@ -18,6 +18,7 @@ namespace tegl::gen {
 /// Highest dimension whose signatures are enumerated (65 536 of them).
 inline constexpr int kMaxEnumeratedDim = 4;
 
+/// The classes of all signatures under a group of symmetries.
 struct Transversal {
   std::vector<std::uint32_t> representatives;  ///< per class: the smallest signature of the orbit; ascending
   std::vector<std::uint32_t> orbit_length;     ///< per class; times the stabiliser's order it is the group's order
@@ -33,8 +34,8 @@ struct Transversal {
 
 /// A class of signatures by its smallest one.
 struct Representative {
-  std::uint32_t signature;
-  std::uint32_t orbit_length;
+  std::uint32_t signature;     ///< the smallest of its orbit
+  std::uint32_t orbit_length;  ///< how many signatures are in it
 };
 
 /// The representatives of dimension n in ascending order, handed to `take` one by one, from the classes of dimension

@@ -12,11 +12,13 @@
 
 namespace tegl::gen {
 
+/// A whole number of up to 320 bits, for counts of signatures: 2^256 of them in 8 dimensions.
 class WideUint {
  public:
-  static constexpr int kBits = 320;
+  static constexpr int kBits = 320;  ///< what it can hold
 
   WideUint() = default;
+  /// A number of 64 bits.
   explicit WideUint(std::uint64_t value) noexcept;
 
   /// 2^exponent. Errors: Internal if exponent is not in [0, 320).
@@ -35,9 +37,11 @@ class WideUint {
   /// The quotient. Errors: Internal unless the remainder is 0; as divide() otherwise.
   [[nodiscard]] WideUint exactly_divided_by(std::uint64_t divisor) const;
 
+  /// In decimal digits.
   [[nodiscard]] std::string to_decimal() const;
 
-  friend bool operator==(const WideUint&, const WideUint&) = default;
+  friend bool operator==(const WideUint&, const WideUint&) = default;  ///< the same number
+  /// Which is larger.
   friend std::strong_ordering operator<=>(const WideUint& a, const WideUint& b) noexcept;
 
  private:
