@@ -122,10 +122,12 @@ class Contour:
 
     @property
     def axis_names(self) -> tuple[str, ...]:
+        """Of the columns of `vertices`; empty where an axis has none."""
         return tuple(self._listed(self._core.axis_names))
 
     @property
     def axis_units(self) -> tuple[str, ...]:
+        """Of the columns of `vertices`; empty where an axis has none."""
         return tuple(self._listed(self._core.axis_units))
 
     @property
@@ -140,6 +142,7 @@ class Contour:
 
     @property
     def isovalue(self) -> float | None:
+        """The level that it is a contour of; None if a file did not say."""
         return self._core.isovalue
 
     def __repr__(self) -> str:

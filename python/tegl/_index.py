@@ -58,6 +58,7 @@ class Index:
 
     @property
     def method(self) -> str:
+        """How active tiles are found, as given."""
         return self._core.method
 
     @property

@@ -129,6 +129,7 @@ class MeshReport:
 
     @property
     def is_closed(self) -> bool:
+        """Whether it has no border."""
         return self.boundary_simplices == 0
 
 

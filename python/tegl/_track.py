@@ -106,6 +106,7 @@ class TrackGraph:
 
     @property
     def time_unit(self) -> str:
+        """Of the times; may be empty."""
         return self._unit
 
     @property
