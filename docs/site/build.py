@@ -48,10 +48,11 @@ def headers_by_path(output: pathlib.Path) -> dict[str, str]:
     found = {}
     for compound in xml.etree.ElementTree.parse(output / "tegl.tag").getroot().iter("compound"):
         if compound.get("kind") == "file":
-            path = f"{compound.findtext('path')}{compound.findtext('name')}"
-            for folder in ("runtime/include", "generator/include"):
-                if (SOURCE / folder / path).exists():
-                    found[f"{folder}/{path}"] = f"{compound.findtext('filename')}".removesuffix(".html") + ".html"
+            path = pathlib.Path(f"{compound.findtext('path')}{compound.findtext('name')}")
+            if path.suffix == ".hpp":
+                name = f"{compound.findtext('filename')}".removesuffix(".html")
+                found[path.relative_to(SOURCE).as_posix()] = f"{name}.html"
+    assert found, "the tag file has lost its headers"
     return found
 
 
@@ -110,7 +111,7 @@ class Repository:
 
 def open_code(found: re.Match) -> str:
     """What doxygen_filter.sealed_code sealed; \\| is how Markdown writes | in a table's cell."""
-    code = bytes.fromhex(found[1]).decode().replace("\\|", "|")
+    code = bytes.fromhex(found[1]).decode().replace("\\|", "|").strip()
     kind = " class='short'" if len(code) <= 24 else ""  # not broken at the hyphens of an option
     return f"<code{kind}>{html.escape(code, quote=False)}</code>"
 
