@@ -9,6 +9,7 @@ import html
 import inspect
 import pathlib
 import re
+import textwrap
 
 
 def public_names(package: pathlib.Path) -> list[tuple[str, ast.AST]]:
@@ -42,29 +43,37 @@ def marked(text: str) -> str:
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", html.escape(text, quote=False))
 
 
+def is_example(block: str) -> bool:
+    return all(not line or line.startswith("    ") for line in block.split("\n"))
+
+
 def paragraphs(docstring: str) -> str:
     """A docstring as HTML: paragraphs, `name` with what is indented below it as a definition, examples as they are."""
-    parts = []
-    text = re.sub(r"(\n    .*)\n\s*\n(?=    )", r"\1\n\f\n", inspect.cleandoc(docstring))  # a blank line in an example
-    for block in re.split(r"\n\s*\n", text):
-        lines = block.split("\n")
-        if all(line.startswith("    ") or line == "\f" for line in lines):
-            example = inspect.cleandoc("\n".join(lines).replace("\f", ""))
-            parts.append(f"<pre class='fragment'>{html.escape(example)}</pre>")
-        elif any(line.startswith("    ") for line in lines) and not lines[0].startswith(" "):
-            parts.append("<dl>")
-            text: list[str] = []
-            for line in [*lines, ""]:
-                if not line.startswith("    ") and line != "\f":
-                    parts += [f"<dd>{marked(' '.join(text))}</dd>"] if text else []
-                    parts += [f"<dt><code>{html.escape(line)}</code></dt>"] if line else []
-                    text = []
-                else:
-                    text.append(line.strip())
-            parts.append("</dl>")
+    blocks: list[str] = []
+    for block in re.split(r"\n\s*\n(?=.)", inspect.cleandoc(docstring)):
+        if blocks and is_example(block) and is_example(blocks[-1]):
+            blocks[-1] += f"\n\n{block}"
         else:
-            parts.append(f"<p>{marked(' '.join(lines))}</p>")
-    return "\n".join(parts)
+            blocks.append(block)
+    return "\n".join(map(of_block, blocks))
+
+
+def of_block(block: str) -> str:
+    lines = block.split("\n")
+    if is_example(block):
+        return f"<pre class='fragment'>{html.escape(textwrap.dedent(block))}</pre>"
+    if lines[0].startswith(" ") or not any(line.startswith("    ") for line in lines):
+        return f"<p>{marked(' '.join(lines))}</p>"
+    parts: list[str] = []
+    text: list[str] = []
+    for line in [*lines, ""]:
+        if line.startswith("    "):
+            text.append(line.strip())
+        else:
+            parts += [f"<dd>{marked(' '.join(text))}</dd>"] if text else []
+            parts += [f"<dt><code>{html.escape(line)}</code></dt>"] if line else []
+            text = []
+    return f"<dl>{''.join(parts)}</dl>"
 
 
 class Reference:
@@ -79,7 +88,7 @@ class Reference:
             self.missing.append(name)
         anchor = name.replace(".", "-")
         self.text.append(f"<h{level} id='{anchor}'>{html.escape(name)}</h{level}>"
-                         f"<pre class='fragment'>{html.escape(shown)}</pre>{paragraphs(docstring or '')}")
+                         f"<pre class='fragment signature'>{html.escape(shown)}</pre>{paragraphs(docstring or '')}")
         if level == 2:
             self.contents.append(f"<li><a href='#{anchor}'>{html.escape(name)}</a></li>")
 

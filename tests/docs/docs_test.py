@@ -112,6 +112,9 @@ def links(source, _=None):
                    for _, target in markdown.links(page.read_text(encoding="utf-8")) if not markdown.is_external(target)]
         to_visit += [to for to in targets if to.suffix == ".md" and to.exists() and to not in seen | set(to_visit)]
     dead += [f"no links lead from docs/index.md to {page.relative_to(source)}" for page in pages(source) if page not in seen]
+    front = (source / "docs/index.md").read_text(encoding="utf-8")
+    dead += [f"docs/index.md does not name tegl/{header.name}" for header in sorted((source / "runtime/include/tegl").glob("*.hpp"))
+             if f"`tegl/{header.name}`" not in front]
     if dead:
         sys.exit("\n".join(dead))
     assert count > 0, "no links found"
@@ -210,6 +213,7 @@ def html(source, folder):
 def checkers(source):
     """Pages with faults, each of which has to be found."""
     import build  # in docs/site
+    import python_reference
     with tempfile.TemporaryDirectory() as name:
         root = pathlib.Path(name).resolve()
         (root / "other.md").write_text("# Other\n\n## A *heading*: with `code`\n\n## Twice\n\n## Twice\n", encoding="utf-8")
@@ -227,6 +231,13 @@ def checkers(source):
         dead, count = build.dead_links(root)
         assert count == 4 and [text.split(": ", 1)[1] for text in dead] == [
             "b.html#gone: no such anchor", "c.png: no such file", "repo:x: no such file"], dead
+        package = root / "package"
+        package.mkdir()
+        (package / "__init__.py").write_text('"""P."""\nfrom ._m import A, f\n__all__ = ["A", "f"]\n', encoding="utf-8")
+        (package / "_m.py").write_text('class A:\n    """A."""\n    def told(self):\n        """T."""\n    def untold(self): ...\n'
+                                       'def f(a, *, b=1) -> int:\n    """F.\n\n    a\n        The `a`.\n    """\n', encoding="utf-8")
+        shown, missing = python_reference.reference(package)
+        assert missing == ["A.untold"] and "f(a, *, b=1) → int" in shown and "<dd>The <code>a</code>.</dd>" in shown, shown
     said = ["Contour", "  size         17 680 vertices", "  seconds      0.4 = read 0.1", "  output       a.glb (1.5 kB)"]
     assert same_output(["Contour", "...", "  output       a.glb (1.4 kB)"], said)
     assert same_output([said[0], said[1], "  seconds      9", said[3]], said)
