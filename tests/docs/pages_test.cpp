@@ -171,7 +171,7 @@ TEST(Guides, TasksTakeAFewLines) {
   const tegl::Grid<4> grid = tegl::Grid<4>::unit({kSize, kSize, kSize, kSteps});
   const tegl::Image<float, 4> image(values.data(), grid), pressure(other.data(), grid);
   // [cut]
-  const tegl::Contour<3> between = tegl::slice_image(image, 0.0, 3.25);  // reads two volumes only
+  const tegl::Contour<3> between = tegl::slice_image(image, 0.0, 3.25);  // looks at two volumes only
   // [/cut]
   EXPECT_EQ(tegl::check(between).euler, 2);
   // [attribute]
