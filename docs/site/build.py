@@ -24,7 +24,7 @@ import pages
 import python_reference
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-AS_THEY_ARE = {".svg", ".png", ".nc"}  # what browsers show, or save, themselves
+AS_THEY_ARE = {".svg", ".png", ".jpg", ".jpeg", ".webp", ".gif", ".nc"}  # what browsers show, or save, themselves
 
 
 def version() -> str:

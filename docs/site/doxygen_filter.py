@@ -36,8 +36,9 @@ def of_paragraph(source, page, own, anchors, text: str) -> str:
             return f"# {title}" if own == "index" else f"# {title} {{#{own}}}"
         return f"{'#' * level} {title} {{#{own}--{anchor}}}"
     text = pages.CODE.sub(lambda found: sealed_code(found[2]), text)
+    text = pages.TAG.sub(lambda found: found[0].replace(f'"{found[1]}"', f'"{address(source, page, found[1])}"'), text)
     text = pages.LINK.sub(lambda found: of_link(source, page, found), text)
-    return text.replace("@", "\\@")
+    return re.sub(r'(?<![\w"/(&])#(?=\w)', r"\\#", text.replace("@", "\\@"))  # "#V x N" is no link to a V
 
 
 def sealed_code(code: str) -> str:
@@ -67,7 +68,7 @@ def address(source, page, target: str) -> str:
 
 
 def of_comment(comment: str) -> str:
-    comment = re.sub(r"#(?=\w)", r"\\#", comment)  # "#V x N" is a number of vertices, and no link to a V
+    comment = re.sub(r"#(?=\w)", r"\\#", comment)
     return re.sub(r"docs/([\w/-]+)\.md", lambda found: f'<a href="{found[1].replace("/", "-")}.html">{found[0]}</a>', comment)
 
 

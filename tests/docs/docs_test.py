@@ -8,7 +8,6 @@
     docs_test.py transcripts SOURCE BIN [--update]
                                         the ```console blocks of getting-started.md and guides.md: what is behind each $ runs,
                                         and says what stands below it. --update writes what it says into the page
-    docs_test.py python SOURCE PACKAGE  runs the ```python blocks of each of some pages, one after the other
     docs_test.py html SOURCE FOLDER     builds the documentation as scripts/docs does, into FOLDER
     docs_test.py checkers SOURCE        what looks for dead links and stale output finds them
     docs_test.py options SOURCE BIN     docs/command-line.md names every option that the programs' help names
@@ -185,25 +184,6 @@ def transcripts(source, programs, update=None):
             page.write_text(text, encoding="utf-8")
     assert count > 0, "no transcripts found: the pages have lost their blocks"
     print(f"{count} commands say what the pages show")
-
-
-def python(source, package):
-    count = 0
-    environment = {**os.environ, "PYTHONPATH": package}
-    for page in (source / name for name in (*TRANSCRIPTS, "docs/coming-from.md")):
-        found = blocks(page, {"python"})
-        # Blank lines in front, so that an error names the page's own line.
-        text = ""
-        for line, _, block in found:
-            text += "\n" * (line - text.count("\n")) + block
-        with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([sys.executable, "-c", text], cwd=folder, env=environment, text=True, capture_output=True,
-                                  check=False)
-        if done.returncode != 0:
-            sys.exit(f"{page}:\n{done.stdout}{done.stderr}")
-        count += len(found)
-    assert count > 0, "no blocks found: the pages have lost them"
-    print(f"{count} blocks of Python ran")
 
 
 def html(source, folder):
