@@ -48,6 +48,11 @@ struct AnyImage {
   py::array array;
 };
 
+/// A grid of any dimension, without the image: `_tegl.Grid`.
+struct AnyGrid {
+  std::variant<Grid<2>, Grid<3>, Grid<4>, Grid<5>> grid;
+};
+
 /// Calls f(const Image<T, N>&).
 template <class F>
 decltype(auto) visit_image(const AnyImage& image, F&& f) {

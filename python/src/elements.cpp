@@ -19,22 +19,22 @@ struct AnyElements {
 };
 
 template <int N>
-const Grid<N>& grid_of(const AnyImage& image) {
-  const auto* views = std::get_if<ViewsOf<N>>(&image.view);
-  if (views == nullptr)
+const Grid<N>& grid_of(const AnyGrid& grid) {
+  const auto* found = std::get_if<Grid<N>>(&grid.grid);
+  if (found == nullptr)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the image has {} axes; expected {}, as the contour", image.view.index() + 2, N));
-  return std::visit([](const auto& view) -> const Grid<N>& { return view.grid(); }, *views);
+                fmt::format("the grid has {} axes; expected {}, as the contour", grid.grid.index() + 2, N));
+  return *found;
 }
 
-std::unique_ptr<AnyElements> elements_any(const AnyContour& contour, const AnyImage* image, unsigned threads,
+std::unique_ptr<AnyElements> elements_any(const AnyContour& contour, const AnyGrid* grid, unsigned threads,
                                           const py::object& progress) {
   Call call(progress);
   const WorkOptions options{threads, call.progress()};
   return call.run([&] {
     return std::visit(
         [&]<int N, class Real>(const Contour<N, Real>& c) {
-          auto found = image == nullptr ? elements(c, options) : elements_by_cell(c, grid_of<N>(*image), options);
+          auto found = grid == nullptr ? elements(c, options) : elements_by_cell(c, grid_of<N>(*grid), options);
           return std::unique_ptr<AnyElements>(new AnyElements{std::move(found)});
         },
         contour.contour);
@@ -105,7 +105,7 @@ void bind_elements(py::module_& m) {
       .def_property_readonly("measures", of_elements(measures))
       .def_property_readonly("counts", of_elements(counts))
       .def_property_readonly("attributes", of_elements(attributes), "name -> (values, unit)");
-  m.def("elements", &elements_any, py::arg("contour"), py::arg("image"), py::arg("threads"), py::arg("progress"),
+  m.def("elements", &elements_any, py::arg("contour"), py::arg("grid"), py::arg("threads"), py::arg("progress"),
         doc::elements);
   m.def("sum_of", &sum_any, py::arg("elements"), doc::ElementSum);
   m.def("write_elements", &write_any, py::arg("elements"), py::arg("path"), py::arg("axes"), py::arg("components"),

@@ -196,10 +196,17 @@ py::array ranges_around(const AnyImage& image, const AnyContour& contour) {
 }  // namespace
 
 void bind_extract(py::module_& m) {
+  py::class_<AnyGrid>(m, "Grid", "Where the samples of an image are.");
   py::class_<AnyImage>(m, "Image", doc::Image)
       .def(py::init(&make_image), py::arg("array"), py::arg("axes"), py::arg("affine"), py::arg("names"),
            py::arg("units"))
       .def_readonly("array", &AnyImage::array)
+      .def_property_readonly(
+          "grid",
+          [](const AnyImage& image) {
+            return visit_image(image, [](const auto& view) { return AnyGrid{view.grid()}; });
+          },
+          "Its grid, a copy.")
       .def_property_readonly("ndim", [](const AnyImage& image) { return image.array.ndim(); });
   m.def("extract", &extract_any, py::arg("image"), py::arg("level"), py::arg("double"), py::arg("options"),
         py::arg("progress"), doc::extract);

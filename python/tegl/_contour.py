@@ -33,7 +33,7 @@ class Contour:
 
     _core: _tegl.Contour
     _is_reversed: bool
-    _image: _tegl.Image | None
+    _grid: _tegl.Grid | None
 
     def __init__(self, vertices, simplices, *, normals=None, axis_names: Sequence[str] | None = None,
                  axis_units: Sequence[str] | None = None, direction: str = "descent", isovalue: float | None = None,
@@ -62,16 +62,16 @@ class Contour:
         def attributes(given: Mapping[str, typing.Any] | None) -> list[tuple[str, str, np.ndarray]]:
             return [(name, "", np.asarray(values, dtype=np.float64)) for name, values in (given or {}).items()]
 
-        self._image = None
+        self._grid = None
         self._core = _tegl.Contour.from_arrays(
             vertices[:, turn], simplices.reshape(-1, ndim)[:, turn] if simplices.size == 0 else simplices[:, turn],
             None if normals is None else np.asarray(normals)[:, turn], labels(axis_names), labels(axis_units),
             direction, isovalue, attributes(vertex_attributes), attributes(simplex_attributes))
 
     @classmethod
-    def _of(cls, core: _tegl.Contour, is_reversed: bool, image: _tegl.Image | None = None) -> Contour:
+    def _of(cls, core: _tegl.Contour, is_reversed: bool, grid: _tegl.Grid | None = None) -> Contour:
         self = cls.__new__(cls)
-        self._core, self._is_reversed, self._image = core, is_reversed, image
+        self._core, self._is_reversed, self._grid = core, is_reversed, grid
         return self
 
     def _turned(self, rows: np.ndarray) -> np.ndarray:

@@ -59,7 +59,7 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     core = _tegl.extract(prepared.image, float(level), is_double, options, progress)
-    return Contour._of(core, prepared.is_reversed, prepared.image)
+    return Contour._of(core, prepared.is_reversed, prepared.image.grid)
 
 
 @dataclasses.dataclass(frozen=True)

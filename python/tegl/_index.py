@@ -75,7 +75,7 @@ class Index:
         """What `tegl.contour` of the array gives, byte by byte. Options as there: triangulation, normals, ..."""
         core = self._core.contour(float(level), _arguments.is_double(dtype), _arguments.extract_options(**options),
                                   progress)
-        return Contour._of(core, self._prepared.is_reversed, self._prepared.image)
+        return Contour._of(core, self._prepared.is_reversed, self._prepared.image.grid)
 
     def active_tiles(self, level: float) -> np.ndarray:
         """The lowest corners of the tiles that the contour passes: #T x N indices, in the order of the array's axes."""
@@ -95,6 +95,6 @@ class Index:
         core, report = _tegl.extract_component(
             self._prepared.image, float(level), self._prepared.turned([float(number) for number in point]),
             _arguments.is_double(dtype), _arguments.extract_options(**options), progress)
-        result = Contour._of(core, self._prepared.is_reversed, self._prepared.image)
+        result = Contour._of(core, self._prepared.is_reversed, self._prepared.image.grid)
         report["tile"] = tuple(self._prepared.turned(report["tile"]))
         return (result, PickReport(**report)) if return_report else result

@@ -220,7 +220,7 @@ class Components(Sequence[Component]):
     @_arguments.documents("split_components")
     def split(self) -> list[Contour]:
         """A contour for each."""
-        return [Contour._of(part, self._contour._is_reversed, self._contour._image)
+        return [Contour._of(part, self._contour._is_reversed, self._contour._grid)
                 for part in _tegl.split_components(self._contour._core, self._labels)]
 
     @_arguments.documents("select_components")
@@ -233,7 +233,7 @@ class Components(Sequence[Component]):
                 raise ValueError(f"labels are {labels.min()} to {labels.max()}; expected 0 to {len(self) - 1}")
             chosen[labels] = True
         core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist())
-        return Contour._of(core, self._contour._is_reversed, self._contour._image)
+        return Contour._of(core, self._contour._is_reversed, self._contour._grid)
 
     def largest(self, count: int = 1) -> Contour:
         """The contour of the largest ones by size."""
@@ -324,9 +324,9 @@ def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
 
     `by_cell` is for contours straight from `tegl.contour`, or some of their components, whose grid is known.
     """
-    if by_cell and contour._image is None:
+    if by_cell and contour._grid is None:
         raise ValueError("by_cell of a contour whose grid is not known; expected one that tegl.contour made")
-    return Elements(_tegl.elements(contour._core, contour._image if by_cell else None, threads, progress),
+    return Elements(_tegl.elements(contour._core, contour._grid if by_cell else None, threads, progress),
                     contour._is_reversed)
 
 

@@ -140,12 +140,15 @@ def test_arrays_outlive_their_contour_and_contours_their_array():
     assert references > 2
 
 
-def test_the_array_is_let_go_of_with_the_contour():
+def test_contours_do_not_keep_the_array_and_indexes_do():
     array = noise((9, 10, 11), 5)
     before = sys.getrefcount(array)
     contour = tegl.contour(array, 0.0)
-    assert sys.getrefcount(array) > before  # its grid is kept for the elements of cells
-    del contour
+    assert sys.getrefcount(array) == before
+    assert len(contour.elements(by_cell=True)) > 0  # its grid is known all the same
+    index = tegl.Index(array)
+    assert sys.getrefcount(array) > before
+    del index
     gc.collect()
     assert sys.getrefcount(array) == before
 

@@ -4,6 +4,8 @@
 import os
 import pathlib
 import re
+import subprocess
+import sys
 import textwrap
 
 import pytest
@@ -40,3 +42,17 @@ def test_the_page_names_all_of_the_package():
     for name in ("contour", "slice", "track", "components", "measure", "elements", "simplify", "check", "Index", "read",
                  "load", "marching_cubes", "Cancelled"):
         assert re.search(rf"\b{name}\b", text), name
+
+
+@pytest.mark.parametrize("line, text", [("extract.hpp no_such_function", "no documented declaration of no_such_function"),
+                                        ("extract.hpp extract#9", "no documented declaration of extract number 9"),
+                                        ("contour.hpp ContourSize", None)])
+def test_docstrings_of_what_is_gone_fail_the_build(line, text, tmp_path):
+    (tmp_path / "list.txt").write_text(line + "\n")
+    done = subprocess.run([sys.executable, SOURCE / "python/extract_docs.py", tmp_path / "list.txt",
+                           SOURCE / "runtime/include/tegl", tmp_path / "docs.hpp"], capture_output=True, text=True,
+                          check=False)
+    if text is None:
+        assert done.returncode == 0 and "How large a contour is." in (tmp_path / "docs.hpp").read_text()
+    else:
+        assert done.returncode != 0 and text in done.stderr and not (tmp_path / "docs.hpp").exists()
