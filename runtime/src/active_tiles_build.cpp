@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -43,6 +45,18 @@ std::uint64_t hash_row(const T* samples, std::ptrdiff_t stride, std::vector<T>& 
 template <int N, Value T>
 IndexedImage<N> known_of(const Image<T, N>& image) {
   return {image.grid().sizes(), std::string(value_type_name<T>()), 0, false};
+}
+
+/// Whether a corner of a tile is NaN.
+template <Value T, int N>
+bool has_missing_corner(const Image<T, N>& image, const typename TileGrid<N>::Index& lowest) noexcept {
+  if constexpr (std::is_floating_point_v<T>)
+    for (unsigned corner = 0; corner < 1u << N; ++corner) {
+      auto index = lowest;
+      for (int a = 0; a < N; ++a) index[a] += corner >> a & 1u;
+      if (std::isnan(image(index))) return true;
+    }
+  return false;
 }
 
 /// Those of tiles that someone else has found.
@@ -194,6 +208,7 @@ std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vect
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("tile {} is chosen after {}; expected ascending numbers", tiles[i], tiles[i - 1]));
   }
+  std::erase_if(tiles, [&](TileNumber tile) { return detail::has_missing_corner(image, grid.index(tile)); });
   return std::make_unique<detail::ChosenTiles<N>>(detail::known_of(image), std::move(tiles));
 }
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -243,6 +244,26 @@ TEST(ExtractChosenTiles, OfAPartGivesItsShareOfTheContour) {
   expect_parts(sparse_image<float>(centred_grid<3>(33, 1.0)), 50.0, 3);
   expect_parts(noise<std::uint8_t, 3>({14, 9, 8}, 11), 250.0, 4);
   expect_parts(sparse_image<double>(centred_grid<4>(13, 1.0)), 40.0, 3);
+}
+
+/// Whoever chooses tiles need not know what is missing.
+template <int N>
+void expect_whole_of_all_tiles(const OwnedImage<float, N>& image, double isovalue) {
+  std::vector<TileNumber> all(TileGrid<N>(image.grid.sizes()).count());
+  std::iota(all.begin(), all.end(), TileNumber{0});
+  const auto chosen = choose_tiles(image.view(), all);
+  for (const ExtractOptions& options : variants()) {
+    SCOPED_TRACE(describe(options));
+    const auto whole = extract<float>(image.view(), isovalue, options);
+    ASSERT_FALSE(whole.simplices.empty());
+    EXPECT_TRUE(same_bytes(extract<float>(image.view(), isovalue, options, *chosen), whole));
+  }
+}
+
+TEST(ExtractChosenTiles, WithMissingCornersHaveNoContour) {
+  expect_whole_of_all_tiles(noise_with_missing<float, 2>(Grid<2>::unit({40, 21}), 13, 0.1), 0.5);
+  expect_whole_of_all_tiles(noise_with_missing<float, 3>(Grid<3>::unit({14, 9, 8}), 14, 0.05), 0.5);
+  expect_whole_of_all_tiles(noise_with_missing<float, 4>(Grid<4>::unit({8, 6, 5, 6}), 15, 0.02), 0.5);
 }
 
 TEST(ExtractChosenTiles, OfASingleTileIsAManifoldWithBorder) {

@@ -235,8 +235,8 @@ std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<
                                                   const ActiveTilesOptions& options = {});
 
 /// These tiles and no others, whatever the isovalue: for `extract` to make the contour of a part. They should be all
-/// tiles that a component of the contour passes, or it is cut open where they end. Errors: InvalidArgument unless the
-/// numbers are ascending and those of tiles.
+/// tiles that a component of the contour passes, or it is cut open where they end. Tiles with a missing corner are left
+/// out. Errors: InvalidArgument unless the numbers are ascending and those of tiles.
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vector<TileNumber> tiles);
 

@@ -40,8 +40,8 @@ struct FacetPlace {
 ///
 /// Facets of each dimension are numbered from 0 on, in the order of layers of the image along its last axis: first what
 /// lies in the layer, then what lies between it and the next; row by row, for rows along axis 0; in a row by the bits
-/// of `axes`; and then along the row. Caps come last. Points come in the order of the vertices of
-/// `extract` (which has others between them, where it needs more).
+/// of `axes`; and then along the row. Caps come last. Points on edges and in squares come in the order of the vertices
+/// of `extract` (which has others between them, where it needs more); those in cubes of 4D are in another order there.
 ///
 /// Orientation: k-facets with k < N - 1 followed by a normal towards high are positive in their face, its axes
 /// ascending; (N-1)-facets are oriented as the simplices of `extract`, by ExtractOptions::direction. Points have no
