@@ -62,54 +62,60 @@ std::string count_seeds(const Image<T, N>& image, SeedSetOptions options, bool o
   return fmt::format("{} to {}", least, most);
 }
 
-template <Value T, int N>
-void measure_scaling(const std::string& name, const Image<T, N>& image, const Arguments& arguments) {
+/// One way to find seeds, and what it took.
+struct Search {
+  SeedSetOptions options;
+  SeedSetStats stats;
+  std::size_t seeds = 0;
+  double seconds = 0;
+  double peak_bytes = 0;  ///< beside what was there before
+};
+
+/// Finds seeds in every way that is asked for, by one thread, and has each printed.
+template <Value T, int N, class Print>
+void for_each_search(const Image<T, N>& image, const Arguments& arguments, const Print& print) {
   for (const Neighbourhood neighbourhood : arguments.neighbourhoods)
     for (const SeedMethod method : arguments.methods) {
-      SeedSetOptions options;
-      options.method = method;
-      options.neighbourhood = neighbourhood;
-      options.threads = 1;
-      SeedSetStats stats;
-      std::size_t seeds = 0;
+      Search search;
+      search.options.method = method;
+      search.options.neighbourhood = neighbourhood;
+      search.options.threads = 1;
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
-      const double seconds =
-          least_seconds([&] { seeds = find_seeds(image, options, &stats).tiles.size(); }, arguments.runs);
-      const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
-      const auto tiles = static_cast<double>(stats.tiles);
-      fmt::print("| `{}` | {} | `{}` | {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", name, neighbourhood_name(neighbourhood),
-                 seed_method_name(method), stats.tiles, seeds, seconds, 1e6 * seconds / tiles,
-                 static_cast<double>(peak) / tiles);
+      search.seconds = least_seconds(
+          [&] { search.seeds = find_seeds(image, search.options, &search.stats).tiles.size(); }, arguments.runs);
+      const std::uint64_t peak = memory_bytes("VmHWM");
+      search.peak_bytes = static_cast<double>(peak - std::min(before, peak));
+      print(search);
       std::fflush(stdout);
     }
+}
+
+template <Value T, int N>
+void measure_scaling(const std::string& name, const Image<T, N>& image, const Arguments& arguments) {
+  for_each_search(image, arguments, [&](const Search& search) {
+    const auto tiles = static_cast<double>(search.stats.tiles);
+    fmt::print("| `{}` | {} | `{}` | {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", name,
+               neighbourhood_name(search.options.neighbourhood), seed_method_name(search.options.method),
+               search.stats.tiles, search.seeds, search.seconds, 1e6 * search.seconds / tiles,
+               search.peak_bytes / tiles);
+  });
 }
 
 template <Value T, int N>
 void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
   fmt::print(
       "| neighbourhood | method | seeds | bound | seconds | most memory while found |\n|---|---|---|---|---|---|\n");
-  for (const Neighbourhood neighbourhood : arguments.neighbourhoods)
-    for (const SeedMethod method : arguments.methods) {
-      SeedSetOptions options;
-      options.method = method;
-      options.neighbourhood = neighbourhood;
-      options.threads = 1;
-      const std::uint64_t before = memory_bytes("VmRSS");
-      reset_peak_memory();
-      SeedSetStats stats;
-      std::size_t found = 0;
-      const double seconds =
-          least_seconds([&] { found = find_seeds(image, options, &stats).tiles.size(); }, arguments.runs);
-      const std::uint64_t peak = memory_bytes("VmHWM") - std::min(before, memory_bytes("VmHWM"));
-      fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", neighbourhood_name(neighbourhood),
-                 seed_method_name(method), count_seeds(image, options, arguments.orders, found),
-                 stats.lower_bound > 0 ? fmt::format("{}", stats.lower_bound)
-                 : stats.reduced       ? fmt::format("{}, at some isovalues", seed_lower_bound(image, options))
-                                       : "",
-                 seconds, static_cast<double>(peak) / 1e6);
-      std::fflush(stdout);
-    }
+  for_each_search(image, arguments, [&](const Search& search) {
+    const SeedSetStats& stats = search.stats;
+    fmt::print("| {} | `{}` | {} | {} | {:.3f} | {:.0f} MB |\n", neighbourhood_name(search.options.neighbourhood),
+               seed_method_name(search.options.method),
+               count_seeds(image, search.options, arguments.orders, search.seeds),
+               stats.lower_bound > 0 ? fmt::format("{}", stats.lower_bound)
+               : stats.reduced       ? fmt::format("{}, at some isovalues", seed_lower_bound(image, search.options))
+                                     : "",
+               search.seconds, search.peak_bytes / 1e6);
+  });
 }
 
 /// A value so far up in the order of all.
