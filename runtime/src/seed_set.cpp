@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "padded_tiles.hpp"
+#include "progress.hpp"
 #include "seed_graph.hpp"
 #include "seed_methods.hpp"
 #include "seed_regions.hpp"
@@ -32,11 +33,6 @@ std::vector<int> checked_order(const std::vector<int>& order, int dim) {
   return order;
 }
 
-Progress after(const Progress& progress, double from, double to) {
-  if (!progress) return {};
-  return [&progress, from, to](double fraction) { return progress(from + (to - from) * fraction); };
-}
-
 /// Up to which trees are covered as they are: see SeedGraphOptions. Of few values most fall to their neighbours later.
 template <class Key>
 constexpr std::uint64_t kMostWork = std::uint64_t{1} << (sizeof(Key) == 1 ? 20 : 18);
@@ -49,7 +45,7 @@ class SeedFinder {
       : map_(map),
         options_(options),
         order_(checked_order(options.scan_order, map.tiles.dim())),
-        progress_(after(options.progress, 0.1, 1.0)),
+        progress_(detail::part_of(options.progress, 0.1, 1.0)),
         stats_(stats) {}
 
   std::vector<detail::Place> find() {
@@ -76,7 +72,7 @@ class SeedFinder {
     options.order = std::move(order);
     options.with_links = with_links;
     options.of_root_groups = of_root_groups;
-    options.progress = after(progress_, 0.0, 0.5);
+    options.progress = detail::part_of(progress_, 0.0, 0.5);
     detail::SeedGraph graph = detail::make_seed_graph(map_, options);
     count(graph);
     return graph;
@@ -88,7 +84,7 @@ class SeedFinder {
     options.neighbourhood = options_.neighbourhood;
     options.order = detail::default_order(map_.tiles.dim());
     options.most_work = most_work;
-    options.progress = after(progress_, 0.0, 0.5);
+    options.progress = detail::part_of(progress_, 0.0, 0.5);
     detail::SeedGraph graph = detail::make_seed_graph(map_, options);
     if (graph.too_much_work) return std::nullopt;
     count(graph);
@@ -109,19 +105,19 @@ class SeedFinder {
   }
   std::vector<detail::Place> of_whole2(detail::Dependence dependence) {
     const auto graph = make_graph(order_, true, true);
-    return places(graph, detail::whole2(graph, dependence, after(progress_, 0.5, 1.0)));
+    return places(graph, detail::whole2(graph, dependence, detail::part_of(progress_, 0.5, 1.0)));
   }
   std::vector<detail::Place> of_cover() {
     // Trees of many tiles whose values differ are not even counted: that takes as long as to do without them.
     if (sizeof(Key) == 1 || stats_.tiles <= kMostTilesCounted)
       if (const auto graph = make_small_graph(kMostWork<Key>)) {
-        const auto cover = detail::cover_components(*graph, after(progress_, 0.5, 1.0));
+        const auto cover = detail::cover_components(*graph, detail::part_of(progress_, 0.5, 1.0));
         stats_.lower_bound = cover.bound;
         return places(*graph, cover.trees);
       }
     stats_.reduced = true;
-    const auto regions = detail::make_regions(map_, options_.neighbourhood, after(progress_, 0.0, 0.8));
-    return detail::cover_regions(map_, regions, after(progress_, 0.8, 1.0));
+    const auto regions = detail::make_regions(map_, options_.neighbourhood, detail::part_of(progress_, 0.0, 0.8));
+    return detail::cover_regions(map_, regions, detail::part_of(progress_, 0.8, 1.0));
   }
 
   static constexpr std::uint64_t kMostTilesCounted = std::uint64_t{1} << 20;
@@ -192,11 +188,11 @@ SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options, Seed
   SeedSetStats& found = stats != nullptr ? *stats : own;
   found = {};
   found.tiles = TileGrid<N>(image.grid().sizes()).count();
-  const auto map = detail::map_ranges(image, options.threads, after(options.progress, 0.0, 0.1));
+  const auto map = detail::map_ranges(image, options.threads, detail::part_of(options.progress, 0.0, 0.1));
   SeedFinder<detail::KeyOf<T>> finder(map, options, found);
   std::vector<detail::Place> places;
   if (options.method == SeedMethod::volume_thinning) {
-    places = detail::thin_tiles(image, map.tiles, after(options.progress, 0.1, 1.0));
+    places = detail::thin_tiles(image, map.tiles, detail::part_of(options.progress, 0.1, 1.0));
     if (!options.keep_constant_tiles) std::erase_if(places, [&](detail::Place place) { return map.constant(place); });
   } else {
     places = finder.find();
@@ -206,16 +202,16 @@ SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options, Seed
 
 template <Value T, int N>
 std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options) {
-  const auto map = detail::map_ranges(image, options.threads, after(options.progress, 0.0, 0.1));
+  const auto map = detail::map_ranges(image, options.threads, detail::part_of(options.progress, 0.0, 0.1));
   SeedSetStats stats;
   SeedFinder<detail::KeyOf<T>> finder(map, options, stats);
   if (const auto graph = finder.make_small_graph(kMostWork<detail::KeyOf<T>>))
-    return detail::pack_components(*graph, after(options.progress, 0.5, 1.0));
+    return detail::pack_components(*graph, detail::part_of(options.progress, 0.5, 1.0));
   for (std::size_t levels = 255;; levels /= 4) {
     const auto some = at_some_levels(map, levels);
     SeedFinder<std::uint8_t> of_some(some, options, stats);
     if (const auto graph = of_some.make_small_graph(levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0}))
-      return detail::pack_components(*graph, after(options.progress, 0.5, 1.0));
+      return detail::pack_components(*graph, detail::part_of(options.progress, 0.5, 1.0));
   }
 }
 
