@@ -30,7 +30,7 @@ namespace tegl {
 ///
 /// Faces that are not ambiguous come from the tables in any case. Where few faces are ambiguous, as in smooth images,
 /// all of them cost about the same; in noise, mean and saddle look at samples again (docs/ambiguity.md), and `count`,
-/// which otherwise looks at bits alone, takes up to 30 times as long as with low.
+/// which otherwise looks at bits alone, takes many times as long as with low.
 enum class Ambiguity { low, high, mean, saddle, custom };
 
 /// An ambiguous face of the image's grid, as an estimator sees it. Valid during the call only.
