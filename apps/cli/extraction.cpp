@@ -79,8 +79,8 @@ std::optional<PolygonTriangulation> ExtractionOptions::polygon_triangulation() c
 ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   if (polygon_triangulation() && !knows_polygons)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--triangulation {} is for the polygons of 3D images, in memory, by 'tegl contour' without "
-                            "--index; expected compact or barycentric",
+                fmt::format("--triangulation {} is for the polygons of 3D images in memory, by 'tegl contour' without "
+                            "--raw, --stream, --index and --pick; expected compact or barycentric",
                             triangulation_));
   ExtractOptions options;
   options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;

@@ -39,6 +39,18 @@ std::string fault_text(const FacetReport& report) {
   return text;
 }
 
+/// The polyhedra of another Euler characteristic than that of a ball; empty without any.
+std::string unlike_balls(const FacetReport& report) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* of) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, "polyhedron", "polyhedra") + of;
+  };
+  add(report.below_zero, " with several handles");
+  add(report.tori, " with one handle (as a solid torus)");
+  add(report.above_one, " with cavities");
+  return text;
+}
+
 template <int N, class Real>
 ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, double seconds) {
   ExtractStats stats;
@@ -99,7 +111,9 @@ Json to_json(const FacetsResult& result) {
   const auto of = [&](auto member) { return result.report ? Json((*result.report).*member) : Json(nullptr); };
   json["components"] = of(&FacetReport::components);
   json["euler"] = of(&FacetReport::euler);
-  json["solid_tori"] = of(&FacetReport::tori);
+  json["unlike_balls"] = {{"euler_below_0", of(&FacetReport::below_zero)},
+                          {"euler_0", of(&FacetReport::tori)},
+                          {"euler_above_1", of(&FacetReport::above_one)}};
   json["boundary_facets"] = of(&FacetReport::border);
   json["nonmanifold_facets"] = of(&FacetReport::branching);
   json["orientation_conflicts"] = of(&FacetReport::conflicts);
@@ -126,7 +140,8 @@ std::string to_text(const Console& console, const FacetsResult& result) {
     const FacetReport& report = *result.report;
     text += report_line("components", grouped(report.components));
     text += report_line("Euler", fmt::format("{}", report.euler));
-    if (report.tori > 0) text += report_line("", counted(report.tori, "solid torus", "solid tori"));
+    const std::string others = unlike_balls(report);
+    if (!others.empty()) text += report_line("", others);
     const auto& [singular, plural] = kFacetNames.at(static_cast<std::size_t>(result.image_dim - 2));
     text += report_line("border", report.border == 0 ? "none: closed" : counted(report.border, singular, plural));
     const std::string faults = fault_text(report);

@@ -324,6 +324,9 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
 
 void answer_all(JoinQuestions& questions, double isovalue) {
   const D d;
+  const std::size_t end = (questions.count + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
+  for (auto& values : questions.ends) std::fill(values.begin() + questions.count, values.begin() + end, 0.0);
+  std::fill(questions.sign.begin() + questions.count, questions.sign.begin() + end, 0.0);
   for (std::size_t i = 0; i < questions.count; i += hn::Lanes(d)) answer_some(questions, isovalue, i);
 }
 

@@ -50,6 +50,7 @@ struct JoinQuestions {
   enum Answer : std::uint8_t { no, yes, unsure };
 
   std::size_t count = 0;
+  /// Of questions beyond `count`, up to the next whole register, `answer` fills in zeros.
   alignas(64) std::array<std::array<double, kMost>, 8> ends;
   alignas(64) std::array<double, kMost> sign;  ///< 1: A and C are high; -1: they are low
   std::array<Answer, kMost> answers;

@@ -128,6 +128,8 @@ FacetReport check(const FacetHierarchy<N, Real>& facets) {
       const int euler = facet_euler(facets, k, f);
       report.euler += sign * euler;
       if (euler == 0) ++report.tori;
+      if (euler < 0) ++report.below_zero;
+      if (euler > 1) ++report.above_one;
       if (k > 0 && !has_closed_boundary(facets, k, f, sum)) ++report.open_boundaries;
       // A component has one point or more, and its points hang together by segments, or by a polyhedron whose boundary
       // has several parts.

@@ -69,6 +69,24 @@ TEST_F(FacetsCommand, SaysWhatItFoundAndCanLeaveOutTheCheck) {
   EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
+TEST_F(FacetsCommand, SaysHowManyPolyhedraAreNoBalls) {
+  const std::string image = write("noise.nrrd", nrrd_bytes(noise({10, 10, 10, 10}, 7)));
+  const auto unlike_balls = [&](const char* ambiguity) {
+    return contour(
+        {image, "--iso", "127.5", "--ambiguity", ambiguity, "--facets", "-o", path("o.vtu")})["unlike_balls"];
+  };
+  const nlohmann::json low = unlike_balls("low");
+  EXPECT_GT(low["euler_0"], 0);
+  EXPECT_EQ(low["euler_below_0"], 0);
+  EXPECT_EQ(low["euler_above_1"], 0);
+  const nlohmann::json mean = unlike_balls("mean");
+  for (const char* kind : {"euler_0", "euler_below_0", "euler_above_1"}) EXPECT_GT(mean[kind], 0) << kind;
+  const RunResult run =
+      run_tegl({"contour", image, "--iso", "127.5", "--ambiguity", "mean", "--facets", "-o", path("o.vtu")});
+  for (const char* words : {"with several handles", "solid torus", "with cavities"})
+    EXPECT_THAT(run.out, HasSubstr(words));
+}
+
 TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
   const std::string solid = write("ball.nrrd", nrrd_bytes(ball({9, 9, 9}, 3.3)));
   const std::string moving = write("balls.nrrd", nrrd_bytes(merging_balls(9, 3)));
@@ -84,7 +102,7 @@ TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
   expect_failure(5, {solid, "--iso", "99", "--facets", "-o", path("o.vtu")}, {"99"});
   expect_failure(2, {moving, "--iso", "0", "--triangulation", "zigzag", "-o", path("o.vtkhdf")}, {"4D", "compact"});
   expect_failure(2, {solid, "--iso", "0", "--triangulation", "fan", "--stream", "-o", path("o.vtkhdf")},
-                 {"fan", "compact"});
+                 {"fan", "--stream", "--raw", "compact"});
 }
 
 TEST_F(FacetsCommand, TriangulatesPolygonsEachInItsOwnWay) {

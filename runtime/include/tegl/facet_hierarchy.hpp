@@ -143,7 +143,9 @@ struct FacetReport {
   std::array<std::uint64_t, 4> facets{};  ///< by dimension
   std::int64_t euler = 0;                 ///< sum over all facets of (-1)^k facet_euler
   std::uint64_t components = 0;           ///< of facets that share others
-  std::uint64_t tori = 0;                 ///< facets of Euler characteristic 0: polyhedra that are solid tori
+  std::uint64_t tori = 0;                 ///< polyhedra of Euler characteristic 0; with low and high: solid tori
+  std::uint64_t below_zero = 0;           ///< polyhedra of Euler characteristic < 0: of several handles
+  std::uint64_t above_one = 0;            ///< polyhedra of Euler characteristic > 1: with cavities
   std::uint64_t border = 0;               ///< (N-2)-facets in one (N-1)-facet
   std::uint64_t branching = 0;            ///< fault: (N-2)-facets in no or more than two (N-1)-facets
   std::uint64_t conflicts = 0;            ///< fault: (N-2)-facets twice with the same sign
