@@ -67,7 +67,9 @@ class SimplifyCommand final : public ContourInputCommand {
             "a number for each axis, by which its lengths count: 1,1,1,0.5; or auto: axes with other units than "
             "the first by how fine the contour is along them")
         ->type_name("NUMBERS|auto");
-    app().add_flag("--no-bound", no_bound_, "leave out the bound of the error, and the rounds that make it small");
+    app().add_flag(
+        "--no-bound", no_bound_,
+        "leave out the bound of the error (and that of an earlier simplification), and the rounds that make it small");
     app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: write what is no manifold, too");
     app()
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
@@ -137,7 +139,7 @@ class SimplifyCommand final : public ContourInputCommand {
       return tegl::simplify(contour, options, &stats);
     } catch (const Error& error) {
       if (options.method != SimplifyMethod::fast || error.code() != ErrorCode::UnsupportedData) throw;
-      throw Error(error.code(), fmt::format("{} (--allow-nonmanifold, or another --method)", error.what()));
+      throw Error(error.code(), fmt::format("{} (on the command line: --allow-nonmanifold, --method)", error.what()));
     }
   }
 

@@ -300,7 +300,10 @@ void Shrinker<N>::blend_carried(Index u, Index v, double share) {
 
 template <int N>
 bool Shrinker<N>::try_contract(Index u, Index v, const MeetingPlace<N>& place) {
-  if (!within_tolerance(u, v, place)) return false;
+  if (!within_tolerance(u, v, place)) {
+    note_limit(u, v, place);
+    return false;
+  }
   complex_.load(u, v, edge_);
   if (edge_.both.empty()) return false;
   const PointN<N> scaled_place = to_scaled(place.at);
@@ -316,6 +319,13 @@ bool Shrinker<N>::try_contract(Index u, Index v, const MeetingPlace<N>& place) {
   ++version_[u];
   ++version_[v];
   return true;
+}
+
+template <int N>
+void Shrinker<N>::note_limit(Index u, Index v, const MeetingPlace<N>& place) {
+  if (limited_) return;
+  complex_.load(u, v, edge_);
+  limited_ = !edge_.both.empty() && keeps_shapes(edge_, to_scaled(place.at)) && complex_.is_contractible(edge_);
 }
 
 template <int N>

@@ -74,6 +74,10 @@ class Shrinker {
 
   /// Contracts u v into u, at `place`, if manifold, shape and tolerance allow it.
   bool try_contract(Index u, Index v, const MeetingPlace<N>& place);
+  /// To be told of a contraction that a limit forbids, such as the tolerance: if all else allows it, is_limited() is
+  /// true from then on.
+  void note_limit(Index u, Index v, const MeetingPlace<N>& place);
+  [[nodiscard]] bool is_limited() const noexcept { return limited_; }
 
   /// Corners of a simplex, scaled.
   [[nodiscard]] CornersN<N> corners(Index s) const;
@@ -108,6 +112,7 @@ class Shrinker {
   std::vector<double> carried_;
   bool border_fixed_;
   bool single_precision_;
+  bool limited_ = false;
   Edge edge_;
 };
 

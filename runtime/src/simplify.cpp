@@ -22,6 +22,7 @@
 #include "progress.hpp"
 #include "require.hpp"
 #include "shrinker.hpp"
+#include "shrinking_complex.hpp"
 #include "simplify_fast.hpp"
 #include "simplify_orders.hpp"
 #include "tegl/check.hpp"
@@ -147,7 +148,13 @@ class Simplifier {
     for (const Attribute& attribute : contour_.vertex_attributes) {
       if (attribute.name == kErrorName) {
         const double factor = factor_of_earlier(attribute);
-        for (const double error : attribute.values) earlier_error_ = std::max(earlier_error_, factor * error);
+        for (const double error : attribute.values) {
+          if (!(error >= 0.0 && std::isfinite(error)))
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("the attribute {} has the value {}; expected finite numbers, 0 or more",
+                                    attribute.name, error));
+          earlier_error_ = std::max(earlier_error_, factor * error);
+        }
         continue;
       }
       carried_attributes_.push_back(&attribute);
@@ -178,7 +185,7 @@ class Simplifier {
   Contour<N, Real> run_rounds() {
     // Rounding alone moves points by more than nothing: only what is left as it is has no error.
     if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
-      return hand_out(untouched(SimplifyEnd::error));
+      return hand_out(untouched(may_anything_go() ? SimplifyEnd::error : end_without_limits(contour_)));
     if (options_.max_error) return hand_out(until_error_holds());
     if (!options_.measure) return hand_out(one_round(infinite_tolerance(), 1.0));
     if (options_.method == SimplifyMethod::fast) return hand_out(measured_round(infinite_tolerance()));
@@ -189,13 +196,14 @@ class Simplifier {
     return std::vector<double>(contour_.vertices.size(), kInfinity);
   }
 
-  /// By the largest error. Nothing was near enough after all rounds: then what is sure to be is the contour itself.
+  /// By the largest error, or what an earlier one leaves of it. Nothing was near enough after all rounds: then what is
+  /// sure to be is the contour itself.
   Round until_error_holds() {
-    const double allowed = *options_.max_error + kRounding * size_;
+    const double allowed = *options_.max_error - earlier_error_ + kRounding * size_;
     std::vector<double> tolerance(contour_.vertices.size(), allowed);
     while (stats_.rounds < kMostRounds) {
       Round round = measured_round(tolerance);
-      if (error(round) <= allowed) return round;
+      if (own_error(round) <= allowed) return round;
       tighten(tolerance, round, allowed, stats_.rounds <= kGentleRounds);
     }
     return untouched(SimplifyEnd::rounds);
@@ -210,11 +218,11 @@ class Simplifier {
     double too_small = 0.0;
     unsigned measured = 1, idle = 0;
     while (best.end == SimplifyEnd::count && measured < kMostRoundsOfCount && idle < 2) {
-      const double most = error(best) - earlier_error_;
+      const double most = own_error(best);
       const double allowed = too_small > 0.0 ? std::sqrt(too_small * most) : kNextError * most;
       if (!(allowed < kLeastGain * most)) break;
       std::vector<double> trial = tolerance;
-      tighten(trial, last, earlier_error_ + allowed, true);
+      tighten(trial, last, allowed, true);
       for (double& t : trial) t = std::min(t, allowed);
       Round next = one_round(trial, part_of_rest(0.25));
       if (next.end != SimplifyEnd::count) {
@@ -232,6 +240,8 @@ class Simplifier {
   }
 
   static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }
+  /// Without what was there before.
+  [[nodiscard]] double own_error(const Round& round) const { return error(round) - earlier_error_; }
 
   /// How far the progress is after this share of what is left: nobody knows how many rounds there will be.
   [[nodiscard]] double part_of_rest(double share) const { return progress_ + share * (1.0 - progress_); }
@@ -251,14 +261,29 @@ class Simplifier {
     Round round;
     round.result =
         options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
-    const bool by_count = options_.count || options_.ratio;
-    round.end = by_count && round.result.simplices.size() <= count_           ? SimplifyEnd::count
-                : options_.max_error || std::isfinite(options_.max_curvature) ? SimplifyEnd::error
-                                                                              : SimplifyEnd::shape;
+    round.end = end_without_limits(round.result);
+    if (round.end == SimplifyEnd::shape && limited_) round.end = SimplifyEnd::error;
     if (round.result.simplices.size() == contour_.simplices.size()) return untouched(round.end);
     round.survivors = std::move(survivors_);
     round.kept = std::move(kept_);
     return round;
+  }
+
+  /// Why there are not fewer, if it is not for a largest error or curvature.
+  [[nodiscard]] SimplifyEnd end_without_limits(const Contour<N, Real>& result) const {
+    const bool by_count = options_.count || options_.ratio;
+    return by_count && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
+  }
+
+  /// Whether there is more than was asked for, and anything of it could go, whatever the error.
+  bool may_anything_go() {
+    const std::size_t before = contour_.simplices.size();
+    if (end_without_limits(contour_) == SimplifyEnd::count) return false;
+    const std::size_t count = std::exchange(count_, before - 1);
+    const Round round = one_round(infinite_tolerance(), part_of_rest(0.5));
+    count_ = count;
+    stats_.rounds = 0;
+    return limited_ || round.result.simplices.size() < before;
   }
 
   /// The contour itself.
@@ -306,6 +331,7 @@ class Simplifier {
     if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
     if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
 
+    limited_ = shrinker.is_limited();
     survivors_.resize(contour_.vertices.size());
     for (std::size_t v = 0; v < survivors_.size(); ++v) survivors_[v] = shrinker.survivor(static_cast<Index>(v));
     Remains<N> remains;
@@ -331,24 +357,37 @@ class Simplifier {
         for (int a = 0; a < 3; ++a) point[a] = static_cast<double>(vertex[a]) * options_.scale[a];
         points.push_back(point);
       }
+      const auto within = [&](double error) {
+        return simplify_fast(contour_.simplices, points, count_, error, options_.border == SimplifyBorder::fixed);
+      };
+      if (!options_.allow_nonmanifold) {
+        const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // throws what it does for other methods
+        require_manifold(contour_, "the contour");
+      }
       const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
-      remains.simplices =
-          simplify_fast(contour_.simplices, points, count_, tightest, options_.border == SimplifyBorder::fixed);
+      remains.simplices = within(tightest);
+      limited_ = remains.simplices.size() > count_ && tightest < kInfinity &&
+                 within(kInfinity).size() < remains.simplices.size();
       stats_.simplify_seconds += seconds_since(start);
     }
     Contour<N, Real> result = to_contour(remains, nullptr);
-    if (!options_.allow_nonmanifold) require_manifold(result);
+    if (!options_.allow_nonmanifold) require_manifold(result, "meshoptimizer's result");
     return result;
   }
 
-  static void require_manifold(const Contour<N, Real>& result) {
-    const MeshReport report = check(result);
-    if (report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts == 0) return;
+  static void require_manifold(const Contour<N, Real>& contour, const char* what) {
+    const MeshReport report = check(contour);
+    auto sorted = contour.simplices;  // two triangles with the same corners pass for a sphere
+    for (auto& simplex : sorted) std::sort(simplex.begin(), simplex.end());
+    std::sort(sorted.begin(), sorted.end());
+    const bool twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+    if (report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts == 0 && !twice) return;
     throw Error(
         ErrorCode::UnsupportedData,
-        fmt::format("meshoptimizer's result is no oriented manifold ({} faces in more than two triangles, {} bad "
-                    "links, {} orientation conflicts); expected one: allow nonmanifold results, or take another method",
-                    report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts));
+        fmt::format("{} is no oriented manifold ({} faces in more than two triangles, {} bad links, {} orientation "
+                    "conflicts{}); expected one: allow nonmanifold results, or take another method",
+                    what, report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts,
+                    twice ? ", triangles with the same corners" : ""));
   }
 
   // ---- hyperplanes ----
@@ -403,7 +442,7 @@ class Simplifier {
     options.threads = options_.threads;
     options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
     // Closer bounds than half of what decides are of no use to anyone.
-    if (options_.max_error) options.enough = 0.5 * *options_.max_error;
+    if (options_.max_error) options.enough = 0.5 * (*options_.max_error - earlier_error_);
     Deviation of_original = deviation(contour_, round.result, options);
     options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
     if (!options_.max_error) options.enough = 0.5 * of_original.least;
@@ -416,17 +455,17 @@ class Simplifier {
     stats_.measure_seconds += seconds_since(start);
   }
 
-  /// Less tolerance for all that became part of a simplex with too large an error.
+  /// Less tolerance (or care) for all that became part of a simplex with too large an error.
   void tighten(std::vector<double>& tolerance, const Round& round, double allowed, bool gently) const {
     const auto factor_for = [&](double error) { return std::clamp(0.8 * allowed / error, 0.1, 0.8); };
     if (round.survivors.empty()) {
-      const double factor = factor_for(error(round));
+      const double factor = factor_for(own_error(round));
       for (double& t : tolerance) t = gently || stats_.rounds + 2 < kMostRounds ? factor * t : 0.0;
       return;
     }
     std::vector<double> factors(contour_.vertices.size(), 1.0);
     for (std::size_t s = 0; s < round.errors.size(); ++s) {
-      const double error = round.errors[s] + earlier_error_;
+      const double error = round.errors[s];
       if (error <= allowed) continue;
       const double factor = gently ? factor_for(error) : 0.0;
       for (const Index v : round.result.simplices[s]) factors[round.kept[v]] = std::min(factors[round.kept[v]], factor);
@@ -551,6 +590,7 @@ class Simplifier {
   std::vector<double> carried_;
   std::vector<const Attribute*> carried_attributes_;
   double earlier_error_ = 0.0;
+  bool limited_ = false;          ///< of the round: more would have gone but for a largest error or curvature
   double progress_ = 0.0;         ///< told so far
   std::vector<Index> survivors_;  ///< of the round: what each vertex became part of; empty if that is not known
   std::vector<Index> kept_;       ///< of the round: the original numbers of the result's vertices

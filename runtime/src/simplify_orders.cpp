@@ -143,7 +143,11 @@ class CurvatureOrder {
   void empty() {
     while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
       const Index next = queue_.pop();
-      if (!shrinker_.complex().is_alive(next) || curvature_of(next) > max_curvature_) continue;
+      if (!shrinker_.complex().is_alive(next)) continue;
+      if (curvature_of(next) > max_curvature_) {
+        note_limit(shrinker_.complex().simplex(next));
+        continue;
+      }
       const Index left = remove(shrinker_.complex().simplex(next));
       if (left != ShrinkingComplex<N>::kNone) update(left);
     }
@@ -201,6 +205,16 @@ class CurvatureOrder {
         return facet[i];
       }
     return ShrinkingComplex<N>::kNone;
+  }
+
+  /// Whether the largest curvature is what keeps the facet.
+  void note_limit(const std::array<Index, N>& facet) {
+    if (shrinker_.is_limited()) return;
+    const auto place = shrinker_.common_place(facet);
+    if (!place) return;
+    const Index u = place->anchor.value_or(facet[0]);
+    for (const Index v : facet)
+      if (v != u) shrinker_.note_limit(u, v, shrinker_.place_at(u, v, place->at, place->anchor ? 0.0 : 0.5));
   }
 
   /// The vertices around have other curvatures now, and the facets at the one that is left other neighbours.

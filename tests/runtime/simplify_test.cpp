@@ -435,6 +435,74 @@ TEST(SimplifyErrors, NameWhatIsWrong) {
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { simplify(contour, options); });
 }
 
+TEST(SimplifyErrors, AnEarlierErrorIsANumberAndNotNegative) {
+  SimplifyOptions<3> options;
+  options.ratio = 0.5;
+  for (const double wrong : {-5.0, std::nan(""), HUGE_VAL}) {
+    auto contour = ball<3>(8);
+    contour.vertex_attributes.push_back({"simplification_error", "", 1, {}});
+    contour.vertex_attributes.back().values.assign(contour.vertices.size(), 0.0);
+    contour.vertex_attributes.back().values[3] = wrong;
+    expect_error(ErrorCode::InvalidArgument, "simplification_error", [&] { simplify(contour, options); });
+  }
+}
+
+/// What ends a simplification: the error only where more would have gone without it.
+TEST(SimplifyEnds, AreWhatKeepsTheRest) {
+  const auto contour = ball<3>(16);
+  SimplifyStats stats;
+  SimplifyOptions<3> options;
+  options.ratio = 0.5;
+  simplify(contour, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::count);
+  options.max_error = 0.0;
+  options.ratio = 1.0;
+  simplify(contour, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::count);
+  options.ratio = 0.0;
+  simplify(contour, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::error);
+  options.max_error = 0.01;
+  simplify(contour, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::error);
+  options.max_error = 1000.0;
+  const auto least = simplify(contour, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::shape);
+  EXPECT_GT(least.simplices.size(), 0u);
+  Contour<3, double> tetrahedron;
+  tetrahedron.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  tetrahedron.simplices = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  for (const double error : {0.0, 100.0}) {
+    options.max_error = error;
+    EXPECT_EQ(simplify(tetrahedron, options, &stats).simplices.size(), 4u);
+    EXPECT_EQ(stats.end, SimplifyEnd::shape);
+  }
+}
+
+/// Simplified again with a larger error: what the first time left of it is used, and the sum kept.
+TEST(SimplifyTwice, UsesWhatIsLeftOfTheError) {
+  const auto contour = ball<3>(24);
+  SimplifyOptions<3> options;
+  SimplifyStats stats;
+  options.max_error = 0.01;
+  const auto once = simplify(contour, options, &stats);
+  const double earlier = *stats.error();
+  options.max_error = earlier + 0.01;
+  const auto again = simplify(once, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::error);
+  EXPECT_LT(again.simplices.size(), once.simplices.size());
+  EXPECT_LE(*stats.error(), *options.max_error + 1e-9);
+  EXPECT_GE(*stats.error_of_original, sampled_deviation(contour, again, kSamples<3>, 1));
+}
+
+TEST(SimplifyFast, RefusesWhatIsNoManifoldToBeginWith) {
+  if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
+  const auto options = with_ratio<3>(SimplifyMethod::fast, 0.5);
+  auto broken = ball<3>(8);
+  broken.simplices.push_back(broken.simplices[0]);
+  expect_error(ErrorCode::UnsupportedData, "3 simplices", [&] { simplify(broken, options); });
+}
+
 TEST(SimplifyErrors, NothingStaysNothing) {
   SimplifyOptions<3> options;
   options.ratio = 0.5;
