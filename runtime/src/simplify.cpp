@@ -39,11 +39,13 @@ constexpr std::size_t kMostPlanes = 20;
 /// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
 constexpr unsigned kGentleRounds = 6;
 constexpr unsigned kMostRounds = 12;
-/// By a count alone: at first for this share of the error of one round; until that does not come down to this share of
-/// what it was in two rounds, or after so many.
-constexpr double kNextError = 0.25;
-constexpr double kLeastGain = 0.9;
-constexpr unsigned kMostRoundsOfCount = 6;
+/// By a count alone: how near the least tolerance is searched for, in at most so many rounds; how much the error to try
+/// grows; and how many measured rounds there are, of all errors and of one.
+constexpr double kNarrow = 1.2;
+constexpr unsigned kMostRoundsOfSearch = 12;
+constexpr double kNextError = 1.5;
+constexpr unsigned kMostRoundsOfCount = 20;
+constexpr unsigned kMostRoundsOfOneError = 8;
 /// Of the size of the contour: what rounding may add to an error.
 constexpr double kRounding = 1e-12;
 
@@ -209,34 +211,46 @@ class Simplifier {
     return untouched(SimplifyEnd::rounds);
   }
 
-  /// By a count: a few contractions, where parts are thin, make most of the error. So the least tolerance is searched
-  /// for by which the count is still reached, and what goes beyond it nevertheless is tightened.
+  /// By a count: a few contractions, where parts are thin, make most of the error. So the least largest error is
+  /// searched for by which the count is still reached: from the least tolerance upwards, as until_error_holds() would
+  /// try each. Of all rounds the one with the least error is kept.
   Round as_near_as_can_be() {
-    std::vector<double> tolerance = infinite_tolerance();
-    Round best = measured_round(tolerance);
-    Round last = best;
-    double too_small = 0.0;
-    unsigned measured = 1, idle = 0;
-    while (best.end == SimplifyEnd::count && measured < kMostRoundsOfCount && idle < 2) {
-      const double most = own_error(best);
-      const double allowed = too_small > 0.0 ? std::sqrt(too_small * most) : kNextError * most;
-      if (!(allowed < kLeastGain * most)) break;
-      std::vector<double> trial = tolerance;
-      tighten(trial, last, allowed, true);
-      for (double& t : trial) t = std::min(t, allowed);
-      Round next = one_round(trial, part_of_rest(0.25));
-      if (next.end != SimplifyEnd::count) {
-        too_small = allowed;
-        continue;
-      }
-      measure(next, part_of_rest(1.0 / 3.0));
-      ++measured;
-      tolerance = std::move(trial);
-      last = next;
-      idle = error(next) < kLeastGain * error(best) ? 0 : idle + 1;
-      if (error(next) < error(best)) best = std::move(next);
-    }
+    Round best = measured_round(infinite_tolerance());
+    if (best.end != SimplifyEnd::count || !(own_error(best) > 0.0)) return best;
+    unsigned measured = 1;
+    for (double allowed = least_tolerance(own_error(best)); allowed < own_error(best) && measured < kMostRoundsOfCount;
+         allowed *= kNextError)
+      if (try_error(allowed, best, measured)) break;
     return best;
+  }
+
+  /// The least for all vertices by which the count is reached, up to `high`; nothing is measured.
+  double least_tolerance(double high) {
+    double low = 0.0;
+    for (unsigned round = 0; round < kMostRoundsOfSearch && high > kNarrow * low; ++round) {
+      const double middle = low > 0.0 ? std::sqrt(low * high) : 0.25 * high;
+      const std::vector<double> tolerance(contour_.vertices.size(), middle);
+      (one_round(tolerance, part_of_rest(0.05)).end == SimplifyEnd::count ? high : low) = middle;
+    }
+    return high;
+  }
+
+  /// Whether the count is reached within this error. Puts what is better than `best` there.
+  bool try_error(double allowed, Round& best, unsigned& measured) {
+    std::vector<double> tolerance(contour_.vertices.size(), allowed);
+    for (unsigned round = 0; round < kMostRoundsOfOneError && measured < kMostRoundsOfCount; ++round, ++measured) {
+      Round next = one_round(tolerance, part_of_rest(0.25));
+      if (next.end != SimplifyEnd::count) return false;
+      measure(next, part_of_rest(1.0 / 3.0));
+      const bool near = own_error(next) <= allowed;
+      if (!near) tighten(tolerance, next, allowed, true);
+      if (error(next) < error(best)) best = std::move(next);
+      if (near) {
+        ++measured;
+        return true;
+      }
+    }
+    return false;
   }
 
   static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }

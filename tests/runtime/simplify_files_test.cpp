@@ -154,31 +154,38 @@ class CutOfAFile : public ::testing::TestWithParam<FileCut> {
 };
 
 /// A largest error is reached in some rounds, and the more it is the less is left. And what an error takes, a count is
-/// to give: not twice the error, for thin parts that went too early.
+/// to give: not twice the error (three times where nearly all are left), for thin parts that went too early; and fewer
+/// have the larger error.
 TEST_P(CutOfAFile, HasFewerSimplicesTheLargerTheErrorIsAndNotMuchMoreErrorByCount) {
   const MeshReport before = check(contour());
-  SimplifyOptions<3> options = scaled_options();
-  double last = 0.9;
-  SimplifyStats stats;
+  double last = 0.9, last_by_count = 0.0;
   for (const double most : GetParam().errors) {
+    SCOPED_TRACE(most);
+    SimplifyOptions<3> options = scaled_options();
     options.max_error = most;
+    SimplifyStats stats;
     const auto result = simplify(contour(), options, &stats);
     expect_same_topology(before, check(result));
     EXPECT_LE(*stats.error(), most * (1 + 1e-9));
     EXPECT_GT(*stats.error(), 0.3 * most);
     EXPECT_EQ(stats.end, SimplifyEnd::error);
     EXPECT_LE(stats.rounds, 10u);
-    EXPECT_LT(share(result), last + 0.01) << most;
+    EXPECT_LT(share(result), last + 0.01);
     last = share(result);
+
+    options.max_error.reset();
+    options.count = stats.simplices_after;
+    const double by_error = *stats.error();
+    const auto by_count = simplify(contour(), options, &stats);
+    expect_same_topology(before, check(by_count));
+    EXPECT_EQ(stats.end, SimplifyEnd::count);
+    EXPECT_LE(by_count.simplices.size(), *options.count);
+    // Where nearly all are left, the few that go are those of thin parts.
+    EXPECT_LT(*stats.error(), (last > 0.75 ? 3.0 : 2.0) * by_error);
+    EXPECT_GT(*stats.error(), 0.9 * last_by_count);
+    last_by_count = *stats.error();
   }
   EXPECT_LT(last, 0.5);
-  options.max_error.reset();
-  options.count = stats.simplices_after;
-  const auto by_count = simplify(contour(), options, &stats);
-  expect_same_topology(before, check(by_count));
-  EXPECT_EQ(stats.end, SimplifyEnd::count);
-  EXPECT_LE(by_count.simplices.size(), *options.count);
-  EXPECT_LT(*stats.error(), 2.0 * GetParam().errors.back());
 }
 
 TEST_P(CutOfAFile, StaysAsItIsWhereNothingIsToGo) {
@@ -202,9 +209,10 @@ TEST_P(CutOfAFile, StaysAsItIsWhereNothingIsToGo) {
 constexpr const char* kViscousFingers = "fourd/viscous_fingers_64x64x64x24_float.nhdr";
 constexpr const char* kOcean = "fourd/ocean_atlas_subset.nc.gz";
 
-INSTANTIATE_TEST_SUITE_P(RealData, CutOfAFile,
-                         ::testing::Values(FileCut{kViscousFingers, 30, Hyperplane<4>::across(0, 20.5), {0.02, 0.1}},
-                                           FileCut{kOcean, 20, Hyperplane<4>::across(3, 4350.0), {0.3, 1.0}}));
+INSTANTIATE_TEST_SUITE_P(
+    RealData, CutOfAFile,
+    ::testing::Values(FileCut{kViscousFingers, 30, Hyperplane<4>::across(0, 20.5), {0.003, 0.02, 0.05, 0.1}},
+                      FileCut{kOcean, 20, Hyperplane<4>::across(3, 4350.0), {0.3, 0.6, 0.7, 1.0}}));
 
 /// A goal is reached in some rounds: it is never given up for the contour as it was.
 TEST(ViscousFingers, AreSimplifiedHoweverSmallTheErrorIs) {

@@ -131,8 +131,8 @@ struct SimplifyStats {
 /// vertex; or the result of `fast` is none), Cancelled. Time:
 /// O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three times
 /// that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
-/// the result, in each of up to 12 rounds if there is a `max_error`, and of up to 6 if there is a count alone (up to
-/// twice as many without the error). If no round keeps max_error, the result is the contour itself, and
+/// the result, in each of up to 12 rounds if there is a `max_error`, and of up to 20 if there is a count alone (and
+/// up to 12 without the error). If no round keeps max_error, the result is the contour itself, and
 /// SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
