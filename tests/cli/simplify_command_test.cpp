@@ -149,6 +149,18 @@ TEST_F(SimplifyCommand, TellsWhichOptionIsWrong) {
   expect_refused(2, {"--ratio", "0.5", "--method", "best"}, {"--method", "best", "quadric"});
 }
 
+TEST_F(SimplifyCommand, SaysWhatStoppedIt) {
+  EXPECT_EQ(run_json({"--ratio", "0.5"}, "a.ply")["end"], "count");
+  EXPECT_EQ(run_json({"--ratio", "0", "--max-error", "0.05"}, "a.ply")["end"], "error");
+  EXPECT_EQ(run_json({"--ratio", "0", "--max-error", "1000"}, "a.ply")["end"], "shape");
+  const auto text = [&](const char* error) {
+    return run_tegl({"simplify", file_, "--iso", "0", "--ratio", "0", "--max-error", error, "-o", path("b.ply")}).out;
+  };
+  EXPECT_THAT(text("0.05"), HasSubstr("fewer would go beyond --max-error"));
+  EXPECT_THAT(text("0"), HasSubstr("nothing may go within --max-error 0"));
+  EXPECT_THAT(text("1000"), HasSubstr("may not go, for the topology"));
+}
+
 TEST_F(SimplifyCommand, RefusesWhatIsNoManifoldUnlessAllowed) {
   if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
   const std::string rough = write("noise.nrrd", nrrd_bytes(noise({12, 12, 12}, 1)));
