@@ -17,7 +17,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <Eigen/LU>
 
 #include "progress.hpp"
 #include "require.hpp"
@@ -39,13 +38,14 @@ constexpr std::size_t kMostPlanes = 20;
 /// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
 constexpr unsigned kGentleRounds = 6;
 constexpr unsigned kMostRounds = 12;
-/// By a count alone: how near the least tolerance is searched for, in at most so many rounds; how much the error to try
-/// grows; and how many measured rounds there are, of all errors and of one.
-constexpr double kNarrow = 1.2;
-constexpr unsigned kMostRoundsOfSearch = 12;
+/// As many more that stop at a count.
+constexpr unsigned kMostRoundsOfStop = 4;
+/// By a count alone: so many errors are tried, from this many times the least tolerance, in steps of this factor, until
+/// the least error that reaches the count is known up to this one.
+constexpr unsigned kMostTries = 10;
+constexpr double kErrorOfTolerance = 3.0;
 constexpr double kNextError = 1.5;
-constexpr unsigned kMostRoundsOfCount = 20;
-constexpr unsigned kMostRoundsOfOneError = 8;
+constexpr double kNarrow = 1.25;
 /// Of the size of the contour: what rounding may add to an error.
 constexpr double kRounding = 1e-12;
 
@@ -88,6 +88,7 @@ class Simplifier {
     Contour<N, Real> result = contour_.simplices.empty() ? contour_ : run_rounds();
     stats_.simplices_after = result.simplices.size();
     stats_.vertices_after = result.vertices.size();
+    tell(options_.progress, 1.0, "simplification cancelled at its end");
     return result;
   }
   [[nodiscard]] const SimplifyStats& stats() const noexcept { return stats_; }
@@ -189,68 +190,99 @@ class Simplifier {
     if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
       return hand_out(untouched(may_anything_go() ? SimplifyEnd::error : end_without_limits(contour_)));
     if (options_.max_error) return hand_out(until_error_holds());
-    if (!options_.measure) return hand_out(one_round(infinite_tolerance(), 1.0));
-    if (options_.method == SimplifyMethod::fast) return hand_out(measured_round(infinite_tolerance()));
+    if (!options_.measure) return hand_out(one_round(uniform_tolerance(kInfinity), 1.0, count_));
     return hand_out(as_near_as_can_be());
   }
 
-  [[nodiscard]] std::vector<double> infinite_tolerance() const {
-    return std::vector<double>(contour_.vertices.size(), kInfinity);
+  [[nodiscard]] std::vector<double> uniform_tolerance(double error) const {
+    return std::vector<double>(contour_.vertices.size(), error);
   }
+  [[nodiscard]] bool by_count() const { return options_.count || options_.ratio; }
 
   /// By the largest error, or what an earlier one leaves of it. Nothing was near enough after all rounds: then what is
   /// sure to be is the contour itself.
   Round until_error_holds() {
     const double allowed = *options_.max_error - earlier_error_ + kRounding * size_;
-    std::vector<double> tolerance(contour_.vertices.size(), allowed);
-    while (stats_.rounds < kMostRounds) {
-      Round round = measured_round(tolerance);
-      if (own_error(round) <= allowed) return round;
-      tighten(tolerance, round, allowed, stats_.rounds <= kGentleRounds);
+    Round best;
+    if (by_count() && count_ > 0) {  // perhaps the error is no matter
+      best = one_round(uniform_tolerance(allowed), part_of_rest(0.25), count_);
+      if (best.end == SimplifyEnd::count) measure(best, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      if (best.error_of_original && own_error(best) <= allowed) return best;
     }
+    if (comes_within(allowed, best)) return best;
     return untouched(SimplifyEnd::rounds);
   }
 
-  /// By a count: a few contractions, where parts are thin, make most of the error. So the least largest error is
-  /// searched for by which the count is still reached: from the least tolerance upwards, as until_error_holds() would
-  /// try each. Of all rounds the one with the least error is kept.
+  /// Whether there is a round that keeps this error (and reaches the count, if that is the only goal). `best` becomes
+  /// that, or what is nearer of those with the count.
+  bool comes_within(double allowed, Round& best) {
+    std::vector<double> tolerance = uniform_tolerance(allowed);
+    std::optional<Round> all = all_that_goes(allowed, tolerance);
+    if (!all) return false;
+    if (all->result.simplices.size() >= count_ || !by_count()) {
+      best = std::move(*all);
+      return true;
+    }
+    for (unsigned tried = 1; tried <= kMostRoundsOfStop; ++tried) {
+      Round round = one_round(tolerance, part_of_rest(0.25), count_);
+      if (round.end != SimplifyEnd::count) break;
+      measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      const bool near = own_error(round) <= allowed;
+      if (!near) tighten(tolerance, round, allowed, tried);
+      if (near || (!options_.max_error && error(round) < error(best))) best = std::move(round);
+      if (near) return true;
+    }
+    if (options_.max_error) best = std::move(*all);
+    return options_.max_error.has_value();
+  }
+
+  /// Simplified as far as this error lets it, whatever the count: parts that are too far off are simplified anew with
+  /// less tolerance. (Stopped at a count, others would go in their place, and be too far off in their turn.) Nothing if
+  /// that is not enough for a count that is the only goal, or after too many rounds.
+  std::optional<Round> all_that_goes(double allowed, std::vector<double>& tolerance) {
+    for (unsigned tried = 1; tried <= kMostRounds; ++tried) {
+      Round round = one_round(tolerance, part_of_rest(0.25), 0);
+      if (!options_.max_error && round.end != SimplifyEnd::count) break;
+      // Closer bounds than half of what decides are of no use to anyone.
+      measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      if (own_error(round) <= allowed) return round;
+      tighten(tolerance, round, allowed, tried);
+    }
+    return std::nullopt;
+  }
+
+  /// By a count: a few contractions, where parts are thin, make most of the error. So the least of the largest errors
+  /// is searched for with which the count is still reached.
   Round as_near_as_can_be() {
-    Round best = measured_round(infinite_tolerance());
-    if (best.end != SimplifyEnd::count || !(own_error(best) > 0.0)) return best;
-    unsigned measured = 1;
-    for (double allowed = least_tolerance(own_error(best)); allowed < own_error(best) && measured < kMostRoundsOfCount;
-         allowed *= kNextError)
-      if (try_error(allowed, best, measured)) break;
+    Round best = one_round(uniform_tolerance(kInfinity), part_of_rest(0.25), count_);
+    measure(best, part_of_rest(1.0 / 3.0));
+    if (best.end != SimplifyEnd::count || options_.method == SimplifyMethod::fast) return best;
+    double low = least_tolerance(own_error(best));
+    double allowed = kErrorOfTolerance * low;
+    bool found = false, failed = false;
+    for (unsigned tried = 0; tried < kMostTries && own_error(best) > kNarrow * low; ++tried) {
+      if (!(allowed < own_error(best))) allowed = std::sqrt(low * own_error(best));
+      const bool reached = comes_within(allowed, best);
+      found = found || reached;
+      failed = failed || !reached;
+      if (!reached) low = allowed;
+      if (!found)
+        allowed = kNextError * low;
+      else
+        allowed = failed ? std::sqrt(low * own_error(best)) : own_error(best) / kNarrow;
+    }
     return best;
   }
 
-  /// The least for all vertices by which the count is reached, up to `high`; nothing is measured.
+  /// The least for all vertices by which the count is reached, or somewhat less, below `high`; nothing is measured.
   double least_tolerance(double high) {
     double low = 0.0;
-    for (unsigned round = 0; round < kMostRoundsOfSearch && high > kNarrow * low; ++round) {
+    for (unsigned tried = 0; tried < kMostTries && high > kNextError * low; ++tried) {
       const double middle = low > 0.0 ? std::sqrt(low * high) : 0.25 * high;
-      const std::vector<double> tolerance(contour_.vertices.size(), middle);
-      (one_round(tolerance, part_of_rest(0.05)).end == SimplifyEnd::count ? high : low) = middle;
+      const Round round = one_round(uniform_tolerance(middle), part_of_rest(0.05), count_);
+      (round.end == SimplifyEnd::count ? high : low) = middle;
     }
-    return high;
-  }
-
-  /// Whether the count is reached within this error. Puts what is better than `best` there.
-  bool try_error(double allowed, Round& best, unsigned& measured) {
-    std::vector<double> tolerance(contour_.vertices.size(), allowed);
-    for (unsigned round = 0; round < kMostRoundsOfOneError && measured < kMostRoundsOfCount; ++round, ++measured) {
-      Round next = one_round(tolerance, part_of_rest(0.25));
-      if (next.end != SimplifyEnd::count) return false;
-      measure(next, part_of_rest(1.0 / 3.0));
-      const bool near = own_error(next) <= allowed;
-      if (!near) tighten(tolerance, next, allowed, true);
-      if (error(next) < error(best)) best = std::move(next);
-      if (near) {
-        ++measured;
-        return true;
-      }
-    }
-    return false;
+    return low;
   }
 
   static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }
@@ -260,14 +292,9 @@ class Simplifier {
   /// How far the progress is after this share of what is left: nobody knows how many rounds there will be.
   [[nodiscard]] double part_of_rest(double share) const { return progress_ + share * (1.0 - progress_); }
 
-  Round measured_round(const std::vector<double>& tolerance) {
-    Round round = one_round(tolerance, part_of_rest(0.25));
-    measure(round, part_of_rest(1.0 / 3.0));
-    return round;
-  }
-
   /// Simplified once, which brings the progress to `to`; not measured.
-  Round one_round(const std::vector<double>& tolerance, double to) {
+  Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop) {
+    stop_ = stop;
     ++stats_.rounds;
     survivors_.clear();
     const Progress shrinking = detail::part_of(options_.progress, progress_, to);
@@ -285,17 +312,14 @@ class Simplifier {
 
   /// Why there are not fewer, if it is not for a largest error or curvature.
   [[nodiscard]] SimplifyEnd end_without_limits(const Contour<N, Real>& result) const {
-    const bool by_count = options_.count || options_.ratio;
-    return by_count && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
+    return by_count() && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
   }
 
   /// Whether there is more than was asked for, and anything of it could go, whatever the error.
   bool may_anything_go() {
     const std::size_t before = contour_.simplices.size();
     if (end_without_limits(contour_) == SimplifyEnd::count) return false;
-    const std::size_t count = std::exchange(count_, before - 1);
-    const Round round = one_round(infinite_tolerance(), part_of_rest(0.5));
-    count_ = count;
+    const Round round = one_round(uniform_tolerance(kInfinity), part_of_rest(0.5), before - 1);
     stats_.rounds = 0;
     return limited_ || round.result.simplices.size() < before;
   }
@@ -340,7 +364,7 @@ class Simplifier {
     Shrinker<N> shrinker(std::move(what));
     bind_to_planes(shrinker);
 
-    ShrinkGoal goal{count_, options_.max_curvature, &progress};
+    ShrinkGoal goal{stop_, options_.max_curvature, &progress};
     if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
     if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
     if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
@@ -372,7 +396,7 @@ class Simplifier {
         points.push_back(point);
       }
       const auto within = [&](double error) {
-        return simplify_fast(contour_.simplices, points, count_, error, options_.border == SimplifyBorder::fixed);
+        return simplify_fast(contour_.simplices, points, stop_, error, options_.border == SimplifyBorder::fixed);
       };
       if (!options_.allow_nonmanifold) {
         const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // throws what it does for other methods
@@ -447,7 +471,7 @@ class Simplifier {
   // ---- errors ----
 
   /// The bound of each simplex of the result, both ways.
-  void measure(Round& round, double to) {
+  void measure(Round& round, double to, double enough = 0.0) {
     if (round.error_of_original) return;  // the contour itself
     const double from = std::exchange(progress_, to);
     const auto start = std::chrono::steady_clock::now();
@@ -455,11 +479,10 @@ class Simplifier {
     options.scale = options_.scale;
     options.threads = options_.threads;
     options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
-    // Closer bounds than half of what decides are of no use to anyone.
-    if (options_.max_error) options.enough = 0.5 * (*options_.max_error - earlier_error_);
+    options.enough = enough;
     Deviation of_original = deviation(contour_, round.result, options);
     options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
-    if (!options_.max_error) options.enough = 0.5 * of_original.least;
+    options.enough = enough > 0.0 ? enough : 0.5 * of_original.least;
     const Deviation of_result = deviation(round.result, contour_, options);
     round.errors = std::move(of_original.of_to);
     for (std::size_t s = 0; s < round.errors.size(); ++s)
@@ -470,11 +493,12 @@ class Simplifier {
   }
 
   /// Less tolerance (or care) for all that became part of a simplex with too large an error.
-  void tighten(std::vector<double>& tolerance, const Round& round, double allowed, bool gently) const {
+  void tighten(std::vector<double>& tolerance, const Round& round, double allowed, unsigned tried) const {
+    const bool gently = tried <= kGentleRounds;
     const auto factor_for = [&](double error) { return std::clamp(0.8 * allowed / error, 0.1, 0.8); };
     if (round.survivors.empty()) {
       const double factor = factor_for(own_error(round));
-      for (double& t : tolerance) t = gently || stats_.rounds + 2 < kMostRounds ? factor * t : 0.0;
+      for (double& t : tolerance) t = tried + 2 < kMostRounds ? factor * t : 0.0;
       return;
     }
     std::vector<double> factors(contour_.vertices.size(), 1.0);
@@ -485,7 +509,7 @@ class Simplifier {
       for (const Index v : round.result.simplices[s]) factors[round.kept[v]] = std::min(factors[round.kept[v]], factor);
     }
     // What is around may be the cause: were it left as it is, the next round would do the same once more.
-    if (!gently) widen(factors, round, std::size_t{1} << (stats_.rounds - kGentleRounds - 1));
+    if (!gently) widen(factors, round, std::size_t{1} << (tried - kGentleRounds - 1));
     for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[round.survivors[v]];
   }
 
@@ -600,6 +624,7 @@ class Simplifier {
   std::array<std::pair<double, double>, N> box_;
   double size_ = 0.0;
   std::size_t count_ = 0;
+  std::size_t stop_ = 0;
   std::size_t carried_width_ = 0;
   std::vector<double> carried_;
   std::vector<const Attribute*> carried_attributes_;
@@ -614,42 +639,6 @@ class Simplifier {
 }  // namespace
 }  // namespace detail
 
-template <int N>
-std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
-  // Points of the border across axis a: origin + what the other columns of the map span.
-  const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
-  std::vector<Hyperplane<N>> result;
-  for (int a = 0; a < N; ++a)
-    for (const std::size_t i : {std::size_t{0}, grid.axes[a].size() - 1}) {
-      Hyperplane<N> plane;
-      plane.normal = inverse.row(a).transpose();
-      plane.offset = grid.axes[a][i];
-      for (int b = 0; b < N; ++b) plane.offset += inverse(a, b) * grid.offset(b);
-      result.push_back(plane);
-    }
-  return result;
-}
-
-template <int N, class Real>
-std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
-  std::array<double, N> extent{};
-  for (const auto& simplex : contour.simplices)
-    for (int a = 0; a < N; ++a) {
-      Real low = contour.vertices[simplex[0]][a], high = low;
-      for (const Index v : simplex) {
-        low = std::min(low, contour.vertices[v][a]);
-        high = std::max(high, contour.vertices[v][a]);
-      }
-      extent[a] += static_cast<double>(high) - static_cast<double>(low);
-    }
-  std::array<double, N> result;
-  for (int a = 0; a < N; ++a) {
-    const bool same = contour.axis_units[a] == contour.axis_units[0];
-    result[a] = same || !(extent[a] > 0.0) || !(extent[0] > 0.0) ? 1.0 : extent[0] / extent[a];
-  }
-  return result;
-}
-
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options, SimplifyStats* stats) {
   detail::Simplifier<N, Real> simplifier(contour, options);
@@ -658,15 +647,6 @@ Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions
   return result;
 }
 
-template std::vector<Hyperplane<2>> border_planes(const Grid<2>&);
-template std::vector<Hyperplane<3>> border_planes(const Grid<3>&);
-template std::vector<Hyperplane<4>> border_planes(const Grid<4>&);
-template std::array<double, 2> automatic_scale<2, float>(const Contour<2, float>&);
-template std::array<double, 2> automatic_scale<2, double>(const Contour<2, double>&);
-template std::array<double, 3> automatic_scale<3, float>(const Contour<3, float>&);
-template std::array<double, 3> automatic_scale<3, double>(const Contour<3, double>&);
-template std::array<double, 4> automatic_scale<4, float>(const Contour<4, float>&);
-template std::array<double, 4> automatic_scale<4, double>(const Contour<4, double>&);
 template Contour<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&, SimplifyStats*);
 template Contour<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&, SimplifyStats*);
 template Contour<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&, SimplifyStats*);

@@ -479,6 +479,41 @@ TEST(SimplifyEnds, AreWhatKeepsTheRest) {
   }
 }
 
+/// Meshoptimizer takes a tolerance for all, and no part can get less: where it leaves too large an error however small
+/// that is, the contour is left as it was, and that is said.
+TEST(SimplifyEnds, AreRoundsWhereNoneIsNearEnough) {
+  if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
+  const auto contour = ball<3>(16);
+  SimplifyStats stats;
+  SimplifyOptions<3> options;
+  options.method = SimplifyMethod::fast;
+  options.max_error = 1e-4;
+  const auto result = simplify(contour, options, &stats);
+  EXPECT_EQ(stats.end, SimplifyEnd::rounds);
+  EXPECT_EQ(stats.rounds, 12u);
+  EXPECT_EQ(stats.error(), 0.0);
+  EXPECT_EQ(result.vertices, contour.vertices);
+  EXPECT_EQ(result.simplices, contour.simplices);
+}
+
+/// It ends at the whole, and never goes back, whatever the goal.
+TEST(SimplifyProgress, GrowsUpToOne) {
+  for (int goal = 0; goal < 4; ++goal) {
+    SimplifyOptions<3> options;
+    if (goal != 1) options.ratio = goal == 3 ? 1.0 : 0.3;
+    if (goal == 1) options.max_error = 0.01;
+    options.measure = goal != 2;
+    double last = 0.0;
+    options.progress = [&](double fraction) {
+      EXPECT_GE(fraction, last);
+      last = fraction;
+      return true;
+    };
+    simplify(ball<3>(12), options);
+    EXPECT_EQ(last, 1.0);
+  }
+}
+
 /// Simplified again with a larger error: what the first time left of it is used, and the sum kept.
 TEST(SimplifyTwice, UsesWhatIsLeftOfTheError) {
   const auto contour = ball<3>(24);

@@ -66,8 +66,9 @@ struct SimplifyOptions {
   /// comparable (a month and a degree).
   std::array<double, N> scale = all_one();
   /// Whether the result gets its error bounds: the vertex attribute "simplification_error". Is done anyway if
-  /// max_error is given. With a count or ratio, the bounds of one round show the next one which parts to treat with
-  /// more care, so that the same count has a smaller error; without bounds there is one round.
+  /// max_error is given. With a count or ratio alone, the least largest error is searched for with which the count is
+  /// reached, in some 10 to 30 rounds (but for `fast`); without bounds there is one round, with up to 15 times the
+  /// error.
   bool measure = true;
   /// fast: hand out what is no manifold, too.
   bool allow_nonmanifold = false;
@@ -125,15 +126,19 @@ struct SimplifyStats {
 /// scale to this one; so the bound holds. (scale_axes leaves attributes: after it, the earlier bound is another's.)
 ///
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
-/// stays. It is the same for any number of threads. Errors: InvalidArgument (options; an earlier error whose unit is a
-/// scale of other numbers than N above 0; a vertex number out of range, a coordinate that is not finite; `fast` for
-/// other than triangles, or without meshoptimizer), UnsupportedData (no manifold: a face in three simplices, a repeated
-/// vertex; or the result of `fast` is none), Cancelled. Time:
-/// O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three times
-/// that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
-/// the result, in each of up to 12 rounds if there is a `max_error`, and of up to 20 if there is a count alone (and
-/// up to 12 without the error). If no round keeps max_error, the result is the contour itself, and
-/// SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
+/// stays. It is the same for any number of threads.
+///
+/// Errors: InvalidArgument (options; an earlier error that is negative or not finite, or whose unit is a scale of other
+/// numbers than N above 0; a vertex number out of range, a coordinate that is not finite; `fast` for other than
+/// triangles, or without meshoptimizer), UnsupportedData (no manifold: a face in three simplices, a repeated vertex;
+/// for `fast` also a pinched vertex, faces of two orientations and triangles with the same corners; or the result of
+/// `fast` is none), Cancelled.
+///
+/// Time: O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three
+/// times that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
+/// the result, in each of up to 12 rounds if there is a `max_error`, 16 more if there is a count too, and of 10 to 30
+/// if there is a count alone (a third of those without the error). If no round keeps max_error, the result is the
+/// contour itself, and SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
                           SimplifyStats* stats = nullptr);

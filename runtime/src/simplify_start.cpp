@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a simplification may be told of the image and the axes: hyperplanes of the border, and a scale.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "tegl/simplify.hpp"
+
+namespace tegl {
+
+template <int N>
+std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
+  // Points of the border across axis a: origin + what the other columns of the map span.
+  const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
+  std::vector<Hyperplane<N>> result;
+  for (int a = 0; a < N; ++a)
+    for (const std::size_t i : {std::size_t{0}, grid.axes[a].size() - 1}) {
+      Hyperplane<N> plane;
+      plane.normal = inverse.row(a).transpose();
+      plane.offset = grid.axes[a][i];
+      for (int b = 0; b < N; ++b) plane.offset += inverse(a, b) * grid.offset(b);
+      result.push_back(plane);
+    }
+  return result;
+}
+
+template <int N, class Real>
+std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
+  std::array<double, N> extent{};
+  for (const auto& simplex : contour.simplices)
+    for (int a = 0; a < N; ++a) {
+      Real low = contour.vertices[simplex[0]][a], high = low;
+      for (const Index v : simplex) {
+        low = std::min(low, contour.vertices[v][a]);
+        high = std::max(high, contour.vertices[v][a]);
+      }
+      extent[a] += static_cast<double>(high) - static_cast<double>(low);
+    }
+  std::array<double, N> result;
+  for (int a = 0; a < N; ++a) {
+    const bool same = contour.axis_units[a] == contour.axis_units[0];
+    result[a] = same || !(extent[a] > 0.0) || !(extent[0] > 0.0) ? 1.0 : extent[0] / extent[a];
+  }
+  return result;
+}
+
+template std::vector<Hyperplane<2>> border_planes(const Grid<2>&);
+template std::vector<Hyperplane<3>> border_planes(const Grid<3>&);
+template std::vector<Hyperplane<4>> border_planes(const Grid<4>&);
+template std::array<double, 2> automatic_scale<2, float>(const Contour<2, float>&);
+template std::array<double, 2> automatic_scale<2, double>(const Contour<2, double>&);
+template std::array<double, 3> automatic_scale<3, float>(const Contour<3, float>&);
+template std::array<double, 3> automatic_scale<3, double>(const Contour<3, double>&);
+template std::array<double, 4> automatic_scale<4, float>(const Contour<4, float>&);
+template std::array<double, 4> automatic_scale<4, double>(const Contour<4, double>&);
+
+}  // namespace tegl
