@@ -16,6 +16,7 @@
 #include "extract_place.hpp"
 #include "extract_rows.hpp"
 #include "extract_tables.hpp"
+#include "local_simplices.hpp"
 #include "tile_variants.hpp"
 
 namespace tegl::detail {
@@ -336,14 +337,11 @@ class TileWriter {
           vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
       }
     }
-    const std::uint8_t* local = filling.simplices;
-    const unsigned last = flip_ ? N - 2 : N - 1;
-    for (unsigned q = 0; q < filling.simplex_count; ++q, ++out, local += N) {
-      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = ids[local[j]];
-      (*out)[(N - 2) + (N - 1) - last] = ids[local[N - 2]];
-      (*out)[last] = ids[local[N - 1]];
-    }
-    return out;
+    if constexpr (N == 4)
+      write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, ids.data(),
+                                   ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
+                    out);
+    return out + filling.simplex_count;
   }
 
   /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per

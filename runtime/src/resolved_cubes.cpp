@@ -115,13 +115,20 @@ ResolvedCubes::ResolvedCubes() {
   number_lists();
   make_frames();
   for (unsigned f = 0; f < kCubes; ++f) {
-    for (const CubeList& list : lists_) {
-      first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
-      make_parts(f, list);
+    for (std::size_t i = 0; i < lists_.size(); ++i) {
+      const auto first = static_cast<std::uint32_t>(parts_.size());
+      make_parts(f, lists_[i]);
+      if (f != 0) continue;
+      summaries_[i].first_part = first;
+      summaries_[i].part_count = static_cast<std::uint8_t>(parts_.size() - first);
+      summaries_[i].triangle_count = static_cast<std::uint8_t>(lists_[i].list->triangle_count);
     }
-    first_part_.push_back(static_cast<std::uint32_t>(parts_.size()));
+    if (f == 0) parts_of_cube_ = static_cast<std::uint32_t>(parts_.size());
   }
+  summaries_.push_back({});
   parts_.resize(parts_.size() + kMostParts);
+  part_vertices_.resize(parts_.size());
+  triangles_.resize(triangles_.size() + kWordsBehind);
 }
 
 void ResolvedCubes::number_lists() {
@@ -141,8 +148,11 @@ void ResolvedCubes::number_lists() {
         if (same == choice) {
           list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
           lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
-          is_low_.push_back(high == 0 && choice == 0 ? 1 : 0);
-          own_vertices_.push_back(static_cast<std::uint8_t>(lists[choice]->own_vertices));
+          const unsigned variant = 1 + 3 * (entry - kTile3Resolved.first_entry[s]) + choice;
+          key_of_.push_back(static_cast<std::uint16_t>(s | variant << 8));
+          Summary& summary = summaries_.emplace_back();
+          summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;
+          summary.own_vertices = static_cast<std::uint8_t>(lists[choice]->own_vertices);
         } else {
           list_of_[3 * entry + choice] = list_of_[3 * entry + same];
         }
@@ -181,10 +191,11 @@ void ResolvedCubes::make_parts(unsigned cube, const CubeList& of) {
     if ((done >> triangle(list, t)[0] & 1u) != 0) continue;
     const std::uint32_t vertices = connected(neighbours, triangle(list, t)[0]);
     done |= vertices;
-    Part part{0, ~std::uint32_t{0}, static_cast<std::uint32_t>(triangles_.size()), 0, static_cast<std::uint8_t>(cube)};
+    Part part{~std::uint32_t{0}, static_cast<std::uint32_t>(triangles_.size()), 0, static_cast<std::uint8_t>(cube)};
+    std::uint64_t& in_tile = part_vertices_.emplace_back(0);
     for (std::uint32_t rest = vertices; rest != 0; rest &= rest - 1) {
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
-      part.vertices |= std::uint64_t{1} << lifted(cube, v);
+      in_tile |= std::uint64_t{1} << lifted(cube, v);
       if (v < kCubeEdges && !may_be_apex(list, neighbours, v, vertices)) part.apexes &= ~(1u << lifted(cube, v));
     }
     for (unsigned u = t; u < list.triangle_count; ++u) {

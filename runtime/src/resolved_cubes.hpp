@@ -4,6 +4,7 @@
 // of a tile of four dimensions. Made once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -36,12 +37,19 @@ class ResolvedCubes {
 
   /// A connected part of a list in one of the cubes.
   struct Part {
-    std::uint64_t vertices;
     std::uint32_t
         apexes;  ///< edges of the tile: those not in the part, and those joined with each of its other vertices
     std::uint32_t first_triangle;
     std::uint8_t triangle_count;
     std::uint8_t cube;
+  };
+
+  /// What is looked at of a list, in any cube.
+  struct Summary {
+    std::uint32_t first_part;  ///< from the cube's first one on
+    std::uint8_t part_count, triangle_count;
+    std::uint8_t is_not_low;  ///< whether it is not that of the low-connected contour
+    std::uint8_t own_vertices;
   };
 
   using Lists = std::array<std::uint16_t, kCubes>;  ///< of each cube of a tile
@@ -58,12 +66,14 @@ class ResolvedCubes {
     for (unsigned pair = 0; pair < 6; ++pair) result |= squares_[pair][tile >> (4 * pair) & 15u];
     return result;
   }
-  /// The number of a list, less than lists().size(), or kNone for a cube of one sign. `high_squares`: those not
-  /// ambiguous are ignored.
-  [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, facets::Choice choice) const noexcept {
+  /// The entry of tables::kTile3Resolved. `high_squares`: those not ambiguous are ignored.
+  [[nodiscard]] unsigned entry(unsigned signature, unsigned high_squares) const noexcept {
     const Signature of = of_signatures_[signature];
-    const unsigned entry = of.first_entry + compressed_[of.ambiguous << 6 | high_squares];
-    return list_of_[3 * entry + static_cast<unsigned>(choice)];
+    return unsigned{of.first_entry} + compressed_[of.ambiguous << 6 | high_squares];
+  }
+  /// The number of a list, less than lists().size(), or kNone for a cube of one sign.
+  [[nodiscard]] std::uint16_t list(unsigned signature, unsigned high_squares, facets::Choice choice) const noexcept {
+    return list_of_entry(entry(signature, high_squares), choice);
   }
   /// The same by entry of tables::kTile3Resolved.
   [[nodiscard]] std::uint16_t list_of_entry(unsigned entry, facets::Choice choice) const noexcept {
@@ -72,15 +82,21 @@ class ResolvedCubes {
   /// Whether an entry's choice matters.
   [[nodiscard]] bool has_choice(unsigned entry) const noexcept { return has_choice_[entry] != 0; }
   /// How many vertices of its own a list has; of kNone none.
-  [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept { return list == kNone ? 0 : own_vertices_[list]; }
+  [[nodiscard]] unsigned own_vertices(unsigned list) const noexcept { return summary(list).own_vertices; }
+  /// A key (tile_variants.hpp) that the list is that of.
+  [[nodiscard]] std::uint16_t key(unsigned list) const noexcept { return key_of_[list]; }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
-  /// Whether a list is that of the low-connected contour.
-  [[nodiscard]] bool is_low(unsigned list) const noexcept { return is_low_[list] != 0; }
-  [[nodiscard]] std::span<const Part> parts(unsigned cube, unsigned list) const noexcept {
-    const auto* const first = &first_part_[cube * (lists_.size() + 1) + list];
-    return {parts_.data() + first[0], parts_.data() + first[1]};
+  [[nodiscard]] const Summary& summary(unsigned list) const noexcept {
+    return summaries_.data()[std::min<std::size_t>(list, summaries_.size() - 1)];
   }
+  /// The number of a cube's first part.
+  [[nodiscard]] std::uint32_t first_part(unsigned cube) const noexcept { return cube * parts_of_cube_; }
+  [[nodiscard]] const Part& part(std::uint32_t number) const noexcept { return parts_.data()[number]; }
+  /// The vertices of parts, by number.
+  [[nodiscard]] const std::uint64_t* part_vertices() const noexcept { return part_vertices_.data(); }
   /// Triangles as words: a zero byte, and their vertices, so that the cone from `apex` is word | apex_word(apex).
+  /// Behind them stand kWordsBehind words, whatever they are.
+  static constexpr unsigned kWordsBehind = 4;
   [[nodiscard]] const std::uint32_t* triangles(const Part& part) const noexcept {
     return triangles_.data() + part.first_triangle;
   }
@@ -112,11 +128,12 @@ class ResolvedCubes {
   std::array<std::uint8_t, 64 * 64> compressed_{};
   std::vector<CubeList> lists_;
   std::vector<std::uint16_t> list_of_;
-  std::vector<std::uint8_t> is_low_;
-  std::vector<std::uint8_t> own_vertices_;
+  std::vector<std::uint16_t> key_of_;     ///< by list
+  std::vector<Summary> summaries_;        ///< likewise; behind them that of kNone
   std::vector<std::uint8_t> has_choice_;  ///< by entry
-  std::vector<std::uint32_t> first_part_;
+  std::uint32_t parts_of_cube_ = 0;
   std::vector<Part> parts_;
+  std::vector<std::uint64_t> part_vertices_;
   std::vector<std::uint32_t> triangles_;
   std::array<std::uint64_t, kEdges> beside_{};
   std::array<std::uint32_t, kCubes> edges_of_{};

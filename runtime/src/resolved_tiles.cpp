@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "corners.hpp"
 #include "cube_regions.hpp"
@@ -43,6 +44,42 @@ constexpr std::uint32_t grown(std::uint32_t corners) {
   return result;
 }
 
+/// The pairs of axes that squares span: bit i of `base` is set where a square's lowest corner is corner i, and `square`
+/// is then its number.
+struct SquarePlane {
+  unsigned a, b;
+  std::uint32_t base;
+  std::array<std::uint8_t, 16> square;
+};
+constexpr std::array<SquarePlane, 6> kSquarePlanes = [] {
+  std::array<SquarePlane, 6> result{};
+  std::size_t plane = 0;
+  for (unsigned a = 0; a < 4; ++a)
+    for (unsigned b = a + 1; b < 4; ++b, ++plane) {
+      result[plane].a = a;
+      result[plane].b = b;
+      for (unsigned q = 0; q < 24; ++q)
+        if (kTesseractSquares[q].axes == (1u << a | 1u << b)) {
+          result[plane].base |= 1u << kTesseractSquares[q].base;
+          result[plane].square[kTesseractSquares[q].base] = static_cast<std::uint8_t>(q);
+        }
+    }
+  return result;
+}();
+
+/// The ambiguous ones of the 24 squares.
+std::uint32_t ambiguous_squares(std::uint32_t signature) {
+  std::array<std::uint32_t, 4> changes;  // bit v: corner v and the next one along the axis are different
+  for (unsigned a = 0; a < 4; ++a) changes[a] = signature ^ signature >> (1u << a);
+  std::uint32_t result = 0;
+  for (const SquarePlane& plane : kSquarePlanes) {
+    const std::uint32_t along_b = changes[plane.b];
+    std::uint32_t found = changes[plane.a] & along_b & along_b >> (1u << plane.a) & plane.base;
+    for (; found != 0; found &= found - 1) result |= 1u << plane.square[std::countr_zero(found)];
+  }
+  return result;
+}
+
 Choice choice_of(const ResolvedKey& key, unsigned cube) {
   if ((key.low_cubes >> cube & 1u) != 0) return Choice::low;
   return (key.high_cubes >> cube & 1u) != 0 ? Choice::high : Choice::separate;
@@ -50,20 +87,36 @@ Choice choice_of(const ResolvedKey& key, unsigned cube) {
 
 }  // namespace
 
-bool ResolvedTesseract::Component::is_sphere() const noexcept {
-  return 2 * static_cast<unsigned>(std::popcount(vertices)) == triangles + 4;
-}
+ResolvedTesseract::ResolvedTesseract() : cubes_(ResolvedCubes::instance()), in_table_(in_table().data()) {}
 
-ResolvedTesseract::ResolvedTesseract() : cubes_(ResolvedCubes::instance()) {}
+const std::vector<ResolvedTesseract::InTable>& ResolvedTesseract::in_table() {
+  static const std::vector<InTable> entries = [] {
+    std::vector<InTable> result;
+    for (unsigned s = 0; s < 65536; ++s) {
+      const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[s]];
+      result.push_back({list.first_simplex, list.simplex_count,
+                        static_cast<std::uint16_t>(unsigned{list.cone_vertices} + list.side_vertices)});
+    }
+    return result;
+  }();
+  return entries;
+}
 
 const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
   find_cubes(lists);
+  const bool has_regions = find_joined(key);
   simplex_count_ = 0;
   masks_.clear();
-  if (is_in_table(key))
+  if (is_in_table(key)) {
+    const InTable& entry = in_table_[key.signature];
+    if (entry.own_vertices == 0) {
+      view_ = {tables::kTile4Compact.simplices + 4 * std::size_t{entry.first_simplex}, entry.simplex_count, 0, nullptr};
+      return view_;
+    }
     take_from_table(key);
-  else
-    fill(key);
+  } else {
+    fill(key, has_regions);
+  }
   view_ = {reinterpret_cast<const std::uint8_t*>(simplices_.data()), static_cast<std::uint32_t>(simplex_count_),
            static_cast<std::uint32_t>(masks_.size()), masks_.data()};
   return view_;
@@ -71,11 +124,12 @@ const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key, const Resolv
 
 ResolvedSize ResolvedTesseract::size(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
   find_cubes(lists);
+  const bool has_regions = find_joined(key);
   if (is_in_table(key)) {
-    const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[key.signature]];
-    return {list.simplex_count, std::uint32_t{list.cone_vertices} + list.side_vertices};
+    const InTable& entry = in_table_[key.signature];
+    return {entry.simplex_count, entry.own_vertices};
   }
-  const bool high = choose_cones(key);
+  const bool high = choose_cones(key, has_regions);
   ResolvedSize size{0, 0};
   for (unsigned c = 0; c < component_count_; ++c) {
     const Component& component = components_[c];
@@ -102,30 +156,39 @@ ResolvedCubes::Lists ResolvedTesseract::lists_of(const ResolvedKey& key) const n
 }
 
 void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
-  unsigned others = 0;
+  unsigned others = 0, count = 0, opposite = 0;
   lists_ = lists;
-  part_count_ = 0;
-  for (unsigned f = 0; f < kCubes; ++f) {
-    const std::uint16_t list = lists[f];
-    if (list == ResolvedCubes::kNone) continue;
-    others += cubes_.is_low(list) ? 0 : 1;
-    // As many as a cube can have, without a branch for how many it has: those behind are written over.
-    const auto parts = cubes_.parts(f, list);
-    for (unsigned i = 0; i < ResolvedCubes::kMostParts; ++i) parts_[part_count_ + i] = parts.data() + i;
-    part_count_ += static_cast<unsigned>(parts.size());
-  }
-  as_low_ = others == 0;
-  // What hangs together with the first part, as far as it is seen in one go.
-  std::uint64_t vertices = part_count_ == 0 ? 0 : parts_[0]->vertices;
-  std::uint32_t connected = 0;
   triangle_count_ = 0;
-  for (unsigned i = 0; i < part_count_; ++i) {
-    const ResolvedCubes::Part& part = *parts_[i];
-    triangle_count_ += part.triangle_count;
-    const std::uint64_t meets = (part.vertices & vertices) != 0 ? 1 : 0;
-    vertices |= part.vertices & (0 - meets);
-    connected |= static_cast<std::uint32_t>(meets << i);
+  for (unsigned f = 0; f < kCubes; ++f) {
+    const ResolvedCubes::Summary& summary = cubes_.summary(lists[f]);
+    others |= summary.is_not_low;
+    triangle_count_ += summary.triangle_count;
+    // As many as a cube can have, without a branch for how many it has: those behind are written over.
+    const std::uint32_t first = cubes_.first_part(f) + summary.first_part;
+    for (unsigned i = 0; i < ResolvedCubes::kMostParts; ++i) parts_.data()[count + i] = first + i;
+    std::memcpy(&part_vertices_.data()[count], cubes_.part_vertices() + first,
+                ResolvedCubes::kMostParts * sizeof(std::uint64_t));
+    count += summary.part_count;
+    if (f < 2) opposite = f == 0 ? count : count | opposite << 8;
   }
+  part_count_ = count;
+  as_low_ = others == 0;
+  // What hangs together with the first part, as far as it is seen in one go. Cubes 0 and 1 have nothing in common, so
+  // the parts of 1 come last.
+  std::uint64_t vertices = count == 0 ? 0 : part_vertices_[0];
+  std::uint32_t connected = 0;
+  const auto look_at = [&](unsigned from, unsigned to) {
+    for (unsigned i = from; i < to; ++i) {
+      const std::uint64_t of_part = part_vertices_.data()[i];
+      const std::uint64_t meets = (of_part & vertices) != 0 ? 1 : 0;
+      vertices |= of_part & (0 - meets);
+      connected |= static_cast<std::uint32_t>(meets << i);
+    }
+  };
+  const unsigned first_of_1 = opposite >> 8, end_of_1 = opposite & 255u;
+  look_at(0, first_of_1);
+  look_at(end_of_1, count);
+  look_at(first_of_1, end_of_1);
   find_components(vertices, connected);
 }
 
@@ -138,7 +201,7 @@ void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t co
     for (bool grown = left != 0; grown;) {
       grown = false;
       for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
-        const std::uint64_t of_part = parts_[std::countr_zero(rest)]->vertices;
+        const std::uint64_t of_part = part_vertices_[std::countr_zero(rest)];
         if ((of_part & vertices) == 0) continue;
         vertices |= of_part;
         connected |= rest & (0 - rest);
@@ -149,12 +212,13 @@ void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t co
     if (left != 0 || component_count_ != 0) {
       triangles = 0;
       for (std::uint32_t rest = connected; rest != 0; rest &= rest - 1)
-        triangles += parts_[std::countr_zero(rest)]->triangle_count;
+        triangles += part(static_cast<unsigned>(std::countr_zero(rest))).triangle_count;
     }
-    components_[component_count_++] = {vertices, connected, triangles, 0, false};
+    const bool is_sphere = 2 * static_cast<unsigned>(std::popcount(vertices)) == triangles + 4;
+    components_[component_count_++] = {vertices, connected, triangles, 0, is_sphere, false};
     connected = left & (0 - left);
     left ^= connected;
-    if (connected != 0) vertices = parts_[std::countr_zero(connected)]->vertices;
+    if (connected != 0) vertices = part_vertices_[std::countr_zero(connected)];
   }
 }
 
@@ -163,13 +227,12 @@ bool ResolvedTesseract::is_in_table(const ResolvedKey& key) const {
   if (!as_low_) return false;
   if (key.tile == Choice::separate) return true;
   for (unsigned c = 0; c < component_count_; ++c)
-    if (!components_[c].is_sphere() && key.tile == Choice::high) return false;
+    if (!components_[c].is_sphere && key.tile == Choice::high) return false;
   if (component_count_ < 2) return true;
   std::uint32_t seen = 0;
   for (unsigned c = 0; c < component_count_; ++c) {
-    const std::uint32_t region = region_of(key, components_[c], key.tile == Choice::low);
-    if ((region & seen) != 0) return false;
-    seen |= region;
+    if ((components_[c].region & seen) != 0) return false;
+    seen |= components_[c].region;
   }
   return true;
 }
@@ -193,40 +256,57 @@ void ResolvedTesseract::take_from_table(const ResolvedKey& key) {
   }
 }
 
-/// The corners of a sign that hang together with those beside a component, in the tile's boundary.
-std::uint32_t ResolvedTesseract::region_of(const ResolvedKey& key, const Component& component, bool high) const {
-  const auto edge = static_cast<unsigned>(std::countr_zero(component.vertices));
+/// Where several components may be joined by the tile's centre: what is around each. Returns whether that is so.
+bool ResolvedTesseract::find_joined(const ResolvedKey& key) {
+  const bool joins = component_count_ > 1 && key.tile != Choice::separate;
+  if (joins) find_regions(key, key.tile == Choice::low);
+  return joins;
+}
+
+/// Of each component, the corners of a sign that hang together with those beside it, in the tile's boundary.
+void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
   const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
-  if (component_count_ == 1) return corners;  // it has one region on either side
-  const std::uint32_t from = 1u << edge_base(4, edge);
-  std::uint32_t reached = (corners & from) != 0 ? from : from << (1u << edge / 8);
-  const std::uint8_t joining = high ? key.high_cubes & static_cast<std::uint8_t>(~key.low_cubes) : key.low_cubes;
-  const std::uint32_t joining_squares = high ? key.squares : ~key.squares;
-  for (std::uint32_t before = 0; reached != before;) {
-    for (; reached != before; reached = grown(reached) & corners) before = reached;
-    if (reached == corners) break;
-    for (unsigned rest = joining; rest != 0; rest &= rest - 1) {
-      const std::uint32_t in = corners & kCornersOfCubes[std::countr_zero(rest)];
-      reached |= (reached & in) != 0 ? in : 0;
-    }
-    // Squares that are not ambiguous join what edges join as well. No branch, for noise would mislead it.
-    for (unsigned q = 0; q < kCornersOfSquares.size(); ++q) {
-      const std::uint32_t in = (joining_squares >> q & 1u) != 0 ? corners & kCornersOfSquares[q] : 0;
-      reached |= (reached & in) != 0 ? in : 0;
-    }
+  if (component_count_ == 1) {  // it has one region on either side
+    components_[0].region = corners;
+    return;
   }
-  return reached;
+  // What faces join that edges do not.
+  std::array<std::uint32_t, 8 + 24> joined;
+  unsigned count = 0;
+  const unsigned cubes = high ? key.high_cubes & ~unsigned{key.low_cubes} : key.low_cubes;
+  for (unsigned rest = cubes; rest != 0; rest &= rest - 1)
+    joined[count++] = corners & kCornersOfCubes[std::countr_zero(rest)];
+  for (std::uint32_t rest = ambiguous_squares(key.signature) & (high ? key.squares : ~key.squares); rest != 0;
+       rest &= rest - 1)
+    joined[count++] = corners & kCornersOfSquares[std::countr_zero(rest)];
+  std::uint32_t seen = 0;
+  for (unsigned c = 0; c < component_count_; ++c) {
+    const auto edge = static_cast<unsigned>(std::countr_zero(components_[c].vertices));
+    const std::uint32_t one = 1u << edge_base(4, edge);
+    const std::uint32_t from = (corners & one) != 0 ? one : one << (1u << edge / 8);
+    if ((from & seen) != 0) {
+      for (unsigned d = 0; d < c; ++d)
+        if ((components_[d].region & from) != 0) components_[c].region = components_[d].region;
+      continue;
+    }
+    std::uint32_t reached = from;
+    for (std::uint32_t before = 0; reached != before;) {
+      before = reached;
+      reached = grown(grown(reached) & corners) & corners;
+      for (unsigned j = 0; j < count; ++j) reached |= (reached & joined[j]) != 0 ? joined[j] : 0;
+    }
+    components_[c].region = reached;
+    seen |= reached;
+  }
 }
 
 /// Of what is a sphere, and alone around its region if the tile's centre may join. Returns which side is copied for the
 /// rest; then regions are known.
-bool ResolvedTesseract::choose_cones(const ResolvedKey& key) {
+bool ResolvedTesseract::choose_cones(const ResolvedKey& key, bool joins) {
   const bool high = key.tile != Choice::high;
-  const bool joins = key.tile != Choice::separate && component_count_ > 1;
-  if (joins) find_regions(key, high);
   bool all = true;
   for (unsigned c = 0; c < component_count_; ++c) {
-    components_[c].is_coned = components_[c].is_sphere() && (!joins || is_alone(c));
+    components_[c].is_coned = components_[c].is_sphere && (!joins || is_alone(c));
     all = all && components_[c].is_coned;
   }
   if (!all && !joins) find_regions(key, high);
@@ -240,17 +320,14 @@ bool ResolvedTesseract::is_first_of_region(unsigned component) const {
   return true;
 }
 
-void ResolvedTesseract::fill(const ResolvedKey& key) {
-  if (simplices_.size() <= triangle_count_) simplices_.resize(triangle_count_ + std::size_t{1});
-  const bool high = choose_cones(key);
+void ResolvedTesseract::fill(const ResolvedKey& key, bool joins) {
+  constexpr std::size_t kMore = ResolvedCubes::kWordsBehind;
+  if (simplices_.size() < triangle_count_ + kMore) simplices_.resize(triangle_count_ + kMore);
+  const bool high = choose_cones(key, joins);
   for (unsigned c = 0; c < component_count_; ++c)
     if (components_[c].is_coned) cone(components_[c]);
   for (unsigned c = 0; c < component_count_; ++c)
     if (!components_[c].is_coned && is_first_of_region(c)) fill_region(components_[c].region, high);
-}
-
-void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
-  for (unsigned c = 0; c < component_count_; ++c) components_[c].region = region_of(key, components_[c], high);
 }
 
 bool ResolvedTesseract::is_alone(unsigned component) const {
@@ -265,10 +342,10 @@ unsigned ResolvedTesseract::apex_of(const Component& component) const {
   auto apexes = static_cast<std::uint32_t>(component.vertices);
   unsigned cubes = 0;
   for (std::uint32_t rest = component.parts; rest != 0 && apexes != 0; rest &= rest - 1) {
-    const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
+    const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
     // Points of one of its parts in a cube are not joined with those of another one there.
-    apexes &= (cubes >> part.cube & 1u) != 0 ? ~cubes_.edges_of(part.cube) : part.apexes;
-    cubes |= 1u << part.cube;
+    apexes &= (cubes >> of_part.cube & 1u) != 0 ? ~cubes_.edges_of(of_part.cube) : of_part.apexes;
+    cubes |= 1u << of_part.cube;
   }
   unsigned apex = kFirstOwn;
   int most = 0;
@@ -282,13 +359,21 @@ unsigned ResolvedTesseract::apex_of(const Component& component) const {
 
 void ResolvedTesseract::cone(const Component& component) {
   unsigned apex = apex_of(component);
-  if (apex == kFirstOwn) apex = add_own((component.vertices & 0xffffffffu) << kMaskEdge);
+  const bool is_own = apex == kFirstOwn;
+  if (is_own) apex = add_own((component.vertices & 0xffffffffu) << kMaskEdge);
   const std::uint32_t first = ResolvedCubes::apex_word(apex), repeated = apex * 0x01010101u;
   Word* out = simplices_.data() + simplex_count_;
   for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
-    const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
-    const std::uint32_t* const triangles = cubes_.triangles(part);
-    for (unsigned t = 0; t < part.triangle_count; ++t) {
+    const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
+    const std::uint32_t* const triangles = cubes_.triangles(of_part);
+    if (is_own) {
+      // By registers, so a few too many, which are written over.
+      for (unsigned t = 0; t < of_part.triangle_count; t += ResolvedCubes::kWordsBehind)
+        for (unsigned i = t; i < t + ResolvedCubes::kWordsBehind; ++i) out[i] = triangles[i] | first;
+      out += of_part.triangle_count;
+      continue;
+    }
+    for (unsigned t = 0; t < of_part.triangle_count; ++t) {
       const std::uint32_t simplex = triangles[t] | first;
       // Whether the apex stands once in it: then one byte of the difference is zero. All are less than 128.
       const std::uint32_t zero_bytes = ~((simplex ^ repeated) + 0x7f7f7f7fu) & 0x80808080u;
@@ -346,9 +431,9 @@ void ResolvedTesseract::cap(const Component& component, unsigned corners, std::s
   }
   const auto apex = static_cast<std::uint8_t>(add_own(all));
   for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
-    const ResolvedCubes::Part& part = *parts_[std::countr_zero(rest)];
-    for (unsigned t = 0; t < part.triangle_count; ++t) {
-      const auto triangle = std::bit_cast<std::array<std::uint8_t, 4>>(cubes_.triangles(part)[t]);
+    const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
+    for (unsigned t = 0; t < of_part.triangle_count; ++t) {
+      const auto triangle = std::bit_cast<std::array<std::uint8_t, 4>>(cubes_.triangles(of_part)[t]);
       add_simplex({apex, sigma[triangle[2]], sigma[triangle[1]], sigma[triangle[3]]});
     }
   }
@@ -435,7 +520,7 @@ bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
       ResolvedKey key;
       key.signature = static_cast<std::uint16_t>(s);
       tile.find_cubes(tile.lists_of(key));
-      result[s] = tile.component_count_ == 0 || (tile.component_count_ == 1 && tile.components_[0].is_sphere());
+      result[s] = tile.component_count_ == 0 || (tile.component_count_ == 1 && tile.components_[0].is_sphere);
     }
     return result;
   }();

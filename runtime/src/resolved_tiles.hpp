@@ -94,18 +94,26 @@ class ResolvedTesseract {
     std::uint32_t parts = 0;  ///< set of parts
     std::uint32_t triangles = 0;
     std::uint32_t region = 0;  ///< corners of the side that is copied, beside it
-    bool is_coned = false;
-    [[nodiscard]] bool is_sphere() const noexcept;
+    bool is_sphere = false, is_coned = false;
   };
 
+  /// What is looked at of a signature in the compact table.
+  struct InTable {
+    std::uint32_t first_simplex;
+    std::uint16_t simplex_count, own_vertices;
+  };
+  static const std::vector<InTable>& in_table();
+
   [[nodiscard]] ResolvedCubes::Lists lists_of(const ResolvedKey& key) const noexcept;
+  [[nodiscard]] const ResolvedCubes::Part& part(unsigned i) const noexcept { return cubes_.part(parts_[i]); }
   void find_cubes(const ResolvedCubes::Lists& lists);
   void find_components(std::uint64_t vertices, std::uint32_t connected);
   void take_from_table(const ResolvedKey& key);
   [[nodiscard]] bool is_in_table(const ResolvedKey& key) const;
-  [[nodiscard]] bool choose_cones(const ResolvedKey& key);
+  [[nodiscard]] bool find_joined(const ResolvedKey& key);
+  [[nodiscard]] bool choose_cones(const ResolvedKey& key, bool joins);
   [[nodiscard]] bool is_first_of_region(unsigned component) const;
-  void fill(const ResolvedKey& key);
+  void fill(const ResolvedKey& key, bool joins);
   [[nodiscard]] unsigned apex_of(const Component& component) const;
   void cone(const Component& component);
   void add_region_size(unsigned corners, bool high, ResolvedSize& size) const;
@@ -118,13 +126,14 @@ class ResolvedTesseract {
   void add_cube_regions(unsigned cube, unsigned corners, bool high, std::span<const std::uint8_t, 16> copy,
                         std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma);
   void add_simplex(const std::array<std::uint8_t, 4>& vertices);
-  [[nodiscard]] std::uint32_t region_of(const ResolvedKey& key, const Component& component, bool high) const;
   unsigned add_own(std::uint64_t mask);
 
   const ResolvedCubes& cubes_;
+  const InTable* in_table_;  ///< by signature
   // Of the tile at hand.
   ResolvedCubes::Lists lists_{};
-  std::array<const ResolvedCubes::Part*, 32 + ResolvedCubes::kMostParts> parts_{};
+  std::array<std::uint32_t, 32 + ResolvedCubes::kMostParts> parts_{};          ///< their numbers
+  std::array<std::uint64_t, 32 + ResolvedCubes::kMostParts> part_vertices_{};  ///< of each
   std::array<Component, 32> components_{};
   unsigned part_count_ = 0, component_count_ = 0;
   std::uint32_t triangle_count_ = 0;  ///< of Sigma

@@ -49,7 +49,7 @@ bool TileChoices<N>::is_open(const Face& face, unsigned signature, const TileKey
   unsigned high = 0;
   for (unsigned q = 0; q < 6; ++q) high |= (key.choice(face.squares[q]) == facets::Choice::high ? 1u : 0u) << q;
   const std::uint16_t list = ResolvedCubes::instance().list(signature, high, facets::Choice::separate);
-  return list != ResolvedCubes::kNone && ResolvedCubes::instance().parts(0, list).size() > 1;
+  return ResolvedCubes::instance().summary(list).part_count > 1;
 }
 
 template <int N>

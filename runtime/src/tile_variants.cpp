@@ -592,7 +592,6 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
 bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
              ResolvedTile& tile) noexcept {
   if (block.unsure[bit] != 0) return false;
-  const auto& table = tables::kTile3Resolved;
   const ResolvedCubes& cubes = ResolvedCubes::instance();
   const std::uint64_t high = block.high[bit];
   tile.key = {};
@@ -601,32 +600,35 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? facets::Choice::high : facets::Choice::low;
   const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
   std::array<std::uint16_t, 8> entries;
-  for (unsigned f = 0; f < 8; ++f) {
-    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
-    entries[f] = static_cast<std::uint16_t>(
-        table.first_entry[in_cube] +
-        packed_squares(static_cast<unsigned>(squares >> (8 * f)), table.ambiguous_squares[in_cube]));
-  }
+  for (unsigned f = 0; f < 8; ++f)
+    entries[f] = static_cast<std::uint16_t>(cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
+                                                        static_cast<unsigned>(squares >> (8 * f) & 63)));
   std::array<facets::Choice, 8> choices{};
-  if (estimator.is_by_means())
+  if (estimator.is_by_means()) {
+    unsigned with_choice = 0;
     for (unsigned f = 0; f < 8; ++f) {
       const auto is_high = static_cast<unsigned>(high >> (kFirstCube<4> + f) & 1u);
-      choices[f] = static_cast<facets::Choice>(cubes.has_choice(entries[f]) ? 1 + is_high : 0);
+      const unsigned has_choice = cubes.has_choice(entries[f]) ? 1 : 0;
+      choices[f] = static_cast<facets::Choice>(has_choice * (1 + is_high));
+      with_choice |= has_choice << f;
     }
-  else if (!decide_centres(block, bit, estimator.isovalue(), entries, choices))
-    return false;
-  unsigned low = 0, joined = 0;
-  for (unsigned f = 0; f < 8; ++f) {
-    low |= (choices[f] == facets::Choice::low ? 1u : 0u) << f;
-    joined |= (choices[f] == facets::Choice::high ? 1u : 0u) << f;
-    tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
-    if (cubes.own_vertices(tile.lists[f]) == 0) continue;
-    const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
-    const unsigned r = unsigned{entries[f]} - table.first_entry[in_cube];
-    tile.cubes[f] = static_cast<std::uint16_t>(in_cube | (1 + 3 * r + static_cast<unsigned>(choices[f])) << 8);
+    const auto high_cubes = static_cast<unsigned>(high >> kFirstCube<4>);
+    tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & high_cubes);
+    tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~high_cubes);
+  } else {
+    if (!decide_centres(block, bit, estimator.isovalue(), entries, choices)) return false;
+    unsigned low = 0, joined = 0;
+    for (unsigned f = 0; f < 8; ++f) {
+      low |= (choices[f] == facets::Choice::low ? 1u : 0u) << f;
+      joined |= (choices[f] == facets::Choice::high ? 1u : 0u) << f;
+    }
+    tile.key.low_cubes = static_cast<std::uint8_t>(low);
+    tile.key.high_cubes = static_cast<std::uint8_t>(joined);
   }
-  tile.key.low_cubes = static_cast<std::uint8_t>(low);
-  tile.key.high_cubes = static_cast<std::uint8_t>(joined);
+  for (unsigned f = 0; f < 8; ++f) {
+    tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
+    if (cubes.own_vertices(tile.lists[f]) != 0) tile.cubes[f] = cubes.key(tile.lists[f]);
+  }
   return true;
 }
 
