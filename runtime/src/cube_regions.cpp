@@ -393,6 +393,7 @@ CubeRegions::CubeRegions() {
       }
     }
   first_region_.push_back(static_cast<std::uint32_t>(regions_.size()));
+  tetrahedra_.resize(tetrahedra_.size() + kMoreTetrahedra);
 }
 
 }  // namespace tegl::detail

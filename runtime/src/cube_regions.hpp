@@ -39,7 +39,9 @@ class CubeRegions {
     const unsigned at = 2 * (list == ResolvedCubes::kNone ? whole_ : list) + (high ? 1 : 0);
     return {regions_.data() + first_region_[at], regions_.data() + first_region_[at + 1]};
   }
-  /// Oriented so that the triangles of the list that they induce are those of the list, in the cube.
+  /// Oriented so that the triangles of the list that they induce are those of the list, in the cube. Behind them stand
+  /// kMoreTetrahedra, whatever they are.
+  static constexpr std::size_t kMoreTetrahedra = 3;
   [[nodiscard]] std::span<const Tetrahedron> tetrahedra(const Region& region) const noexcept {
     return {tetrahedra_.data() + region.first_tetrahedron, region.tetrahedron_count};
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corners.hpp"
 #include "extract_source.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -72,6 +73,20 @@ HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsi
   }
 }
 
+/// All edges of a tile of four dimensions, whether they are critical or not.
+void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
+  constexpr unsigned kEdges = tables::edge_count(4);
+  double from[kEdges];
+  double to[kEdges];
+  for (unsigned a = 0; a < 4; ++a)
+    for (unsigned i = 0; i < kEdges / 4; ++i) {
+      const unsigned base = edge_base(4, a * (kEdges / 4) + i);
+      from[a * (kEdges / 4) + i] = corners[base];
+      to[a * (kEdges / 4) + i] = corners[base | 1u << a];
+    }
+  alphas_of(from, to, kEdges, isovalue, epsilon, out);
+}
+
 #define TEGL_EDGES(T, name)                                                              \
   void name(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) { \
     alphas(edges, isovalue, epsilon, out);                                               \
@@ -99,6 +114,11 @@ namespace tegl::detail {
   void edge_alphas<T>(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept { \
     HWY_DYNAMIC_DISPATCH(name)(edges, isovalue, epsilon, out);                                              \
   }
+HWY_EXPORT(alphas_4d);
+void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_4d)(corners, isovalue, epsilon, out);
+}
+
 TEGL_DISPATCH(std::uint8_t, alphas_u8)
 TEGL_DISPATCH(std::int8_t, alphas_i8)
 TEGL_DISPATCH(std::uint16_t, alphas_u16)

@@ -477,7 +477,7 @@ template <int N>
       count.simplices += filling.simplices;
       count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
       count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
-      if (found == nullptr) continue;
+      if (found == nullptr || tile.with_vertices == 0) continue;
       const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
         if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
           plane.add(row, at, tile.cubes[cube], own);

@@ -318,9 +318,9 @@ class TileWriter {
                           VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
     const ResolvedCubes& cubes = ResolvedCubes::instance();
     const ResolvedView& filling = tesseract.find(tile.key, tile.lists);
-    for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
+    for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
+      const auto cube = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned count = cubes.own_vertices(tile.lists[cube]);
-      if (count == 0) continue;
       const unsigned axis = cube / 2, side = cube % 2;
       const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
       const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));

@@ -100,6 +100,12 @@ void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* 
 
 template <Value T, int N>
 void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept {
+  if (N == 4 && axes == (1u << N) - 1) {
+    // About half of them are critical: to take all is quicker than to gather these.
+    std::array<double, std::size_t{1} << N> values;
+    corner_values(base, axes, values.data());
+    return tile_alphas(values.data(), isovalue_, epsilon_, out);
+  }
   static constexpr auto kInOrder = [] {
     std::array<std::uint32_t, N << (N - 1)> result{};
     for (std::uint32_t i = 0; i < result.size(); ++i) result[i] = i;
@@ -108,20 +114,6 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   static constexpr std::array<std::ptrdiff_t, kInOrder.size()> kOneRow{};
   Corners corners;
   const unsigned dim = gather_corners(base, axes, corners);
-  if (N == 4 && dim == N) {
-    // About half of them are critical: to take all is quicker than to gather these.
-    static constexpr auto kBases = [] {
-      std::array<std::uint32_t, kInOrder.size()> result{};
-      for (std::uint32_t e = 0; e < result.size(); ++e) result[e] = edge_base(N, e);
-      return result;
-    }();
-    constexpr std::size_t kOfAxis = std::size_t{1} << (N - 1);
-    for (unsigned a = 0; a < N; ++a)
-      detail::edge_alphas<T>(
-          {corners.data(), corners.data() + (1u << a), kOneRow.data(), kBases.data() + kOfAxis * a, kOfAxis, 1},
-          isovalue_, epsilon_, out + kOfAxis * a);
-    return;
-  }
   std::array<T, kInOrder.size()> first{};
   std::array<T, kInOrder.size()> second{};
   std::array<double, kInOrder.size()> alphas;

@@ -31,6 +31,9 @@ struct EdgeSamples {
 /// goes to the finite end, or to the middle between two infinities.
 template <Value T>
 void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
+/// The same of all 32 edges of a tile of four dimensions, from the values at its 16 corners; of edges that are not
+/// critical: nothing.
+void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept;
 
 /// Edges in rows of one layer, by how far their rows are from the first (SampleSource::strides), and where they are
 /// along the row.

@@ -14,6 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
 using Simplex = std::array<Index, 4>;
 
 /// In plain code.
@@ -65,6 +67,33 @@ void write_local(const LocalSimplices& simplices, Simplex* out) {
   write_plain(simplices, out);
 }
 
+void map_local(const std::uint8_t* from, std::size_t count, const std::uint8_t* to, bool swap, std::uint8_t* out) {
+#if HWY_TARGET == HWY_SCALAR
+  const unsigned third = swap ? 3 : 2;
+  for (std::size_t q = 0; q < count; ++q, from += 4, out += 4) {
+    out[0] = to[from[0]];
+    out[1] = to[from[1]];
+    out[2] = to[from[third]];
+    out[3] = to[from[5 - third]];
+  }
+#else
+  const hn::FixedTag<std::uint8_t, 16> d;
+  alignas(16) static constexpr std::uint8_t kOrders[2][16] = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
+                                                              {0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14}};
+  const auto order = hn::Load(d, kOrders[swap ? 1 : 0]);
+  const auto lower = hn::LoadU(d, to);
+  const auto upper = hn::LoadU(d, to + 16);
+  const auto last_of_lower = hn::Set(d, 15);
+  for (std::size_t q = 0; q < count; q += 4) {
+    const auto local = hn::TableLookupBytes(hn::LoadU(d, from + 4 * q), order);
+    const auto in_half = hn::And(local, last_of_lower);
+    const auto mapped = hn::IfThenElse(hn::Gt(local, last_of_lower), hn::TableLookupBytes(upper, in_half),
+                                       hn::TableLookupBytes(lower, in_half));
+    hn::StoreU(mapped, d, out + 4 * q);
+  }
+#endif
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
 HWY_AFTER_NAMESPACE();
@@ -77,6 +106,13 @@ HWY_EXPORT(write_local);
 
 void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) noexcept {
   HWY_DYNAMIC_DISPATCH(write_local)(simplices, out);
+}
+
+HWY_EXPORT(map_local);
+
+void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint8_t* to, bool swap,
+                   std::uint8_t* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(map_local)(from, count, to, swap, out);
 }
 
 }  // namespace tegl::detail

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "tegl/contour.hpp"
@@ -22,5 +23,11 @@ struct LocalSimplices {
 
 /// Writes them from `out` on.
 void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) noexcept;
+
+/// Tetrahedra by other local vertices: `to` has those of 32. `swap`: the last two swapped. Reads and writes up to
+/// kMoreSimplices more.
+inline constexpr std::size_t kMoreSimplices = 3;
+void map_simplices(const std::uint8_t* from, std::size_t count, const std::uint8_t* to, bool swap,
+                   std::uint8_t* out) noexcept;
 
 }  // namespace tegl::detail

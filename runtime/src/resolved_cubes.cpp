@@ -118,11 +118,14 @@ ResolvedCubes::ResolvedCubes() {
     for (std::size_t i = 0; i < lists_.size(); ++i) {
       const auto first = static_cast<std::uint32_t>(parts_.size());
       make_parts(f, lists_[i]);
+      // Points of one part are not joined with those of another one in the cube.
+      apexes_.push_back(parts_[first].apexes & (parts_.size() - first > 1 ? ~edges_of_[f] : ~std::uint32_t{0}));
       if (f != 0) continue;
       summaries_[i].first_part = first;
       summaries_[i].part_count = static_cast<std::uint8_t>(parts_.size() - first);
       summaries_[i].triangle_count = static_cast<std::uint8_t>(lists_[i].list->triangle_count);
     }
+    apexes_.push_back(~std::uint32_t{0});  // of kNone
     if (f == 0) parts_of_cube_ = static_cast<std::uint32_t>(parts_.size());
   }
   summaries_.push_back({});

@@ -89,6 +89,10 @@ class ResolvedCubes {
   [[nodiscard]] const Summary& summary(unsigned list) const noexcept {
     return summaries_.data()[std::min<std::size_t>(list, summaries_.size() - 1)];
   }
+  /// Of a list in a cube: what is left of edges that may be apexes, where all of its parts hang together elsewhere.
+  [[nodiscard]] std::uint32_t apexes(unsigned cube, unsigned list) const noexcept {
+    return apexes_.data()[cube * summaries_.size() + std::min<std::size_t>(list, summaries_.size() - 1)];
+  }
   /// The number of a cube's first part.
   [[nodiscard]] std::uint32_t first_part(unsigned cube) const noexcept { return cube * parts_of_cube_; }
   [[nodiscard]] const Part& part(std::uint32_t number) const noexcept { return parts_.data()[number]; }
@@ -96,7 +100,7 @@ class ResolvedCubes {
   [[nodiscard]] const std::uint64_t* part_vertices() const noexcept { return part_vertices_.data(); }
   /// Triangles as words: a zero byte, and their vertices, so that the cone from `apex` is word | apex_word(apex).
   /// Behind them stand kWordsBehind words, whatever they are.
-  static constexpr unsigned kWordsBehind = 4;
+  static constexpr unsigned kWordsBehind = 8;
   [[nodiscard]] const std::uint32_t* triangles(const Part& part) const noexcept {
     return triangles_.data() + part.first_triangle;
   }
@@ -131,6 +135,7 @@ class ResolvedCubes {
   std::vector<std::uint16_t> key_of_;     ///< by list
   std::vector<Summary> summaries_;        ///< likewise; behind them that of kNone
   std::vector<std::uint8_t> has_choice_;  ///< by entry
+  std::vector<std::uint32_t> apexes_;     ///< by cube, then as summaries
   std::uint32_t parts_of_cube_ = 0;
   std::vector<Part> parts_;
   std::vector<std::uint64_t> part_vertices_;

@@ -9,6 +9,7 @@
 
 #include "corners.hpp"
 #include "cube_regions.hpp"
+#include "local_simplices.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -159,8 +160,10 @@ void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
   unsigned others = 0, count = 0, opposite = 0;
   lists_ = lists;
   triangle_count_ = 0;
+  apexes_ = ~std::uint32_t{0};
   for (unsigned f = 0; f < kCubes; ++f) {
     const ResolvedCubes::Summary& summary = cubes_.summary(lists[f]);
+    apexes_ &= cubes_.apexes(f, lists[f]);
     others |= summary.is_not_low;
     triangle_count_ += summary.triangle_count;
     // As many as a cube can have, without a branch for how many it has: those behind are written over.
@@ -339,11 +342,10 @@ bool ResolvedTesseract::is_alone(unsigned component) const {
 /// The point of most triangles, of those that may be a cone's apex; if there is none, a number of own vertices. All its
 /// neighbours are beside it, and of the component there is nothing else beside it.
 unsigned ResolvedTesseract::apex_of(const Component& component) const {
-  auto apexes = static_cast<std::uint32_t>(component.vertices);
+  auto apexes = static_cast<std::uint32_t>(component.vertices) & (component_count_ == 1 ? apexes_ : ~std::uint32_t{0});
   unsigned cubes = 0;
-  for (std::uint32_t rest = component.parts; rest != 0 && apexes != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = component.parts; component_count_ > 1 && rest != 0 && apexes != 0; rest &= rest - 1) {
     const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
-    // Points of one of its parts in a cube are not joined with those of another one there.
     apexes &= (cubes >> of_part.cube & 1u) != 0 ? ~cubes_.edges_of(of_part.cube) : of_part.apexes;
     cubes |= 1u << of_part.cube;
   }
@@ -483,14 +485,11 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
       local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
     }
     const auto tetrahedra = all.tetrahedra(region);
-    if (simplices_.size() < simplex_count_ + tetrahedra.size()) simplices_.resize(2 * simplex_count_ + 256);
-    const unsigned third = cubes_.is_reversed(cube) ? 3 : 2;
-    auto* out = reinterpret_cast<std::uint8_t*>(simplices_.data() + simplex_count_);
+    if (simplices_.size() < simplex_count_ + tetrahedra.size() + kMoreSimplices)
+      simplices_.resize(2 * simplex_count_ + 256);
+    map_simplices(tetrahedra.data()->data(), tetrahedra.size(), local.data(), cubes_.is_reversed(cube),
+                  reinterpret_cast<std::uint8_t*>(simplices_.data() + simplex_count_));
     simplex_count_ += tetrahedra.size();
-    for (const CubeRegions::Tetrahedron& t : tetrahedra) {
-      out[0] = local[t[0]], out[1] = local[t[1]], out[2] = local[t[third]], out[3] = local[t[5 - third]];
-      out += 4;
-    }
   }
 }
 

@@ -137,6 +137,7 @@ class ResolvedTesseract {
   std::array<Component, 32> components_{};
   unsigned part_count_ = 0, component_count_ = 0;
   std::uint32_t triangle_count_ = 0;  ///< of Sigma
+  std::uint32_t apexes_ = 0;          ///< where all parts hang together: edges that may be a cone's apex
   bool as_low_ = false;               ///< whether all cubes are those of the low-connected contour
   std::vector<Word> simplices_;
   std::size_t simplex_count_ = 0;

@@ -552,6 +552,9 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
     if (choice == facets::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
     if (choice == facets::Choice::high) tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | 1u << f);
   }
+  for (unsigned f = 0; f < 8; ++f)
+    if (cubes.own_vertices(tile.lists[f]) != 0)
+      tile.with_vertices = static_cast<std::uint8_t>(tile.with_vertices | 1u << f);
   tile.key.tile = estimator.choice(base, 15, values);
   return tile;
 }
@@ -625,9 +628,15 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
     tile.key.low_cubes = static_cast<std::uint8_t>(low);
     tile.key.high_cubes = static_cast<std::uint8_t>(joined);
   }
+  unsigned with_vertices = 0;  // they are few, so a branch for each would be misled
   for (unsigned f = 0; f < 8; ++f) {
     tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
-    if (cubes.own_vertices(tile.lists[f]) != 0) tile.cubes[f] = cubes.key(tile.lists[f]);
+    with_vertices |= (cubes.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
+  }
+  tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
+  for (unsigned rest = with_vertices; rest != 0; rest &= rest - 1) {
+    const auto f = static_cast<unsigned>(std::countr_zero(rest));
+    tile.cubes[f] = cubes.key(tile.lists[f]);
   }
   return true;
 }

@@ -26,6 +26,7 @@ struct ResolvedTile {
   ResolvedKey key;
   std::array<std::uint16_t, 8> cubes{};
   ResolvedCubes::Lists lists{};
+  std::uint8_t with_vertices = 0;  ///< set of the cubes that have vertices of their own
 };
 
 /// The table of all keys, N = 2 or 3. In the barycentric triangulation what is no tunnel is coned from its barycentre.
