@@ -193,7 +193,7 @@ void add_all() {
   for (const auto& field : field_names(4)) add_field<4>(field, field == "noise" ? 32 : 64);
   add_estimators<2>("gyroid", 4096, 4096);
   add_estimators<3>("gyroid", 256, 128);
-  add_estimators<4>("balls", 64, 32);
+  add_estimators<4>("balls", 64, 16);
   add_built_4d();
   add_5d();
   add_tiles();
