@@ -80,8 +80,9 @@ TEST(SliceThroughTies, IsAManifoldBesideMissingValues) {
   expect_manifold_cuts<4>(4, 0.1);
 }
 
-/// The contour with its vertices at x_axis = at a little higher, or lower where their group has no simplex below.
-Contour<4, double> moved_off(Contour<4, double> contour, int axis, double at) {
+/// The contour with its vertices at x_axis = at a little higher, or lower where their group has no simplex below; with
+/// the sign -1, the other way round.
+Contour<4, double> moved_off(Contour<4, double> contour, int axis, double at, double sign) {
   std::vector<Index> group(contour.vertices.size());
   std::iota(group.begin(), group.end(), Index{0});
   const auto find = [&](Index v) {
@@ -95,12 +96,12 @@ Contour<4, double> moved_off(Contour<4, double> contour, int axis, double at) {
       for (const Index w : simplex) {
         if (coordinate(v) != at) continue;
         if (coordinate(w) == at) group[find(v)] = find(w);
-        if (coordinate(w) < at) has_way_down[v] = true;
+        if (sign * coordinate(w) < sign * at) has_way_down[v] = true;
       }
   for (Index v = 0; v < group.size(); ++v)
     if (has_way_down[v]) has_way_down[find(v)] = true;
   for (Index v = 0; v < group.size(); ++v)
-    if (coordinate(v) == at) coordinate(v) += has_way_down[find(v)] ? 1e-9 : -1e-9;
+    if (coordinate(v) == at) coordinate(v) += sign * (has_way_down[find(v)] ? 1e-9 : -1e-9);
   return contour;
 }
 
@@ -108,11 +109,14 @@ TEST(SliceThroughTies, AcrossOtherAxesThanTheLastIsTheLimitFromBelow) {
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
     const auto image = few_values<4>(3, seed, 0.0);
     const auto whole = extract<double>(image.view(), 1.0);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto layer = Hyperplane<4>::across(axis, 1.0);
-      ASSERT_NEAR(test::measure(slice(whole, layer)), test::measure(slice(moved_off(whole, axis, 1.0), layer)), 1e-6)
-          << "seed " << seed << " axis " << axis;
-    }
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double at : {0.0, 1.0, 2.0})
+        for (const double sign : {1.0, -1.0}) {
+          const Hyperplane<4> layer{sign * Hyperplane<4>::Vector::Unit(axis), sign * at};
+          EXPECT_NEAR(test::measure(slice(whole, layer)), test::measure(slice(moved_off(whole, axis, at, sign), layer)),
+                      1e-6)
+              << "seed " << seed << " axis " << axis << " at " << at << " sign " << sign;
+        }
   }
 }
 
