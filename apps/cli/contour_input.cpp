@@ -49,7 +49,8 @@ Mesh read_finite_mesh(const std::string& file) {
   const auto others = mesh.coordinates.end() - first - 1 - std::count_if(first + 1, mesh.coordinates.end(), is_finite);
   throw Error(ErrorCode::MalformedFile,
               fmt::format("a coordinate of vertex {} is {} ({} others like that); expected finite ones",
-                          (first - mesh.coordinates.begin()) / mesh.space_dim, *first, others));
+                          (first - mesh.coordinates.begin()) / mesh.space_dim,
+                          std::isnan(*first) ? std::abs(*first) : *first, others));  // the sign of nan means nothing
 }
 
 Mesh read_saved_contour(const std::string& file) {

@@ -41,13 +41,15 @@ ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_vi
   return exit;
 }
 
-/// The message with the input's name in front where the library did not know it.
+/// The message with the input's name in front where the library did not know it. To who pressed Ctrl-C it is no matter
+/// which callback was told so, and where.
 std::string with_file(const tegl::Error& error, const std::string& file) {
   using tegl::ErrorCode;
   constexpr std::array kAboutInput = {
       ErrorCode::InvalidGrid,     ErrorCode::EmptyResult,      ErrorCode::FileNotFound, ErrorCode::MalformedFile,
       ErrorCode::UnsupportedData, ErrorCode::VariableNotFound, ErrorCode::TooLarge,     ErrorCode::UnsupportedFormat,
   };
+  if (error.code() == ErrorCode::Cancelled) return "cancelled";
   const std::string message = error.what();
   const bool about_input = std::find(kAboutInput.begin(), kAboutInput.end(), error.code()) != kAboutInput.end();
   return !about_input || message.find(file) != std::string::npos ? message : fmt::format("{}: {}", file, message);

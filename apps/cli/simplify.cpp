@@ -50,7 +50,9 @@ class SimplifyCommand final : public ContourInputCommand {
         ->check(CLI::IsMember(kMethods))
         ->capture_default_str();
     app()
-        .add_option("--ratio", ratio_, "as many simplices as this share of those there are, 0 to 1")
+        .add_option("--ratio", ratio_,
+                    "as many simplices as this share of those there are, 0 to 1, with the least error found; "
+                    "that takes rounds, in 4D minutes (see --no-bound)")
         ->type_name("NUMBER");
     app().add_option("--count", count_, "so many simplices")->type_name("COUNT");
     app().add_option("--max-error", max_error_, "no farther than this from the original")->type_name("NUMBER");

@@ -57,6 +57,7 @@ py::dict check_any(const AnyContour& contour) {
   put(result, "bad_links", report.bad_links);
   put(result, "orientation_conflicts", report.orientation_conflicts);
   put(result, "degenerate_simplices", report.degenerate_simplices);
+  put(result, "nonfinite_vertices", report.nonfinite_vertices);
   return result;
 }
 
@@ -184,6 +185,11 @@ SimplifyOptions<N> simplify_options(const py::dict& arguments, Call& call) {
   return result;
 }
 
+const char* name_of(SimplifyEnd end) {
+  constexpr std::array kNames = {"count", "error", "shape", "rounds"};
+  return kNames.at(static_cast<std::size_t>(end));
+}
+
 py::dict to_dict(const SimplifyStats& stats) {
   py::dict result;
   put(result, "simplices_before", stats.simplices_before);
@@ -192,6 +198,7 @@ py::dict to_dict(const SimplifyStats& stats) {
   put(result, "vertices_after", stats.vertices_after);
   put(result, "error_of_original", stats.error_of_original);
   put(result, "error_of_result", stats.error_of_result);
+  put(result, "end", name_of(stats.end));
   put(result, "rounds", stats.rounds);
   return result;
 }

@@ -121,6 +121,7 @@ class MeshReport:
     bad_links: int
     orientation_conflicts: int
     degenerate_simplices: int
+    nonfinite_vertices: int  #: with coordinates that are infinite or no numbers
 
     @property
     def is_manifold(self) -> bool:
@@ -340,6 +341,7 @@ class SimplifyStats:
     vertices_after: int
     error_of_original: float | None  #: no point of the original is farther than this from the result
     error_of_result: float | None  #: and none of the result from the original
+    end: str  #: what stopped it: "count", "error", "shape" or "rounds" (see docs/simplification.md)
     rounds: int
 
 

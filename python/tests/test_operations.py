@@ -114,6 +114,10 @@ def test_check_finds_what_is_wrong():
     turned[0] = turned[0, ::-1]
     broken = tegl.Contour(contour.vertices, turned).check()
     assert broken.orientation_conflicts == 3 and not broken.is_manifold
+    away = np.array(contour.vertices)
+    away[1, 0], away[2, 1] = np.nan, np.inf
+    assert report.nonfinite_vertices == 0
+    assert tegl.Contour(away, contour.simplices).check().nonfinite_vertices == 2
     assert not tegl.Contour(contour.vertices, contour.simplices[1:]).check().is_closed
 
 
@@ -222,6 +226,9 @@ def test_simplified_contours_keep_their_topology_and_their_bound():
     assert coarse.check().is_manifold and coarse.check().euler == 2
     assert max(stats.error_of_original, stats.error_of_result) <= 0.2
     assert stats.simplices_after == len(coarse.simplices)
+    assert stats.end == "error" and stats.rounds > 0
+    assert contour.simplify(ratio=0.5, return_stats=True)[1].end == "count"
+    assert contour.simplify(ratio=0.0, measure=False, return_stats=True)[1].end == "shape"
     radii = np.linalg.norm(coarse.vertices - 15, axis=1)
     assert np.abs(radii - 10.5).max() < 0.25
     assert coarse.vertex_attributes["simplification_error"].max() <= 0.2

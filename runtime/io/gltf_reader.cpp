@@ -260,8 +260,10 @@ class GltfReader {
   void read_primitive(const Json& primitive, const Eigen::Affine3d& place) {
     const auto first = static_cast<std::size_t>(mesh_.coordinates.size() / 3);
     const Json& attributes = member(primitive, "attributes");
-    const View points = vectors(attributes, "POSITION", mesh_.coordinates,
-                                [&](const Eigen::Vector3d& point) -> Eigen::Vector3d { return place * point; });
+    const View points =
+        vectors(attributes, "POSITION", mesh_.coordinates, [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+          return place.matrix().isIdentity(0.0) ? point : place * point;  // 0 times inf is nan
+        });
     if (attributes.contains("NORMAL")) read_normals(attributes, place, points.count);
     read_attributes(attributes, points.count);
     const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;

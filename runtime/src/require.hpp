@@ -39,7 +39,8 @@ void require_finite(const Contour<N, Real>& contour) {
     for (const Real x : contour.vertices[v])
       if (!std::isfinite(x))
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("a coordinate of vertex {} is {}; expected a finite one", v, x));
+                    fmt::format("a coordinate of vertex {} is {}; expected a finite one", v,
+                                std::isnan(x) ? std::abs(x) : x));  // the sign of nan means nothing
 }
 
 /// Throws InvalidArgument unless attributes and normals are as many as what they belong to.

@@ -6,7 +6,11 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -231,6 +235,30 @@ TEST_F(Errors, ASavedContourAtNoFinitePlaceExitsWith4) {
   write_mesh(mesh, path("nowhere.vtkhdf"));
   expect_failure(4, {"project", path("nowhere.vtkhdf"), "-o", path("out.ply")},
                  {path("nowhere.vtkhdf"), "a coordinate of vertex 3 is nan"});
+  mesh.coordinates.back() = -static_cast<double>(NAN);
+  write_mesh(mesh, path("nowhere.vtkhdf"));
+  expect_failure(4, {"check", path("nowhere.vtkhdf")}, {"a coordinate of vertex 3 is nan"});
+}
+
+TEST_F(Errors, AnInfiniteCoordinateOfAModelIsNamedAsSuch) {
+  constexpr float kPlace = 12345.0F;  // found again in the file
+  Mesh mesh;
+  mesh.dim = 2;
+  mesh.space_dim = 3;
+  mesh.coordinates = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, kPlace};
+  mesh.simplices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  write_mesh(mesh, path("far.glb"));
+  std::ifstream stream(path("far.glb"), std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const auto raw = [](float x) {
+    std::string result(sizeof(x), '\0');
+    std::memcpy(result.data(), &x, sizeof(x));
+    return result;
+  };
+  ASSERT_NE(bytes.find(raw(kPlace)), std::string::npos);
+  bytes.replace(bytes.find(raw(kPlace)), sizeof(float), raw(INFINITY));
+  const std::string file = write("away.glb", bytes);
+  expect_failure(4, {"check", file}, {file, "a coordinate of vertex 3 is inf", "0 others"});
 }
 
 TEST_F(Errors, ASavedContourWithoutSimplicesExitsWith5) {
@@ -242,6 +270,20 @@ TEST_F(Errors, ASavedContourWithoutSimplicesExitsWith5) {
     SCOPED_TRACE(arguments[0]);
     expect_failure(5, arguments, {file, "the saved contour is empty"});
   }
+}
+
+TEST_F(Errors, PinchesAndConflictsOfOrientationStayWhenSimplifiedAndExitWith1) {
+  std::string turned = tetrahedron_ply("0 0 1");
+  turned.replace(turned.find("3 0 2 1"), 7, "3 0 1 2");
+  const std::string file = write("turned.ply", turned);
+  const std::vector<std::string> arguments = {"simplify", file, "--ratio", "0.5", "-o", path("out.ply")};
+  const RunResult run = run_tegl(arguments);
+  EXPECT_EQ(run.exit, 1) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("3 orientation conflicts"));
+  EXPECT_TRUE(std::filesystem::exists(path("out.ply")));
+  auto unchecked = arguments;
+  unchecked.emplace_back("--no-check");
+  EXPECT_EQ(run_tegl(unchecked).exit, 0);
 }
 
 TEST_F(Errors, WhatIsNoManifoldIsNotSimplifiedAndExitsWith4) {
