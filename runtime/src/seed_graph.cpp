@@ -28,7 +28,7 @@ class GraphMaker {
     group();
     report_progress(options_.progress, 0.2);
     hang();
-    report_progress(options_.progress, 0.5);
+    report_progress(options_.progress, kProgressWithRoots);
     number_roots();
     if (options_.most_work != ~std::uint64_t{0} && work() > options_.most_work) {
       graph_.too_much_work = true;

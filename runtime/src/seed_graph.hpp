@@ -47,6 +47,9 @@ struct SeedGraphOptions {
   Progress progress;
 };
 
+/// How much of the progress is told when roots are known, and a graph with too much work is given up.
+inline constexpr double kProgressWithRoots = 0.5;
+
 template <class Key>
 SeedGraph make_seed_graph(const RangeMap<Key>& map, const SeedGraphOptions& options);
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "progress.hpp"
+#include "range_sample.hpp"
 #include "seed_links.hpp"
 
 namespace tegl::detail {
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::size_t kEnoughTrees = std::size_t{1} << 15;  ///< a cover of so many is found at once
 constexpr std::size_t kTreesAtOnce = std::size_t{1} << 14;
+constexpr std::size_t kLinksAtOnce = std::size_t{1} << 18;  ///< between two reports
 constexpr unsigned kMostRounds = 16;
 constexpr unsigned kMostRoundsOfBlocks = 3;
 
@@ -32,10 +34,9 @@ class Widths {
 
   explicit Widths(const RangeMap<Key>& map) {
     constexpr std::size_t kSample = std::size_t{1} << 19;
-    const std::size_t step = (1 + map.least.size() / kSample) | 1;  // odd: not all in one column
+    const std::vector<Place> sample = sample_places(map, kSample);
     const auto for_tiles = [&](const auto& visit) {
-      for (std::size_t i = 0; i < map.least.size(); i += step)
-        if (!map.constant(static_cast<Place>(i))) visit(map.least[i], map.greatest[i]);
+      for (const Place tile : sample) visit(map.least[tile], map.greatest[tile]);
     };
     Key most = 0;
     least_ = std::numeric_limits<Key>::max();
@@ -197,8 +198,8 @@ std::vector<std::uint32_t> sort_by_class(std::size_t classes, const ForEach& for
   return order;
 }
 
-/// Two halves of all numbers, another two for every round.
-unsigned half_of(std::uint32_t number, unsigned round) noexcept {
+/// One of eight classes, by a hash: of neighbours of one width some come before others, and in every round other ones.
+unsigned turn_of(std::uint32_t number, unsigned round) noexcept {
   std::uint32_t bits = (number + round * 0x632be5abu) * 0x9e3779b1u;
   bits = (bits ^ bits >> 15) * 0x85ebca6bu;
   return bits >> 29;
@@ -210,11 +211,11 @@ class Coarsening {
  public:
   /// Trees from `loose` on stay.
   Coarsening(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, std::size_t loose,
-             unsigned round)
+             unsigned round, const Progress& progress)
       : owners_(fine.roots.size()), number_(fine.roots.size()) {
     for (std::size_t i = loose; i < fine.roots.size(); ++i)
       owners_.keep(static_cast<std::uint32_t>(i), map.greatest[fine.roots[i]]);
-    give_up(map, widths, fine, loose, round);
+    give_up(map, widths, fine, loose, round, part_of(progress, 0.0, 0.6));
     for (std::uint32_t tree = 0; tree < fine.roots.size(); ++tree) {
       if (tree < loose && given_up_[tree] != 0) continue;
       number_[tree] = static_cast<std::uint32_t>(coarse_.roots.size());
@@ -222,9 +223,13 @@ class Coarsening {
       if (tree < loose) ++loose_;
     }
     LinkCollector<Key> collector(fine.links.size() / 2);
-    for (const KeyLink<Key>& link : fine.links)
-      owners_.add_links(
-          link.a, link.b, link.least, link.greatest, [&](std::uint32_t tree) { return number_[tree]; }, collector);
+    const auto number = [&](std::uint32_t tree) { return number_[tree]; };
+    for (std::size_t i = 0; i < fine.links.size(); ++i) {
+      if (i % kLinksAtOnce == 0)
+        report_progress(progress, 0.6 + 0.4 * static_cast<double>(i) / static_cast<double>(fine.links.size()));
+      const KeyLink<Key>& link = fine.links[i];
+      owners_.add_links(link.a, link.b, link.least, link.greatest, number, collector);
+    }
     coarse_.links = collector.take();
   }
   [[nodiscard]] const Regions<Key>& coarse() const noexcept { return coarse_; }
@@ -262,17 +267,18 @@ class Coarsening {
   }
 
   void give_up(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, std::size_t loose,
-               unsigned round) {
+               unsigned round, const Progress& progress) {
     const auto [neighbours, first_of] = find_neighbours(fine, loose);
     given_up_.resize(loose);
     std::vector<std::uint8_t> classes;
     for (std::size_t first = 0; first < loose; first += kTreesAtOnce) {
       const std::size_t end = std::min(loose, first + kTreesAtOnce);
+      report_progress(progress, static_cast<double>(first) / static_cast<double>(loose));
       classes.clear();
       for (std::size_t i = first; i < end; ++i) {
         const Place root = fine.roots[i];
         const std::size_t of_width = widths.class_of(map.least[root], map.greatest[root]);
-        classes.push_back(static_cast<std::uint8_t>(8 * of_width + half_of(static_cast<std::uint32_t>(i), round)));
+        classes.push_back(static_cast<std::uint8_t>(8 * of_width + turn_of(static_cast<std::uint32_t>(i), round)));
       }
       const auto order = sort_by_class(8 * Widths<Key>::kClasses, [&](const auto& visit) {
         for (std::size_t i = first; i < end; ++i) visit(static_cast<std::uint32_t>(i), classes[i - first]);
@@ -383,7 +389,7 @@ class RegionMaker {
     for (unsigned round = 0; round < kMostRoundsOfBlocks && loose > 0; ++round) {
       const Regions<Key>& fine = rounds.empty() ? trees : rounds.back().coarse();
       const std::size_t before = loose;
-      rounds.emplace_back(map_, widths_, fine, loose, round);
+      rounds.emplace_back(map_, widths_, fine, loose, round, Progress());
       loose = rounds.back().loose();
       if (loose > before - before / 8) break;
     }
@@ -587,13 +593,15 @@ Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood,
   report_progress(progress, 0.1);
   const Progress of_tiles = part_of(progress, 0.1, 0.7);
   Regions<Key> regions = RegionMaker<Key>(map, widths, neighbourhood, of_tiles).make();
+  double done = 0.7;
   for (unsigned round = 0; round < kMostRounds && regions.roots.size() > kEnoughTrees; ++round) {
-    report_progress(progress, 0.7 + 0.2 * round / kMostRounds);
     const std::size_t before = regions.roots.size();
-    regions = Coarsening<Key>(map, widths, regions, before, round).take();
+    const double end = done + (1.0 - done) / 2;  // each leaves less than the one before
+    regions = Coarsening<Key>(map, widths, regions, before, round, part_of(progress, done, end)).take();
+    done = end;
     if (regions.roots.size() > before - before / 32) break;
   }
-  report_progress(progress, 0.9);
+  report_progress(progress, 1.0);
   return regions;
 }
 

@@ -12,6 +12,7 @@
 
 #include "padded_tiles.hpp"
 #include "progress.hpp"
+#include "range_sample.hpp"
 #include "seed_graph.hpp"
 #include "seed_methods.hpp"
 #include "seed_regions.hpp"
@@ -56,7 +57,7 @@ class SeedFinder {
       case SeedMethod::climbing:
         return detail::climb_tiles(map_, neighbours, order_, progress_);
       case SeedMethod::whole1:
-        return make_graph(order_, false, false).roots;
+        return make_graph(order_, false, false, 1.0).roots;
       case SeedMethod::whole2:
         return of_whole2(detail::Dependence::ancestors);
       case SeedMethod::whole2_disjoint_sets:
@@ -66,25 +67,26 @@ class SeedFinder {
     }
   }
 
-  detail::SeedGraph make_graph(std::vector<int> order, bool with_links, bool of_root_groups) {
+  /// Takes the progress up to `end`.
+  detail::SeedGraph make_graph(std::vector<int> order, bool with_links, bool of_root_groups, double end) {
     detail::SeedGraphOptions options;
     options.neighbourhood = options_.neighbourhood;
     options.order = std::move(order);
     options.with_links = with_links;
     options.of_root_groups = of_root_groups;
-    options.progress = detail::part_of(progress_, 0.0, 0.5);
+    options.progress = detail::part_of(progress_, 0.0, end);
     detail::SeedGraph graph = detail::make_seed_graph(map_, options);
     count(graph);
     return graph;
   }
 
-  /// Of all tiles; null if there is too much to be covered.
-  std::optional<detail::SeedGraph> make_small_graph(std::uint64_t most_work) {
+  /// Of all tiles; null if there is too much to be covered: then kProgressWithRoots is told at most.
+  std::optional<detail::SeedGraph> make_small_graph(std::uint64_t most_work, const Progress& progress) {
     detail::SeedGraphOptions options;
     options.neighbourhood = options_.neighbourhood;
     options.order = detail::default_order(map_.tiles.dim());
     options.most_work = most_work;
-    options.progress = detail::part_of(progress_, 0.0, 0.5);
+    options.progress = progress;
     detail::SeedGraph graph = detail::make_seed_graph(map_, options);
     if (graph.too_much_work) return std::nullopt;
     count(graph);
@@ -104,19 +106,22 @@ class SeedFinder {
     return places;
   }
   std::vector<detail::Place> of_whole2(detail::Dependence dependence) {
-    const auto graph = make_graph(order_, true, true);
+    const auto graph = make_graph(order_, true, true, 0.5);
     return places(graph, detail::whole2(graph, dependence, detail::part_of(progress_, 0.5, 1.0)));
   }
   std::vector<detail::Place> of_cover() {
+    double done = 0.0;
     // Trees of many tiles whose values differ are not even counted: that takes as long as to do without them.
-    if (sizeof(Key) == 1 || stats_.tiles <= kMostTilesCounted)
-      if (const auto graph = make_small_graph(kMostWork<Key>)) {
+    if (sizeof(Key) == 1 || stats_.tiles <= kMostTilesCounted) {
+      if (const auto graph = make_small_graph(kMostWork<Key>, detail::part_of(progress_, 0.0, 0.5))) {
         const auto cover = detail::cover_components(*graph, detail::part_of(progress_, 0.5, 1.0));
         stats_.lower_bound = cover.bound;
         return places(*graph, cover.trees);
       }
+      done = 0.5 * detail::kProgressWithRoots;
+    }
     stats_.reduced = true;
-    const auto regions = detail::make_regions(map_, options_.neighbourhood, detail::part_of(progress_, 0.0, 0.8));
+    const auto regions = detail::make_regions(map_, options_.neighbourhood, detail::part_of(progress_, done, 0.8));
     return detail::cover_regions(map_, regions, detail::part_of(progress_, 0.8, 1.0));
   }
 
@@ -135,8 +140,8 @@ template <class Key>
 detail::RangeMap<std::uint8_t> at_some_levels(const detail::RangeMap<Key>& map, std::size_t levels) {
   constexpr std::size_t kSample = std::size_t{1} << 16;
   std::vector<Key> ends;
-  for (std::size_t i = 0; i < map.least.size(); i += 1 + map.least.size() / kSample)
-    if (!map.constant(static_cast<detail::Place>(i))) ends.insert(ends.end(), {map.least[i], map.greatest[i]});
+  for (const detail::Place tile : detail::sample_places(map, kSample))
+    ends.insert(ends.end(), {map.least[tile], map.greatest[tile]});
   std::sort(ends.begin(), ends.end());
   std::vector<Key> chosen;
   for (std::size_t i = 1; i <= levels && !ends.empty(); ++i)
@@ -197,22 +202,29 @@ SeedSet find_seeds(const Image<T, N>& image, const SeedSetOptions& options, Seed
   } else {
     places = finder.find();
   }
+  detail::report_progress(options.progress, 1.0);
   return to_seed_set<T>(map, options, std::move(places));
 }
 
 template <Value T, int N>
 std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options) {
   const auto map = detail::map_ranges(image, options.threads, detail::part_of(options.progress, 0.0, 0.1));
-  SeedSetStats stats;
-  SeedFinder<detail::KeyOf<T>> finder(map, options, stats);
-  if (const auto graph = finder.make_small_graph(kMostWork<detail::KeyOf<T>>))
-    return detail::pack_components(*graph, detail::part_of(options.progress, 0.5, 1.0));
-  for (std::size_t levels = 255;; levels /= 4) {
-    const auto some = at_some_levels(map, levels);
-    SeedFinder<std::uint8_t> of_some(some, options, stats);
-    if (const auto graph = of_some.make_small_graph(levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0}))
-      return detail::pack_components(*graph, detail::part_of(options.progress, 0.5, 1.0));
-  }
+  double done = 0.1;
+  // Of all levels, or some; null if that is too much work.
+  const auto pack = [&](const auto& ranges, std::uint64_t most_work) -> std::optional<std::uint64_t> {
+    SeedSetStats stats;
+    SeedFinder finder(ranges, options, stats);
+    const Progress graphs = detail::part_of(options.progress, done, 0.5 + 0.5 * done);
+    if (const auto graph = finder.make_small_graph(most_work, graphs))
+      return detail::pack_components(*graph, detail::part_of(options.progress, 0.5 + 0.5 * done, 1.0));
+    done += 0.5 * detail::kProgressWithRoots * (1.0 - done);
+    return std::nullopt;
+  };
+  std::optional<std::uint64_t> bound = pack(map, kMostWork<detail::KeyOf<T>>);
+  for (std::size_t levels = 255; !bound; levels = std::max<std::size_t>(1, levels / 4))
+    bound = pack(at_some_levels(map, levels), levels > 1 ? 32 * kMostWork<std::uint8_t> : ~std::uint64_t{0});
+  detail::report_progress(options.progress, 1.0);
+  return *bound;
 }
 
 #define TEGL_INSTANTIATE_ONE(T, N)                                                             \

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -193,16 +194,10 @@ void expect_reduced_covers(const OwnedImage<T, N>& image, std::size_t isovalues)
 }
 
 TEST(SeedSet, OfManyDifferentValuesMeetsAllComponents) {
-  const auto waves = [](const auto& x) {
-    double sum = 0;
-    for (std::size_t a = 0; a < x.size(); ++a)
-      sum += std::sin(3.1 * x[a] + 2.0 * x[(a + 1) % x.size()]) * (1.0 + 0.1 * x[a]) + 0.3 * x[a];
-    return sum;
-  };
-  expect_reduced_covers(sample_field<float>(centred_grid<2>(230, 4.0), waves), 10);
-  expect_reduced_covers(sample_field<double>(centred_grid<3>(38, 1.5), waves), 6);
-  expect_reduced_covers(sample_field<float>(centred_grid<4>(16, 1.0), waves), 3);
-  auto holes = sample_field<float>(centred_grid<3>(38, 1.5), waves);
+  expect_reduced_covers(sample_field<float>(centred_grid<2>(230, 4.0), Waves{}), 10);
+  expect_reduced_covers(sample_field<double>(centred_grid<3>(38, 1.5), Waves{}), 6);
+  expect_reduced_covers(sample_field<float>(centred_grid<4>(16, 1.0), Waves{}), 3);
+  auto holes = sample_field<float>(centred_grid<3>(38, 1.5), Waves{});
   for (std::size_t i = 0; i < holes.values.size(); i += 611) holes.values[i] = std::nanf("");
   expect_reduced_covers(holes, 6);
 }
@@ -220,6 +215,30 @@ TEST(SeedSet, ChosenPartByPartMeetsAllComponents) {
   EXPECT_EQ(all.missed_by(set.tiles), 0u) << "of " << all.count << " components";
   options.method = SeedMethod::climbing;
   EXPECT_LT(10 * set.tiles.size(), 7 * find_seeds(image.view(), options).tiles.size());
+}
+
+/// Seeds and their bound for each tile, of noise with a few samples along the first axes and many along the last.
+template <int N>
+std::pair<double, double> share_of_seeds(const std::array<std::size_t, N>& sizes) {
+  const auto image = noise<float, N>(sizes, 17);
+  SeedSetOptions options;
+  options.neighbourhood = Neighbourhood::faces;
+  SeedSetStats stats;
+  const auto seeds = static_cast<double>(find_seeds(image.view(), options, &stats).tiles.size());
+  const auto tiles = static_cast<double>(stats.tiles);
+  return {seeds / tiles, static_cast<double>(seed_lower_bound(image.view(), options)) / tiles};
+}
+
+TEST(SeedSet, OfLongThinImagesHasAboutAsManySeedsAndABoundWhateverTheirLength) {
+  // Whatever is sampled of so many tiles must not lie in one column, or in the margin.
+  const auto expect_alike = [](const auto& a, const auto& b) {
+    EXPECT_NEAR(a.first / b.first, 1.0, 0.02);
+    EXPECT_NEAR(a.second / b.second, 1.0, 0.02);
+    EXPECT_GT(a.second, 0.8 * a.first);
+  };
+  expect_alike(share_of_seeds<3>({2, 3, 60000}), share_of_seeds<3>({2, 3, 40000}));
+  expect_alike(share_of_seeds<4>({2, 2, 3, 62000}), share_of_seeds<4>({2, 2, 3, 50000}));
+  expect_alike(share_of_seeds<2>({5, 320000}), share_of_seeds<2>({5, 200000}));
 }
 
 TEST(SeedSet, InEveryScanOrderMeetsAllComponents) {

@@ -15,6 +15,17 @@
 
 namespace tegl::test {
 
+/// A smooth field whose values differ everywhere: most tiles of it lie in the range of no neighbour.
+struct Waves {
+  template <class Point>
+  double operator()(const Point& x) const {
+    double sum = 0;
+    for (std::size_t a = 0; a < x.size(); ++a)
+      sum += std::sin(3.1 * x[a] + 2.0 * x[(a + 1) % x.size()]) * (1.0 + 0.1 * x[a]) + 0.3 * x[a];
+    return sum;
+  }
+};
+
 /// Ranges of all tiles, in real numbers. Where a corner is missing: empty.
 template <int N>
 struct PlainRanges {
