@@ -3,6 +3,7 @@
 // Which of the trees of seed_regions.hpp are seeds: sweeps over the levels of a few thousand trees at a time, as a
 // sweep over all takes longer than its share for each of many, and hardly finds fewer.
 #include <algorithm>
+#include <utility>
 
 #include "level_sweep.hpp"
 #include "progress.hpp"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr std::uint32_t kTreesOfPart = std::uint32_t{1} << 15;  ///< a sweep of so many stays near the processor
 constexpr int kMostPasses = 6;
+/// Sweeps are worth their time where they leave fewer trees than sparing them one by one does, by one of so many.
+constexpr std::size_t kWorthSweeping = 64;
 
 /// Spares trees part by part: all that are picked meet every component, and go on to do so when those of a part are
 /// chosen anew such that each component of the part has one, or a link to one that is picked elsewhere.
@@ -44,6 +47,7 @@ class PartwiseCover {
     SweepDirection direction = SweepDirection::up;
     for (int pass = 0; pass < kMostPasses; ++pass, direction = opposite(direction)) {
       const std::size_t before = count_;
+      gain_ = {};
       // Borders between parts lie elsewhere in every pass.
       const std::uint32_t shift = kTreesOfPart * static_cast<std::uint32_t>(pass % 3) / 3;
       for (std::uint32_t first = 0; first < trees;) {
@@ -61,8 +65,70 @@ class PartwiseCover {
   }
 
  private:
-  /// Trees first ... end - 1.
+  /// How many trees are left of parts that were swept, and how many would be without.
+  struct Gain {
+    std::size_t swept = 0, spared = 0;
+    [[nodiscard]] bool is_small() const noexcept { return spared - swept < spared / kWorthSweeping; }
+  };
+
+  /// Trees first ... end - 1: the fewer of those that two ways leave. A sweep takes ten times as long as the other way,
+  /// and among much noise, where the next tree is in another component, finds hardly any that the other does not.
   void choose(std::uint32_t first, std::uint32_t end, SweepDirection direction, const Progress& progress) {
+    const std::vector<bool> allowed(picked_.begin() + first, picked_.begin() + end);
+    spare_one_by_one(first, end);
+    const std::size_t spared = count_of(first, end);
+    if (gain_.spared > 0 && gain_.is_small()) {
+      report_progress(progress, 1.0);
+      return;
+    }
+    const auto chosen = sweep(first, end, allowed, direction, progress);
+    gain_.spared += spared;
+    gain_.swept += std::min(spared, chosen.size());
+    if (chosen.size() >= spared) return;
+    std::fill(picked_.begin() + first, picked_.begin() + end, false);
+    for (const std::uint32_t tree : chosen) picked_[first + tree] = true;
+    count_ = count_ - spared + chosen.size();
+    spare_one_by_one(first, end);
+  }
+
+  /// Picks go whose links to others that stay have all of their range, narrow ones first.
+  void spare_one_by_one(std::uint32_t first, std::uint32_t end) {
+    const auto width = [&](std::uint32_t tree) { return map_.width(regions_.roots[tree]); };
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t tree = first; tree < end; ++tree)
+      if (picked_[tree]) order.push_back(tree);
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(width(a), a) < std::pair(width(b), b); });
+    for (const std::uint32_t tree : order) {
+      if (!is_spare(tree)) continue;
+      picked_[tree] = false;
+      --count_;
+    }
+  }
+  [[nodiscard]] bool is_spare(std::uint32_t tree) {
+    Key level = map_.least[regions_.roots[tree]];
+    const Key greatest = map_.greatest[regions_.roots[tree]];
+    spans_.clear();
+    for (std::size_t i = first_of_[tree]; i < first_of_[tree + 1]; ++i) {
+      const KeyLink<Key>& link = regions_.links[links_of_[i]];
+      if (picked_[link.a == tree ? link.b : link.a]) spans_.emplace_back(link.least, link.greatest);
+    }
+    std::sort(spans_.begin(), spans_.end());
+    for (const auto& [least, end] : spans_) {
+      if (least > level) return false;
+      level = std::max(level, end);
+      if (level >= greatest) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] std::size_t count_of(std::uint32_t first, std::uint32_t end) const {
+    return static_cast<std::size_t>(std::count(picked_.begin() + first, picked_.begin() + end, true));
+  }
+
+  /// As few as a sweep over the part's levels takes.
+  [[nodiscard]] std::vector<std::uint32_t> sweep(std::uint32_t first, std::uint32_t end,
+                                                 const std::vector<bool>& allowed, SweepDirection direction,
+                                                 const Progress& progress) const {
     std::vector<KeyLink<Key>> links;      // of two trees of the part
     std::vector<KeyLink<Key>> elsewhere;  // a: of the part
     for (std::uint32_t tree = first; tree < end; ++tree)
@@ -75,19 +141,6 @@ class PartwiseCover {
           links.push_back({tree - first, to - first, link.least, link.greatest});
         }
       }
-    const std::vector<bool> allowed(picked_.begin() + first, picked_.begin() + end);
-    const auto before = static_cast<std::size_t>(std::count(allowed.begin(), allowed.end(), true));
-    const auto chosen = cover(first, end, links, elsewhere, allowed, direction, progress);
-    if (chosen.size() >= before) return;
-    std::fill(picked_.begin() + first, picked_.begin() + end, false);
-    for (const std::uint32_t tree : chosen) picked_[first + tree] = true;
-    count_ -= before - chosen.size();
-  }
-  [[nodiscard]] std::vector<std::uint32_t> cover(std::uint32_t first, std::uint32_t end,
-                                                 const std::vector<KeyLink<Key>>& links,
-                                                 const std::vector<KeyLink<Key>>& elsewhere,
-                                                 const std::vector<bool>& allowed, SweepDirection direction,
-                                                 const Progress& progress) const {
     SeedGraph part;
     part.roots.assign(regions_.roots.begin() + first, regions_.roots.begin() + end);
     const auto levels = put_in_levels(map_, links, elsewhere, part);
@@ -107,6 +160,8 @@ class PartwiseCover {
   std::size_t count_;
   std::vector<std::size_t> first_of_;  ///< of a tree's links in links_of_
   std::vector<std::size_t> links_of_;
+  std::vector<std::pair<Key, Key>> spans_;
+  Gain gain_;
 };
 
 }  // namespace
