@@ -193,10 +193,18 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
     keep[nearest_component(contour, labels, locator, at, std::vector<bool>(labels.count, true))] = true;
     return select_components(contour, labels, keep);
   }
+  bool at_missing = false;
   std::vector<TileNumber> tiles =
-      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads, {});
+      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads, {}, &at_missing);
   std::sort(tiles.begin(), tiles.end());
   found.tiles = tiles.size();
+  // Where missing values part the tiles around an edge, a vertex there is doubled for the components on either side,
+  // and comes first in the one and last in the others (pinches.hpp): so all tiles that have it must be there.
+  std::vector<TileNumber> around;
+  if (at_missing) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
+  std::vector<TileNumber> looked_at = tiles;
+  looked_at.insert(looked_at.end(), around.begin(), around.end());
+  std::sort(looked_at.begin(), looked_at.end());
   ExtractOptions rest = options;
   if (options.progress)
     rest.progress = [&options](double fraction) {
@@ -205,11 +213,12 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   const bool in_tiles = !detail::is_tile_by_tile<N>(options) && !options.close;
   Contour<N, Real> contour;
   if constexpr (N <= 4)
-    if (in_tiles) contour = extract<Real>(image, isovalue, rest, *choose_tiles(image, tiles));
+    if (in_tiles) contour = extract<Real>(image, isovalue, rest, *choose_tiles(image, looked_at));
   if (!in_tiles) contour = extract<Real>(image, isovalue, rest);
   const ComponentLabels labels = label_components(contour, {options.threads, {}});
-  const std::vector<bool> allowed =
-      in_tiles ? std::vector<bool>(labels.count, true) : components_in(contour, labels, locator, flood.grid(), tiles);
+  const std::vector<bool> allowed = in_tiles && around.empty()
+                                        ? std::vector<bool>(labels.count, true)
+                                        : components_in(contour, labels, locator, flood.grid(), tiles);
   found.components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
   if (labels.count == 0) return contour;
   std::vector<bool> keep(labels.count);

@@ -83,7 +83,7 @@ std::vector<typename TileFlood<T, N>::Move> TileFlood<T, N>::moves(Neighbourhood
 
 template <Value T, int N>
 void TileFlood<T, N>::visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen,
-                            std::vector<TileNumber>& found) const {
+                            Found& found) const {
   const Index index = grid_.index(tile);
   const std::uint32_t own = signature_at(index);
   for (const Move& move : moves) {
@@ -97,42 +97,58 @@ void TileFlood<T, N>::visit(TileNumber tile, const std::vector<Move>& moves, Flo
     }
     if (!inside) continue;
     const auto other = static_cast<TileNumber>(static_cast<std::ptrdiff_t>(tile) + move.distance);
-    if (seen.add(other) && is_active(signature_at(next))) found.push_back(other);
+    if (!seen.add(other)) continue;
+    if (is_active(signature_at(next)))
+      found.tiles.push_back(other);
+    else
+      found.stopped = true;
   }
 }
 
 template <Value T, int N>
 std::vector<TileNumber> TileFlood<T, N>::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
-                                             unsigned threads, const Progress& progress) const {
+                                             unsigned threads, const Progress& progress, bool* stopped) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
   Seen seen(grid_.count());
-  std::vector<TileNumber> all;
+  Found all;
   for (const TileNumber tile : from)
-    if (seen.add(tile)) all.push_back(tile);
-  struct Found {
-    std::vector<TileNumber> tiles;
-  };
+    if (seen.add(tile)) all.tiles.push_back(tile);
   constexpr std::size_t kGrain = 512;  // fewer are found sooner by one thread
   Workers<Found> workers(threads, [] { return Found(); });
   std::mutex mutex;
-  for (std::size_t first = 0; first < all.size();) {
-    const std::size_t end = all.size();
+  for (std::size_t first = 0; first < all.tiles.size();) {
+    const std::size_t end = all.tiles.size();
     report_progress(progress, static_cast<double>(end) / (1.0 + static_cast<double>(grid_.count())));
     if (end - first <= kGrain) {
-      for (std::size_t i = first; i < end; ++i) visit(all[i], moves, rule, seen, all);
+      for (std::size_t i = first; i < end; ++i) visit(all.tiles[i], moves, rule, seen, all);
     } else {
-      std::vector<TileNumber> layer;
+      Found layer;
       workers.for_range(end - first, kGrain, [&](std::size_t begin, std::size_t stop, Found& found) {
         found.tiles.clear();
-        for (std::size_t i = first + begin; i < first + stop; ++i) visit(all[i], moves, rule, seen, found.tiles);
+        found.stopped = false;
+        for (std::size_t i = first + begin; i < first + stop; ++i) visit(all.tiles[i], moves, rule, seen, found);
         const std::lock_guard lock(mutex);
-        layer.insert(layer.end(), found.tiles.begin(), found.tiles.end());
+        layer.tiles.insert(layer.tiles.end(), found.tiles.begin(), found.tiles.end());
+        layer.stopped = layer.stopped || found.stopped;
       });
-      all.insert(all.end(), layer.begin(), layer.end());
+      all.tiles.insert(all.tiles.end(), layer.tiles.begin(), layer.tiles.end());
+      all.stopped = all.stopped || layer.stopped;
     }
     first = end;
   }
-  return all;
+  if (stopped != nullptr) *stopped = all.stopped;
+  return std::move(all.tiles);
+}
+
+template <Value T, int N>
+std::vector<TileNumber> TileFlood<T, N>::beside(const std::vector<TileNumber>& tiles, FloodRule rule,
+                                                Neighbourhood neighbourhood) const {
+  const std::vector<Move> moves = this->moves(neighbourhood);
+  Seen seen(grid_.count());
+  for (const TileNumber tile : tiles) seen.add(tile);
+  Found found;
+  for (const TileNumber tile : tiles) visit(tile, moves, rule, seen, found);
+  return std::move(found.tiles);
 }
 
 #define TEGL_INSTANTIATE_ONE(T, N) template class TileFlood<T, N>;

@@ -32,9 +32,14 @@ class TileFlood {
   [[nodiscard]] static bool is_active(std::uint32_t signature) noexcept {
     return signature != 0 && signature != kAllHigh;
   }
-  /// All tiles that are reached from active ones, with those, each once, in no particular order. Errors: Cancelled.
+  /// All tiles that are reached from active ones, with those, each once, in no particular order. `stopped`: whether the
+  /// way went to a tile of the image that is not active; through crossed faces these are tiles with missing corners.
+  /// Errors: Cancelled.
   [[nodiscard]] std::vector<TileNumber> run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
-                                            unsigned threads, const Progress& progress) const;
+                                            unsigned threads, const Progress& progress, bool* stopped = nullptr) const;
+  /// Those that one step more leads to from active tiles, each once, in no particular order.
+  [[nodiscard]] std::vector<TileNumber> beside(const std::vector<TileNumber>& tiles, FloodRule rule,
+                                               Neighbourhood neighbourhood) const;
 
  private:
   using Index = typename TileGrid<N>::Index;
@@ -44,10 +49,14 @@ class TileFlood {
     std::uint32_t face;       ///< corners of the face that is passed
   };
   class Seen;
+  struct Found {
+    std::vector<TileNumber> tiles;
+    bool stopped = false;
+  };
 
   [[nodiscard]] std::vector<Move> moves(Neighbourhood neighbourhood) const;
-  void visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen,
-             std::vector<TileNumber>& found) const;
+  /// Adds what is reached from the tile and was not seen before.
+  void visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const;
   [[nodiscard]] std::uint32_t signature_at(const Index& index) const noexcept;
 
   static constexpr std::uint32_t kAllHigh = static_cast<std::uint32_t>((std::uint64_t{1} << (1u << N)) - 1);

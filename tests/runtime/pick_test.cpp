@@ -112,6 +112,19 @@ TEST(Pick, NextToMissingValuesIsAComponentOfTheWhole) {
   expect_picks(noise_with_missing<float, 3>(Grid<3>::unit({12, 11, 10}), 10, 0.02), 0.92, {}, 30);
 }
 
+/// Vertices at edges that tiles of several components share, with missing values between: in the whole contour they are
+/// doubled, and come first or last.
+TEST(Pick, AcrossMissingValuesFromOthersHasTheOrderOfTheWhole) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_picks(noise_with_missing<float, 2>(Grid<2>::unit({40, 35}), seed, 0.2), 0.7, {}, 20);
+    expect_picks(noise_with_missing<float, 3>(Grid<3>::unit({12, 11, 10}), seed, 0.06), 0.85, {}, 20);
+    expect_picks(noise_with_missing<double, 3>(Grid<3>::unit({14, 11, 10}), seed, 0.12), 0.6, {}, 20);
+    expect_picks(noise_with_missing<float, 4>(Grid<4>::unit({7, 6, 5, 6}), seed, 0.05), 0.9, {}, 8);
+    expect_picks(noise_with_missing<float, 4>(Grid<4>::unit({7, 7, 6, 6}), seed, 0.1), 0.8, {}, 8);
+  }
+}
+
 TEST(Pick, In5dIsAComponentOfTheWhole) { expect_picks(noise<float, 5>({5, 4, 3, 4, 3}, 11), 0.995, {}, 3); }
 
 TEST(Pick, OfTwoBallsIsTheNearer) {
