@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint32_t kTreesOfPart = std::uint32_t{1} << 15;  ///< a sweep of so many stays near the processor
 constexpr int kMostPasses = 6;
+constexpr std::size_t kFewParts = 2;  ///< are swept anyway
 /// Sweeps are worth their time where they leave fewer trees than sparing them one by one does, by one of so many.
 constexpr std::size_t kWorthSweeping = 64;
 
@@ -75,20 +76,23 @@ class PartwiseCover {
   /// and among much noise, where the next tree is in another component, finds hardly any that the other does not.
   void choose(std::uint32_t first, std::uint32_t end, SweepDirection direction, const Progress& progress) {
     const std::vector<bool> allowed(picked_.begin() + first, picked_.begin() + end);
-    spare_one_by_one(first, end);
-    const std::size_t spared = count_of(first, end);
-    if (gain_.spared > 0 && gain_.is_small()) {
-      report_progress(progress, 1.0);
-      return;
+    std::size_t spared = count_of(first, end);
+    if (regions_.roots.size() > kFewParts * kTreesOfPart) {
+      spare_one_by_one(first, end);
+      spared = count_of(first, end);
+      if (gain_.spared > 0 && gain_.is_small()) {
+        report_progress(progress, 1.0);
+        return;
+      }
     }
     const auto chosen = sweep(first, end, allowed, direction, progress);
     gain_.spared += spared;
     gain_.swept += std::min(spared, chosen.size());
-    if (chosen.size() >= spared) return;
-    std::fill(picked_.begin() + first, picked_.begin() + end, false);
-    for (const std::uint32_t tree : chosen) picked_[first + tree] = true;
-    count_ = count_ - spared + chosen.size();
-    spare_one_by_one(first, end);
+    if (chosen.size() < spared) {
+      std::fill(picked_.begin() + first, picked_.begin() + end, false);
+      for (const std::uint32_t tree : chosen) picked_[first + tree] = true;
+      count_ = count_ - spared + chosen.size();
+    }
   }
 
   /// Picks go whose links to others that stay have all of their range, narrow ones first.
@@ -109,10 +113,15 @@ class PartwiseCover {
     Key level = map_.least[regions_.roots[tree]];
     const Key greatest = map_.greatest[regions_.roots[tree]];
     spans_.clear();
+    Key lowest = greatest, highest = level;
     for (std::size_t i = first_of_[tree]; i < first_of_[tree + 1]; ++i) {
       const KeyLink<Key>& link = regions_.links[links_of_[i]];
-      if (picked_[link.a == tree ? link.b : link.a]) spans_.emplace_back(link.least, link.greatest);
+      if (!picked_[link.a == tree ? link.b : link.a]) continue;
+      spans_.emplace_back(link.least, link.greatest);
+      lowest = std::min(lowest, link.least);
+      highest = std::max(highest, link.greatest);
     }
+    if (lowest > level || highest < greatest) return false;  // most that stay
     std::sort(spans_.begin(), spans_.end());
     for (const auto& [least, end] : spans_) {
       if (least > level) return false;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -52,25 +53,33 @@ class Widths {
       ++below_[bin(least) + 1];
       ++below_[bin(greatest) + 1];
     });
-    std::uint64_t sum = 0;
-    const std::uint64_t all = std::max<std::uint64_t>(1, 2 * sample.size());
-    for (std::uint32_t& below : below_) {
-      sum += below;
-      below = static_cast<std::uint32_t>(sum * kAll / all);
-    }
+    for (std::size_t i = 1; i < below_.size(); ++i) below_[i] += below_[i - 1];
+    scale(sample, map);
   }
   /// A power of 2 each, the widest first: finer ones would leave more tiles.
   [[nodiscard]] std::size_t class_of(Key least, Key greatest) const noexcept {
-    const std::uint32_t width = below_[bin(greatest)] - below_[bin(least)];
-    const auto bits = static_cast<std::size_t>(std::bit_width(width));
+    const auto bits = static_cast<std::size_t>(std::bit_width(width(least, greatest)));
     return kClasses - 1 - std::min(bits, kClasses - 1);
   }
 
  private:
   static constexpr std::uint64_t kBins = std::uint64_t{1} << 16;  // stays near the processor
-  /// What the number of all ends is scaled to, so that classes do not depend on the size of the sample: the widest
-  /// ranges are those over 0.7 of them, of which most kinds of images have fewest seeds (by trial, from 0.5 to 0.92).
-  static constexpr std::uint64_t kAll = (std::uint64_t{10} << 19) / 7;
+  /// Of all ends, so many are to be 2^19: then classes do not depend on the size of the sample. By trial on many kinds
+  /// of images, from 0.5 to 0.92: these leave fewest seeds, the larger one in noise.
+  static constexpr double kWidest = 0.66, kWidestOfNoise = 0.84;
+  [[nodiscard]] std::uint32_t width(Key least, Key greatest) const noexcept {
+    return below_[bin(greatest)] - below_[bin(least)];
+  }
+  void scale(const std::vector<Place>& sample, const RangeMap<Key>& map) {
+    const std::size_t ends = 2 * sample.size();
+    const auto wide = static_cast<std::size_t>(std::count_if(sample.begin(), sample.end(), [&](Place tile) {
+      return std::size_t{3} * width(map.least[tile], map.greatest[tile]) > ends;
+    }));
+    const double widest = 4 * wide > sample.size() ? kWidestOfNoise : kWidest;
+    const auto all = static_cast<std::uint64_t>((std::uint64_t{1} << 19) / widest);
+    for (std::uint32_t& below : below_)
+      below = static_cast<std::uint32_t>(below * all / std::max<std::size_t>(1, ends));
+  }
   [[nodiscard]] std::size_t bin(Key key) const noexcept {
     if (key <= least_) return 0;
     return std::min(static_cast<std::uint64_t>(key - least_) >> shift_, last_);
@@ -79,7 +88,7 @@ class Widths {
   Key least_;
   unsigned shift_ = 0;
   std::uint64_t last_ = 0;            ///< bin
-  std::vector<std::uint32_t> below_;  ///< ends of ranges in bins before, of a sample of tiles, of kAll
+  std::vector<std::uint32_t> below_;  ///< ends of ranges in bins before, of a sample of tiles; scaled
 };
 
 /// Whom tiles, or trees, belong to, from part to part of their ranges: to trees that are kept.
@@ -109,22 +118,20 @@ class Ownership {
     forget_offers();
     return covered;
   }
+  /// All of i belongs to one: to itself if it is not given up.
+  void set_one(std::uint32_t i, std::uint32_t owner, Key greatest) {
+    parts_of_[i] = parts_.size();
+    parts_.push_back({greatest, owner});
+  }
   /// Gives i up to a single one that `other`, which has all of i's range, belongs to there; forgets the offers. False
   /// if there is none.
   bool give_up_to_one(std::uint32_t i, std::uint32_t other, Key least, Key greatest) {
     const Part* part = &parts_[parts_of_[other]];
     while (part->end <= least) ++part;
     if (part->end < greatest) return false;
-    const std::uint32_t owner = part->owner;
-    parts_of_[i] = parts_.size();
-    parts_.push_back({greatest, owner});
+    set_one(i, std::uint32_t{part->owner}, greatest);
     forget_offers();
     return true;
-  }
-  /// Not given up.
-  void keep(std::uint32_t i, Key greatest) {
-    parts_of_[i] = parts_.size();
-    parts_.push_back({greatest, i});
   }
   /// Calls visit(owner, end) for those whom i belongs to from `level` to `end`, from below.
   template <class Visit>
@@ -237,7 +244,7 @@ class Coarsening {
              unsigned round, const Progress& progress)
       : owners_(fine.roots.size()), number_(fine.roots.size()) {
     for (std::size_t i = loose; i < fine.roots.size(); ++i)
-      owners_.keep(static_cast<std::uint32_t>(i), map.greatest[fine.roots[i]]);
+      owners_.set_one(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i), map.greatest[fine.roots[i]]);
     give_up(map, widths, fine, loose, round, part_of(progress, 0.0, 0.6));
     for (std::uint32_t tree = 0; tree < fine.roots.size(); ++tree) {
       if (tree < loose && given_up_[tree] != 0) continue;
@@ -524,8 +531,8 @@ class RegionMaker {
     for (const std::ptrdiff_t distance : neighbours_) {
       const auto other = static_cast<Place>(tile + distance);
       if (!owners_.has(other) || !map_.overlap(tile, other)) continue;
-      // Most are covered by one.
-      if (map_.least[other] <= least && greatest <= map_.greatest[other] &&
+      // One that has more at both ends is as good as any: in noise most tiles lie in such a one.
+      if (map_.least[other] < least && greatest < map_.greatest[other] &&
           owners_.give_up_to_one(tile, other, least, greatest))
         return true;
       owners_.offer(other, map_.least[other], map_.greatest[other]);
