@@ -19,6 +19,7 @@
 #include <system_error>
 #include <vector>
 
+#include "arguments.hpp"
 #include "image_file.hpp"
 #include "memory.hpp"
 #include "tegl/active_tiles_io.hpp"
@@ -137,7 +138,7 @@ int run(int argc, char** argv) {
     const std::string argument = argv[i];
     const bool more = i + 1 < argc;
     if (argument == "--queries" && more)
-      queries = std::max(1, std::stoi(argv[++i]));
+      queries = whole_number(argument, argv[++i], 1, 1000000);
     else if (argument == "--csv" && more) {
       csv = std::fopen(argv[++i], "w");
       if (csv == nullptr) throw std::system_error(errno, std::generic_category(), argv[i]);
@@ -154,7 +155,7 @@ int run(int argc, char** argv) {
   if (csv != nullptr) fmt::print(csv, "image,method,isovalue,active_tiles,find_seconds,extract_seconds\n");
   for (const std::string& file : files) {
     if (file.rfind("balls:", 0) == 0) {
-      measure(file, few_balls(std::stoul(file.substr(6))), queries, csv);
+      measure(file, few_balls(whole_number<std::size_t>(file, file.substr(6), 2, 1u << 11)), queries, csv);
       continue;
     }
     with_image_of_file(file,

@@ -3,6 +3,7 @@
 // How much memory this process has, and had at most (Linux).
 #pragma once
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <cstdint>
@@ -19,6 +20,9 @@ inline std::uint64_t memory_bytes(const std::string& key) {
     if (line.rfind(key + ":", 0) == 0) return 1024 * std::stoull(line.substr(key.size() + 1));
   return 0;
 }
+
+/// Gives the system what is freed but kept: else it would count as memory that was there before.
+inline void give_back_memory() { malloc_trim(0); }
 
 /// Starts VmHWM anew from what is resident now.
 inline void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }

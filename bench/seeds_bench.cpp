@@ -25,6 +25,7 @@
 #include <string_view>
 #include <vector>
 
+#include "arguments.hpp"
 #include "fields.hpp"
 #include "image_file.hpp"
 #include "memory.hpp"
@@ -80,6 +81,7 @@ void for_each_search(const Image<T, N>& image, const Arguments& arguments, const
       search.options.method = method;
       search.options.neighbourhood = neighbourhood;
       search.options.threads = 1;
+      give_back_memory();  // of images before
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
       search.seconds = least_seconds(
@@ -229,17 +231,23 @@ void measure_field_in(const std::string& name, const std::string& field, std::si
 
 /// FIELD:N[^D][@TYPE]
 void measure_field(const std::string& name, const Arguments& arguments) {
-  const std::size_t colon = name.find(':');
-  const std::size_t hat = name.find('^');
-  const std::size_t at = name.find('@');
-  const std::string field = name.substr(0, colon);
-  const std::size_t samples = std::stoul(name.substr(colon + 1));
-  const int dim = hat == std::string::npos ? 3 : std::stoi(name.substr(hat + 1));
-  const std::string type = at == std::string::npos ? "float" : name.substr(at + 1);
+  const std::string field = name.substr(0, name.find(':'));
+  if (field.size() == name.size())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{}: no size; expected {}:N[^D][@TYPE]", name, name));
+  std::string_view rest = std::string_view(name).substr(field.size() + 1);
+  const auto take_after = [&](char mark, std::string_view otherwise) {
+    const std::size_t at = rest.find(mark);
+    if (at == std::string_view::npos) return otherwise;
+    const std::string_view after = rest.substr(at + 1);
+    rest = rest.substr(0, at);
+    return after;
+  };
+  const std::string type(take_after('@', "float"));
+  const int dim = whole_number(name + ", dimensions", take_after('^', "3"), 2, 4);
+  const auto samples = whole_number<std::size_t>(name + ", samples along an axis", rest, 2, 1u << 16);
   if (dim == 2) return measure_field_in<2>(name, field, samples, type, arguments);
   if (dim == 3) return measure_field_in<3>(name, field, samples, type, arguments);
-  if (dim == 4) return measure_field_in<4>(name, field, samples, type, arguments);
-  throw Error(ErrorCode::InvalidArgument, fmt::format("{}: {} dimensions; expected 2, 3 or 4", name, dim));
+  measure_field_in<4>(name, field, samples, type, arguments);
 }
 
 /// Those of `all` whose names are in a list with commas.
@@ -275,9 +283,9 @@ int run(int argc, char** argv) {
     else if (argument == "--orders")
       arguments.orders = true;
     else if (argument == "--picks" && more)
-      arguments.picks = std::stoi(argv[++i]);
+      arguments.picks = whole_number(argument, argv[++i], 0, 1000000);
     else if (argument == "--runs" && more)
-      arguments.runs = std::max(1, std::stoi(argv[++i]));
+      arguments.runs = whole_number(argument, argv[++i], 1, 1000000);
     else if (argument == "--scaling")
       arguments.scaling = true;
     else if (argument.rfind("--", 0) == 0)

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <bit>
-#include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <span>

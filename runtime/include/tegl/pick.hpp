@@ -31,7 +31,7 @@ struct PickReport {
 /// with the lower number); all tiles that are reached from it through faces that the contour passes; of the components
 /// of the contour in those (often one: several where they pass one tile) the one with the vertex nearest to the point,
 /// in steps of the grid. The result is `extract` restricted to that component: the same vertices, normals and simplices
-/// in the same order, the vertices numbered anew (in 3D and 4D those next to missing values may come in another order).
+/// in the same order, the vertices numbered anew, next to missing values too.
 /// An image without active tiles gives an empty contour; or, with `close`, the component with the vertex nearest to the
 /// point, and a report that has found no tile.
 ///

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Numbers among the arguments of measuring programs.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+
+#include "tegl/error.hpp"
+
+namespace tegl::bench {
+
+/// A whole number, all of `text`. Throws InvalidArgument, which names the argument and what is wrong, unless it is at
+/// least `least` and at most `most`.
+template <class Number>
+Number whole_number(std::string_view argument, std::string_view text, Number least, Number most) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number < least || number > most)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{}: '{}'; expected a whole number from {} to {}", argument, text, least, most));
+  return number;
+}
+
+}  // namespace tegl::bench
