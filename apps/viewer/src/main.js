@@ -17,8 +17,11 @@ const REST = 120; // milliseconds without a change of time, after which the exac
 
 const KEYS = [['space', 'play, pause'], ['← →', 'a little earlier, later (with shift: ten times that)'],
   ['home, end', 'first, last time'], [', .', 'event before, next event'], ['[ ]', 'slower, faster'], ['l', 'loop'],
-  ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'view from the start'], ['s', 'save a picture'],
+  ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'view from the start'],
+  ['tab to the picture, then ← → ↑ ↓', 'turn it (with shift: move it)'], ['+ −', 'nearer, farther'], ['s', 'save a picture'],
   ['?', 'this list']];
+
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 class App {
   constructor(description, bytes) {
@@ -251,8 +254,11 @@ class App {
       End: () => this.setTime(this.last), ',': () => this.nextEvent(-1), '.': () => this.nextEvent(1),
       '[': () => this.changeSpeed(-1), ']': () => this.changeSpeed(1), l: () => this.toggleLoop() };
     const always = { d: () => this.toggleTheme(), s: () => this.picture(), r: () => this.stage.reset(),
+      '+': () => this.stage.zoom(1 / 1.15), '=': () => this.stage.zoom(1 / 1.15), '-': () => this.stage.zoom(1.15),
       c: () => this.nextColor(), m: () => this.togglePanel(), '?': () => $('keys').showModal() };
-    const action = always[key] ?? (this.timeline ? ofTime[key] : undefined);
+    const inPicture = target.id === 'canvas' && ARROWS[key];
+    const action = inPicture ? () => this.stage.turn(...ARROWS[key], shiftKey)
+      : always[key] ?? (this.timeline ? ofTime[key] : undefined);
     const isOwn = key === ' ' && target.closest('button, input');
     if (!action || isOther || (isOwn && target.id !== 'slider')) return;
     event.preventDefault();

@@ -122,6 +122,40 @@ export class Stage {
     this.redraw();
   }
 
+  /** A step of the keyboard: turns what is seen, to the right and upwards, or moves it. */
+  turn(right, up, isMove) {
+    const { camera, controls } = this;
+    const offset = camera.position.clone().sub(controls.target);
+    if (isMove || this.isFlat) {
+      const step = 0.05 * offset.length();
+      const along = new THREE.Vector3(right * step, up * step, 0).applyQuaternion(camera.quaternion);
+      controls.target.sub(along);
+      camera.position.sub(along);
+    } else {
+      const STEP = Math.PI / 36;
+      const toTop = new THREE.Quaternion().setFromUnitVectors(camera.up, new THREE.Vector3(0, 1, 0));
+      const place = new THREE.Spherical().setFromVector3(offset.applyQuaternion(toTop));
+      place.theta -= right * STEP;
+      place.phi += up * STEP;
+      camera.position.setFromSpherical(place.makeSafe()).applyQuaternion(toTop.invert()).add(controls.target);
+    }
+    this.afterKey();
+  }
+
+  /** By a factor farther away. */
+  zoom(factor) {
+    this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
+    this.afterKey();
+  }
+
+  /** Without what is left of a movement by hand. */
+  afterKey() {
+    this.controls.enableDamping = false;
+    this.controls.update();
+    this.controls.enableDamping = true;
+    this.redraw();
+  }
+
   /** How far from the middle the box fills the picture, with room for its labels. */
   fittingDistance() {
     const [right, up, back] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrix, k));

@@ -19,6 +19,7 @@ export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u2
 
 /** The date that "<unit>s since <date>" gives a number; null where there is none. */
 function dateOf(value, unit) {
+  if (/\([^)]+\)\s*$/.test(unit)) return null; // of another calendar: "days since 1950-01-01 (noleap)"
   const found = /^\s*([a-z]+?)s?\s+since\s+(\d{1,4})-(\d{1,2})-(\d{1,2})(?:[T ](\d{1,2}):(\d{1,2})(?::(\d{1,2}))?)?/i
     .exec(unit);
   if (!found) return null;

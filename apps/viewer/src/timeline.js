@@ -7,6 +7,7 @@ import { number, ticks } from './time.js';
 const SVG = 'http://www.w3.org/2000/svg';
 const INSET = 9; // half of the slider's thumb
 const LANE = 9;
+const STEPS = { ArrowLeft: -1, ArrowRight: 1 };
 const AXIS = 20;
 
 const WHAT = { begin: 'is there from the start', birth: 'is born', enter: 'comes in at the border', end: 'is there at the end',
@@ -122,17 +123,32 @@ export class Timeline {
 
   drawEvent(svg, event, i, x, y) {
     const text = `${event.kind} at ${this.format.text(event.time)}`;
-    const mark = make('g', { class: `event ${event.kind}`, tabindex: 0, role: 'button', 'aria-label': text,
+    // One stop for the tab key: from event to event it goes by arrows.
+    const mark = make('g', { class: `event ${event.kind}`, tabindex: i === (this.focused ?? 0) ? 0 : -1, role: 'button',
+      'aria-label': `${this.format.text(event.time)}: ${this.describe(event)}`,
       'data-event': i, transform: `translate(${x} ${y})` }, svg);
     make('circle', { class: 'reach', r: 9 }, mark);
     make('circle', { class: 'dot', r: 3.6 }, mark);
     make('title', {}, mark).textContent = text;
     mark.addEventListener('click', () => this.onEvent(event));
     mark.addEventListener('keydown', (key) => {
-      if (key.key !== 'Enter') return;
+      if (key.key !== 'Enter' && !(key.key in STEPS)) return;
       key.stopPropagation();
-      this.onEvent(event);
+      key.preventDefault();
+      if (key.key === 'Enter') this.onEvent(event);
+      else this.focus(svg, mark, STEPS[key.key]);
     });
+    mark.addEventListener('focus', () => (this.focused = i));
+  }
+
+  /** Goes to another mark, so many on by time. */
+  focus(svg, mark, step) {
+    const marks = [...svg.querySelectorAll('.event')];
+    const next = marks[marks.indexOf(mark) + step];
+    if (!next) return;
+    mark.setAttribute('tabindex', -1);
+    next.setAttribute('tabindex', 0);
+    next.focus();
   }
 
   /** What happened, in words. */
