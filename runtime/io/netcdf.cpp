@@ -158,6 +158,16 @@ Axis make_axis(std::vector<double> coordinates) {
   return Axis::rectilinear(std::move(coordinates));
 }
 
+/// With the calendar, where time is counted in one that is not everybody's (CF conventions, section 4.4.1): nobody may
+/// take "days since 2000-01-01 (noleap)" for a date.
+std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
+  const std::string unit = file.text(coordinate, "units");
+  const std::string calendar = file.text(coordinate, "calendar");
+  const std::string known = lower(calendar);
+  const bool is_common = known.empty() || known == "standard" || known == "gregorian" || known == "proleptic_gregorian";
+  return is_common || unit.find(" since ") == std::string::npos ? unit : fmt::format("{} ({})", unit, calendar);
+}
+
 Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimension, bool& is_time) {
   const std::string name = file.dimension_name(variable, dimension);
   const auto coordinate = file.coordinate(variable, dimension);
@@ -173,7 +183,7 @@ Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimen
     } catch (const Error& e) {
       fail(e.code(), file.path(), "coordinate variable '{}': {}", coordinate->name, e.what());
     }
-    unit = file.text(*coordinate, "units");
+    unit = unit_of(file, *coordinate);
     role = file.text(*coordinate, "axis") + " " + file.text(*coordinate, "standard_name") + " ";
   }
   axis.name = name;

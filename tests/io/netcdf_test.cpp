@@ -212,6 +212,29 @@ TEST(NetCdf, TimeIsMovedToTheEnd) {
         EXPECT_EQ(view({x, z, t}), static_cast<int>((z * 3 + t) * 4 + x)) << x << z << t;
 }
 
+TEST(NetCdf, OtherCalendarsAreSaidInTheUnit) {
+  TempDir dir;
+  const auto unit_under = [&](const std::string& calendar) {
+    {
+      NcWriter file(dir / "a.nc");
+      const int t = file.dimension("time", 3);
+      const int x = file.dimension("x", 2);
+      const int tv = file.variable("time", NC_FLOAT, {t});
+      file.text(tv, "units", "days since 2000-01-01");
+      if (!calendar.empty()) file.text(tv, "calendar", calendar);
+      const int v = file.variable("v", NC_INT, {t, x});
+      file.end();
+      file.values(tv, {1, 2, 4});
+      file.values(v, {1, 2, 3, 4, 5, 6});
+    }
+    return image_as<std::int32_t, 2>(read_image(dir / "a.nc").image).grid.axes[1].unit;
+  };
+  for (const char* common : {"", "standard", "Gregorian", "proleptic_gregorian"})
+    EXPECT_EQ(unit_under(common), "days since 2000-01-01") << common;
+  EXPECT_EQ(unit_under("noleap"), "days since 2000-01-01 (noleap)");
+  EXPECT_EQ(unit_under("360_day"), "days since 2000-01-01 (360_day)");
+}
+
 TEST(NetCdf, SeveralVariablesMustBeChosenFrom) {
   TempDir dir;
   {
