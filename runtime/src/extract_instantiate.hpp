@@ -5,6 +5,8 @@
 #pragma once
 
 #include "extract_tiles.hpp"
+#include "stream.hpp"
+#include "turned_layers.hpp"
 
 namespace tegl {
 
@@ -12,6 +14,12 @@ template <class Real, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
                          ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
+  if constexpr (N <= 4)
+    if (detail::is_better_turned(image)) {
+      detail::TurnedLayers<T, N> layers(image, options.threads);
+      detail::LayerSource<T, N> source(layers, isovalue, options.epsilon);
+      return detail::extract_any<N, Real>(source, image.grid(), options, stats);
+    }
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   return detail::extract_any<N, Real>(source, image.grid(), options, stats);
 }
