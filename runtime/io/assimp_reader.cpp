@@ -52,7 +52,8 @@ class Joiner {
 
 }  // namespace
 
-Mesh read_with_assimp(const fs::path& path) {
+Mesh read_with_assimp(const fs::path& path, ReadProgress& progress) {
+  constexpr std::size_t kStlTriangle = 50;  // bytes; in text it takes more
   Assimp::Importer importer;
   const aiScene* scene =
       importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
@@ -62,9 +63,11 @@ Mesh read_with_assimp(const fs::path& path) {
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& part = *scene->mMeshes[m];
     if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
-    for (unsigned f = 0; f < part.mNumFaces; ++f)
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
       for (unsigned corner = 0; corner < 3; ++corner)
         mesh.simplices.push_back(joiner.number_of(part.mVertices[part.mFaces[f].mIndices[corner]]));
+      progress.add_rows(f, kStlTriangle);
+    }
   }
   if (mesh.simplices.empty()) fail(ErrorCode::UnsupportedData, path, "no triangles; expected a surface");
   mesh.axis_names.resize(3);

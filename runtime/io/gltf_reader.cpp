@@ -66,7 +66,7 @@ struct View {
 
 class GltfReader {
  public:
-  explicit GltfReader(const fs::path& path) : path_(path) {}
+  GltfReader(const fs::path& path, ReadProgress& progress) : path_(path), progress_(progress) {}
 
   Mesh run() {
     read_container();
@@ -278,6 +278,7 @@ class GltfReader {
       const std::size_t vertex = indexed ? index_value(indices, i) : i;
       if (vertex >= points.count) malformed("vertex number {}; expected less than {}", vertex, points.count);
       mesh_.simplices.push_back(static_cast<Index>(first + vertex));
+      progress_.add_rows(i, sizeof(Index));
     }
   }
 
@@ -292,6 +293,7 @@ class GltfReader {
       std::memcpy(raw.data(), view.bytes.data() + v * view.stride, sizeof(raw));
       const Eigen::Vector3d mapped = map(Eigen::Vector3d(raw[0], raw[1], raw[2]));
       to.insert(to.end(), mapped.begin(), mapped.end());
+      progress_.add_rows(v, sizeof(raw));
     }
     return view;
   }
@@ -334,6 +336,7 @@ class GltfReader {
         std::memcpy(raw.data(), view.bytes.data() + v * view.stride, width * sizeof(float));
         attributes_[place].values.insert(attributes_[place].values.end(), raw.begin(),
                                          raw.begin() + static_cast<std::ptrdiff_t>(width));
+        progress_.add_rows(v, width * sizeof(float));
       }
     }
   }
@@ -399,6 +402,7 @@ class GltfReader {
   }
 
   fs::path path_;
+  ReadProgress& progress_;
   Json json_;
   Bytes binary_;
   std::vector<Bytes> buffers_;
@@ -410,6 +414,6 @@ class GltfReader {
 
 }  // namespace
 
-Mesh read_gltf(const fs::path& path) { return GltfReader(path).run(); }
+Mesh read_gltf(const fs::path& path, ReadProgress& progress) { return GltfReader(path, progress).run(); }
 
 }  // namespace tegl::io_detail

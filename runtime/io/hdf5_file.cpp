@@ -262,9 +262,31 @@ std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {
   return result;
 }
 
-void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to) const {
+void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to,
+                  const std::function<void(std::uint64_t)>& done) const {
+  const std::vector<std::uint64_t> size = sizes(group, name);
   const H5Handle dataset = open_dataset(group, name);
-  checked(H5Dread(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to), "reading a dataset");
+  const H5Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "opening a dataset");
+  const auto rank = static_cast<int>(size.size());
+  const std::uint64_t row_bytes = H5Tget_size(memory_type) * (rank == 2 ? std::max<std::uint64_t>(1, size[1]) : 1);
+  // Whole chunks: a part of one would be inflated anew for each part.
+  const H5Handle layout = checked(H5Dget_create_plist(dataset.id()), H5Pclose, "opening a dataset");
+  std::array<hsize_t, 2> chunk{1, 1};
+  if (H5Pget_layout(layout.id()) == H5D_CHUNKED)
+    checked(H5Pget_chunk(layout.id(), rank, chunk.data()), "opening a dataset");
+  constexpr std::uint64_t kBytesAtOnce = std::uint64_t{1} << 22;
+  const std::uint64_t most = (kBytesAtOnce / row_bytes / chunk[0] + 1) * chunk[0];
+  for (std::uint64_t first = 0; first < size[0]; first += most) {
+    const std::array<hsize_t, 2> from{first, 0};
+    const std::array<hsize_t, 2> rows{std::min(most, size[0] - first), rank == 2 ? size[1] : 1};
+    const H5Handle room = checked(H5Screate_simple(rank, rows.data(), nullptr), H5Sclose, "reading a dataset");
+    checked(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, from.data(), nullptr, rows.data(), nullptr),
+            "reading a dataset");
+    checked(H5Dread(dataset.id(), memory_type, room.id(), space.id(), H5P_DEFAULT,
+                    static_cast<std::byte*>(to) + first * row_bytes),
+            "reading a dataset");
+    if (done) done(rows[0] * row_bytes);
+  }
 }
 
 }  // namespace tegl::io_detail

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -109,8 +110,10 @@ class H5File {
   [[nodiscard]] int rank(hid_t group, const char* name) const;
   /// The sizes of a dataset, checked to be no larger than the file can hold; MalformedFile if it is not there.
   [[nodiscard]] std::vector<std::uint64_t> sizes(hid_t group, const char* name) const;
-  /// Reads a whole dataset as `memory_type` into room for all its values.
-  void read(hid_t group, const char* name, hid_t memory_type, void* to) const;
+  /// Reads a whole dataset, of one or two dimensions, as `memory_type` into room for all its values: some rows at a
+  /// time, after which `done` is called with the number of bytes in memory that they take.
+  void read(hid_t group, const char* name, hid_t memory_type, void* to,
+            const std::function<void(std::uint64_t)>& done = {}) const;
 
  private:
   H5File(std::filesystem::path path, ErrorCode code, std::shared_ptr<const H5WriteStatus> status, H5Handle handle)

@@ -74,6 +74,19 @@ std::vector<std::string> as_vector(const Names& names) {
 
 namespace io_detail {
 
+ReadProgress::ReadProgress(const Progress& progress, const fs::path& path)
+    : progress_(progress), path_(path), size_(size_of_file(path)) {
+  tick(progress_, 0.0, path_);
+}
+
+void ReadProgress::add(std::uint64_t bytes) {
+  constexpr std::uint64_t kTellEvery = std::uint64_t{1} << 20;
+  done_ += bytes;
+  if (done_ - told_ < kTellEvery) return;
+  told_ = done_;
+  tick(progress_, static_cast<double>(done_) / static_cast<double>(size_), path_);
+}
+
 void flatten(Mesh& mesh, const fs::path& path) {
   for (std::size_t v = 0; v < mesh.coordinates.size() / 3; ++v)
     if (mesh.coordinates[3 * v + 2] != 0.0)
@@ -173,14 +186,16 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress
     write_vtkhdf(mesh, path, progress);
 }
 
-Mesh read_mesh(const fs::path& path) {
+Mesh read_mesh(const fs::path& path, const Progress& progress) {
   require_readable_file(path);
   const MeshFileFormat& format = format_of(path, ".ply, .gltf, .glb, .vtkhdf, .stl or .obj");
-  Mesh mesh = format.extension == ".ply"      ? read_ply(path)
-              : format.extension == ".vtkhdf" ? read_vtkhdf(path)
-              : is_gltf(format)               ? read_gltf(path)
-                                              : read_with_assimp(path);
+  ReadProgress read(progress, path);
+  Mesh mesh = format.extension == ".ply"      ? read_ply(path, read)
+              : format.extension == ".vtkhdf" ? read_vtkhdf(path, read)
+              : is_gltf(format)               ? read_gltf(path, read)
+                                              : read_with_assimp(path, read);
   check_indices(mesh, path);
+  tick(progress, 1.0, path);
   return mesh;
 }
 

@@ -12,17 +12,39 @@
 
 namespace tegl::io_detail {
 
+/// How much of a mesh's file has been read.
+class ReadProgress {
+ public:
+  /// Tells 0. `progress` and `path` must outlive this.
+  ReadProgress(const Progress& progress, const std::filesystem::path& path);
+
+  /// So many more bytes of the file have become part of the mesh: told for every megabyte. Throws Cancelled.
+  void add(std::uint64_t bytes);
+  /// The same for a loop over rows that take so many bytes each, now and then: for its row `i`, after which it goes on.
+  void add_rows(std::size_t i, std::size_t row_bytes) {
+    constexpr std::size_t kEvery = 4096;
+    if (i % kEvery == kEvery - 1) add(kEvery * row_bytes);
+  }
+
+ private:
+  const Progress& progress_;
+  const std::filesystem::path& path_;
+  std::uint64_t size_;
+  std::uint64_t done_ = 0;
+  std::uint64_t told_ = 0;
+};
+
 void write_ply(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-Mesh read_ply(const std::filesystem::path& path);
+Mesh read_ply(const std::filesystem::path& path, ReadProgress& progress);
 
 void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-Mesh read_gltf(const std::filesystem::path& path);
+Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress);
 
 void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-Mesh read_vtkhdf(const std::filesystem::path& path);
+Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress);
 
 /// STL and OBJ: triangle soups, whose vertices are joined where their coordinates are equal.
-Mesh read_with_assimp(const std::filesystem::path& path);
+Mesh read_with_assimp(const std::filesystem::path& path, ReadProgress& progress);
 
 /// Name or unit of an axis; "" where the mesh has none.
 inline const std::string& axis_text(const std::vector<std::string>& texts, int axis) {

@@ -113,8 +113,8 @@ class AttributeColumns {
 
 class PlyReader {
  public:
-  explicit PlyReader(const fs::path& path)
-      : path_(path), bytes_(read_bytes(path, 0, static_cast<std::size_t>(size_of_file(path)))) {}
+  PlyReader(const fs::path& path, ReadProgress& progress)
+      : path_(path), progress_(progress), bytes_(read_bytes(path, 0, static_cast<std::size_t>(size_of_file(path)))) {}
 
   Mesh run() {
     read_header();
@@ -284,6 +284,7 @@ class PlyReader {
   }
 
   void read_item(const Element& element, std::size_t list_property, Item& item) {
+    const std::size_t start = at_;
     item.scalars.resize(element.properties.size());
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const Property& property = element.properties[p];
@@ -301,6 +302,7 @@ class PlyReader {
         if (p == list_property) item.list.push_back(value);
       }
     }
+    progress_.add(at_ - start);
   }
 
   void read_element(const Element& element) {
@@ -393,6 +395,7 @@ class PlyReader {
   }
 
   fs::path path_;
+  ReadProgress& progress_;
   std::vector<unsigned char> bytes_;
   std::size_t at_ = 0;
   Encoding encoding_ = Encoding::Ascii;
@@ -404,6 +407,6 @@ class PlyReader {
 
 }  // namespace
 
-Mesh read_ply(const fs::path& path) { return PlyReader(path).run(); }
+Mesh read_ply(const fs::path& path, ReadProgress& progress) { return PlyReader(path, progress).run(); }
 
 }  // namespace tegl::io_detail

@@ -37,7 +37,8 @@ std::vector<std::string> split(const std::string& text, std::size_t count) {
 /// The simplices of cells that are all of one type.
 class Reader {
  public:
-  Reader(const fs::path& path) : path_(path), file_(H5File::open(path)), group_(open_root(file_, path)) {}
+  Reader(const fs::path& path, ReadProgress& progress)
+      : path_(path), progress_(progress), file_(H5File::open(path)), group_(open_root(file_, path)) {}
 
   Mesh run() {
     mesh_.space_dim = 3;
@@ -77,10 +78,15 @@ class Reader {
     return size[0];
   }
 
+  /// A whole dataset, counted in the progress.
+  void read(hid_t group, const char* name, hid_t type, void* to) const {
+    file_.read(group, name, type, to, [this](std::uint64_t bytes) { progress_.add(bytes); });
+  }
+
   template <class T>
   [[nodiscard]] std::vector<T> numbers(const char* name, hid_t type) const {
     std::vector<T> values(static_cast<std::size_t>(length(group_.id(), name)));
-    if (!values.empty()) file_.read(group_.id(), name, type, values.data());
+    if (!values.empty()) read(group_.id(), name, type, values.data());
     return values;
   }
 
@@ -118,7 +124,7 @@ class Reader {
     if (size.size() != 2 || size[1] != 3)
       fail(ErrorCode::MalformedFile, path_, "points of shape {}; expected rows of 3", shape_text(size));
     mesh_.coordinates.resize(static_cast<std::size_t>(size[0] * 3));
-    if (size[0] > 0) file_.read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
+    if (size[0] > 0) read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
   }
 
   /// x y z and the point array t, side by side.
@@ -137,7 +143,7 @@ class Reader {
   void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) const {
     const std::size_t count = rows.size() / 3;
     std::vector<double> fourth(count);
-    if (count > 0) file_.read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
+    if (count > 0) read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
     Buffer<double> all(4 * count);
     for (std::size_t v = 0; v < count; ++v) {
       std::copy_n(rows.data() + 3 * v, 3, all.data() + 4 * v);
@@ -157,7 +163,7 @@ class Reader {
     if (vertices == 0 || !has(kNormals, {vertices, 3})) return;
     if (mesh_.space_dim == 4 && !has(kNormalTimes, {vertices})) return;
     mesh_.normals.resize(static_cast<std::size_t>(3 * vertices));
-    file_.read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
+    read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
   }
 
@@ -197,7 +203,7 @@ class Reader {
       attribute.unit = file_.get_text(dataset.id(), kAttributeUnit);
       attribute.width = size.size() == 1 ? 1 : static_cast<int>(size[1]);
       attribute.values.resize(rows * static_cast<std::size_t>(attribute.width));
-      if (rows > 0) file_.read(group.id(), name.c_str(), H5T_NATIVE_DOUBLE, attribute.values.data());
+      if (rows > 0) read(group.id(), name.c_str(), H5T_NATIVE_DOUBLE, attribute.values.data());
     }
     return result;
   }
@@ -212,6 +218,7 @@ class Reader {
   }
 
   const fs::path& path_;
+  ReadProgress& progress_;
   H5File file_;
   H5Handle group_;
   Mesh mesh_;
@@ -256,9 +263,9 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   writer.commit();
 }
 
-Mesh read_vtkhdf(const fs::path& path) {
+Mesh read_vtkhdf(const fs::path& path, ReadProgress& progress) {
   const H5Quiet quiet;
-  return Reader(path).run();
+  return Reader(path, progress).run();
 }
 
 }  // namespace tegl::io_detail

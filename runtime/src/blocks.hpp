@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "progress.hpp"
+#include "loop_progress.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
@@ -15,23 +15,22 @@ namespace tegl::detail {
 constexpr std::size_t block_count(std::size_t count, std::size_t size) noexcept { return (count + size - 1) / size; }
 
 /// Calls work(block, from, to, scratch) for all blocks of 0 … count - 1, side by side on `threads` threads (0: all that
-/// the machine has), each with its own scratch, made by `make_scratch`. `progress` is told between some of the blocks,
-/// by the caller's thread.
+/// the machine has), each with its own scratch, made by `make_scratch`. `progress` is told by the caller's thread,
+/// after each block that it has done itself.
 template <class MakeScratch, class Work>
 void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress,
                     const MakeScratch& make_scratch, const Work& work) {
   using Scratch = decltype(make_scratch());
   Workers<Scratch> workers(threads, make_scratch);
   const std::size_t blocks = block_count(count, size);
-  const std::size_t batch = std::max<std::size_t>(64, block_count(blocks, 64));
-  for (std::size_t first = 0; first < blocks; first += batch) {
-    tell(progress, static_cast<double>(first) / static_cast<double>(blocks));
-    workers.for_range(std::min(batch, blocks - first), 1, [&](std::size_t from, std::size_t to, Scratch& scratch) {
-      for (std::size_t b = first + from; b < first + to; ++b)
-        work(b, b * size, std::min(count, (b + 1) * size), scratch);
-    });
-  }
-  tell(progress, 1.0);
+  LoopProgress done(progress, blocks);
+  workers.for_range(blocks, 1, [&](std::size_t from, std::size_t to, Scratch& scratch) {
+    for (std::size_t b = from; b < to && !done.stopped(); ++b) {
+      work(b, b * size, std::min(count, (b + 1) * size), scratch);
+      done.add(1);
+    }
+  });
+  done.finish();
 }
 
 /// Without scratch: work(block, from, to).

@@ -18,12 +18,16 @@
 #include <fmt/format.h>
 
 #include "disjoint_sets.hpp"
+#include "progress.hpp"
 #include "stars.hpp"
 #include "tegl/error.hpp"
 #include "tegl/facets/complex.hpp"
 
 namespace tegl {
 namespace {
+
+/// Links between two calls for progress: where each is a surface of its own, some hundredths of a second.
+constexpr std::size_t kVerticesAtOnce = 1024;
 
 /// A complex of D-simplices, valid vertex numbers only.
 template <int D>
@@ -278,39 +282,51 @@ bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
 }
 
 template <int D, class Real>
-MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<const Real> coordinates) {
+MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<const Real> coordinates,
+                         const Progress& progress) {
+  using detail::in_parts, detail::part_of;
   const Complex<D> complex{rows, coordinates.size() / static_cast<std::size_t>(space_dim)};
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (rows[i] >= complex.vertex_count)
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
-                              i / (D + 1), rows[i], complex.vertex_count));
+  in_parts(rows.size(), part_of(progress, 0.0, 0.02), [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (rows[i] >= complex.vertex_count)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
+                                i / (D + 1), rows[i], complex.vertex_count));
+  });
   MeshReport report;
   report.dim = D;
   report.simplices = complex.size();
-  for (std::size_t v = 0; v < complex.vertex_count; ++v) {
-    const auto at = coordinates.subspan(v * static_cast<std::size_t>(space_dim), static_cast<std::size_t>(space_dim));
-    if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++report.nonfinite_vertices;
-  }
-  const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count);
+  in_parts(complex.vertex_count, part_of(progress, 0.02, 0.03), [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const auto at = coordinates.subspan(v * static_cast<std::size_t>(space_dim), static_cast<std::size_t>(space_dim));
+      if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++report.nonfinite_vertices;
+    }
+  });
+  const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count, part_of(progress, 0.03, 0.08));
   LinkChecker<D> links(complex);
   detail::DisjointSets connected;
   connected.reset(complex.vertex_count);
   std::uint64_t sound = 0;
   std::uint64_t joins = 0;
-  for (std::size_t s = 0; s < complex.size(); ++s) {
-    if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data())) ++report.degenerate_simplices;
-    if (complex.is_collapsed(s)) continue;
-    ++sound;
-    for (int i = 1; i <= D; ++i)
-      if (connected.join(complex[s][0], complex[s][i])) ++joins;
-  }
-  for (std::size_t v = 0; v < complex.vertex_count; ++v) {
-    const std::span<const Index> star = stars.of(v);
-    if (star.empty()) continue;
-    ++report.vertices;
-    links.visit(static_cast<Index>(v), star, report);
-  }
+  in_parts(complex.size(), part_of(progress, 0.08, 0.15), [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) {
+      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data()))
+        ++report.degenerate_simplices;
+      if (complex.is_collapsed(s)) continue;
+      ++sound;
+      for (int i = 1; i <= D; ++i)
+        if (connected.join(complex[s][0], complex[s][i])) ++joins;
+    }
+  });
+  const auto visit_links = [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const std::span<const Index> star = stars.of(v);
+      if (star.empty()) continue;
+      ++report.vertices;
+      links.visit(static_cast<Index>(v), star, report);
+    }
+  };
+  in_parts(complex.vertex_count, part_of(progress, 0.15, 1.0), visit_links, kVerticesAtOnce);
   report.unused_vertices = complex.vertex_count - report.vertices;
   report.components = report.vertices - joins;
   // V - E + F - …, the simplices themselves last; below D = 2, 3, 4 the counts of edges, triangles and tetrahedra are
@@ -322,7 +338,8 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
 }
 
 template <class Real>
-MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std::span<const Real> coordinates) {
+MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std::span<const Real> coordinates,
+                     const Progress& progress) {
   if (d < 1 || d > 4)
     throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2, 3 or 4", d));
   if (space_dim < d || space_dim > 8)
@@ -342,34 +359,35 @@ MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std
   if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
     throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",
                                                  simplices.size() / width, coordinates.size() / space_dim, kLimit));
-  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates);
-  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates);
-  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates);
-  return check_complex<4>(simplices, space_dim, coordinates);
+  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates, progress);
+  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates, progress);
+  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates, progress);
+  return check_complex<4>(simplices, space_dim, coordinates, progress);
 }
 
 }  // namespace
 
-MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates) {
-  return check_any<double>(d, simplices, space_dim, coordinates);
+MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
+                 const Progress& progress) {
+  return check_any<double>(d, simplices, space_dim, coordinates, progress);
 }
 
 template <int N, class Real>
-MeshReport check(const Contour<N, Real>& contour) {
+MeshReport check(const Contour<N, Real>& contour, const Progress& progress) {
   const std::span<const Index> rows(contour.simplices.empty() ? nullptr : contour.simplices.data()->data(),
                                     contour.simplices.size() * N);
   const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
                                           contour.vertices.size() * N);
-  return check_any<Real>(N - 1, rows, N, coordinates);
+  return check_any<Real>(N - 1, rows, N, coordinates, progress);
 }
 
-template MeshReport check(const Contour<2, float>&);
-template MeshReport check(const Contour<2, double>&);
-template MeshReport check(const Contour<3, float>&);
-template MeshReport check(const Contour<3, double>&);
-template MeshReport check(const Contour<4, float>&);
-template MeshReport check(const Contour<4, double>&);
-template MeshReport check(const Contour<5, float>&);
-template MeshReport check(const Contour<5, double>&);
+template MeshReport check(const Contour<2, float>&, const Progress&);
+template MeshReport check(const Contour<2, double>&, const Progress&);
+template MeshReport check(const Contour<3, float>&, const Progress&);
+template MeshReport check(const Contour<3, double>&, const Progress&);
+template MeshReport check(const Contour<4, float>&, const Progress&);
+template MeshReport check(const Contour<4, double>&, const Progress&);
+template MeshReport check(const Contour<5, float>&, const Progress&);
+template MeshReport check(const Contour<5, double>&, const Progress&);
 
 }  // namespace tegl

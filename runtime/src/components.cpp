@@ -22,19 +22,30 @@ namespace {
 
 using detail::kBlock;
 
+/// The rows that `part_of_contour` copies: of a contour with so many vertices and simplices.
+template <int N, class Real>
+std::uint64_t rows_to_copy(const Contour<N, Real>& contour, std::uint64_t vertices, std::uint64_t simplices) {
+  return vertices * (1 + (contour.normals.empty() ? 0 : 1) + contour.vertex_attributes.size()) +
+         simplices * (1 + contour.simplex_attributes.size());
+}
+
 /// The part of a contour with these vertices and simplices. `number`: the new number of each of the vertices.
 template <int N, class Real>
 Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<const Index> vertices,
-                                 std::span<const Index> simplices, const Buffer<Index>& number) {
+                                 std::span<const Index> simplices, const Buffer<Index>& number,
+                                 detail::CountedProgress& copied) {
   Contour<N, Real> part;
   part.axis_names = contour.axis_names;
   part.axis_units = contour.axis_units;
   part.direction = contour.direction;
-  const auto gather = [](const auto& from, std::span<const Index> items, std::size_t width, auto& to) {
+  const auto gather = [&](const auto& from, std::span<const Index> items, std::size_t width, auto& to) {
     to.resize(items.size() * width);
-    for (std::size_t i = 0; i < items.size(); ++i)
-      std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(items[i] * width), width,
-                  to.begin() + static_cast<std::ptrdiff_t>(i * width));
+    detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i)
+        std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(items[i] * width), width,
+                    to.begin() + static_cast<std::ptrdiff_t>(i * width));
+      copied.add(end - first);
+    });
   };
   const auto gather_attributes = [&](const std::vector<Attribute>& from, std::span<const Index> items,
                                      std::vector<Attribute>& to) {
@@ -56,7 +67,7 @@ Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<cons
 /// As many labels as there are vertices and simplices, each below their count and each used; of simplices those of
 /// their vertices, and of vertices in no simplex none.
 template <int N, class Real>
-void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels) {
+void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels, const Progress& progress = {}) {
   detail::require_vertices(contour);
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
   const auto require_count = [&](std::size_t found, std::size_t expected, const char* what) {
@@ -70,7 +81,7 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
                      contour.simplices.size()));
   std::vector<bool> is_in_simplex(contour.vertices.size(), false);
   std::vector<bool> has_simplex(labels.count, false);
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
+  const auto look_at = [&](std::size_t s) {
     const Index label = labels.simplices[s];
     if (label >= labels.count)
       fail(fmt::format("simplex {} has the label {}; expected less than {}, the number of components", s, label,
@@ -82,7 +93,10 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
         fail(fmt::format("simplex {} has the label {}, and its vertex {} the label {}; expected the same", s, label, v,
                          labels.vertices[v]));
     }
-  }
+  };
+  detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) look_at(s);
+  });
   for (std::size_t v = 0; v < is_in_simplex.size(); ++v)
     if (!is_in_simplex[v] && labels.vertices[v] != kNoComponent)
       fail(fmt::format("vertex {} in no simplex has the label {}; expected none", v, labels.vertices[v]));
@@ -138,19 +152,21 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
 template <int N, class Real>
 std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                      const WorkOptions& options) {
-  require_labels(contour, labels);
+  require_labels(contour, labels, detail::part_of(options.progress, 0.0, 0.05));
   detail::require_finite(contour);
   const std::span<const Index> rows = detail::rows_of(contour);
   std::vector<detail::FaceCounts> faces;
   {
-    const detail::Stars stars = detail::make_stars<N>(rows, contour.vertices.size());
+    const detail::Stars stars =
+        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(options.progress, 0.05, 0.1));
     faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, options.threads,
                                    detail::part_of(options.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });
   }
-  const detail::Groups groups = detail::group_by(labels.simplices, labels.count);
+  const detail::Groups groups =
+      detail::group_by(labels.simplices, labels.count, detail::part_of(options.progress, 0.8, 0.82));
   const std::vector<detail::PieceSums<N>> sums =
-      detail::sum_groups(contour, groups, options.threads, detail::part_of(options.progress, 0.8, 1.0));
+      detail::sum_groups(contour, groups, options.threads, detail::part_of(options.progress, 0.82, 1.0));
   std::vector<Component<N>> result(labels.count);
   for (const Index label : labels.vertices)
     if (label != kNoComponent) ++result[label].vertices;
@@ -170,41 +186,54 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
 }
 
 template <int N, class Real>
-std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels) {
-  require_labels(contour, labels);
+std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                               const Progress& progress) {
+  using detail::part_of;
+  require_labels(contour, labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
-  const detail::Groups vertices = detail::group_by(labels.vertices, labels.count);
-  const detail::Groups simplices = detail::group_by(labels.simplices, labels.count);
+  const detail::Groups vertices = detail::group_by(labels.vertices, labels.count, part_of(progress, 0.2, 0.3));
+  const detail::Groups simplices = detail::group_by(labels.simplices, labels.count, part_of(progress, 0.3, 0.5));
+  const Progress copying = part_of(progress, 0.5, 1.0);
+  detail::CountedProgress copied(copying, rows_to_copy(contour, vertices.members.size(), simplices.members.size()));
   Buffer<Index> number(contour.vertices.size());
   std::vector<Contour<N, Real>> parts;
   for (Index label = 0; label < labels.count; ++label) {
     const std::span<const Index> members = vertices.of(label);
     for (std::size_t i = 0; i < members.size(); ++i) number[members[i]] = static_cast<Index>(i);
-    parts.push_back(part_of_contour(contour, members, simplices.of(label), number));
+    parts.push_back(part_of_contour(contour, members, simplices.of(label), number, copied));
   }
+  detail::tell(progress, 1.0);
   return parts;
 }
 
 template <int N, class Real>
 Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                   const std::vector<bool>& keep) {
-  require_labels(contour, labels);
+                                   const std::vector<bool>& keep, const Progress& progress) {
+  using detail::part_of;
+  require_labels(contour, labels, part_of(progress, 0.0, 0.2));
   detail::require_attributes(contour);
   if (keep.size() != labels.count)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} components are to be kept or not; expected {}, as many as there are", keep.size(),
                             labels.count));
-  const auto kept = [&](const Buffer<Index>& of) {
+  const auto kept = [&](const Buffer<Index>& of, const Progress& part) {
     Buffer<Index> items;
-    for (std::size_t i = 0; i < of.size(); ++i)
-      if (of[i] != kNoComponent && keep[of[i]]) items.push_back(static_cast<Index>(i));
+    detail::in_parts(of.size(), part, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i)
+        if (of[i] != kNoComponent && keep[of[i]]) items.push_back(static_cast<Index>(i));
+    });
     return items;
   };
-  const Buffer<Index> vertices = kept(labels.vertices);
-  const Buffer<Index> simplices = kept(labels.simplices);
+  const Buffer<Index> vertices = kept(labels.vertices, part_of(progress, 0.2, 0.3));
+  const Buffer<Index> simplices = kept(labels.simplices, part_of(progress, 0.3, 0.5));
+  const Progress copying = part_of(progress, 0.5, 1.0);
+  detail::CountedProgress copied(copying, rows_to_copy(contour, vertices.size(), simplices.size()));
   Buffer<Index> number(contour.vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<Index>(i);
-  return part_of_contour(contour, std::span<const Index>(vertices), std::span<const Index>(simplices), number);
+  auto part =
+      part_of_contour(contour, std::span<const Index>(vertices), std::span<const Index>(simplices), number, copied);
+  detail::tell(progress, 1.0);
+  return part;
 }
 
 template <int N, class Real>
@@ -225,9 +254,10 @@ void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& l
 #define TEGL_INSTANTIATE(N, Real)                                                                                     \
   template ComponentLabels label_components(const Contour<N, Real>&, const WorkOptions&);                             \
   template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const WorkOptions&); \
-  template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&);           \
+  template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&,            \
+                                                          const Progress&);                                           \
   template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \
-                                              const std::vector<bool>&);                                              \
+                                              const std::vector<bool>&, const Progress&);                             \
   template void add_component_attribute(Contour<N, Real>&, const ComponentLabels&)
 TEGL_INSTANTIATE(2, float);
 TEGL_INSTANTIATE(2, double);

@@ -105,9 +105,10 @@ void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin
 template <int N, class Real>
 std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& options) {
   std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertices.size(), kBlock));
-  const detail::Stars stars = detail::make_stars<N>(detail::rows_of(contour), contour.vertices.size());
+  const detail::Stars stars = detail::make_stars<N>(detail::rows_of(contour), contour.vertices.size(),
+                                                    detail::part_of(options.progress, 0.0, 0.1));
   detail::count_faces<N>(detail::rows_of(contour), stars, {}, 1, false, options.threads,
-                         detail::part_of(options.progress, 0.0, 0.6), [&](std::size_t block, const auto& ridge) {
+                         detail::part_of(options.progress, 0.1, 0.6), [&](std::size_t block, const auto& ridge) {
                            const auto time = [&](Index v) { return static_cast<double>(contour.vertices[v][N - 1]); };
                            std::pair<double, double> span(time(ridge[0]), time(ridge[0]));
                            for (const Index v : ridge) {
@@ -155,7 +156,8 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
   const std::span<const Index> rows = detail::rows_of(contour);
   detail::FaceCounts faces;
   {
-    const detail::Stars stars = detail::make_stars<N>(rows, contour.vertices.size());
+    const detail::Stars stars =
+        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(options.progress, 0.0, 0.1));
     faces =
         detail::count_faces<N>(rows, stars, {}, 1, false, options.threads, detail::part_of(options.progress, 0.1, 0.7),
                                [](std::size_t, const auto&) { /* counted */ })

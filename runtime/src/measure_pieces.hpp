@@ -50,15 +50,19 @@ struct Groups {
 inline Groups one_group(std::size_t count) { return {{0, count}, {}}; }
 
 /// The items by their labels, 0 … count - 1; those with other labels are in no group.
-inline Groups group_by(std::span<const Index> labels, Index count) {
+inline Groups group_by(std::span<const Index> labels, Index count, const Progress& progress = {}) {
   Groups groups;
   groups.first.assign(std::size_t{count} + 2, 0);  // counted two places up, so that filling leaves it right
-  for (const Index label : labels)
-    if (label < count) ++groups.first[label + std::size_t{2}];
+  in_parts(labels.size(), part_of(progress, 0.0, 0.4), [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (labels[i] < count) ++groups.first[labels[i] + std::size_t{2}];
+  });
   for (std::size_t g = 1; g < groups.first.size(); ++g) groups.first[g] += groups.first[g - 1];
   groups.members.resize(groups.first.back());
-  for (std::size_t i = 0; i < labels.size(); ++i)
-    if (labels[i] < count) groups.members[groups.first[labels[i] + std::size_t{1}]++] = static_cast<Index>(i);
+  in_parts(labels.size(), part_of(progress, 0.4, 1.0), [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (labels[i] < count) groups.members[groups.first[labels[i] + std::size_t{1}]++] = static_cast<Index>(i);
+  });
   groups.first.pop_back();
   return groups;
 }

@@ -13,6 +13,7 @@
 
 #include "extract_tiles.hpp"
 #include "locate.hpp"
+#include "progress.hpp"
 #include "tegl/components.hpp"
 #include "tile_flood.hpp"
 
@@ -20,7 +21,12 @@ namespace tegl {
 
 namespace {
 
-constexpr double kNearestShare = 0.1;  ///< of the progress, for the search of the nearest tile
+// How far the progress is after each step.
+constexpr double kNearestShare = 0.1;  ///< the search of the nearest tile
+constexpr double kFlooded = 0.35;
+constexpr double kExtracted = 0.75;
+constexpr double kLabelled = 0.85;
+constexpr double kChosen = 0.95;
 
 /// A point in steps of the grid.
 template <int N>
@@ -114,15 +120,15 @@ class NearestTile {
 template <int N, class Real>
 Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
                         const detail::GridLocator<N>& locator, const std::type_identity_t<std::array<double, N>>& at,
-                        const std::vector<bool>& allowed) {
+                        const std::vector<bool>& allowed, const Progress& progress) {
   Index nearest = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
-    if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) continue;
+  const auto look_at = [&](std::size_t v) {
+    if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) return;
     std::array<double, N> world;
     for (int a = 0; a < N; ++a) world[a] = static_cast<double>(contour.vertices[v][a]);
     detail::CellPlace<N> place;
-    if (!locator.find(world, place)) continue;
+    if (!locator.find(world, place)) return;
     const auto here = in_steps(place);
     double square = 0;
     for (int a = 0; a < N; ++a) square += (here[a] - at[a]) * (here[a] - at[a]);
@@ -130,7 +136,10 @@ Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& 
       least = square;
       nearest = labels.vertices[v];
     }
-  }
+  };
+  detail::in_parts(contour.vertices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) look_at(v);
+  });
   return nearest;
 }
 
@@ -138,18 +147,39 @@ Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& 
 template <int N, class Real>
 std::vector<bool> components_in(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                 const detail::GridLocator<N>& locator, const TileGrid<N>& grid,
-                                const std::vector<TileNumber>& tiles) {
+                                const std::vector<TileNumber>& tiles, const Progress& progress) {
   std::vector<bool> result(labels.count);
-  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
-    if (result[labels.simplices[s]]) continue;
+  const auto look_at = [&](std::size_t s) {
+    if (result[labels.simplices[s]]) return;
     std::array<double, N> middle{};
     for (const Index v : contour.simplices[s])
       for (int a = 0; a < N; ++a) middle[a] += static_cast<double>(contour.vertices[v][a]) / N;
     detail::CellPlace<N> place;
     if (locator.find(middle, place) && std::binary_search(tiles.begin(), tiles.end(), grid.number(place.base)))
       result[labels.simplices[s]] = true;
-  }
+  };
+  detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) look_at(s);
+  });
   return result;
+}
+
+/// Of a contour the component nearest to a point, of those that `choose(labels, progress)` allows. Tells the progress
+/// from kExtracted on.
+template <int N, class Real, class Choose>
+Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::GridLocator<N>& locator,
+                              const std::type_identity_t<std::array<double, N>>& at, const ExtractOptions& options,
+                              std::uint64_t& components, const Choose& choose) {
+  using detail::part_of;
+  const Progress& progress = options.progress;
+  const ComponentLabels labels = label_components(contour, {options.threads, part_of(progress, kExtracted, kLabelled)});
+  const std::vector<bool> allowed = choose(labels, part_of(progress, kLabelled, 0.5 * (kLabelled + kChosen)));
+  components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
+  std::vector<bool> keep(labels.count);
+  if (labels.count != 0)
+    keep[nearest_component(contour, labels, locator, at, allowed,
+                           part_of(progress, 0.5 * (kLabelled + kChosen), kChosen))] = true;
+  return select_components(contour, labels, keep, part_of(progress, kChosen, 1.0));
 }
 
 template <int N>
@@ -180,22 +210,22 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   PickReport<N> own;
   PickReport<N>& found = report != nullptr ? *report : own;
   found = {};
+  ExtractOptions rest = options;
+  rest.progress = detail::part_of(options.progress, kFlooded, kExtracted);
+  const auto all_of = [](const ComponentLabels& labels, const Progress&) {
+    return std::vector<bool>(labels.count, true);
+  };
   const detail::TileFlood<T, N> flood(image, isovalue);
   if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress)) {
     if (!options.close)
       return extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, options);  // names, units, no tiles
     // All that there is lies in the border: the component of the nearest vertex.
-    const Contour<N, Real> contour = extract<Real>(image, isovalue, options);
-    const ComponentLabels labels = label_components(contour, {options.threads, {}});
-    found.components = labels.count;
-    if (labels.count == 0) return contour;
-    std::vector<bool> keep(labels.count);
-    keep[nearest_component(contour, labels, locator, at, std::vector<bool>(labels.count, true))] = true;
-    return select_components(contour, labels, keep);
+    return nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
   }
   bool at_missing = false;
   std::vector<TileNumber> tiles =
-      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads, {}, &at_missing);
+      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads,
+                detail::part_of(options.progress, kNearestShare, kFlooded), &at_missing);
   std::sort(tiles.begin(), tiles.end());
   found.tiles = tiles.size();
   // Where missing values part the tiles around an edge, a vertex there is doubled for the components on either side,
@@ -205,25 +235,16 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   std::vector<TileNumber> looked_at = tiles;
   looked_at.insert(looked_at.end(), around.begin(), around.end());
   std::sort(looked_at.begin(), looked_at.end());
-  ExtractOptions rest = options;
-  if (options.progress)
-    rest.progress = [&options](double fraction) {
-      return options.progress(kNearestShare + (1 - kNearestShare) * fraction);
-    };
   const bool in_tiles = !detail::is_tile_by_tile<N>(options) && !options.close;
   Contour<N, Real> contour;
   if constexpr (N <= 4)
     if (in_tiles) contour = extract<Real>(image, isovalue, rest, *choose_tiles(image, looked_at));
   if (!in_tiles) contour = extract<Real>(image, isovalue, rest);
-  const ComponentLabels labels = label_components(contour, {options.threads, {}});
-  const std::vector<bool> allowed = in_tiles && around.empty()
-                                        ? std::vector<bool>(labels.count, true)
-                                        : components_in(contour, labels, locator, flood.grid(), tiles);
-  found.components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
-  if (labels.count == 0) return contour;
-  std::vector<bool> keep(labels.count);
-  keep[nearest_component(contour, labels, locator, at, allowed)] = true;
-  return select_components(contour, labels, keep);
+  return nearest_part(
+      contour, locator, at, options, found.components, [&](const ComponentLabels& labels, const Progress& progress) {
+        return in_tiles && around.empty() ? all_of(labels, progress)
+                                          : components_in(contour, labels, locator, flood.grid(), tiles, progress);
+      });
 }
 
 #define TEGL_INSTANTIATE_REAL(T, N, Real)                                                                           \

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "progress.hpp"
 #include "require.hpp"
 #include "track_graph.hpp"
 #include "track_sweep.hpp"
@@ -57,19 +58,31 @@ class Builder {
 
   TrackGraph build() {
     describe();
+    tell(0.1);
     graph_.contract(tolerance_);
+    tell(0.3);
     graph_.prune(std::max(options_.min_lifetime, tolerance_));
+    tell(0.5);
     add_events();
     add_segments();
     for (TrackEvent& event : result_.events) finish(event);
+    tell(0.6);
     follow();
     if (options_.handles) add_handles();
+    tell(0.8);
     add_samples();
     label();
+    tell(1.0);
     return std::move(result_);
   }
 
  private:
+  /// After this share of what is left after the sweep.
+  void tell(double share) const {
+    detail::tell(options_.progress, share < 1.0 ? detail::kSwept + (1.0 - detail::kSwept) * share : 1.0,
+                 "tracking was cancelled");
+  }
+
   void describe() {
     result_.space_dim = N;
     std::copy(contour_.axis_names.begin(), contour_.axis_names.end(), result_.axis_names.begin());

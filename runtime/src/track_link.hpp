@@ -16,7 +16,6 @@
 #include "measure_pieces.hpp"
 #include "stars.hpp"
 #include "track_sweep.hpp"
-#include "workers.hpp"
 
 namespace tegl::detail {
 
@@ -64,10 +63,11 @@ class SweptComplex {
  public:
   using Simplex = std::array<Index, N>;
 
-  SweptComplex(const Contour<N, Real>& contour, unsigned threads)
-      : contour_(contour), stars_(make_stars<N>(rows_of(contour), contour.vertices.size())) {
-    rank_vertices();
-    find_border(threads);
+  SweptComplex(const Contour<N, Real>& contour, unsigned threads, const Progress& progress)
+      : contour_(contour),
+        stars_(make_stars<N>(rows_of(contour), contour.vertices.size(), part_of(progress, 0.0, 0.3))) {
+    rank_vertices(part_of(progress, 0.3, 0.5));
+    find_border(threads, part_of(progress, 0.5, 1.0));
   }
 
   [[nodiscard]] const Contour<N, Real>& contour() const { return contour_; }
@@ -82,16 +82,37 @@ class SweptComplex {
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
 
  private:
-  void rank_vertices() {
+  /// Sorts in parts and merges these two by two, to tell the progress in between.
+  void rank_vertices(const Progress& progress) {
+    constexpr std::size_t kPart = std::size_t{1} << 16;
+    const auto comes_first = [&](Index a, Index b) {
+      const Real ta = contour_.vertices[a][N - 1];
+      const Real tb = contour_.vertices[b][N - 1];
+      return ta != tb ? ta < tb : a < b;
+    };
     const std::size_t count = contour_.vertices.size();
     order_.resize(count);
     rank_.resize(count);
     std::iota(order_.begin(), order_.end(), Index{0});
-    std::sort(order_.begin(), order_.end(), [&](Index a, Index b) {
-      const Real ta = contour_.vertices[a][N - 1];
-      const Real tb = contour_.vertices[b][N - 1];
-      return ta != tb ? ta < tb : a < b;
-    });
+    const auto at = [&](Buffer<Index>& of, std::size_t i) {
+      return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
+    };
+    in_parts(
+        count, part_of(progress, 0.0, 0.5),
+        [&](std::size_t from, std::size_t to) { std::sort(at(order_, from), at(order_, to), comes_first); }, kPart);
+    tell(progress, 0.5);
+    Buffer<Index>& merged = rank_;  // nothing is in it yet
+    for (std::size_t size = kPart; size < count; size *= 2) {
+      in_parts(
+          count, {},
+          [&](std::size_t from, std::size_t to) {
+            std::merge(at(order_, from), at(order_, from + size), at(order_, from + size), at(order_, to),
+                       at(merged, from), comes_first);
+            tell(progress, 0.5);
+          },
+          2 * size);
+      order_.swap(merged);
+    }
     for (std::size_t i = 0; i < count; ++i) rank_[order_[i]] = static_cast<Index>(i);
   }
 
@@ -103,13 +124,13 @@ class SweptComplex {
     bool operator<(const Facet& other) const { return others < other.others; }
   };
 
-  void find_border(unsigned threads) {
+  void find_border(unsigned threads, const Progress& progress) {
     border_.assign(contour_.simplices.size(), 0);
-    Workers<std::vector<Facet>> workers(threads, [] { return std::vector<Facet>(); });
-    workers.for_range(contour_.vertices.size(), 4096,
-                      [&](std::size_t from, std::size_t to, std::vector<Facet>& facets) {
-                        for (std::size_t v = from; v < to; ++v) find_border_at(static_cast<Index>(v), facets);
-                      });
+    for_each_block(
+        contour_.vertices.size(), kBlock, threads, progress, [] { return std::vector<Facet>(); },
+        [&](std::size_t, std::size_t from, std::size_t to, std::vector<Facet>& facets) {
+          for (std::size_t v = from; v < to; ++v) find_border_at(static_cast<Index>(v), facets);
+        });
   }
 
   void find_border_at(Index v, std::vector<Facet>& facets) {

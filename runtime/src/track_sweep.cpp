@@ -50,7 +50,7 @@ template <int N, class Real>
 class Sweeper {
  public:
   Sweeper(const Contour<N, Real>& contour, const TrackOptions& options)
-      : options_(options), complex_(contour, options.threads), star_(complex_) {
+      : options_(options), complex_(contour, options.threads, part_of(options.progress, 0.0, kReady)), star_(complex_) {
     const std::size_t count = contour.simplices.size();
     labels_.assign(count, kNone);
     seen_.assign(count, 0);
@@ -67,11 +67,12 @@ class Sweeper {
       const double time = complex_.time(order[i]);
       while (!starts_.empty() && next_time_ < times_.size() && is_due(times_[next_time_], time)) take_sample();
       if (i == 0 || time != complex_.time(order[i - 1])) settle_starts();
-      if (i % 16384 == 0) report(static_cast<double>(i) / static_cast<double>(order.size()));
+      fraction_ = static_cast<double>(i) / static_cast<double>(order.size());
       visit(order[i]);
     }
     settle_starts();
-    report(1);
+    fraction_ = 1.0;
+    tell_all(kTellEvery);
     return std::move(result_);
   }
 
@@ -82,12 +83,20 @@ class Sweeper {
     return sample < time || (sample == time && time != first_);
   }
 
-  void report(double fraction) const { detail::tell(options_.progress, fraction, "tracking was cancelled"); }
+  /// So many more simplices were looked at: by that, and not by vertices, the caller is told now and then, for a vertex
+  /// may be one where searches for a long time whether something falls apart.
+  void tell_all(std::size_t seen) {
+    seen_since_ += seen;
+    if (seen_since_ < kTellEvery) return;
+    seen_since_ = 0;
+    detail::tell(options_.progress, kReady + (kSwept - kReady) * fraction_, "tracking was cancelled");
+  }
 
   // ---- the sweep ----
 
   void visit(Index v) {
     star_.load(v);
+    tell_all(1 + star_.cells().size());
     if (star_.cells().empty()) return;
     born_ = died_ = 0;
     for (const Index s : star_.cells()) {
@@ -280,6 +289,7 @@ class Sweeper {
   bool expand_over(Index a, Index b, std::size_t front) {
     if (complex_.star(b).size() < complex_.star(a).size()) std::swap(a, b);
     bool joined = false;
+    tell_all(complex_.star(a).size());
     for (const Index t : complex_.star(a)) {
       const auto& other = complex_.simplex(t);
       if (std::find(other.begin(), other.end(), b) == other.end()) continue;
@@ -326,6 +336,7 @@ class Sweeper {
     for (Index f = 0; f < count; ++f) {
       if (groups_.find(f) != group) continue;
       for (const Index s : fronts_[f].cells) {
+        tell_all(1);
         labels_[s] = set;
         add_cell_faces(s, level);
       }
@@ -365,10 +376,16 @@ class Sweeper {
       return is_cut ? static_cast<std::size_t>(at - times_.begin()) : times_.size();
     };
     starts_.assign(times_.size() + 3, 0);
-    for (Index s = 0; s < contour.simplices.size(); ++s) ++starts_[first_cut(s) + 2];
+    for (Index s = 0; s < contour.simplices.size(); ++s) {
+      tell_all(1);
+      ++starts_[first_cut(s) + 2];
+    }
     for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
     starting_.resize(contour.simplices.size());
-    for (Index s = 0; s < contour.simplices.size(); ++s) starting_[starts_[first_cut(s) + 1]++] = s;
+    for (Index s = 0; s < contour.simplices.size(); ++s) {
+      tell_all(1);
+      starting_[starts_[first_cut(s) + 1]++] = s;
+    }
     for (int a = 0; a < N - 1; ++a) origin_[a] = static_cast<double>(contour.vertices[0][a]);
   }
 
@@ -392,6 +409,7 @@ class Sweeper {
     ++next_time_;
     sums_.clear();
     for (const Index s : cut_) {
+      tell_all(1);
       const Index arc = components_[sets_.find(labels_[s])].arc;
       if (slots_.size() <= arc) slots_.resize(result_.arcs.size(), kNone);
       if (slots_[arc] == kNone) {
@@ -426,8 +444,12 @@ class Sweeper {
   }
 
   static constexpr unsigned kAll = (1u << N) - 1;
+  static constexpr std::size_t kTellEvery = std::size_t{1} << 16;
+  static constexpr double kReady = 0.2;  ///< of the progress, when the sweep begins
 
   const TrackOptions& options_;
+  double fraction_ = 0.0;       ///< of the sweep
+  std::size_t seen_since_ = 0;  ///< simplices, since the progress was told
   SweptComplex<N, Real> complex_;
   VertexStar<N, Real> star_;
   SweepResult result_;

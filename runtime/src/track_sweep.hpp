@@ -12,6 +12,8 @@
 namespace tegl::detail {
 
 inline constexpr Index kNone = ~Index{0};
+/// The part of the whole progress after which the sweep is done.
+inline constexpr double kSwept = 0.95;
 
 /// What lies at the very time of a vertex, of what is around it: a simplex, or more than that a facet in the border.
 enum class Flatness : std::uint8_t { none, simplex, border };
@@ -58,7 +60,7 @@ struct SweepResult {
   std::vector<Index> simplex_arcs;   ///< #S, if asked for; kNone for simplices that repeat a vertex
 };
 
-/// Instantiated for what `track` is. The options are sound, the contour's numbers finite and in range.
+/// Tells the progress up to kSwept. Instantiated for what `track` is. The options are sound, the contour's numbers finite and in range.
 template <int N, class Real>
 SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options);
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "tegl/contour.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl {
 
@@ -39,12 +40,13 @@ struct MeshReport {
 /// and the orthogonalisation carry a rounding error of a few 1e-16 of that edge, while simplices that are merely thin
 /// are, for coordinates of float precision, orders of magnitude thicker.
 ///
-/// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit).
+/// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit), Cancelled.
 /// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input; no state, so thread-safe.
-MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates);
+MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
+                 const Progress& progress = {});
 
 /// The same for a contour: d = N - 1, space_dim = N; N = 2 to 5. Real: float or double.
 template <int N, class Real>
-MeshReport check(const Contour<N, Real>& contour);
+MeshReport check(const Contour<N, Real>& contour, const Progress& progress = {});
 
 }  // namespace tegl

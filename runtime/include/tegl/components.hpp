@@ -71,15 +71,16 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
 /// A contour for each component, in the order of the labels, with vertices and simplices in the order that they have
 /// in the whole, and with its normals, attributes, names and units. Vertices in no simplex are left out.
 /// Errors: InvalidArgument (a vertex number out of range, labels that do not fit, attributes or normals of another
-/// number). O(#S + #V). Thread-safe.
+/// number); Cancelled. O(#S + #V). Thread-safe.
 template <int N, class Real>
-std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels);
+std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                               const Progress& progress = {});
 
 /// The contour of the components with keep[label], otherwise as `split_components`. Errors: its own, and
 /// InvalidArgument if `keep` has another size than there are components.
 template <int N, class Real>
 Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                   const std::vector<bool>& keep);
+                                   const std::vector<bool>& keep, const Progress& progress = {});
 
 /// Adds the labels as the attribute "component" of the vertices and of the simplices (replacing attributes of this
 /// name); vertices in no simplex get -1. Errors: those of `split_components`.

@@ -211,7 +211,7 @@ class ContourFile final : public ContourSink<N, Real> {
 /// Normals are read where one of the formats of write_mesh has them for all vertices, and so are attributes: of other
 /// programs any numbers by a name of their own (PLY: scalar properties; VTKHDF: arrays of one or two dimensions; glTF:
 /// _NAME as float). What write_mesh wrote comes back with the same numbering, names, units and isovalue. Errors:
-/// FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge.
-Mesh read_mesh(const std::filesystem::path& path);
+/// FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge, Cancelled.
+Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace tegl

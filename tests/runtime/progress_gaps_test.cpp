@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is done with contours asks often enough whether to go on: no part of the work, neither at its beginning nor at
+// its end, keeps somebody waiting who has pressed Ctrl-C. Bounds are shares of the whole, in processor time.
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "errors.hpp"
+#include "fields.hpp"
+#include "progress_probe.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/elements.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/io.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/sample.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/track.hpp"
+
+namespace tegl::test {
+namespace {
+
+struct Operation {
+  std::string name;
+  std::function<void(const Progress&)> run;
+  double share = 0.1;  ///< no gap may be longer than this share of the whole
+};
+
+/// A contour of noise: components, handles and events without end, as bad as contours get.
+class ProgressGaps : public testing::Test {
+ protected:
+  static constexpr int kN = 4;
+  static constexpr std::size_t kSize = 14;
+
+  static void SetUpTestSuite() {
+    image_ = new OwnedImage<float, kN>(noise<float, kN>(kSize, 1));
+    contour_ = new Contour<kN, float>(extract<float>(image_->view(), 0.5));
+    labels_ = new ComponentLabels(label_components(*contour_));
+  }
+  static void TearDownTestSuite() {
+    delete std::exchange(image_, nullptr);
+    delete std::exchange(contour_, nullptr);
+    delete std::exchange(labels_, nullptr);
+  }
+
+  static std::vector<double> times() { return even_times(0.0, kSize - 1.0, 40); }
+
+  static std::vector<Operation> operations(unsigned threads) {
+    const auto work = [threads](const Progress& progress) { return WorkOptions{threads, progress}; };
+    const auto follow = [threads](std::vector<double> at, const Progress& progress) {
+      TrackOptions options;
+      options.times = std::move(at);
+      options.threads = threads;
+      options.progress = progress;
+      track(*contour_, options);
+    };
+    return {
+        {"check", [](const Progress& p) { check(*contour_, p); }},
+        {"label_components", [work](const Progress& p) { label_components(*contour_, work(p)); }, 0.4},
+        {"components", [work](const Progress& p) { components(*contour_, *labels_, work(p)); }},
+        {"split_components", [](const Progress& p) { split_components(*contour_, *labels_, p); }, 0.3},
+        {"select_components",
+         [](const Progress& p) { select_components(*contour_, *labels_, std::vector<bool>(labels_->count, true), p); },
+         0.3},
+        {"measure", [work](const Progress& p) { measure(*contour_, work(p)); }, 0.2},
+        {"measure_cuts", [work](const Progress& p) { measure_cuts(*contour_, times(), work(p)); }, 0.2},
+        {"slice_stack",
+         [work](const Progress& p) { slice_stack(*contour_, Eigen::Vector4d(0, 0, 0, 1), times(), work(p)); }},
+        {"elements", [work](const Progress& p) { elements(*contour_, work(p)); }, 0.2},
+        {"sample", [work](const Progress& p) { sample(image_->view(), *contour_, "v", "", work(p)); }, 0.3},
+        {"track", [follow](const Progress& p) { follow({}, p); }},
+        {"track with samples", [follow](const Progress& p) { follow(times(), p); }},
+    };
+  }
+
+  static inline OwnedImage<float, kN>* image_ = nullptr;
+  static inline Contour<kN, float>* contour_ = nullptr;
+  static inline ComponentLabels* labels_ = nullptr;
+};
+
+void expect_sound(const ProgressProbe& probe) {
+  EXPECT_FALSE(probe.falls());
+  EXPECT_TRUE(probe.is_within_bounds());
+  EXPECT_EQ(probe.last_fraction(), 1.0);
+}
+
+TEST_F(ProgressGaps, AreShortAndFractionsRiseToOne) {
+  for (const Operation& operation : operations(1)) {
+    SCOPED_TRACE(operation.name);
+    // Other programs on the machine take caches away, now and then: twice the same is the operation's own.
+    ProgressProbe probe;
+    for (int attempt = 0; attempt < 3 && (attempt == 0 || probe.longest_share() > operation.share); ++attempt) {
+      probe.watch(operation.run);
+      expect_sound(probe);
+    }
+    EXPECT_LE(probe.longest_share(), operation.share)
+        << "of " << probe.seconds() << " s, after the fraction " << probe.longest_after();
+  }
+}
+
+TEST_F(ProgressGaps, AndSoDoTheyWithSeveralThreads) {
+  for (const Operation& operation : operations(3)) {
+    SCOPED_TRACE(operation.name);
+    ProgressProbe probe;
+    probe.watch(operation.run);
+    expect_sound(probe);
+  }
+}
+
+TEST_F(ProgressGaps, AnyCallCanEndTheWork) {
+  for (const unsigned threads : {1u, 3u})
+    for (const Operation& operation : operations(threads)) {
+      SCOPED_TRACE(testing::Message() << operation.name << ", " << threads << " threads");
+      std::size_t calls = 0;
+      operation.run([&](double) { return ++calls > 0; });
+      ASSERT_GE(calls, 3u);
+      // With several threads the number of calls differs from run to run: the first two are there always.
+      for (const std::size_t last : {std::size_t{1}, std::size_t{2}, threads == 1 ? calls : 2}) {
+        std::size_t seen = 0;
+        expect_error(ErrorCode::Cancelled, "cancelled", [&] { operation.run([&](double) { return ++seen < last; }); });
+        EXPECT_EQ(seen, last) << "nobody asks again";
+      }
+    }
+}
+
+/// Files too, of every format that holds the contour; in text and in numbers.
+TEST_F(ProgressGaps, OfReadingFilesAreShort) {
+  const auto surface = extract<float>(noise<float, 3>(48, 3).view(), 0.5);
+  for (const char* name : {"gaps.ply", "gaps.glb", "gaps.gltf", "gaps.vtkhdf"}) {
+    SCOPED_TRACE(name);
+    const auto path = std::filesystem::path(testing::TempDir()) / name;
+    write_mesh(to_mesh(surface), path);
+    ProgressProbe probe;
+    for (int attempt = 0; attempt < 3 && (attempt == 0 || probe.longest_share() > 0.5); ++attempt) {
+      probe.watch([&](const Progress& progress) { read_mesh(path, progress); });
+      expect_sound(probe);
+    }
+    EXPECT_LE(probe.longest_share(), 0.5) << "of " << probe.seconds() << " s, after " << probe.longest_after();
+    std::size_t seen = 0;
+    expect_error(ErrorCode::Cancelled, "cancelled",
+                 [&] { read_mesh(path, [&](double fraction) { return ++seen > 0 && fraction < 0.3; }); });
+    EXPECT_GT(seen, 1u);
+    std::filesystem::remove(path);
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
