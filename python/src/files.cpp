@@ -98,12 +98,14 @@ void write_any(const AnyContour& contour, const std::string& path, const py::obj
   });
 }
 
-std::unique_ptr<AnyContour> load_any(const std::string& path) {
-  const py::gil_scoped_release release;
-  const auto mesh = [&] {
+std::unique_ptr<AnyContour> load_any(const std::string& path, const py::object& progress) {
+  Call call(progress);
+  const Progress tell = call.progress();
+  const Mesh mesh = call.run([&] {
     const auto lock = lock_files();
-    return read_mesh(path);
-  }();
+    return read_mesh(path, tell);
+  });
+  const py::gil_scoped_release release;
   auto result = std::make_unique<AnyContour>();
   if (mesh.dim == 1)
     result->contour = to_contour<2>(mesh);
@@ -123,7 +125,7 @@ std::unique_ptr<AnyContour> load_any(const std::string& path) {
 void bind_files(py::module_& m) {
   m.def("read_image", &read_any, py::arg("path"), py::arg("variable"), py::arg("progress"), doc::read_image);
   m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
-  m.def("load_contour", &load_any, py::arg("path"), doc::read_mesh);
+  m.def("load_contour", &load_any, py::arg("path"), py::arg("progress"), doc::read_mesh);
 }
 
 }  // namespace tegl::python

@@ -112,9 +112,12 @@ void save(const AnyIndex& index, const std::string& path) {
   index.save(path);
 }
 
+using TileNumbers = py::array_t<TileNumber, py::array::c_style | py::array::forcecast>;
+
 /// The contour in these tiles alone, as if all others had a missing corner.
-std::unique_ptr<AnyContour> extract_tiles(const AnyImage& image, std::vector<TileNumber> tiles, double level,
+std::unique_ptr<AnyContour> extract_tiles(const AnyImage& image, const TileNumbers& numbers, double level,
                                           bool is_double, const py::dict& arguments, const py::object& progress) {
+  std::vector<TileNumber> tiles(numbers.data(), numbers.data() + numbers.size());
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   return call.run([&] {

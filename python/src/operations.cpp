@@ -39,12 +39,11 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
   });
 }
 
-py::dict check_any(const AnyContour& contour) {
-  MeshReport report;
-  {
-    const py::gil_scoped_release release;
-    report = std::visit([](const auto& c) { return check(c); }, contour.contour);
-  }
+py::dict check_any(const AnyContour& contour, const py::object& progress) {
+  Call call(progress);
+  const Progress tell = call.progress();
+  const MeshReport report =
+      call.run([&] { return std::visit([&](const auto& c) { return check(c, tell); }, contour.contour); });
   py::dict result;
   put(result, "dim", report.dim);
   put(result, "vertices", report.vertices);
@@ -142,25 +141,33 @@ py::list components_any(const AnyContour& contour, const ComponentLabels& labels
       contour.contour);
 }
 
-std::vector<AnyContour> split_any(const AnyContour& contour, const ComponentLabels& labels) {
-  const py::gil_scoped_release release;
-  return std::visit(
-      [&](const auto& c) {
-        std::vector<AnyContour> result;
-        for (auto& part : split_components(c, labels)) result.push_back({std::move(part), contour.isovalue});
-        return result;
-      },
-      contour.contour);
+std::vector<AnyContour> split_any(const AnyContour& contour, const ComponentLabels& labels,
+                                  const py::object& progress) {
+  Call call(progress);
+  const Progress tell = call.progress();
+  return call.run([&] {
+    return std::visit(
+        [&](const auto& c) {
+          std::vector<AnyContour> result;
+          for (auto& part : split_components(c, labels, tell)) result.push_back({std::move(part), contour.isovalue});
+          return result;
+        },
+        contour.contour);
+  });
 }
 
 std::unique_ptr<AnyContour> select_any(const AnyContour& contour, const ComponentLabels& labels,
-                                       const std::vector<bool>& keep) {
-  const py::gil_scoped_release release;
-  return std::visit(
-      [&](const auto& c) {
-        return std::unique_ptr<AnyContour>(new AnyContour{select_components(c, labels, keep), contour.isovalue});
-      },
-      contour.contour);
+                                       const std::vector<bool>& keep, const py::object& progress) {
+  Call call(progress);
+  const Progress tell = call.progress();
+  return call.run([&] {
+    return std::visit(
+        [&](const auto& c) {
+          return std::unique_ptr<AnyContour>(
+              new AnyContour{select_components(c, labels, keep, tell), contour.isovalue});
+        },
+        contour.contour);
+  });
 }
 
 template <int N>
@@ -258,7 +265,7 @@ void sample_any(AnyContour& contour, const AnyImage& image, const std::string& n
 void bind_operations(py::module_& m) {
   m.def("slice_stack", &cuts, py::arg("contour"), py::arg("normal"), py::arg("offsets"), py::arg("threads"),
         py::arg("progress"), doc::slice_stack);
-  m.def("check", &check_any, py::arg("contour"), doc::check_2);
+  m.def("check", &check_any, py::arg("contour"), py::arg("progress"), doc::check_2);
   m.def("measure", &measure_any, py::arg("contour"), py::arg("threads"), py::arg("progress"), doc::measure);
   m.def("measure_cuts", &measure_cuts_any, py::arg("contour"), py::arg("at"), py::arg("threads"), py::arg("progress"),
         doc::measure_cuts);
@@ -278,8 +285,9 @@ void bind_operations(py::module_& m) {
         doc::label_components);
   m.def("components", &components_any, py::arg("contour"), py::arg("labels"), py::arg("threads"), py::arg("progress"),
         doc::components);
-  m.def("split_components", &split_any, py::arg("contour"), py::arg("labels"), doc::split_components);
-  m.def("select_components", &select_any, py::arg("contour"), py::arg("labels"), py::arg("keep"),
+  m.def("split_components", &split_any, py::arg("contour"), py::arg("labels"), py::arg("progress"),
+        doc::split_components);
+  m.def("select_components", &select_any, py::arg("contour"), py::arg("labels"), py::arg("keep"), py::arg("progress"),
         doc::select_components);
   m.def("simplify", &simplify_any, py::arg("contour"), py::arg("options"), py::arg("progress"), doc::simplify);
   m.def("automatic_scale", &automatic_scale_any, py::arg("contour"), doc::automatic_scale);

@@ -9,6 +9,9 @@ that goes in and comes out is turned around here and in `Contour`; the library's
 from __future__ import annotations
 
 import dataclasses
+import datetime
+import inspect
+import os
 import typing
 from collections.abc import Sequence
 
@@ -20,13 +23,16 @@ _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
 
 
-def documents(*names: str):
+_Documented = typing.TypeVar("_Documented", bound=typing.Callable[..., typing.Any])
+
+
+def documents(*names: str) -> typing.Callable[[_Documented], _Documented]:
     """Puts the library's own comments behind a docstring."""
 
-    def decorate(function):
+    def decorate(function: _Documented) -> _Documented:
         texts = [_tegl.docs[name] for name in names]
         if function.__doc__:  # None under python -OO
-            function.__doc__ += ("\n\nFrom the library's reference, whose axes are those of the array from the last to "
+            function.__doc__ = (inspect.cleandoc(function.__doc__) + "\n\nFrom the library's reference, whose axes are those of the array from the last to "
                                  "the first (its last axis is the array's `time_axis`):\n\n" + "\n\n".join(texts) + "\n")
         return function
 
@@ -38,6 +44,21 @@ class UniformAxis(typing.NamedTuple):
 
     origin: float
     step: float
+
+
+def core_of(contour) -> _tegl.Contour:
+    """The library's own contour."""
+    core = getattr(contour, "_core", None)
+    if not isinstance(core, _tegl.Contour):
+        raise TypeError(f"{type(contour).__name__} is no contour; expected a tegl.Contour, as tegl.contour(array, level) "
+                        "and tegl.load(path) give")
+    return core
+
+
+def part_of(progress, first: float, last: float):
+    """The progress of a call that takes the whole from `first` to `last`."""
+    return None if progress is None else lambda fraction: progress(
+        first + (last - first) * fraction if fraction < 1 else last)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -91,14 +112,34 @@ def time_as_numbers(times: np.ndarray) -> tuple[np.ndarray, str]:
     return (times.astype("datetime64[ns]") - start) / np.timedelta64(1, "D"), f"days since {start.astype('datetime64[s]')}"
 
 
+def _as_date(at: object) -> np.datetime64 | None:
+    """What a date is, in any of the forms that Python has for them: NumPy's, xarray's, pandas' and its own. None for
+    what is no date."""
+    if isinstance(at, datetime.datetime) and at.tzinfo is not None:  # pandas' timestamps are datetimes
+        at = at.astimezone(datetime.timezone.utc).replace(tzinfo=None)
+    if isinstance(at, (str, datetime.date)):
+        return np.datetime64(typing.cast(str, at))
+    if getattr(getattr(at, "dtype", None), "kind", "") == "M" and np.ndim(typing.cast(float, at)) == 0:
+        return np.asarray(at)[()]
+    return None
+
+
 def number_on_axis(at: object, unit: str) -> float:
     """A coordinate as a number; dates on an axis whose unit is `days since DATE`, as of xarray's times."""
-    if isinstance(at, (np.datetime64, str)):
-        if not unit.startswith("days since "):
-            raise ValueError(f"the coordinate {at!r} is a date, and the axis has the unit '{unit}'; expected a number")
-        start = np.datetime64(unit.removeprefix("days since ").strip().replace(" ", "T"))
-        return float((np.datetime64(at) - start) / np.timedelta64(1, "D"))
-    return float(typing.cast(float, at))
+    date = _as_date(at)
+    if date is None:
+        if getattr(getattr(at, "dtype", None), "kind", "") == "m":
+            raise ValueError(f"the coordinate {at!r} is a duration; expected a number, or a date")
+        return float(typing.cast(float, at))
+    if not unit.startswith("days since "):
+        raise ValueError(f"the coordinate {at!r} is a date, and the axis has the unit '{unit}'; expected a number")
+    if unit.rstrip().endswith(")"):
+        raise ValueError(f"the coordinate {at!r} is a date, and the axis has '{unit}', of another calendar; expected a "
+                         "number")
+    if np.isnat(date):
+        raise ValueError("the coordinate is no date (NaT); expected one")
+    start = np.datetime64(unit.removeprefix("days since ").strip().replace(" ", "T"))
+    return float((date - start) / np.timedelta64(1, "D"))
 
 
 def _per_axis(value, ndim: int, name: str, default: float) -> list[float]:
@@ -137,8 +178,8 @@ def _affine(affine, ndim: int) -> np.ndarray | None:
     return matrix[:ndim]
 
 
-def _from_xarray(data) -> tuple[list, list[str], list[str], int]:
-    """Coordinates (None where there are none), names, units, and the axis of the time."""
+def _from_xarray(data) -> tuple[list, list[str], list[str], int | None]:
+    """Coordinates (None where there are none), names, units, and the axis of the time, if there is one."""
     coordinates: list = []
     units: list[str] = []
     time_axis = None
@@ -159,7 +200,7 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int]:
             time_axis = number
         coordinates.append(values)
         units.append(unit)
-    return coordinates, [str(dim) for dim in data.dims], units, time_axis if time_axis in (0, data.ndim - 1) else 0
+    return coordinates, [str(dim) for dim in data.dims], units, time_axis
 
 
 def _values(array: np.ndarray) -> np.ndarray:
@@ -195,6 +236,10 @@ def _masked(array: np.ndarray, mask) -> np.ndarray:
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
             time_axis=None) -> Prepared:
     """The library's view of an array: no values are copied but where the type or a mask asks for it."""
+    if isinstance(data, (str, os.PathLike)):
+        raise TypeError(f"{data!r} is a path; expected an array, or tegl.read({data!r})")
+    if hasattr(data, "data_vars"):
+        raise TypeError(f"a dataset of {', '.join(map(repr, data.data_vars))}; expected one of them, dataset[name]")
     names: Sequence[str] | None = None
     units: Sequence[str] | None = None
     known: Sequence | None = None
@@ -203,8 +248,14 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         affine = own_affine if affine is None else affine
         time_axis = own_axis if time_axis is None else time_axis
     elif is_xarray(data):
-        known, names, units, own_axis = _from_xarray(data)
-        time_axis = own_axis if time_axis is None else time_axis
+        known, names, units, found_axis = _from_xarray(data)
+        if time_axis is None:
+            if found_axis not in (None, 0, data.ndim - 1):
+                time = data.dims[found_axis]
+                raise ValueError(f"the time '{time}' is between the other axes, {', '.join(map(str, data.dims))}; expected "
+                                 f"it first or last: data.transpose('{time}', ...); or time_axis=0 or -1, for cuts and "
+                                 "tracks along the first or last axis")
+            time_axis = found_axis
         data = data.data if isinstance(data.data, np.ndarray) else data.values
     if isinstance(data, np.ma.MaskedArray):
         if np.ma.getmask(data) is not np.ma.nomask:

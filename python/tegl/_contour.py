@@ -145,6 +145,16 @@ class Contour:
         """The level that it is a contour of; None if a file did not say."""
         return self._core.isovalue
 
+    def __reduce__(self):
+        def attributes(of: Mapping[str, tuple[np.ndarray, str]]) -> list[tuple[str, str, np.ndarray]]:
+            return [(name, unit, np.array(values)) for name, (values, unit) in of.items()]
+
+        core = self._core
+        return _restored, (np.array(core.vertices), np.array(core.simplices),
+                           None if core.normals is None else np.array(core.normals), core.axis_names, core.axis_units,
+                           core.direction, core.isovalue, attributes(core.vertex_attributes),
+                           attributes(core.simplex_attributes), self._is_reversed)
+
     def __repr__(self) -> str:
         what = {2: "segments", 3: "triangles", 4: "tetrahedra", 5: "4-simplices"}[self.ndim]
         level = "" if self.isovalue is None else f" at {self.isovalue:g}"
@@ -169,10 +179,10 @@ class Contour:
         from . import _operations
         return _operations.measure(self, threads=threads, progress=progress)
 
-    def check(self) -> MeshReport:
+    def check(self, *, progress: Progress | None = None) -> MeshReport:
         """Is it a manifold? See `tegl.check`."""
         from . import _operations
-        return _operations.check(self)
+        return _operations.check(self, progress=progress)
 
     def simplify(self, **options) -> Contour:
         """Fewer simplices, the same manifold: see `tegl.simplify`."""
@@ -213,9 +223,9 @@ class Contour:
         _tegl.write_contour(self._core, os.fspath(path), progress)
 
     @staticmethod
-    def load(path: str | os.PathLike, *, time_axis: int = 0) -> Contour:
+    def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | None = None) -> Contour:
         """Reads a contour from a file: see `tegl.load`."""
-        return load(path, time_axis=time_axis)
+        return load(path, time_axis=time_axis, progress=progress)
 
     # For other programs. Their points are x, y, z (and t): the library's order of axes, as in files.
 
@@ -243,12 +253,17 @@ class Contour:
         return _export.to_pyvista(self)
 
 
+def _restored(*arrays) -> Contour:
+    """What was pickled, or copied: of the grid of its image it knows nothing more."""
+    return Contour._of(_tegl.Contour.from_arrays(*arrays[:-1]), arrays[-1])
+
+
 @_arguments.documents("read_mesh")
-def load(path: str | os.PathLike, *, time_axis: int = 0) -> Contour:
+def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | None = None) -> Contour:
     """Reads a contour from a file: .vtkhdf, .ply, .gltf, .glb, .stl, .obj.
 
     Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;
     with -1 they are x, y, z (, t).
     """
-    core = _tegl.load_contour(os.fspath(path))
+    core = _tegl.load_contour(os.fspath(path), progress)
     return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))

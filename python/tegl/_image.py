@@ -42,6 +42,18 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     time_axis
         The axis that `slice`, `track` and `measure` take for the time: 0, the first, if nothing else is said (for xarray
         the one with dates or named "time" or "t"), or -1, the last.
+    triangulation
+        "compact", or "barycentric": more simplices, none of which is flat unless points fall together.
+    ambiguity
+        What joins what in a tile: "low" or "high", always the same way; "mean" or "saddle", by the values.
+    direction
+        Which way simplices and normals point: "descent", to lower values, or "ascent".
+    close
+        Whether the contour is closed where it meets the border of the array.
+    epsilon
+        How far, as a share of an edge, vertices stay away from samples: above 0 no simplex is flat that need not be.
+    normals, gradient
+        Whether to have normals, from the gradients of the values: by "differences", or by the "sobel" kernel.
     dtype
         Of the vertices: float32 or float64.
     threads

@@ -90,8 +90,8 @@ _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_un
 def _cut_image(array, level, at, axis, normal, offset, threads, progress, more) -> Contour | list[Contour]:
     if normal is not None:  # there is no short way to an oblique cut
         from ._image import contour
-        whole = contour(array, level, threads=threads, progress=progress, **more)
-        return _cut(whole, at, axis, normal, offset, threads, progress, {})
+        whole = contour(array, level, threads=threads, progress=_arguments.part_of(progress, 0.0, 0.5), **more)
+        return _cut(whole, at, axis, normal, offset, threads, _arguments.part_of(progress, 0.5, 1.0), {})
     if offset is not None:
         raise ValueError("offset without normal; expected both, or at=")
     prepared = _arguments.prepare(array, **{name: more.pop(name) for name in _GRID if name in more})
@@ -99,10 +99,12 @@ def _cut_image(array, level, at, axis, normal, offset, threads, progress, more) 
     time_axis = 0 if prepared.is_reversed else prepared.ndim - 1
     number, places = _named_axis(prepared.names, prepared.ndim, time_axis, at, axis, more)
     options = _arguments.extract_options(threads=threads, **more)
+    wanted = list(places) if _is_list(places) else [places]
     cuts = [Contour._of(_tegl.slice_image(prepared.image, level, prepared.library_axis(number),
                                           _arguments.number_on_axis(place, prepared.units[number]), is_double, options,
-                                          progress), prepared.is_reversed)
-            for place in (places if _is_list(places) else [places])]
+                                          _arguments.part_of(progress, i / len(wanted), (i + 1) / len(wanted))),
+                        prepared.is_reversed)
+            for i, place in enumerate(wanted)]
     return cuts if _is_list(places) else cuts[0]
 
 
@@ -135,9 +137,9 @@ class MeshReport:
 
 
 @_arguments.documents("MeshReport")
-def check(contour: Contour) -> MeshReport:
+def check(contour: Contour, *, progress: Progress | None = None) -> MeshReport:
     """Counts a contour's invariants: is it a manifold, closed, oriented? In how many pieces?"""
-    return MeshReport(**_tegl.check(contour._core))
+    return MeshReport(**_tegl.check(_arguments.core_of(contour), progress))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -166,12 +168,13 @@ class CutMeasures:
 def measure(contour: Contour, *, at=None, threads: int = 0,
             progress: Progress | None = None) -> Measures | CutMeasures:
     """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times."""
+    core = _arguments.core_of(contour)
     if at is not None:
         unit = contour.axis_units[contour.time_axis]
         places = [_arguments.number_on_axis(place, unit) for place in np.atleast_1d(np.asarray(at))]
-        size, content = _tegl.measure_cuts(contour._core, places, threads, progress)
+        size, content = _tegl.measure_cuts(core, places, threads, progress)
         return CutMeasures(np.array(places), np.array(size), np.array(content))
-    found = _tegl.measure(contour._core, threads, progress)
+    found = _tegl.measure(core, threads, progress)
     for name in ("centroid", "lowest", "highest"):
         found[name] = np.array(contour._listed(found[name]))
     return Measures(**found)
@@ -219,13 +222,13 @@ class Components(Sequence[Component]):
         return f"<tegl.Components: {len(self)}>"
 
     @_arguments.documents("split_components")
-    def split(self) -> list[Contour]:
+    def split(self, *, progress: Progress | None = None) -> list[Contour]:
         """A contour for each."""
         return [Contour._of(part, self._contour._is_reversed, self._contour._grid)
-                for part in _tegl.split_components(self._contour._core, self._labels)]
+                for part in _tegl.split_components(self._contour._core, self._labels, progress)]
 
     @_arguments.documents("select_components")
-    def select(self, keep) -> Contour:
+    def select(self, keep, *, progress: Progress | None = None) -> Contour:
         """The contour of some: a truth value for each component, or the labels of those to keep."""
         chosen = np.asarray(keep)
         if chosen.dtype != bool:
@@ -233,21 +236,24 @@ class Components(Sequence[Component]):
             if labels.size and not (0 <= labels.min() and labels.max() < len(self)):
                 raise ValueError(f"labels are {labels.min()} to {labels.max()}; expected 0 to {len(self) - 1}")
             chosen[labels] = True
-        core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist())
+        core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist(), progress)
         return Contour._of(core, self._contour._is_reversed, self._contour._grid)
 
-    def largest(self, count: int = 1) -> Contour:
+    def largest(self, count: int = 1, *, progress: Progress | None = None) -> Contour:
         """The contour of the largest ones by size."""
+        if count < 0:
+            raise ValueError(f"count is {count}; expected 0 or more")
         order = sorted(range(len(self)), key=lambda label: (-self._found[label].size, label))
-        return self.select(np.array(order[:count], dtype=np.int64))
+        return self.select(np.array(order[:count], dtype=np.int64), progress=progress)
 
 
 @_arguments.documents("label_components", "components", "Component")
 def components(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> Components:
     """The connected components: labels, what each is, contours of some."""
-    labels = _tegl.label_components(contour._core, threads, progress)
+    core = _arguments.core_of(contour)
+    labels = _tegl.label_components(core, threads, _arguments.part_of(progress, 0.0, 0.3))
     found = []
-    for one in _tegl.components(contour._core, labels, threads, progress):
+    for one in _tegl.components(core, labels, threads, _arguments.part_of(progress, 0.3, 1.0)):
         for name in ("centroid", "lowest", "highest"):
             one[name] = np.array(contour._listed(one[name]))
         found.append(Component(**one))
@@ -327,7 +333,7 @@ def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
     """
     if by_cell and contour._grid is None:
         raise ValueError("by_cell of a contour whose grid is not known; expected one that tegl.contour made")
-    return Elements(_tegl.elements(contour._core, contour._grid if by_cell else None, threads, progress),
+    return Elements(_tegl.elements(_arguments.core_of(contour), contour._grid if by_cell else None, threads, progress),
                     contour._is_reversed)
 
 
@@ -365,6 +371,6 @@ def simplify(contour: Contour, *, ratio: float | None = None, count: int | None 
     options = {"method": method, "border": border, "ratio": ratio, "count": count, "max_error": max_error,
                "max_curvature": max_curvature, "scale": factors, "measure": measure,
                "allow_nonmanifold": allow_nonmanifold, "threads": threads}
-    core, stats = _tegl.simplify(contour._core, options, progress)
+    core, stats = _tegl.simplify(_arguments.core_of(contour), options, progress)
     result = Contour._of(core, contour._is_reversed)
     return (result, SimplifyStats(**stats)) if return_stats else result

@@ -160,6 +160,7 @@ def track(contour: Contour, *, min_lifetime: float = 0.0, times=None, first: flo
 
     times: when to measure the parts, ascending; a whole number: at so many even times.
     """
+    core = _arguments.core_of(contour)
     unit = contour.axis_units[contour.time_axis]
     if times is None:
         places: list[float] = []
@@ -168,5 +169,5 @@ def track(contour: Contour, *, min_lifetime: float = 0.0, times=None, first: flo
         places = _tegl.even_times(float(along.min()), float(along.max()), int(times)) if len(along) else []
     else:
         places = [_arguments.number_on_axis(time, unit) for time in times]
-    core = _tegl.track(contour._core, min_lifetime, places, first, last, handles, label_simplices, threads, progress)
-    return TrackGraph(core, contour._is_reversed, unit)
+    found = _tegl.track(core, min_lifetime, places, first, last, handles, label_simplices, threads, progress)
+    return TrackGraph(found, contour._is_reversed, unit)

@@ -58,6 +58,39 @@ def test_what_a_progress_function_raises_reaches_the_caller(long_image):
             call(threads=1, progress=fail)
 
 
+def test_all_long_calls_tell_progress_that_rises_to_one(long_image, tmp_path):
+    contour = tegl.contour(long_image[:6, :20, :20, :20], 0.0, dtype=np.float64)
+    contour.save(tmp_path / "c.vtkhdf")
+    components = contour.components()
+    for call in (contour.track, contour.measure, contour.components, contour.elements, contour.check, components.split,
+                 lambda **k: components.select([0, 1], **k), lambda **k: components.largest(2, **k),
+                 lambda **k: contour.slice([1.5, 2.5], **k), lambda **k: contour.measure(**k),
+                 lambda **k: tegl.measure(contour, at=[1.5, 2.5], **k),
+                 lambda **k: tegl.slice(long_image, 0.0, at=[1.5, 2.5], **k),
+                 lambda **k: tegl.load(tmp_path / "c.vtkhdf", **k), lambda **k: tegl.Index(long_image, **k),
+                 lambda **k: tegl.Index(long_image, "full-scan").pick((6, 20, 20, 20), 0.0, **k)):
+        told = []
+        call(progress=told.append)
+        assert told == sorted(told) and told[-1] == 1.0, (call, told)
+
+
+@pytest.mark.parametrize("name", ["check", "split", "select", "load"])
+def test_what_has_no_events_of_its_own_can_be_cancelled_too(name, tmp_path):
+    contour = tegl.contour(noise((6, 24, 24, 24), 1), 0.0)
+    components = contour.components()
+    contour.save(tmp_path / "c.vtkhdf")
+    call = {"check": contour.check, "split": components.split, "select": lambda **k: components.select([0], **k),
+            "load": lambda **k: tegl.load(tmp_path / "c.vtkhdf", **k)}[name]
+    with pytest.raises(tegl.Cancelled):
+        call(progress=lambda fraction: False)
+
+
+def test_what_is_too_large_is_an_overflow_error():
+    everywhere = np.broadcast_to(np.float32(1), (2000, 2000, 2000))  # 2**33 samples, all in one place
+    with pytest.raises(OverflowError, match="expected at most 2\\^32"):
+        tegl.Index(everywhere, "span-space")
+
+
 def run_until_interrupted(work, after=0.3):
     """Runs Python code that prints "ready" and goes to work; interrupts it; (seconds until it ended, its output)."""
     code = textwrap.dedent("""

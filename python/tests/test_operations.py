@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is done with contours: cuts, checks, components, measures, elements, simplification, tracking, indexes."""
 
+import copy
+import datetime
 import itertools
 import json
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -341,3 +344,73 @@ def test_whatever_is_cut_open_is_open_at_the_border_alone():
     for face in (face for face, times in count.items() if times == 1):
         corners = cut.vertices[list(face)]
         assert ((corners == 0).all(axis=0) | (corners == np.array([6, 7, 4])).all(axis=0)).any()
+
+
+def test_dates_in_any_form_are_the_same_place():
+    xarray = pytest.importorskip("xarray")
+    pandas = pytest.importorskip("pandas")
+    times = pandas.date_range("2020-01-01", periods=6, freq="D")
+    data = xarray.DataArray(noise((6, 9, 9, 9), 4), dims=("time", "z", "y", "x"), coords={"time": times})
+    contour = tegl.contour(data, 0.0)
+    expected = contour.slice(2.5)
+    assert len(expected.simplices) > 100
+    noon = np.datetime64("2020-01-03T12:00")
+    for at in (noon, "2020-01-03T12:00", pandas.Timestamp(noon), datetime.datetime(2020, 1, 3, 12),
+               datetime.datetime(2020, 1, 3, 14, tzinfo=datetime.timezone(datetime.timedelta(hours=2))),
+               xarray.DataArray(noon)):
+        assert_same(contour.slice(at), expected)
+    third = contour.slice(2.0)
+    assert_same(contour.slice(data.time[2]), third)
+    assert_same(contour.slice(datetime.date(2020, 1, 3)), third)
+    for at in (data.time[1:4], times[1:4], list(data.time[1:4]), data.time.values[1:4]):
+        assert_same(contour.slice(at)[1], third)
+    assert contour.measure().size > 0 and tegl.measure(contour, at=times[1:3]).size[1] > 0
+    assert len(contour.track(times=times[1:3]).segments) > 0
+    with pytest.raises(ValueError, match="NaT"):
+        contour.slice(np.datetime64("NaT"))
+    with pytest.raises(ValueError, match="duration"):
+        contour.slice(np.timedelta64(1, "D"))
+    with pytest.raises(ValueError, match="is a date"):
+        contour.slice(x=noon)
+
+
+def test_dates_of_other_calendars_are_refused():
+    contour = tegl.contour(noise((6, 9, 9), 4), 0.0, axis_names=("time", "y", "x"),
+                           axis_units=("days since 2000-01-01 (noleap)", "", ""))
+    assert len(contour.slice(2.5).simplices) > 0
+    with pytest.raises(ValueError, match="calendar"):
+        contour.slice("2000-01-03")
+
+
+def test_a_time_between_other_axes_is_not_passed_over():
+    xarray = pytest.importorskip("xarray")
+    data = xarray.DataArray(noise((5, 6, 7), 4), dims=("member", "time", "x"),
+                            coords={"time": np.arange("2020-01-01", "2020-01-07", dtype="datetime64[D]").astype("M8[ns]")})
+    with pytest.raises(ValueError, match="the time 'time' is between.*transpose"):
+        tegl.contour(data, 0.0)
+    assert tegl.contour(data, 0.0, time_axis=-1).time_axis == 2
+    assert tegl.contour(data.transpose("time", ...), 0.0).axis_names[0] == "time"
+
+
+def test_contours_are_pickled_and_copied():
+    contour = tegl.contour(noise((7, 8, 9), 2), 0.0, normals=True, axis_names="tyx", axis_units=("s", "mm", "mm"))
+    contour.sample(noise((7, 8, 9), 3), "other", "K")
+    for other in (pickle.loads(pickle.dumps(contour)), copy.deepcopy(contour)):
+        assert_same(other, contour)
+        assert np.array_equal(other.normals, contour.normals)
+        assert np.array_equal(other["other"], contour["other"]) and other.attribute_units == contour.attribute_units
+        assert (other.axis_names, other.axis_units, other.isovalue, other.time_axis) == \
+            (contour.axis_names, contour.axis_units, contour.isovalue, contour.time_axis)
+
+
+def test_what_is_no_contour_or_no_array_is_a_type_error():
+    array = noise((5, 6, 7), 1)
+    for call in (tegl.check, tegl.measure, tegl.components, tegl.elements, tegl.track,
+                 lambda value: tegl.simplify(value, ratio=0.5)):
+        with pytest.raises(TypeError, match="ndarray is no contour; expected a tegl.Contour"):
+            call(array)
+    with pytest.raises(TypeError, match="is a path; expected an array"):
+        tegl.contour("ocean.nc", 20.0)
+    xarray = pytest.importorskip("xarray")
+    with pytest.raises(TypeError, match="a dataset of 'v'; expected one"):
+        tegl.contour(xarray.Dataset({"v": (("z", "y", "x"), array)}), 0.0)
