@@ -113,8 +113,15 @@ class Call {
 };
 
 /// Of the formats' libraries some keep global state (tegl/io.hpp): one file at a time. Take it without the
-/// interpreter's lock.
-std::unique_lock<std::mutex> lock_files();
+/// interpreter's lock. Who waits for it is told so by `progress`, 0, and can be cancelled; a thread that has it, which
+/// is one whose progress function asks for another file, gets InvalidArgument.
+class FileLock {
+ public:
+  explicit FileLock(const Progress& progress = {});
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+};
 
 /// A view of memory that `owner` holds, for reading only.
 template <class T>

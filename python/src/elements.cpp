@@ -84,7 +84,7 @@ void write_any(const AnyElements& elements, const std::string& path, const std::
   options.header = header;
   options.progress = call.progress();
   call.run([&] {
-    const auto lock = lock_files();
+    const FileLock lock(options.progress);
     std::visit([&](const auto& e) { write_elements(e, path, options); }, elements.elements);
   });
 }

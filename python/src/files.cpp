@@ -66,7 +66,7 @@ py::dict read_any(const std::string& path, const std::string& variable, const py
   options.variable = variable;
   options.progress = call.progress();
   ReadImageResult read = call.run([&] {
-    const auto lock = lock_files();
+    const FileLock lock(options.progress);
     return read_image(path, options);
   });
   py::dict result;
@@ -93,7 +93,7 @@ void write_any(const AnyContour& contour, const std::string& path, const py::obj
         },
         contour.contour);
     mesh.isovalue = contour.isovalue;
-    const auto lock = lock_files();
+    const FileLock lock(tell);
     write_mesh(mesh, path, tell);
   });
 }
@@ -102,7 +102,7 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, const py::object& 
   Call call(progress);
   const Progress tell = call.progress();
   const Mesh mesh = call.run([&] {
-    const auto lock = lock_files();
+    const FileLock lock(tell);
     return read_mesh(path, tell);
   });
   const py::gil_scoped_release release;

@@ -85,7 +85,7 @@ std::unique_ptr<AnyIndex> load(const std::string& path, const AnyImage& image, u
   options.threads = threads;
   options.progress = call.progress();
   return call.run([&] {
-    const auto lock = lock_files();
+    const FileLock lock(options.progress);
     return index_of(image, [&](const auto& view) { return read_active_tiles(path, view, options); });
   });
 }
@@ -108,7 +108,7 @@ py::array find(const AnyIndex& index, double level) {
 
 void save(const AnyIndex& index, const std::string& path) {
   const py::gil_scoped_release release;
-  const auto lock = lock_files();
+  const FileLock lock;
   index.save(path);
 }
 

@@ -3,6 +3,9 @@
 // The Python module tegl._tegl: what the package is made of, and how errors of the library reach Python.
 #include <fmt/format.h>
 
+#include <chrono>
+#include <mutex>
+
 #include "binding.hpp"
 #include "docs.hpp"
 
@@ -32,9 +35,29 @@ bool Call::tell(double fraction) {
   }
 }
 
-std::unique_lock<std::mutex> lock_files() {
-  static std::mutex mutex;
-  return std::unique_lock(mutex);
+namespace {
+
+std::timed_mutex& file_mutex() {
+  static std::timed_mutex mutex;
+  return mutex;
+}
+thread_local bool has_files = false;
+
+}  // namespace
+
+FileLock::FileLock(const Progress& progress) {
+  if (has_files)
+    throw Error(ErrorCode::InvalidArgument,
+                "a progress function of a call that reads or writes a file asks for another file; expected none before "
+                "that call is done");
+  while (!file_mutex().try_lock_for(std::chrono::milliseconds(50)))
+    if (progress && !progress(0.0))
+      throw Error(ErrorCode::Cancelled, "cancelled while another file is read or written");
+  has_files = true;
+}
+FileLock::~FileLock() {
+  has_files = false;
+  file_mutex().unlock();
 }
 
 ExtractOptions extract_options(const py::dict& arguments, Call& call) {

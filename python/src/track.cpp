@@ -127,7 +127,7 @@ py::object simplex_segments_of(const py::object& self) {
 
 void write_any(const TrackGraph& graph, const std::string& path, const std::string& title) {
   const py::gil_scoped_release release;
-  const auto lock = lock_files();
+  const FileLock lock;
   TrackPicture picture;
   picture.title = title;
   write_track(graph, path, picture);

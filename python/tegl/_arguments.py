@@ -222,6 +222,14 @@ def _values(array: np.ndarray) -> np.ndarray:
     return array
 
 
+def _in_order(mask, dims: Sequence):
+    """An xarray with its dimensions in the order of the image's."""
+    if set(mask.dims) != set(dims):
+        raise ValueError(f"mask has the dimensions {', '.join(map(str, mask.dims))}; expected those of the array, "
+                         f"{', '.join(map(str, dims))}")
+    return mask.transpose(*dims)
+
+
 def _masked(array: np.ndarray, mask) -> np.ndarray:
     """Where the mask is False, values are missing: NaN, in a copy."""
     mask = np.asarray(mask, dtype=bool)
@@ -243,11 +251,13 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
     names: Sequence[str] | None = None
     units: Sequence[str] | None = None
     known: Sequence | None = None
+    dims: Sequence | None = None
     if hasattr(data, "__tegl_image__"):
         known, names, units, own_affine, own_axis, data = data.__tegl_image__()
         affine = own_affine if affine is None else affine
         time_axis = own_axis if time_axis is None else time_axis
     elif is_xarray(data):
+        dims = data.dims
         known, names, units, found_axis = _from_xarray(data)
         if time_axis is None:
             if found_axis not in (None, 0, data.ndim - 1):
@@ -267,7 +277,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         raise ValueError(f"the array has {ndim} axes; expected 2 to 5")
     array = _values(array)
     if mask is not None:
-        array = _masked(array, mask)
+        array = _masked(array, mask if dims is None or not is_xarray(mask) else _in_order(mask, dims))
     if coords is None:
         coords = known if spacing is None and origin is None else None
     elif len(coords) != ndim:

@@ -211,6 +211,9 @@ class Contour:
         prepared = _arguments.prepare(array, **{"time_axis": self.time_axis, **grid})
         if prepared.is_reversed != self._is_reversed:
             raise ValueError(f"time_axis of the array is another than that of the contour, {self.time_axis}")
+        if prepared.names != self.axis_names and sorted(prepared.names) == sorted(self.axis_names):
+            raise ValueError(f"the array has the axes {', '.join(prepared.names)}; expected the contour's order, "
+                             f"{', '.join(self.axis_names)}")
         _tegl.sample(self._core, prepared.image, name, unit, threads, progress)
         return self.vertex_attributes[name]
 

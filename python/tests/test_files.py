@@ -210,3 +210,37 @@ def test_pyvista_gets_what_vtk_gets(monkeypatch):
             monkeypatch.setitem(sys.modules, "pyvista", types.SimpleNamespace(wrap=lambda mesh: mesh))
     mesh = tegl.contour(ball(3), 0.0).to_pyvista()
     assert mesh.GetNumberOfCells() == len(tegl.contour(ball(3), 0.0).simplices)
+
+
+def test_a_progress_function_that_asks_for_another_file_is_refused(tmp_path):
+    path = tmp_path / "c.ply"
+    tegl.contour(noise((20, 20, 20), 1), 0.0).save(path)
+    with pytest.raises(ValueError, match="asks for another file"):
+        tegl.load(path, progress=lambda fraction: tegl.load(path))
+    assert len(tegl.load(path).simplices) > 0
+
+
+def test_who_waits_for_files_can_be_cancelled(tmp_path):
+    path = tmp_path / "c.ply"
+    tegl.contour(noise((20, 20, 20), 1), 0.0).save(path)
+    waits, result = threading.Event(), []
+
+    def hold(fraction):
+        if not result:
+            thread = threading.Thread(target=other)
+            thread.start()
+            assert waits.wait(20)
+            thread.join(20)
+
+    def other():
+        def stop(fraction):
+            waits.set()
+            return False
+
+        try:
+            tegl.load(path, progress=stop)
+        except tegl.Cancelled:
+            result.append("cancelled")
+
+    tegl.load(path, progress=hold)
+    assert result == ["cancelled"]

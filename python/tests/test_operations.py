@@ -414,3 +414,15 @@ def test_what_is_no_contour_or_no_array_is_a_type_error():
     xarray = pytest.importorskip("xarray")
     with pytest.raises(TypeError, match="a dataset of 'v'; expected one"):
         tegl.contour(xarray.Dataset({"v": (("z", "y", "x"), array)}), 0.0)
+
+
+def test_named_dimensions_are_not_taken_by_their_places():
+    xarray = pytest.importorskip("xarray")
+    data = xarray.DataArray(noise((8, 8, 8), 1), dims=("z", "y", "x"))
+    mask = xarray.DataArray(noise((8, 8, 8), 2) > -0.5, dims=("z", "y", "x"))
+    contour = tegl.contour(data, 0.0, mask=mask)
+    assert_same(tegl.contour(data, 0.0, mask=mask.transpose("x", "z", "y")), contour)
+    with pytest.raises(ValueError, match="mask has the dimensions a, y, x"):
+        tegl.contour(data, 0.0, mask=mask.rename(z="a"))
+    with pytest.raises(ValueError, match="expected the contour's order, z, y, x"):
+        contour.sample(data.transpose("x", "y", "z"), "other")

@@ -22,7 +22,8 @@ struct Elsewhere {
   std::vector<T> values;
   Image<T, N> view;
 
-  Elsewhere(const OwnedImage<T, N>& image, const std::array<int, N>& order, const std::array<bool, N>& flipped) {
+  Elsewhere(const OwnedImage<T, N>& image, const std::array<int, N>& order, const std::array<bool, N>& flipped)
+      : view(image.view()) {
     const auto size = image.grid.sizes();
     typename Image<T, N>::Strides strides;
     std::ptrdiff_t step = 1, origin = 0;
