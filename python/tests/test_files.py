@@ -4,6 +4,7 @@
 import os
 import pathlib
 import subprocess
+import threading
 
 import numpy as np
 import pytest

@@ -12,6 +12,8 @@
 #include <numeric>
 #include <utility>
 
+#include "progress.hpp"
+
 namespace tegl::detail {
 namespace {
 
@@ -39,7 +41,7 @@ PointN<N> unit(const PointN<N>& vector, double length) {
 
 template <int N>
 Shrinker<N>::Shrinker(ShrinkStart<N> start)
-    : complex_(start.simplices, start.points.size()),
+    : complex_(start.simplices, start.points.size(), part_of(start.progress, 0.0, 0.6)),
       points_(std::move(start.points)),
       scaled_(points_.size()),
       scale_(start.scale),
@@ -66,7 +68,7 @@ Shrinker<N>::Shrinker(ShrinkStart<N> start)
     scaled_[v] = to_scaled(points_[v]);
     if (complex_.on_border(static_cast<Index>(v))) bound_[v] |= kBorderBit;
   }
-  add_quadrics();
+  add_quadrics(part_of(start.progress, 0.6, 1.0));
 }
 
 template <int N>
@@ -98,17 +100,20 @@ CornersN<N> Shrinker<N>::corners(Index s) const {
 }
 
 template <int N>
-void Shrinker<N>::add_quadrics() {
-  for (Index s = 0; s < complex_.simplex_count(); ++s) {
+void Shrinker<N>::add_quadrics(const Progress& progress) {
+  const auto add = [&](Index s) {
     const CornersN<N> at = corners(s);
     const PointN<N> normal = normal_of<N>(at);
     const double length = norm(normal);
-    if (!(length > 0.0)) continue;
+    if (!(length > 0.0)) return;
     const double weight = length / factorial(N - 1);
     const PointN<N> direction = unit<N>(normal, length);
     for (const Index v : complex_.simplex(s)) quadrics_[v].add_plane(direction, at[0], weight);
     if (complex_.border_faces(s) != 0) add_border_quadrics(s, at, kBorderWeight * weight);
-  }
+  };
+  in_parts(complex_.simplex_count(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) add(static_cast<Index>(s));
+  });
 }
 
 /// The hyperplane through a border face at right angles to its simplex: what keeps borders that may move in shape.

@@ -12,6 +12,7 @@
 #include "quadric.hpp"
 #include "shrinking_complex.hpp"
 #include "simplex_shapes.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl::detail {
 
@@ -34,6 +35,7 @@ struct ShrinkStart {
   std::vector<double> carried;    ///< #V x carried_width
   bool border_fixed = true;
   bool single_precision = false;
+  Progress progress = {};  ///< of getting ready
 };
 
 template <int N>
@@ -42,7 +44,7 @@ class Shrinker {
   static constexpr std::uint32_t kBorderBit = std::uint32_t{1} << 31;
   using Edge = typename ShrinkingComplex<N>::Edge;
 
-  /// Errors: those of ShrinkingComplex.
+  /// Errors: those of ShrinkingComplex, Cancelled.
   explicit Shrinker(ShrinkStart<N> start);
 
   [[nodiscard]] ShrinkingComplex<N>& complex() noexcept { return complex_; }
@@ -85,7 +87,7 @@ class Shrinker {
   PointN<N> mean_normal(Index v, std::vector<Index>& star);
 
  private:
-  void add_quadrics();
+  void add_quadrics(const Progress& progress);
   void add_border_quadrics(Index s, const CornersN<N>& corners, double weight);
   [[nodiscard]] bool within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const;
   [[nodiscard]] bool keeps_shapes(const Edge& edge, const PointN<N>& scaled_place) const;

@@ -8,10 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "progress.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::detail {
 namespace {
+
+constexpr std::size_t kTellEvery = std::size_t{1} << 14;  ///< simplices
 
 constexpr std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -28,7 +31,8 @@ bool contains(const std::array<Index, N>& simplex, Index v) {
 }  // namespace
 
 template <int N>
-ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count)
+ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count,
+                                      const Progress& progress)
     : simplices_(simplices.begin(), simplices.end()),
       border_faces_(simplices.size(), 0),
       border_vertex_(vertex_count, false),
@@ -41,7 +45,9 @@ ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::s
   if (simplices.size() > kNone / N)
     throw Error(ErrorCode::TooLarge,
                 fmt::format("{} simplices to simplify; expected at most {}", simplices.size(), kNone / N));
-  for (std::size_t s = simplices_.size(); s-- > 0;)
+  for (std::size_t s = simplices_.size(); s-- > 0;) {
+    if (s % kTellEvery == 0)
+      tell(progress, 0.3 * (1.0 - static_cast<double>(s) / static_cast<double>(simplices_.size())));
     for (int i = 0; i < N; ++i) {
       const Index v = simplices_[s][i];
       if (v >= vertex_count)
@@ -53,13 +59,14 @@ ShrinkingComplex<N>::ShrinkingComplex(std::span<const Simplex> simplices, std::s
       next_[s * N + i] = first_[v];
       first_[v] = static_cast<Index>(s * N + i);
     }
-  find_border();
+  }
+  find_border(part_of(progress, 0.3, 1.0));
 }
 
 template <int N>
-void ShrinkingComplex<N>::find_border() {
-  std::vector<Index> around;
-  for (Index s = 0; s < simplices_.size(); ++s)
+void ShrinkingComplex<N>::find_border(const Progress& progress) {
+  for (Index s = 0; s < simplices_.size(); ++s) {
+    if (s % kTellEvery == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
     for (int omitted = 0; omitted < N; ++omitted) {
       // The simplices with this face are at each of its vertices; the first one will do.
       const Index at = simplices_[s][omitted == 0 ? 1 : 0];
@@ -80,6 +87,7 @@ void ShrinkingComplex<N>::find_border() {
       for (int i = 0; i < N; ++i)
         if (i != omitted) border_vertex_[simplices_[s][i]] = true;
     }
+  }
 }
 
 template <int N>

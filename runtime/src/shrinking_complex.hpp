@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
+#include "tegl/error.hpp"
 
 namespace tegl::detail {
 
@@ -35,8 +36,8 @@ class ShrinkingComplex {
   };
 
   /// Errors: InvalidArgument for a vertex number beyond `vertex_count`; UnsupportedData for a simplex that repeats a
-  /// vertex, and for a face of more than two simplices.
-  ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count);
+  /// vertex, and for a face of more than two simplices; Cancelled.
+  ShrinkingComplex(std::span<const Simplex> simplices, std::size_t vertex_count, const Progress& progress = {});
 
   [[nodiscard]] std::size_t alive() const noexcept { return alive_; }
   [[nodiscard]] std::size_t simplex_count() const noexcept { return simplices_.size(); }
@@ -62,7 +63,7 @@ class ShrinkingComplex {
   /// A face of a link, as many vertices as it has, ascending.
   using Face = std::array<Index, N - 1>;
 
-  void find_border();
+  void find_border(const Progress& progress);
   /// The link of `v` without what contains `other`, with the cone over the border.
   void gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces);
   void gather_edge_link(const Edge& edge);

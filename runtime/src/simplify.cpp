@@ -46,6 +46,9 @@ constexpr unsigned kMostTries = 10;
 constexpr double kErrorOfTolerance = 3.0;
 constexpr double kNextError = 1.5;
 constexpr double kNarrow = 1.25;
+/// How far the progress of one round is when it is ready to begin, and when there is less.
+constexpr double kReady = 0.2;
+constexpr double kShrunk = 0.97;
 /// Of the size of the contour: what rounding may add to an error.
 constexpr double kRounding = 1e-12;
 
@@ -361,10 +364,11 @@ class Simplifier {
     what.carried = carried_;
     what.border_fixed = options_.border == SimplifyBorder::fixed;
     what.single_precision = std::is_same_v<Real, float>;
+    what.progress = detail::part_of(progress, 0.0, kReady);
     Shrinker<N> shrinker(std::move(what));
     bind_to_planes(shrinker);
 
-    ShrinkGoal goal{stop_, options_.max_curvature, &progress};
+    ShrinkGoal goal{stop_, options_.max_curvature, &progress, kReady, kShrunk};
     if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
     if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
     if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
@@ -380,6 +384,7 @@ class Simplifier {
     }
     Contour<N, Real> result = to_contour(remains, &shrinker);
     stats_.simplify_seconds += seconds_since(start);
+    detail::tell(progress, 1.0);
     return result;
   }
 

@@ -38,14 +38,20 @@ class Teller {
   /// Whether there is more to do with `alive` simplices. Throws Cancelled.
   bool goes_on(std::size_t alive) {
     if (alive <= goal_.count) return false;
-    if (calls_++ % kTellEvery == 0) tell(alive);
+    wait(alive);
     return true;
+  }
+  /// One step that makes nothing less. Throws Cancelled.
+  void wait(std::size_t alive) {
+    if (calls_++ % kTellEvery == 0) tell(alive);
   }
 
  private:
   void tell(std::size_t alive) {
     if (goal_.progress == nullptr || !*goal_.progress) return;
-    const double share = static_cast<double>(before_ - alive) / static_cast<double>(before_ - goal_.count);
+    const double share = before_ <= goal_.count
+                             ? 1.0
+                             : static_cast<double>(before_ - alive) / static_cast<double>(before_ - goal_.count);
     last_ = std::max(last_, goal_.from + (goal_.to - goal_.from) * std::min(1.0, share));
     if (!(*goal_.progress)(last_))
       throw Error(ErrorCode::Cancelled, fmt::format("simplification cancelled at {} of {} simplices", alive, before_));
@@ -77,6 +83,7 @@ class QuadricOrder {
 
   void fill() {
     for (Index v = 0; v < shrinker_.points().size(); ++v) {
+      teller_.wait(shrinker_.complex().alive());
       shrinker_.complex().neighbours(v, around_);
       for (const Index a : around_)
         if (a > v) push(v, a);
@@ -136,9 +143,14 @@ class CurvatureOrder {
         curvature_(shrinker.points().size()) {}
 
   void fill() {
-    for (Index v = 0; v < curvature_.size(); ++v) curvature_[v] = curvature(v);
-    for (Index s = 0; s < shrinker_.complex().simplex_count(); ++s)
+    for (Index v = 0; v < curvature_.size(); ++v) {
+      teller_.wait(shrinker_.complex().alive());
+      curvature_[v] = curvature(v);
+    }
+    for (Index s = 0; s < shrinker_.complex().simplex_count(); ++s) {
+      teller_.wait(shrinker_.complex().alive());
       if (shrinker_.complex().is_alive(s)) push(s);
+    }
   }
   void empty() {
     while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
@@ -242,7 +254,10 @@ class DistanceOrder {
       : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()), queue_(shrinker.points().size()) {}
 
   void fill() {
-    for (Index v = 0; v < shrinker_.points().size(); ++v) push(v);
+    for (Index v = 0; v < shrinker_.points().size(); ++v) {
+      teller_.wait(shrinker_.complex().alive());
+      push(v);
+    }
   }
   void empty() {
     while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {

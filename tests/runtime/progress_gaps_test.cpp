@@ -43,14 +43,26 @@ class ProgressGaps : public testing::Test {
     image_ = new OwnedImage<float, kN>(noise<float, kN>(kSize, 1));
     contour_ = new Contour<kN, float>(extract<float>(image_->view(), 0.5));
     labels_ = new ComponentLabels(label_components(*contour_));
+    surface_ = new Contour<3, float>(extract<float>(noise<float, 3>(20, 2).view(), 0.5));
   }
   static void TearDownTestSuite() {
     delete std::exchange(image_, nullptr);
     delete std::exchange(contour_, nullptr);
     delete std::exchange(labels_, nullptr);
+    delete std::exchange(surface_, nullptr);
   }
 
   static std::vector<double> times() { return even_times(0.0, kSize - 1.0, 40); }
+
+  static void simplify_surface(SimplifyMethod method, bool measure, unsigned threads, const Progress& progress) {
+    SimplifyOptions<3> options;
+    options.method = method;
+    options.ratio = 0.5;
+    options.measure = measure;
+    options.threads = threads;
+    options.progress = progress;
+    simplify(*surface_, options);
+  }
 
   static std::vector<Operation> operations(unsigned threads) {
     const auto work = [threads](const Progress& progress) { return WorkOptions{threads, progress}; };
@@ -77,12 +89,18 @@ class ProgressGaps : public testing::Test {
         {"sample", [work](const Progress& p) { sample(image_->view(), *contour_, "v", "", work(p)); }, 0.3},
         {"track", [follow](const Progress& p) { follow({}, p); }},
         {"track with samples", [follow](const Progress& p) { follow(times(), p); }},
+        {"simplify", [=](const Progress& p) { simplify_surface(SimplifyMethod::quadric, true, threads, p); }},
+        {"simplify by curvature",
+         [=](const Progress& p) { simplify_surface(SimplifyMethod::facets, false, threads, p); }, 0.2},
+        {"simplify by distance",
+         [=](const Progress& p) { simplify_surface(SimplifyMethod::vertices, false, threads, p); }, 0.2},
     };
   }
 
   static inline OwnedImage<float, kN>* image_ = nullptr;
   static inline Contour<kN, float>* contour_ = nullptr;
   static inline ComponentLabels* labels_ = nullptr;
+  static inline Contour<3, float>* surface_ = nullptr;
 };
 
 void expect_sound(const ProgressProbe& probe) {
