@@ -32,8 +32,9 @@ def documents(*names: str) -> typing.Callable[[_Documented], _Documented]:
     def decorate(function: _Documented) -> _Documented:
         texts = [_tegl.docs[name] for name in names]
         if function.__doc__:  # None under python -OO
-            function.__doc__ = (inspect.cleandoc(function.__doc__) + "\n\nFrom the library's reference, whose axes are those of the array from the last to "
-                                 "the first (its last axis is the array's `time_axis`):\n\n" + "\n\n".join(texts) + "\n")
+            function.__doc__ = (inspect.cleandoc(function.__doc__) + "\n\nFrom the library's reference, whose axes are those of "
+                                "the array from the last to the first (its last axis is the array's `time_axis`):\n\n"
+                                + "\n\n".join(texts) + "\n")
         return function
 
     return decorate

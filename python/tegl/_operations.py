@@ -81,7 +81,7 @@ def _cut(contour: Contour, at, axis, normal, offset, threads, progress, more) ->
 
 
 def _is_list(value) -> bool:
-    return not isinstance(value, str) and np.ndim(value) == 1
+    return isinstance(value, (list, tuple)) or (not isinstance(value, str) and np.ndim(value) == 1)
 
 
 _GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_units", "time_axis")
@@ -171,7 +171,8 @@ def measure(contour: Contour, *, at=None, threads: int = 0,
     core = _arguments.core_of(contour)
     if at is not None:
         unit = contour.axis_units[contour.time_axis]
-        places = [_arguments.number_on_axis(place, unit) for place in np.atleast_1d(np.asarray(at))]
+        listed = at if isinstance(at, (list, tuple)) else np.atleast_1d(np.asarray(at))
+        places = [_arguments.number_on_axis(place, unit) for place in listed]
         size, content = _tegl.measure_cuts(core, places, threads, progress)
         return CutMeasures(np.array(places), np.array(size), np.array(content))
     found = _tegl.measure(core, threads, progress)

@@ -398,7 +398,7 @@ def test_contours_are_pickled_and_copied():
     for other in (pickle.loads(pickle.dumps(contour)), copy.deepcopy(contour)):
         assert_same(other, contour)
         assert np.array_equal(other.normals, contour.normals)
-        assert np.array_equal(other["other"], contour["other"]) and other.attribute_units == contour.attribute_units
+        assert np.array_equal(other.vertex_attributes["other"], contour.vertex_attributes["other"]) and other.attribute_units == contour.attribute_units
         assert (other.axis_names, other.axis_units, other.isovalue, other.time_axis) == \
             (contour.axis_names, contour.axis_units, contour.isovalue, contour.time_axis)
 
