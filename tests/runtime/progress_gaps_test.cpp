@@ -43,7 +43,7 @@ class ProgressGaps : public testing::Test {
     image_ = new OwnedImage<float, kN>(noise<float, kN>(kSize, 1));
     contour_ = new Contour<kN, float>(extract<float>(image_->view(), 0.5));
     labels_ = new ComponentLabels(label_components(*contour_));
-    surface_ = new Contour<3, float>(extract<float>(noise<float, 3>(32, 2).view(), 0.5));
+    surface_ = new Contour<3, float>(extract<float>(noise<float, 3>(16, 2).view(), 0.5));
   }
   static void TearDownTestSuite() {
     delete std::exchange(image_, nullptr);
@@ -89,11 +89,11 @@ class ProgressGaps : public testing::Test {
         {"sample", [work](const Progress& p) { sample(image_->view(), *contour_, "v", "", work(p)); }, 0.3},
         {"track", [follow](const Progress& p) { follow({}, p); }},
         {"track with samples", [follow](const Progress& p) { follow(times(), p); }},
-        {"simplify", [=](const Progress& p) { simplify_surface(SimplifyMethod::quadric, threads, p); }},
+        {"simplify", [=](const Progress& p) { simplify_surface(SimplifyMethod::quadric, threads, p); }, 0.35},
         {"simplify by curvature", [=](const Progress& p) { simplify_surface(SimplifyMethod::facets, threads, p); },
-         0.2},
+         0.35},
         {"simplify by distance", [=](const Progress& p) { simplify_surface(SimplifyMethod::vertices, threads, p); },
-         0.2},
+         0.35},
     };
   }
 
