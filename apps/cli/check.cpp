@@ -37,7 +37,7 @@ class CheckCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
-    require_input(file());
+    require_inputs();
     Stopwatch watch;
     const Mesh mesh = read_finite_mesh(file());
     const double read_seconds = watch.lap();

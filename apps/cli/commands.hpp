@@ -11,6 +11,8 @@
 
 #include "console.hpp"
 #include "exit_codes.hpp"
+#include "image_input.hpp"
+#include "result.hpp"
 #include "tegl/io.hpp"
 
 namespace tegl::cli {
@@ -21,14 +23,11 @@ struct Streams {
   Console err{stderr};
 };
 
-/// What an option that counts takes: digits alone, at least `least`. (A minus sign would be read as a huge number.)
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000);
-
 /// A command of the program: `tegl NAME FILE ...`.
 class Command {
  public:
-  /// Whether FILE may be given several times.
-  enum class Files { one, several };
+  /// What FILE stands for: one file; one image, in a file or several; or several, which are worked on one by one.
+  enum class Files { one, image, each };
 
   /// Adds the command with its FILE argument and --json to the command line.
   Command(CLI::App& program, const std::string& name, const std::string& description, const std::string& file_help,
@@ -42,8 +41,10 @@ class Command {
 
   /// Whether this is the command that was named.
   [[nodiscard]] bool named() const { return app_->parsed(); }
-  /// FILE; where there are several, the one that is worked on.
-  [[nodiscard]] const std::string& file() const { return files_.at(current_); }
+  /// FILE; where there are several, the (first) one that is worked on.
+  [[nodiscard]] const std::string& file() const { return worked_on_.front(); }
+  /// What is worked on: FILE, or all that are one image.
+  [[nodiscard]] InputFiles inputs() const { return {worked_on_}; }
   [[nodiscard]] bool json() const { return json_; }
 
  protected:
@@ -51,24 +52,30 @@ class Command {
   [[nodiscard]] bool quiet() const { return quiet_; }
   /// Progress bars are for people who wait.
   [[nodiscard]] bool wants_progress() const { return !json_ && !quiet_; }
+  /// The files that are worked on: FILE, or all that are one image.
+  [[nodiscard]] const std::vector<std::string>& files() const { return worked_on_; }
   /// All of FILE...
-  [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
+  [[nodiscard]] const std::vector<std::string>& all_files() const { return files_; }
   /// Turns to the file of this place among them.
-  void turn_to_file(std::size_t place) { current_ = place; }
+  void turn_to_file(std::size_t place) { worked_on_ = {files_.at(place)}; }
+  /// Turns to all of them, as one image.
+  void turn_to_all_files() { worked_on_ = files_; }
   /// Adds --quiet.
   void add_quiet();
-  /// Adds --var.
-  void add_variable();
-  [[nodiscard]] const std::string& variable() const { return variable_; }
-  /// Reads the image that FILE and --var name.
-  [[nodiscard]] ReadImageResult read(const Progress& progress) const;
+  /// Adds the options that say how FILE is read as an image.
+  void add_image_options() { images_.add_to(*app_); }
+  [[nodiscard]] const ImageOptions& images() const { return images_; }
+  /// Reads the image that FILE and these options name.
+  [[nodiscard]] ReadImageResult read(const Progress& progress) const { return images_.read(worked_on_, progress); }
+  /// Throws FileNotFound unless the files that are worked on can be read.
+  void require_inputs() const;
 
  private:
   CLI::App* app_;
   CLI::Option* json_option_;
   std::vector<std::string> files_ = {""};
-  std::size_t current_ = 0;
-  std::string variable_;
+  std::vector<std::string> worked_on_ = {""};
+  ImageOptions images_;
   bool json_ = false;
   bool quiet_ = false;
 };

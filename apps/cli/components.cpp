@@ -90,7 +90,7 @@ class ComponentsCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
-    require_input(file());
+    require_inputs();
     require_outputs();
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
@@ -109,13 +109,13 @@ class ComponentsCommand final : public ContourInputCommand {
 
  private:
   void require_outputs() const {
-    if (!output_.empty()) require_output(output_, file());
-    if (!csv_.empty()) require_text_output(csv_, file());
+    if (!output_.empty()) require_output(output_, files());
+    if (!csv_.empty()) require_text_output(csv_, files());
     if (split_.empty()) return;
     if (split_.find(kLabel) == std::string::npos)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--split is '{}'; expected {{label}} in it, for the label of each component", split_));
-    require_output(split_name(0), file());
+    require_output(split_name(0), files());
   }
 
   void require_outputs_hold(int dim) const {
@@ -192,7 +192,7 @@ class ComponentsCommand final : public ContourInputCommand {
     for (std::size_t label = 0; label < parts.size(); ++label) {
       if (!found.chosen[label]) continue;
       const std::string name = split_name(label);
-      require_output(name, file());
+      require_output(name, files());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
       write_output(mesh_of(parts[label], input), name, {});
       written.add(name);

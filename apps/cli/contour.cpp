@@ -43,8 +43,11 @@ constexpr const char* kExamples =
 class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
-      : Command(program, "contour", "The contour of an image in 2D, 3D or 4D",
-                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped)") {
+      : Command(
+            program, "contour", "The contour of an image in 2D, 3D or 4D",
+            "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped); several files are one image with an axis "
+            "more",
+            Files::image) {
     options_.add_to(app(), true);
     app()
         .add_option("-o,--output", output_,
@@ -59,25 +62,27 @@ class ContourCommand final : public Command {
         "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
         "the image's axes");
     attributes_.add_to(app());
-    streaming_.add_to(app());
-    add_variable();
+    app().add_flag(
+        "--stream", stream_,
+        "read layer by layer and write as it comes, with little memory: netCDF, HDF5, --raw, or several FILEs, "
+        "to .vtkhdf");
+    add_image_options();
     add_quiet();
     app().footer(kExamples);
   }
 
   ExitCode run(const Streams& streams) override {
     const double isovalue = options_.isovalue();
-    const bool streams_it = streaming_.wanted();
     if (!index_.empty() && facets_)
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
     const std::vector<double> point = picked_point();
-    ExtractOptions options = options_.library_options((!streams_it && index_.empty() && point.empty()) || facets_);
-    require_input(file());
+    ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
+    require_inputs();
     if (facets_) return run_facets(streams, {isovalue, options, options_.single_precision(), no_check_});
-    require_output(output_, file());
+    require_output(output_, files());
     if (!index_.empty()) {
       require_input(index_);
-      if (streaming_.wanted())
+      if (is_streamed())
         throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream and no --raw");
     }
     attributes_.require_inputs();
@@ -85,10 +90,10 @@ class ContourCommand final : public Command {
     ProgressBar bar(streams.err, wants_progress());
     ContourResult result;
     if (!point.empty()) result.picked = Picked{point, {}, 0, 0, 0};
-    result.input = file();
+    result.input = inputs();
     result.output = output_;
     result.isovalue = isovalue;
-    if (streams_it)
+    if (is_streamed())
       stream(options, bar, result);
     else
       contour(options, bar, result);
@@ -137,11 +142,14 @@ class ContourCommand final : public Command {
     write_result(result, bar);
   }
 
+  /// Whether layers come in and the contour goes out as it comes.
+  [[nodiscard]] bool is_streamed() const { return stream_ || images().raw(); }
+
   /// --pick as numbers; none without.
   [[nodiscard]] std::vector<double> picked_point() {
     std::vector<double> point;
     if (app().count("--pick") == 0) return point;
-    if (streaming_.wanted() || !index_.empty() || facets_)
+    if (is_streamed() || !index_.empty() || facets_)
       throw Error(ErrorCode::InvalidArgument,
                   "--pick finds tiles from its point, in memory; expected no --index, --facets, --stream or --raw");
     for (std::size_t at = 0; at <= pick_.size();) {
@@ -205,21 +213,21 @@ class ContourCommand final : public Command {
 
   ExitCode run_facets(const Streams& streams, const FacetsWork& work) const {
     const auto given = options_.given();
-    if (streaming_.wanted() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
+    if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}; expected one of the two: facets are in memory and not triangulated",
-                              streaming_.wanted() ? "--stream or --raw" : "--triangulation"));
+                              is_streamed() ? "--stream or --raw" : "--triangulation"));
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}, which is for simplices; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "none" : "--normals gradient or sobel"));
-    require_facets_output(output_, file());
+    require_facets_output(output_, files());
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
     FacetsResult result;
-    result.input = file();
+    result.input = inputs();
     result.variable = input.info.variable;
     result.output = output_;
     result.image_dim = image_dim(input.image);
@@ -240,7 +248,7 @@ class ContourCommand final : public Command {
                   fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
-    OpenLayersResult input = streaming_.open(file(), variable());
+    OpenLayersResult input = images().open(files());
     result.variable = input.info.variable;
     options.progress = bar.stage("stream");
     stream_contour(input, *result.isovalue, options, options_.single_precision(), result);
@@ -256,9 +264,9 @@ class ContourCommand final : public Command {
 
   ExtractionOptions options_;
   AttributeOptions attributes_;
-  StreamingOptions streaming_;
   std::string output_;
   std::string index_;
+  bool stream_ = false;
   bool facets_ = false;
   std::string pick_;
   bool no_check_ = false;

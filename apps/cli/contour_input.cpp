@@ -97,15 +97,14 @@ ContourResult ContourInput::to_result() const {
 }
 
 void add_input_keys(Json& json, const ContourInput& input) {
-  json["input"] = input.file;
+  json["input"] = input.file.json();
   json["variable"] = input.variable.empty() ? Json(nullptr) : Json(input.variable);
   json["image_dim"] = input.space_dim();
   json["isovalue"] = input.isovalue ? Json(*input.isovalue) : Json(nullptr);
 }
 
 std::string input_text(const ContourInput& input) {
-  std::string text =
-      report_line("input", input.variable.empty() ? input.file : fmt::format("{} ({})", input.file, input.variable));
+  std::string text = input_line(input.file, input.variable);
   if (input.isovalue) text += report_line("isovalue", number(*input.isovalue));
   const MeshSize size = input.size();
   text += report_line("contour", fmt::format("{}, {}", counted(size.vertices, "vertex", "vertices"),
@@ -113,10 +112,14 @@ std::string input_text(const ContourInput& input) {
   return text;
 }
 
-void refuse_image_options(const std::string& file, const std::vector<std::string>& given, const std::string& variable,
-                          const std::string& expected) {
-  std::vector<std::string> refused = given;
-  if (!variable.empty()) refused.emplace_back("--var");
+void refuse_image_options(const std::vector<std::string>& files, std::vector<std::string> refused,
+                          const ImageOptions& images, const std::string& expected) {
+  const std::string& file = files.front();
+  if (files.size() > 1)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} is a saved contour, one of {} files; expected one, or images alone", file, files.size()));
+  for (std::string& option : images.given()) refused.push_back(std::move(option));
   if (refused.empty()) return;
   throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a saved contour, which {} cannot change; expected {}",
                                                       file, fmt::join(refused, ", "), expected));
@@ -140,19 +143,19 @@ ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& n
     : Command(program, name, description,
               "an image (with --iso), or a contour that 'tegl contour' saved (.vtkhdf, .ply, .glb ...)", files) {
   options_.add_to(app(), false);
-  add_variable();
+  add_image_options();
   add_quiet();
 }
 
 ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) const {
-  require_input(file());
+  require_inputs();
   ContourInput result;
-  result.file = file();
+  result.file = inputs();
   Stopwatch watch;
   if (find_mesh_file_format(file()) != nullptr) {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
-    refuse_image_options(file(), given, variable(), "none of the options for images but --threads");
+    refuse_image_options(files(), given, images(), "none of the options for images but --threads");
     const Progress reading = bar.stage("read");
     const Mesh mesh = read_saved_contour(file());
     result.contour = to_any_contour(mesh);

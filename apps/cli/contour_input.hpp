@@ -35,7 +35,7 @@ Mesh read_saved_contour(const std::string& file);
 /// A contour to work on, and where it came from.
 struct ContourInput {
   AnyContour contour;
-  std::string file;
+  InputFiles file;
   std::string variable;                  ///< netCDF: the variable read
   std::optional<double> isovalue;        ///< none for a saved contour that does not say
   std::optional<ExtractStats> stats;     ///< none for a saved contour
@@ -72,9 +72,9 @@ Mesh mesh_of(const Contour<N, Real>& contour, const ContourInput& input) {
 /// (without any of them but --threads).
 class ContourInputCommand : public Command {
  protected:
-  /// Adds FILE, --json, --quiet, --var and the options of the extraction.
+  /// Adds FILE, --json, --quiet, and the options of images and of the extraction.
   ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
-                      Files files = Files::one);
+                      Files files = Files::image);
 
   /// --threads: 0 for all that the machine has.
   [[nodiscard]] unsigned threads() const { return options_.threads(); }
@@ -91,9 +91,10 @@ class ContourInputCommand : public Command {
 /// World coordinates of the first and the last sample of the last axis; none where the world map mixes it with others.
 std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const AnyImage& image);
 
-/// Throws InvalidArgument, naming them, if any of the options `given` go with the saved contour `file`, which they
-/// cannot change. `expected`: the options that would do, for the message.
-void refuse_image_options(const std::string& file, const std::vector<std::string>& given, const std::string& variable,
-                          const std::string& expected);
+/// Throws InvalidArgument, naming them, if any of the options `refused` or those of images go with a saved contour,
+/// which they cannot change; or if it is one of several `files`. `expected`: the options that would do, for the
+/// message.
+void refuse_image_options(const std::vector<std::string>& files, std::vector<std::string> refused,
+                          const ImageOptions& images, const std::string& expected);
 
 }  // namespace tegl::cli

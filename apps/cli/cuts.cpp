@@ -106,6 +106,12 @@ std::string axis_names(const CutSpace& space) {
 
 }  // namespace
 
+std::vector<double> parse_numbers(const std::string& option, std::string_view text) {
+  std::vector<double> numbers;
+  for (const auto& [value, spelled] : numbers_of(option, text)) numbers.push_back(value);
+  return numbers;
+}
+
 std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   std::vector<Cut> cuts;
   for (const std::string& argument : at) {

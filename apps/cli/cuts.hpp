@@ -20,6 +20,9 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at);
 /// The cuts that the values of --plane ask for: "1,0,0,0.5=3", a normal and what follows "=" in --at.
 std::vector<Cut> parse_planes(const std::vector<std::string>& planes);
 
+/// "0,0.5,2" and "FIRST:LAST:COUNT" as numbers. Throws InvalidArgument, naming the option.
+std::vector<double> parse_numbers(const std::string& option, std::string_view text);
+
 /// A normal or direction, "1,0,0,0.5". Throws InvalidArgument, naming the option, unless it is numbers and not 0.
 std::vector<double> parse_normal(const std::string& option, std::string_view text);
 

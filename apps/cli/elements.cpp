@@ -86,7 +86,7 @@ class ElementsCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
-    require_input(file());
+    require_inputs();
     require_element_output();
     attributes_.require_inputs();
     if (per_ == "cell" && find_mesh_file_format(file()) != nullptr)
@@ -116,7 +116,7 @@ class ElementsCommand final : public ContourInputCommand {
     if (header_ && (extension == ".h5" || extension == ".hdf5"))
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--header with {}; expected a text file (.dat, .txt)", output_));
-    require_text_output(output_, file());
+    require_text_output(output_, files());
   }
 
   [[nodiscard]] ElementFileOptions file_options() const {

@@ -100,7 +100,7 @@ bool has_extension(const fs::path& output, std::string_view extension) {
 
 Json to_json(const FacetsResult& result) {
   Json json;
-  json["input"] = result.input;
+  json["input"] = result.input.json();
   json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
   json["output"] = result.output;
   json["image_dim"] = result.image_dim;
@@ -131,8 +131,7 @@ Json to_json(const FacetsResult& result) {
 std::string to_text(const Console& console, const FacetsResult& result) {
   std::string text = fmt::format("{}\n", console.bold(fmt::format("Facets of the contour in {}D of the isovalue {}",
                                                                   result.image_dim, number(result.isovalue))));
-  text += report_line("input",
-                      result.variable.empty() ? result.input : fmt::format("{} ({})", result.input, result.variable));
+  text += input_line(result.input, result.variable);
   text += report_line("tiles",
                       fmt::format("{} active of {}", grouped(result.stats.active_tiles), grouped(result.stats.tiles)));
   text += report_line("facets", facets_text(result));
@@ -154,11 +153,11 @@ std::string to_text(const Console& console, const FacetsResult& result) {
   return text + report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
 }
 
-void require_facets_output(const fs::path& output, const fs::path& input) {
+void require_facets_output(const fs::path& output, const std::vector<std::string>& inputs) {
   if (!has_extension(output, ".vtu") && !has_extension(output, ".vtkhdf"))
     fail_output(output, fmt::format("'{}' cannot hold facets; expected .vtu, or for 2D and 3D images .vtkhdf",
                                     output.extension().string()));
-  require_text_output(output, input);
+  require_text_output(output, inputs);
 }
 
 void require_output_holds_facets(const fs::path& output, int image_dim) {

@@ -17,7 +17,7 @@ namespace tegl::cli {
 
 /// A contour of facets, made and written.
 struct FacetsResult {
-  std::string input;
+  InputFiles input;
   std::string variable;
   std::string output;
   std::uint64_t output_bytes = 0;
@@ -39,7 +39,7 @@ std::string to_text(const Console& console, const FacetsResult& result);
 
 /// Throws WriteFailed unless facets can be written there: .vtu, or .vtkhdf. As for the dimension of the image, once
 /// that is known.
-void require_facets_output(const std::filesystem::path& output, const std::filesystem::path& input);
+void require_facets_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 void require_output_holds_facets(const std::filesystem::path& output, int image_dim);
 
 /// How contours are made and what becomes of them.

@@ -35,7 +35,8 @@ constexpr const char* kExamples =
 
 /// What was built and written.
 struct IndexResult {
-  std::string input, variable, output, method;
+  InputFiles input;
+  std::string variable, output, method;
   int image_dim = 0;
   std::uint64_t tiles = 0;
   std::uint64_t memory_bytes = 0, output_bytes = 0;
@@ -46,7 +47,7 @@ struct IndexResult {
 
 Json to_json(const IndexResult& result) {
   Json json;
-  json["input"] = result.input;
+  json["input"] = result.input.json();
   json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
   json["output"] = result.output;
   json["image_dim"] = result.image_dim;
@@ -62,7 +63,7 @@ Json to_json(const IndexResult& result) {
 }
 
 std::string to_text(const Console& console, const IndexResult& result) {
-  std::string text = fmt::format("{}\n", console.bold(fmt::format("Index of {}", result.input)));
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("Index of {}", result.input.text())));
   if (!result.variable.empty()) text += report_line("variable", result.variable);
   text += report_line("method", result.method);
   text += report_line("tiles", fmt::format("{} in {}D", grouped(result.tiles), result.image_dim));
@@ -77,7 +78,7 @@ class IndexCommand final : public Command {
  public:
   explicit IndexCommand(CLI::App& program)
       : Command(program, "index", "An index of an image's active tiles, for contours at many isovalues",
-                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped)") {
+                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped)", Files::image) {
     std::vector<std::string> names;
     for (const ActiveMethod method : active_methods()) names.emplace_back(active_method_name(method));
     app().add_option("-o,--output", output_, "the index; FILE with .tindex behind it if left out");
@@ -102,24 +103,24 @@ class IndexCommand final : public Command {
         .add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
         ->check(CLI::Range(0u, 4096u))
         ->capture_default_str();
-    add_variable();
+    add_image_options();
     add_quiet();
     app().footer(kExamples);
   }
 
   ExitCode run(const Streams& streams) override {
     IndexResult result;
-    result.input = file();
+    result.input = inputs();
     result.output = output_.empty() ? file() + kIndexExtension : output_;
     result.method = method_;
-    require_input(file());
+    require_inputs();
     if (method_ != active_method_name(ActiveMethod::seed_set) &&
         (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--seeds and --scan-order are for --method seed-set; the method is {}", method_));
     if (!is_index_file(result.output))
       throw Error(ErrorCode::WriteFailed, fmt::format("{}: expected a file named *{}", result.output, kIndexExtension));
-    require_text_output(result.output, file());
+    require_text_output(result.output, files());
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));

@@ -108,10 +108,10 @@ Json values_json(const ValueStatistics& values) {
   return json;
 }
 
-Json to_json(const Description& description, const std::string& file) {
+Json to_json(const Description& description, const InputFiles& input) {
   const ImageInfo& info = description.info;
   Json json;
-  json["input"] = file;
+  json["input"] = input.json();
   json["format"] = info.format;
   json["variable"] = info.variable;
   json["variables"] = info.variables;
@@ -243,9 +243,9 @@ std::string choice_text(const Console& console, const std::string& file, const s
   return text + "\nChoose one with --var.\n";
 }
 
-Json choice_json(const std::string& file, const std::vector<ImageVariable>& variables) {
+Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& variables) {
   Json json;
-  json["input"] = file;
+  json["input"] = input.json();
   json["variable"] = nullptr;
   json["variables"] = Json::array();
   json["shapes"] = Json::object();
@@ -260,41 +260,45 @@ class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
       : Command(program, "info", "What is in a file: axes, values, histogram, isovalues worth a try",
-                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped); or an index (.tindex)") {
-    add_variable();
+                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped); or an index (.tindex)",
+                Files::image) {
+    add_image_options();
     app().footer(kExamples);
   }
 
   ExitCode run(const Streams& streams) override {
-    require_input(file());
+    require_inputs();
     if (is_index_file(file())) {
-      if (!variable().empty())
+      if (const auto given = images().given(); !given.empty() || files().size() > 1)
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("{} is an index, which has no variables; expected no --var", file()));
+                    fmt::format("{} is an index, which has no variables; expected it alone, without {}", file(),
+                                given.empty() ? "other files" : given.front()));
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }
-    if (variable().empty()) {
-      const std::vector<ImageVariable> variables = list_image_variables(file());
+    if (images().variable().empty()) {
+      const std::vector<ImageVariable> variables = images().variables(files());
       if (variables.size() > 1) {
-        streams.out.write(json() ? dump(choice_json(file(), variables)) : choice_text(streams.out, file(), variables));
+        streams.out.write(json() ? dump(choice_json(inputs(), variables))
+                                 : choice_text(streams.out, inputs().text(), variables));
         return ExitCode::Ok;
       }
     }
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
-    const ReadImageResult input = read(bar.stage("read"));
+    const ReadImageResult image = read(bar.stage("read"));
     Description description;
-    description.info = input.info;
+    description.info = image.info;
     description.read_seconds = watch.lap();
     InterruptHandler::throw_if_requested();
     std::visit(
         [&](const auto& typed) { std::visit([&](const auto& owned) { describe_grid(owned, description); }, typed); },
-        input.image);
-    description.values = value_statistics(input.image);
+        image.image);
+    description.values = value_statistics(image.image);
     description.statistics_seconds = watch.lap();
     bar.clear();
-    streams.out.write(json() ? dump(to_json(description, file())) : to_text(streams.out, description, file()));
+    streams.out.write(json() ? dump(to_json(description, inputs()))
+                             : to_text(streams.out, description, inputs().text()));
     return ExitCode::Ok;
   }
 };

@@ -43,7 +43,7 @@ ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_vi
 
 /// The message with the input's name in front where the library did not know it. To who pressed Ctrl-C it is no matter
 /// which callback was told so, and where.
-std::string with_file(const tegl::Error& error, const std::string& file) {
+std::string with_file(const tegl::Error& error, const tegl::cli::InputFiles& input) {
   using tegl::ErrorCode;
   constexpr std::array kAboutInput = {
       ErrorCode::InvalidGrid,     ErrorCode::EmptyResult,      ErrorCode::FileNotFound, ErrorCode::MalformedFile,
@@ -52,7 +52,9 @@ std::string with_file(const tegl::Error& error, const std::string& file) {
   if (error.code() == ErrorCode::Cancelled) return "cancelled";
   const std::string message = error.what();
   const bool about_input = std::find(kAboutInput.begin(), kAboutInput.end(), error.code()) != kAboutInput.end();
-  return !about_input || message.find(file) != std::string::npos ? message : fmt::format("{}: {}", file, message);
+  const bool named = std::any_of(input.names.begin(), input.names.end(),
+                                 [&](const std::string& file) { return message.find(file) != std::string::npos; });
+  return !about_input || named ? message : fmt::format("{}: {}", input.text(), message);
 }
 
 ExitCode run(Command& command, const Streams& streams) {
@@ -63,11 +65,12 @@ ExitCode run(Command& command, const Streams& streams) {
     const tegl::cli::InterruptHandler handler;
     return command.run(streams);
   } catch (const tegl::Error& error) {
-    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command.file()));
+    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command.inputs()));
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: memory ran out", command.file()));
+    return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: memory ran out", command.inputs().text()));
   } catch (const std::exception& error) {
-    return fail(ExitCode::Internal, "Internal", fmt::format("{}: internal error: {}", command.file(), error.what()));
+    return fail(ExitCode::Internal, "Internal",
+                fmt::format("{}: internal error: {}", command.inputs().text(), error.what()));
   }
 }
 
@@ -78,6 +81,10 @@ std::string command_names(const CLI::App& program) {
   for (std::size_t i = 0; i < commands.size(); ++i)
     names += (i == 0 ? "" : i + 1 == commands.size() ? " or " : ", ") + commands[i]->get_name();
   return names;
+}
+
+std::string unknown_normals(std::string_view kind) {
+  return fmt::format("--normals {}: expected gradient, sobel, geometric or flat", kind);
 }
 
 /// A command line that CLI11 refused, or a request for help.
@@ -96,7 +103,7 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   std::error_code ignored;
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !normals_of.empty() &&
       !std::filesystem::exists(normals_of, ignored))
-    what = fmt::format("--normals {}: expected gradient, sobel, geometric or flat", normals_of);
+    what = unknown_normals(normals_of);
   if (help == "tegl" && !first_word.empty() && first_word.front() != '-') {
     what = fmt::format("there is no command '{}'; expected {}", first_word, command_names(program));
   }
@@ -152,13 +159,20 @@ int main(int argc, char** argv) {
   commands.push_back(tegl::cli::make_track_command(program));
   commands.push_back(tegl::cli::make_simplify_command(program));
   commands.push_back(tegl::cli::make_view_command(program, TEGL_VERSION));
+  // Before anything is parsed, too, whoever asks for JSON wants errors in JSON.
+  const bool asks_for_json =
+      std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
   try {
     program.parse(joined_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {
-    // Nothing was parsed, yet whoever asks for JSON wants errors in JSON too.
-    const bool json = std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
-    return static_cast<int>(refuse(program, error, streams, json, argc > 1 ? argv[1] : "", after_normals(argc, argv)));
+    return static_cast<int>(
+        refuse(program, error, streams, asks_for_json, argc > 1 ? argv[1] : "", after_normals(argc, argv)));
   }
+  // FILE may be several, so that what is meant as a kind of normals is one of them.
+  std::error_code ignored;
+  if (const std::string_view kind = after_normals(argc, argv); !kind.empty() && !std::filesystem::exists(kind, ignored))
+    return static_cast<int>(report(streams, asks_for_json, ExitCode::Usage, "InvalidArgument",
+                                   fmt::format("{} (see tegl {} --help)", unknown_normals(kind), argv[1])));
   const auto named =
       std::find_if(commands.begin(), commands.end(), [](const auto& command) { return command->named(); });
   return static_cast<int>(run(**named, streams));

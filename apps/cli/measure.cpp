@@ -60,9 +60,9 @@ class MeasureCommand final : public ContourInputCommand {
 
   ExitCode run(const Streams& streams) override {
     const std::vector<Cut> cuts = parse_cuts(at_);
-    require_input(file());
+    require_inputs();
     if (!csv_.empty()) {
-      require_text_output(csv_, file());
+      require_text_output(csv_, files());
       if (cuts.empty() && samples_ == 0)
         throw Error(ErrorCode::InvalidArgument, "--csv without cuts; expected --at or --samples too");
     }

@@ -34,6 +34,17 @@ double parse_finite(std::string_view option, std::string_view text) {
   return *value;
 }
 
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  return {[least, most](std::string& text) {
+            std::uint64_t value = 0;
+            const char* const end = text.data() + text.size();
+            const auto [at, error] = std::from_chars(text.data(), end, value);
+            if (error == std::errc{} && at == end && value >= least && value <= most) return std::string();
+            return fmt::format("'{}'; expected a whole number from {} to {}", text, least, most);
+          },
+          ""};
+}
+
 std::string number(double value) {
   std::string exact = fmt::format("{}", value);
   constexpr std::size_t kShort = 10;

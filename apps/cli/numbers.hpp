@@ -3,6 +3,7 @@
 // Numbers to text and back, independent of the locale.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,6 +16,9 @@ std::optional<double> parse_number(std::string_view text);
 
 /// The value of the option `option`, a finite number. Throws InvalidArgument that quotes `text`.
 double parse_finite(std::string_view option, std::string_view text);
+
+/// What an option that counts takes: digits alone, at least `least`. (A minus sign would be read as a huge number.)
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000);
 
 /// A number for people: exact where that is short, else six significant digits.
 std::string number(double value);

@@ -41,13 +41,14 @@ void require_input(const fs::path& path) {
   if (access(path.c_str(), R_OK) != 0) fail_input(fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 
-void require_text_output(const fs::path& output, const fs::path& input) {
+void require_text_output(const fs::path& output, const std::vector<std::string>& inputs) {
   std::error_code error;
   if (output.empty()) fail(output, "is no name of a file");
   if (output.native().front() == '-')
     fail(output, fmt::format("looks like an option; expected the name of a file, such as ./{}", output.string()));
   if (fs::is_directory(output, error)) fail(output, "is a directory; expected the name of a file");
-  if (fs::equivalent(output, input, error)) fail(output, "is the input itself; expected another file");
+  for (const std::string& input : inputs)
+    if (fs::equivalent(output, input, error)) fail(output, "is the input itself; expected another file");
   const fs::path folder = output.has_parent_path() ? output.parent_path() : fs::path(".");
   if (!fs::exists(folder, error)) {
     fail(output, fmt::format("the folder '{}' does not exist; expected one that does", folder.string()));
@@ -58,7 +59,7 @@ void require_text_output(const fs::path& output, const fs::path& input) {
   }
 }
 
-void require_output(const fs::path& output, const fs::path& input) {
+void require_output(const fs::path& output, const std::vector<std::string>& inputs) {
   if (find_output_format(output) == nullptr) {
     const std::string extension = output.extension().string();
     fail(output, fmt::format("{}; {}",
@@ -66,7 +67,7 @@ void require_output(const fs::path& output, const fs::path& input) {
                                                : fmt::format("the extension '{}' is not known", extension),
                              kExpectedExtensions));
   }
-  require_text_output(output, input);
+  require_text_output(output, inputs);
 }
 
 void require_output_holds(const fs::path& output, int simplex_dim) {

@@ -17,14 +17,14 @@ namespace tegl::cli {
 void require_input(const std::filesystem::path& path);
 
 /// Throws WriteFailed unless `output` can be expected to be written: a known extension, a folder that
-/// exists and can be written to, no directory, not the input itself.
-void require_output(const std::filesystem::path& output, const std::filesystem::path& input);
+/// exists and can be written to, no directory, none of the inputs.
+void require_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// Throws WriteFailed unless the format of `output` holds simplices of this dimension.
 void require_output_holds(const std::filesystem::path& output, int simplex_dim);
 
 /// Throws WriteFailed unless `output` can be expected to be written as a text file, of any extension.
-void require_text_output(const std::filesystem::path& output, const std::filesystem::path& input);
+void require_text_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// Calls `write`, which writes the file, and returns its size in bytes. Errors: WriteFailed, whatever is wrong;
 /// Cancelled.

@@ -124,8 +124,8 @@ class ProjectCommand final : public ContourInputCommand {
 
   ExitCode run(const Streams& streams) override {
     const Projection projection = projection_from_options();
-    require_input(file());
-    require_output(output_, file());
+    require_inputs();
+    require_output(output_, files());
     require_output_holds(output_, kind_ == "tetrahedra" ? 3 : 2);
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());

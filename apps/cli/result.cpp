@@ -54,6 +54,17 @@ std::string report_line(std::string_view label, std::string_view value) {
   return fmt::format("  {:<12} {}\n", label, value);
 }
 
+std::string InputFiles::text() const {
+  if (names.size() == 1) return names.front();
+  return fmt::format("{} .. {} ({})", names.front(), names.back(), counted(names.size(), "file", "files"));
+}
+
+Json InputFiles::json() const { return names.size() == 1 ? Json(names.front()) : Json(names); }
+
+std::string input_line(const InputFiles& input, const std::string& variable) {
+  return report_line("input", variable.empty() ? input.text() : fmt::format("{} ({})", input.text(), variable));
+}
+
 std::string axis_label(const std::string& name, std::size_t axis) {
   return name.empty() ? std::string(1, "xyzt"[axis]) : name;
 }
@@ -127,7 +138,7 @@ void StageSeconds::add(const ExtractStats& stats) {
 
 Json to_json(const ContourResult& result) {
   Json json;
-  json["input"] = result.input;
+  json["input"] = result.input.json();
   json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
   json["output"] = result.output;
   json["image_dim"] = result.image_dim;
@@ -162,8 +173,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
   if (!result.wording.heading.empty()) what = result.wording.heading;
   if (result.isovalue) what += fmt::format(" of the isovalue {}", number(*result.isovalue));
   std::string text = fmt::format("{}\n", console.bold(what));
-  text += report_line("input",
-                      result.variable.empty() ? result.input : fmt::format("{} ({})", result.input, result.variable));
+  text += input_line(result.input, result.variable);
   if (result.picked) {
     const Picked& picked = *result.picked;
     text += report_line("picked",

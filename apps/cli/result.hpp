@@ -29,6 +29,19 @@ std::string axis_label(const std::string& name, std::size_t axis);
 /// The document as text with a newline at its end. Bytes that are no UTF-8 (units in old files) are replaced.
 std::string dump(const Json& json);
 
+/// The file that a result was made of, or the files that were read as one image.
+struct InputFiles {
+  std::vector<std::string> names;
+
+  /// "a.nrrd", or "a.nrrd .. z.nrrd (26 files)".
+  [[nodiscard]] std::string text() const;
+  /// A string, or a list of them.
+  [[nodiscard]] Json json() const;
+};
+
+/// The line of a report that says what was read.
+std::string input_line(const InputFiles& input, const std::string& variable);
+
 /// How large a mesh is.
 struct MeshSize {
   int dim = 0;  ///< of the simplices
@@ -105,7 +118,7 @@ struct StageSeconds {
 
 /// A contour, or a cut of one, made and written.
 struct ContourResult {
-  std::string input;
+  InputFiles input;
   std::string variable;
   std::string output;
   std::uint64_t output_bytes = 0;

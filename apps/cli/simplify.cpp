@@ -81,8 +81,8 @@ class SimplifyCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
-    require_input(file());
-    require_output(output_, file());
+    require_inputs();
+    require_output(output_, files());
     require_goal();
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);
@@ -266,8 +266,7 @@ class SimplifyCommand final : public ContourInputCommand {
                              ? 1.0
                              : static_cast<double>(stats.simplices_after) / static_cast<double>(stats.simplices_before);
     std::string lines = fmt::format("{}\n", console.bold(fmt::format("Simplified contour in {}D", result.image_dim)));
-    lines +=
-        report_line("input", input.variable.empty() ? input.file : fmt::format("{} ({})", input.file, input.variable));
+    lines += input_line(input.file, input.variable);
     lines += report_line("before", fmt::format("{}, {}", counted(stats.vertices_before, "vertex", "vertices"),
                                                counted_simplices(dim, stats.simplices_before)));
     lines += report_line("method", fmt::format("{}: {:.3g} % of the simplices are left", method_, 100.0 * share));

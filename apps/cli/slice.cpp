@@ -183,7 +183,7 @@ class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
       : Command(program, "slice", "A cut of a 4D contour at a time, or by any other hyperplane",
-                "a 4D image, or a 4D contour that 'tegl contour' saved (.vtkhdf); or a 3D one") {
+                "a 4D image, or a 4D contour that 'tegl contour' saved (.vtkhdf); or a 3D one", Files::image) {
     app()
         .add_option("--at", at_, "where to cut an axis: t=7.3, x=2; t=1,2.5 for several; t=0:10:21 for 21 from 0 to 10")
         ->allow_extra_args(false)
@@ -204,7 +204,7 @@ class SliceCommand final : public Command {
                     "the result: .ply, .gltf, .glb or .vtkhdf; {t} in it stands for the number, {axis} for its axis")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
-    add_variable();
+    add_image_options();
     add_quiet();
     app().footer(kExamples);
   }
@@ -216,8 +216,8 @@ class SliceCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument,
                   "neither --at nor --plane is given; expected a place to cut, as in --at t=7.3");
     const std::vector<std::string> outputs = cut_outputs(output_, cuts);
-    require_input(file());
-    for (const std::string& output : outputs) require_output(output, file());
+    require_inputs();
+    for (const std::string& output : outputs) require_output(output, files());
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
@@ -227,7 +227,7 @@ class SliceCommand final : public Command {
     else if (attributes_.wanted())
       add_attributes<3>(attributes_, factors_, options_.threads(), results, bar);
     for (std::size_t i = 0; i < results.size(); ++i) {
-      results[i].input = file();
+      results[i].input = inputs();
       results[i].output = outputs[i];
       if (!no_check_) check_result(results[i], bar);
     }
@@ -326,7 +326,7 @@ class SliceCommand final : public Command {
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
-    refuse_image_options(file(), given, variable(), "--at, --plane, --scale, --threads and --output alone");
+    refuse_image_options(files(), given, images(), "--at, --plane, --scale, --threads and --output alone");
     const Progress reading = bar.stage("read");
     Stopwatch watch;
     const Mesh mesh = read_saved_contour(file());

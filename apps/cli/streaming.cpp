@@ -6,28 +6,11 @@
 #include <filesystem>
 
 #include "numbers.hpp"
+#include "progress.hpp"
 
 namespace tegl::cli {
 
 namespace {
-
-/// "64x64x64x400" as numbers.
-std::vector<std::size_t> parse_sizes(const std::string& text) {
-  std::vector<std::size_t> sizes;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find('x', begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    const std::optional<double> size = parse_number(part);
-    constexpr double kMost = 0x1p48;
-    if (!size || !(*size >= 1 && *size <= kMost) || *size != static_cast<double>(static_cast<std::size_t>(*size)))
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("--raw is '{}'; expected sizes such as 64x64x64x400, the one that runs fastest first", text));
-    sizes.push_back(static_cast<std::size_t>(*size));
-    begin = end + 1;
-  }
-  return sizes;
-}
 
 template <int N, class Real, class T>
 void stream_typed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options, ContourResult& result) {
@@ -50,31 +33,6 @@ void stream_typed(LayerReader<T, N>& layers, double isovalue, const ExtractOptio
 }
 
 }  // namespace
-
-void StreamingOptions::add_to(CLI::App& app) {
-  app.add_flag("--stream", stream_,
-               "read layer by layer and write as it comes, with little memory: from netCDF, HDF5 or --raw, to .vtkhdf");
-  raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
-                    ->type_name("XxYxZ[xT]");
-  raw_option_->needs(
-      app.add_option("--raw-type", raw_type_, "their type: uint8, int8, uint16, int16, int32, float or double")
-          ->needs(raw_option_));
-  app.add_option("--raw-offset", raw_offset_, "bytes before the first value")
-      ->needs(raw_option_)
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_flag("--raw-big-endian", raw_big_endian_, "the values' first byte is the highest")->needs(raw_option_);
-}
-
-bool StreamingOptions::wanted() const { return stream_ || raw_option_->count() > 0; }
-
-OpenLayersResult StreamingOptions::open(const std::string& file, const std::string& variable) const {
-  if (raw_option_->count() == 0) return open_layers(file, variable);
-  if (!variable.empty())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--var {} with --raw; expected no variable: raw values have no name", variable));
-  return open_raw_layers(file, {parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_});
-}
 
 void stream_contour(OpenLayersResult& input, double isovalue, const ExtractOptions& options, bool single_precision,
                     ContourResult& result) {

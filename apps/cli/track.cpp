@@ -157,14 +157,14 @@ class TrackCommand final : public ContourInputCommand {
       if (std::count(outputs_.begin(), outputs_.end(), output) > 1)
         throw Error(ErrorCode::InvalidArgument, fmt::format("--output {} is given twice", output));
       if (is_track_file(output))
-        require_text_output(output, file());
+        require_text_output(output, files());
       else if (find_mesh_file_format(output) != nullptr)
-        require_output(output, file());
+        require_output(output, files());
       else
         throw Error(ErrorCode::WriteFailed, fmt::format("{}: the extension is not known; {}", output, kExpected));
     }
     if (!csv_.empty())
-      for (const char* const table : kTables) require_text_output(csv_ + table, file());
+      for (const char* const table : kTables) require_text_output(csv_ + table, files());
   }
 
   template <int N>
@@ -217,13 +217,13 @@ class TrackCommand final : public ContourInputCommand {
   }
 
   static std::string title(const ContourInput& input) {
-    std::string text = std::filesystem::path(input.file).filename().string();
+    std::string text = std::filesystem::path(input.file.names.front()).filename().string();
     if (input.isovalue)
       text += fmt::format(", {} = {}", input.variable.empty() ? "isovalue" : input.variable, number(*input.isovalue));
     return text;
   }
 
-  [[nodiscard]] std::vector<std::string> files() const {
+  [[nodiscard]] std::vector<std::string> written_files() const {
     std::vector<std::string> files = outputs_;
     if (!csv_.empty())
       for (const char* const table : kTables) files.push_back(csv_ + table);
@@ -234,7 +234,7 @@ class TrackCommand final : public ContourInputCommand {
                               double write_seconds) const {
     Json json;
     add_input_keys(json, input);
-    json["outputs"] = files();
+    json["outputs"] = written_files();
     json["tracks_found"] = all;
     Json& kinds = json["events_by_kind"] = Json::object();
     for (const auto& [kind, count] : kinds_of(graph)) kinds[kind] = count;
@@ -262,7 +262,7 @@ class TrackCommand final : public ContourInputCommand {
     text += longest_text(graph, input);
     text += report_line("seconds", fmt::format("contour {:.3f} + track {:.3f} + write {:.3f}", input.seconds.total(),
                                                track_seconds, write_seconds));
-    for (const std::string& output : files()) text += report_line("output", output);
+    for (const std::string& output : written_files()) text += report_line("output", output);
     return text;
   }
 

@@ -45,9 +45,11 @@ struct Shown {
 class ViewCommand final : public ContourInputCommand {
  public:
   ViewCommand(CLI::App& program, std::string version)
-      : ContourInputCommand(program, "view", "One page for a browser, with a slider for the time", Files::several),
+      : ContourInputCommand(program, "view", "One page for a browser, with a slider for the time", Files::each),
         version_(std::move(version)) {
     app().add_option("-o,--output", output_, "the page: .html")->required();
+    app().add_flag("--one-image", one_image_,
+                   "several FILEs are one image with an axis more, as other commands take them, not one contour each");
     app().add_option("--title", title_, "what stands above; by default the names of the files")->type_name("TEXT");
     app()
         .add_option("--limit", limit_,
@@ -73,8 +75,11 @@ class ViewCommand final : public ContourInputCommand {
     scene["title"] = title_.empty() ? names() : title_;
     scene["layers"] = Json::array();
     std::vector<Shown> shown;
-    for (std::size_t i = 0; i < files().size(); ++i) {
-      turn_to_file(i);
+    for (std::size_t i = 0; i < (one_image_ ? 1 : all_files().size()); ++i) {
+      if (one_image_)
+        turn_to_all_files();
+      else
+        turn_to_file(i);
       scene["layers"].push_back(add_file(numbers, bar, shown));
       require_one_space(shown);
     }
@@ -95,10 +100,8 @@ class ViewCommand final : public ContourInputCommand {
 
  private:
   void require_page() const {
-    for (const std::string& input : files()) {
-      require_input(input);
-      require_text_output(output_, input);
-    }
+    for (const std::string& input : all_files()) require_input(input);
+    require_text_output(output_, all_files());
     const std::string extension = fs::path(output_).extension().string();
     if (!equal_ignoring_case(extension, ".html") && !equal_ignoring_case(extension, ".htm"))
       throw Error(ErrorCode::WriteFailed,
@@ -140,7 +143,7 @@ class ViewCommand final : public ContourInputCommand {
 
   [[nodiscard]] std::string names() const {
     std::vector<std::string> names;
-    for (const std::string& input : files()) names.push_back(fs::path(input).filename().string());
+    for (const std::string& input : all_files()) names.push_back(fs::path(input).filename().string());
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
@@ -156,7 +159,7 @@ class ViewCommand final : public ContourInputCommand {
   void warn(const Console& console, const std::vector<Shown>& shown) const {
     for (std::size_t i = 0; i < shown.size(); ++i)
       if (const std::string text = left_out(shown[i]); !text.empty())
-        console.write(fmt::format("tegl: {}: shown are {}\n", files()[i], text));
+        console.write(fmt::format("tegl: {}: shown are {}\n", all_files()[i], text));
   }
 
   [[nodiscard]] Json document(const std::vector<Shown>& shown, std::uint64_t bytes, double seconds) const {
@@ -194,6 +197,7 @@ class ViewCommand final : public ContourInputCommand {
   std::string version_;
   std::string output_;
   std::string title_;
+  bool one_image_ = false;
   std::uint64_t limit_ = kDefaultLimit;
   std::size_t tracks_ = 60;
 };

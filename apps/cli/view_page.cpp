@@ -255,7 +255,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   std::vector<double> center;
   for (std::size_t a = 0; a < kSpace; ++a) center.push_back((box.lower[a] + box.upper[a]) / 2);
   Json json;
-  json["file"] = input.file;
+  json["file"] = input.file.text();
   json["variable"] = input.variable;
   json["isovalue"] = input.isovalue ? Json(*input.isovalue) : Json(nullptr);
   json["dim"] = N;

@@ -83,7 +83,18 @@ AnyLayersN<N> with_dimension(RawLayers&& source, const fs::path& path) {
       source.read(0, 0));
 }
 
-OpenLayersResult to_result(RawLayers&& source, const fs::path& path) {
+std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
+  constexpr std::array<std::string_view, 7> kNames = {"uint8", "int8", "uint16", "int16", "int32", "float", "double"};
+  const auto* const found = std::ranges::find(kNames, layout.type);
+  if (found == kNames.end())
+    fail(ErrorCode::InvalidArgument, path, "values of type '{}'; expected one of {}", layout.type,
+         fmt::join(kNames, ", "));
+  return *found;
+}
+
+}  // namespace
+
+OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& path) {
   ImageInfo info = source.info;
   switch (source.grid.axes.size()) {
     case 2:
@@ -97,23 +108,12 @@ OpenLayersResult to_result(RawLayers&& source, const fs::path& path) {
   }
 }
 
-std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
-  constexpr std::array<std::string_view, 7> kNames = {"uint8", "int8", "uint16", "int16", "int32", "float", "double"};
-  const auto* const found = std::ranges::find(kNames, layout.type);
-  if (found == kNames.end())
-    fail(ErrorCode::InvalidArgument, path, "values of type '{}'; expected one of {}", layout.type,
-         fmt::join(kNames, ", "));
-  return *found;
-}
-
-}  // namespace
-
 OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
   require_readable_file(path);
-  return to_result(open_netcdf_layers(path, variable), path);
+  return to_open_layers(open_netcdf_layers(path, variable), path);
 }
 
-OpenLayersResult open_raw_layers(const fs::path& path, const RawLayout& layout) {
+RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   require_readable_file(path);
   const std::string_view type = stored_name(layout, path);
   RawLayers source;
@@ -141,7 +141,11 @@ OpenLayersResult open_raw_layers(const fs::path& path, const RawLayout& layout) 
   };
   source.info.format = "raw";
   source.info.stored_type = type;
-  return to_result(std::move(source), path);
+  return source;
+}
+
+OpenLayersResult open_raw_layers(const fs::path& path, const RawLayout& layout) {
+  return to_open_layers(open_raw(path, layout), path);
 }
 
 }  // namespace tegl

@@ -244,11 +244,11 @@ RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& pa
 
 }  // namespace
 
-RawImage read_metaimage(const fs::path& path, const Progress& progress) {
+RawImage read_metaimage(const fs::path& path, Extent extent, const Progress& progress) {
   std::uint64_t header_end = 0;
   const Fields fields = read_fields(path, header_end);
   const Header header = parse_header(fields, header_end, path);
-  check_length(header, progress);
+  if (extent == Extent::whole) check_length(header, progress);
   RawImage image;
   image.grid = make_grid(fields, header, path);
   image.info.format = "MetaImage";
@@ -262,7 +262,7 @@ RawImage read_metaimage(const fs::path& path, const Progress& progress) {
   for (std::size_t a = 0; a < std::min<std::size_t>(3, image.grid.axes.size()); ++a) image.grid.axes[a].unit = unit;
   name_axes(image.grid);
   image.values = array_of_type(header.type.name);
-  read_metaimage_values(path, checked_bytes(header.sizes, 1, path), image.values);
+  if (extent == Extent::whole) read_metaimage_values(path, checked_bytes(header.sizes, 1, path), image.values);
   return image;
 }
 

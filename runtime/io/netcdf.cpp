@@ -193,6 +193,18 @@ Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimen
   return axis;
 }
 
+/// Where the variable lies along a dimension of one sample, times first. Whatever is wrong with its coordinate is none
+/// of the image's business.
+void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::vector<Axis>& singles) {
+  try {
+    bool is_time = false;
+    Axis single = read_axis(file, variable, dimension, is_time);
+    singles.insert(is_time ? singles.begin() : singles.end(), std::move(single));
+  } catch (const Error&) {
+    return;
+  }
+}
+
 /// The grid of a variable, and which of its dimensions is the image's last axis: time, else the slowest one.
 struct VariableGrid {
   RawGrid grid;
@@ -206,8 +218,11 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable) {
   std::vector<bool> is_time;
   std::vector<std::size_t> dimension_of;
   for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
-    if (variable.sizes[d] == 1) continue;
     bool time = false;
+    if (variable.sizes[d] == 1) {
+      add_single(file, variable, d, result.grid.single);
+      continue;
+    }
     axes.push_back(read_axis(file, variable, d, time));
     is_time.push_back(time);
     dimension_of.push_back(d);
@@ -261,13 +276,15 @@ Found find_variable(const NcFile& file, const std::string& wanted) {
 
 }  // namespace
 
-RawImage read_netcdf(const std::filesystem::path& path, const ReadImageOptions& options) {
+RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
   const NcFile file(path, options.progress);
   const Found found = find_variable(file, options.variable);
   VariableGrid grid = read_grid(file, found.variable);
   RawImage image;
-  image.values = in_order(unpack(file.values(found.variable, options.progress), read_packing(file, found.variable)),
-                          grid, grid.grid.axes.back().size());
+  const Packing packing = read_packing(file, found.variable);
+  image.values = extent == Extent::header ? unpack(file.values(found.variable, grid.last_dimension, 0, 0), packing)
+                                          : in_order(unpack(file.values(found.variable, options.progress), packing),
+                                                     grid, grid.grid.axes.back().size());
   image.grid = std::move(grid.grid);
   image.info = found.info;
   return image;

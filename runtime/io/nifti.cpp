@@ -253,6 +253,11 @@ RawGrid make_grid(const Header& header, const fs::path& path) {
   for (std::size_t a = 0; a < 3; ++a) grid.axes[a].unit = header.space_unit;
   if (n == 4) grid.axes[3].unit = header.time_unit;
   name_axes(grid);
+  if (n == 3 && std::isfinite(header.toffset)) {  // an image of one time
+    grid.single.push_back(Axis::uniform(1, header.toffset));
+    grid.single.back().name = "t";
+    grid.single.back().unit = header.time_unit;
+  }
   return grid;
 }
 
@@ -288,7 +293,7 @@ ValueArray scaled(ValueArray&& values, const Header& header) {
 
 }  // namespace
 
-RawImage read_nifti(const fs::path& path, const Progress& progress) {
+RawImage read_nifti(const fs::path& path, Extent extent, const Progress& progress) {
   const std::string name = lower_name(path);
   const bool is_img = name.ends_with(".img") || name.ends_with(".img.gz");
   const fs::path header_path = is_img ? partner(path, ".hdr") : path;
@@ -300,9 +305,10 @@ RawImage read_nifti(const fs::path& path, const Progress& progress) {
   image.info.format = "NIfTI";
   image.info.stored_type = header.type.name;
   if (header.sform_code > 0 || header.qform_code > 0) image.info.world_frame = "RAS";
-  image.values = scaled(read_raw_values(data_path, header.vox_offset, header.type.name,
-                                        checked_bytes(header.sizes, header.type.bytes, path) / header.type.bytes,
-                                        header.swapped, progress),
+  const std::uint64_t count = checked_bytes(header.sizes, header.type.bytes, path) / header.type.bytes;
+  image.values = scaled(extent == Extent::header ? array_of_type(header.type.name)
+                                                 : read_raw_values(data_path, header.vox_offset, header.type.name,
+                                                                   count, header.swapped, progress),
                         header);
   return image;
 }

@@ -465,10 +465,10 @@ void move_list_last(const Header& header, ValueArray& values) {
 
 }  // namespace
 
-RawImage read_nrrd(const fs::path& path, const Progress& progress) {
+RawImage read_nrrd(const fs::path& path, Extent extent, const Progress& progress) {
   const Text text = read_header_text(path);
   Header header = parse_header(text, path);
-  check_length(header, path, progress);
+  if (extent == Extent::whole) check_length(header, path, progress);
   RawImage image;
   image.grid = make_grid(text.fields, header, image.info.world_frame, path);
   image.info.format = "NRRD";
@@ -476,6 +476,8 @@ RawImage read_nrrd(const fs::path& path, const Progress& progress) {
   image.info.value_unit = optional_field(text.fields, "sampleunits");
   std::erase(image.info.value_unit, '"');
   image.info.value_name = optional_field(text.fields, "content");
+  image.values = array_of_type(header.type.name);
+  if (extent == Extent::header) return image;
   image.values = read_nrrd_values(path, checked_bytes(header.sizes, 1, path));
   if (header.list_axis) move_list_last(header, image.values);
   return image;

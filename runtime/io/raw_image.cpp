@@ -68,7 +68,7 @@ RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd
   const auto n = static_cast<Eigen::Index>(sizes.size());
   if (!affine.allFinite() || !offset.allFinite())
     fail(ErrorCode::MalformedFile, path, "orientation with an entry that is not finite; expected finite numbers");
-  RawGrid grid{{}, Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Zero(n)};
+  RawGrid grid{{}, Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Zero(n), {}};
   for (Eigen::Index a = 0; a < n; ++a) {
     const bool decoupled = is_decoupled(affine, a);
     const double step = decoupled ? affine(a, a) : affine.col(a).norm();
@@ -97,8 +97,13 @@ void drop_trailing_axes(RawImage& image) {
   while (grid.axes.size() > 2 && grid.axes.back().size() == 1) {
     const auto left = static_cast<Eigen::Index>(grid.axes.size()) - 1;
     const bool decoupled = grid.linear.col(left).head(left).isZero(0.0) && grid.linear.row(left).head(left).isZero(0.0);
+    Axis single = std::move(grid.axes.back());
     grid.axes.pop_back();
     if (decoupled) {
+      Axis world = Axis::uniform(1, grid.linear(left, left) * single[0] + grid.offset(left));
+      world.name = std::move(single.name);
+      world.unit = std::move(single.unit);
+      grid.single.push_back(std::move(world));
       grid.linear = grid.linear.topLeftCorner(left, left).eval();
       grid.offset = grid.offset.head(left).eval();
     } else {

@@ -21,6 +21,8 @@ struct RawGrid {
   std::vector<Axis> axes;  ///< axis 0 runs fastest
   Eigen::MatrixXd linear;  ///< n x n
   Eigen::VectorXd offset;  ///< n
+  /// Axes of one sample that were left out: where the image lies along them, the likeliest time first.
+  std::vector<Axis> single;
 };
 
 struct RawImage {

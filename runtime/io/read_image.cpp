@@ -59,30 +59,35 @@ Format format_of(const fs::path& path) {
        shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
 }
 
-RawImage read_raw(const fs::path& path, const ReadImageOptions& options) {
+RawImage read_format(const fs::path& path, Extent extent, const ReadImageOptions& options) {
   const Format format = format_of(path);
   if (format != Format::NetCdf && !options.variable.empty())
     fail(ErrorCode::InvalidArgument, path, "variable '{}' asked of a file that holds one image without a name",
          options.variable);
   switch (format) {
     case Format::Nifti:
-      return read_nifti(path, options.progress);
+      return read_nifti(path, extent, options.progress);
     case Format::Nrrd:
-      return read_nrrd(path, options.progress);
+      return read_nrrd(path, extent, options.progress);
     case Format::MetaImage:
-      return read_metaimage(path, options.progress);
+      return read_metaimage(path, extent, options.progress);
     default:
-      return read_netcdf(path, options);
+      return read_netcdf(path, extent, options);
   }
 }
 
 }  // namespace
 
-ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options) {
+RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImageOptions& options) {
   require_readable_file(path);
-  tick(options.progress, 0.0, path);
-  RawImage image = read_raw(path, options);
+  RawImage image = read_format(path, extent, options);
   drop_trailing_axes(image);
+  return image;
+}
+
+ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options) {
+  tick(options.progress, 0.0, path);
+  RawImage image = read_any(path, Extent::whole, options);
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), path);
   tick(options.progress, 1.0, path);

@@ -11,10 +11,16 @@
 
 namespace tegl::io_detail {
 
-RawImage read_nifti(const std::filesystem::path& path, const Progress& progress);
-RawImage read_nrrd(const std::filesystem::path& path, const Progress& progress);
-RawImage read_metaimage(const std::filesystem::path& path, const Progress& progress);
-RawImage read_netcdf(const std::filesystem::path& path, const ReadImageOptions& options);
+/// How much of a file to read: all of it, or grid and description with an empty array of the values' type.
+enum class Extent { whole, header };
+
+RawImage read_nifti(const std::filesystem::path& path, Extent extent, const Progress& progress);
+RawImage read_nrrd(const std::filesystem::path& path, Extent extent, const Progress& progress);
+RawImage read_metaimage(const std::filesystem::path& path, Extent extent, const Progress& progress);
+RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options);
+
+/// A file of any format, without trailing axes of one sample.
+RawImage read_any(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options);
 
 /// An image whose samples are read later, some layers along its last axis at a time.
 struct RawLayers {
@@ -24,6 +30,11 @@ struct RawLayers {
   /// The samples of the layers [first, first + count); always of the same type. Keeps the file open.
   std::function<ValueArray(std::size_t first, std::size_t count)> read;
 };
+/// The layers, of the value types and dimensions of the library.
+OpenLayersResult to_open_layers(RawLayers&& source, const std::filesystem::path& path);
+
+/// Files that hold nothing but values.
+RawLayers open_raw(const std::filesystem::path& path, const RawLayout& layout);
 RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::string& variable);
 
 /// The variables of a netCDF file that can be read as images.

@@ -154,13 +154,13 @@ TEST(Output, IsLookedAtBeforeTheWork) {
   const std::filesystem::path input = folder / "input.ply";
   std::ofstream(input) << "x";
   const auto message = [&](const std::filesystem::path& path) {
-    const Error error = error_of([&] { require_output(path, input); });
+    const Error error = error_of([&] { require_output(path, {input}); });
     EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
     EXPECT_THAT(error.what(), HasSubstr(path.string()));
     return std::string(error.what());
   };
-  EXPECT_NO_THROW(require_output(folder / "out.glb", input));
-  EXPECT_NO_THROW(require_output("out.glb", input));
+  EXPECT_NO_THROW(require_output(folder / "out.glb", {input}));
+  EXPECT_NO_THROW(require_output("out.glb", {input}));
   EXPECT_THAT(message(folder / "out.xyz"), HasSubstr(".xyz"));
   EXPECT_THAT(message(folder / "out"), HasSubstr("no extension"));
   EXPECT_THAT(message(folder / "none" / "out.ply"), HasSubstr("does not exist"));

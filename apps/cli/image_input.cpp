@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "cuts.hpp"
+#include "numbers.hpp"
+#include "output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+/// "64x64x64x400" as numbers.
+std::vector<std::size_t> parse_sizes(const std::string& text) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('x', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const std::optional<double> size = parse_number(part);
+    constexpr double kMost = 0x1p48;
+    if (!size || !(*size >= 1 && *size <= kMost) || *size != static_cast<double>(static_cast<std::size_t>(*size)))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--raw is '{}'; expected sizes such as 64x64x64x400, the one that runs fastest first", text));
+    sizes.push_back(static_cast<std::size_t>(*size));
+    begin = end + 1;
+  }
+  return sizes;
+}
+
+/// A shell lists frame_10 before frame_2. Whoever meant that can say so; a contour through frames in that order looks
+/// like one, and is wrong.
+void require_order_that_is_meant(const std::vector<std::string>& files) {
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const std::string& a = files[i - 1];
+    const std::string& b = files[i];
+    if (a < b && natural_less(b, a))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} comes before {}, as shells list names; expected --sort name for the order of the "
+                              "numbers in them, or --sort given for this one",
+                              a, b));
+  }
+}
+
+std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& files) {
+  return {files.begin(), files.end()};
+}
+
+/// What --var is for is said where it is missing.
+template <class Read>
+auto with_hint(const std::string& variable, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::VariableNotFound || !variable.empty()) throw;
+    throw Error(error.code(), fmt::format("{} (choose it with --var)", error.what()));
+  }
+}
+
+}  // namespace
+
+void ImageOptions::add_to(CLI::App& app) {
+  options_ = {
+      app.add_option("--var", variable_, "netCDF: the variable to read; needed where the file has several")
+          ->type_name("NAME"),
+      app.add_option("--times", times_,
+                     "of several FILEs: where each one lies along the new axis: 0,0.5,2; or FIRST:LAST:COUNT; without, "
+                     "as the files say, else 0, 1, 2 ...")
+          ->type_name("NUMBERS"),
+      app.add_option("--time-step", time_step_, "of several FILEs: they lie at 0, this, twice this ...")
+          ->type_name("NUMBER"),
+      app.add_option("--time-unit", time_unit_, "of several FILEs: the unit of the new axis")->type_name("UNIT"),
+      app.add_option("--sort", sort_,
+                     "of several FILEs: by the numbers in their names, by the times in their headers, or as given")
+          ->check(CLI::IsMember({"given", "name", "time"})),
+  };
+  raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
+                    ->type_name("XxYxZ[xT]");
+  CLI::Option* const type =
+      app.add_option("--raw-type", raw_type_, "their type: uint8, int8, uint16, int16, int32, float or double")
+          ->type_name("TYPE")
+          ->needs(raw_option_);
+  raw_option_->needs(type);
+  options_.push_back(raw_option_);
+  options_.push_back(type);
+  options_.push_back(app.add_option("--raw-offset", raw_offset_, "bytes before the first value")
+                         ->needs(raw_option_)
+                         ->check(whole_number(0, std::uint64_t{1} << 62))
+                         ->type_name("BYTES")
+                         ->capture_default_str());
+  options_.push_back(
+      app.add_flag("--raw-big-endian", raw_big_endian_, "the values' first byte is the highest")->needs(raw_option_));
+}
+
+std::vector<std::string> ImageOptions::given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options_)
+    if (option->count() > 0) names.push_back(option->get_name());
+  return names;
+}
+
+SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files) const {
+  for (const char* const option : {"--times", "--time-step", "--time-unit", "--sort"}) {
+    const auto names = given();
+    if (files.size() == 1 && std::find(names.begin(), names.end(), option) != names.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} with one file, {}; expected several files that become one image", option, files[0]));
+  }
+  if (!times_.empty() && !time_step_.empty())
+    throw Error(ErrorCode::InvalidArgument, "--times with --time-step; expected one of the two");
+  if (!times_.empty() && sort_ == "time")
+    throw Error(ErrorCode::InvalidArgument, "--sort time with --times; expected the times of the files' headers alone");
+  if (!time_step_.empty() && sort_ == "time")
+    throw Error(ErrorCode::InvalidArgument,
+                "--sort time with --time-step; expected the times of the files' headers alone");
+  if (raw() && !variable_.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--var {} with --raw; expected no variable: raw values have no name", variable_));
+  SeriesOptions options;
+  options.variable = variable_;
+  options.unit = time_unit_;
+  if (!times_.empty()) {
+    options.coordinates = parse_numbers("--times", times_);
+    if (options.coordinates.size() != files.size())
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--times has {} numbers for {} files; expected one for each",
+                                                          options.coordinates.size(), files.size()));
+  }
+  if (!time_step_.empty()) options.step = parse_finite("--time-step", time_step_);
+  if (options.step && *options.step == 0)
+    throw Error(ErrorCode::InvalidArgument, "--time-step is 0; expected another number");
+  options.order = sort_ == "name"   ? SeriesOrder::by_name
+                  : sort_ == "time" ? SeriesOrder::coordinate
+                                    : SeriesOrder::given;
+  if (sort_.empty()) require_order_that_is_meant(files);
+  if (raw()) options.raw = RawLayout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_};
+  return options;
+}
+
+ReadImageResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
+  for (const std::string& file : files) require_input(file);
+  SeriesOptions options = series_options(files);
+  options.progress = progress;
+  return with_hint(variable_, [&] { return read_series(paths_of(files), options); });
+}
+
+OpenLayersResult ImageOptions::open(const std::vector<std::string>& files) const {
+  for (const std::string& file : files) require_input(file);
+  const SeriesOptions options = series_options(files);
+  return with_hint(variable_, [&] { return open_series(paths_of(files), options); });
+}
+
+std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {
+  return raw() ? std::vector<ImageVariable>() : list_image_variables(files.front());
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The image that FILE names, for all commands alike: one file, or several that are one image, and the options that say
+// how to read them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "result.hpp"
+#include "tegl/io.hpp"
+#include "tegl/series.hpp"
+
+namespace tegl::cli {
+
+/// --var, --times, --time-step, --time-unit, --sort, --raw and what belongs to it.
+class ImageOptions {
+ public:
+  /// Adds the options to a command. This must outlive the parse.
+  void add_to(CLI::App& app);
+
+  /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that contradict each other
+  /// or the files, and for files in an order that only a shell would choose.
+  [[nodiscard]] ReadImageResult read(const std::vector<std::string>& files, const Progress& progress) const;
+
+  /// The same to be read layer by layer.
+  [[nodiscard]] OpenLayersResult open(const std::vector<std::string>& files) const;
+
+  /// The variables of the files, as list_image_variables has them; none of raw ones.
+  [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;
+
+  [[nodiscard]] const std::string& variable() const { return variable_; }
+  [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
+  /// The names of those that are given.
+  [[nodiscard]] std::vector<std::string> given() const;
+
+ private:
+  [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
+
+  std::string variable_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
+  std::uint64_t raw_offset_ = 0;
+  bool raw_big_endian_ = false;
+  CLI::Option* raw_option_ = nullptr;
+  std::vector<CLI::Option*> options_;
+};
+
+}  // namespace tegl::cli

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Series of files as one image: what fits together, where each file lies along the new axis, and the values one file
+// after the other.
+#include "tegl/series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "common.hpp"
+#include "raw_image.hpp"
+#include "readers.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+/// One file of the series without its values.
+struct Member {
+  fs::path path;
+  RawGrid grid;
+  ImageInfo info;
+  std::size_t type = 0;  ///< index of ValueArray
+};
+
+RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {
+  if (!options.raw) return read_any(path, extent, {options.variable, progress});
+  const RawLayers layers = open_raw(path, *options.raw);
+  const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
+  RawImage image{layers.grid, layers.read(0, count), layers.info};
+  drop_trailing_axes(image);
+  return image;
+}
+
+std::vector<std::size_t> sizes_of(const RawGrid& grid) {
+  std::vector<std::size_t> sizes;
+  for (const Axis& axis : grid.axes) sizes.push_back(axis.size());
+  return sizes;
+}
+
+const char* name_of_type(std::size_t type) {
+  ValueArray array;
+  const auto search = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    ((I == type ? (void)(array = ValueArray(std::in_place_index<I>)) : void()), ...);
+  };
+  search(std::make_index_sequence<std::variant_size_v<ValueArray>>());
+  return type_name(array);
+}
+
+/// Throws unless `member` has the samples of `first` at the same places.
+void require_same_grid(const Member& member, const Member& first) {
+  if (sizes_of(member.grid) != sizes_of(first.grid))
+    fail(ErrorCode::UnsupportedData, member.path, "has {} samples; expected {}, as {}",
+         shape_text(sizes_of(member.grid)), shape_text(sizes_of(first.grid)), first.path.string());
+  constexpr double kTolerance = 1e-3;  // of a step: what writers lose by rounding
+  for (std::size_t a = 0; a < first.grid.axes.size(); ++a) {
+    const Axis& axis = member.grid.axes[a];
+    const Axis& expected = first.grid.axes[a];
+    const std::string label = expected.name.empty() ? fmt::format("{}", a) : "'" + expected.name + "'";
+    if (axis.unit != expected.unit)
+      fail(ErrorCode::UnsupportedData, member.path, "has the axis {} in '{}'; expected '{}', as {}", label, axis.unit,
+           expected.unit, first.path.string());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const double step = expected.size() < 2 ? expected.step()
+                          : i == 0            ? expected[1] - expected[0]
+                                              : expected[i] - expected[i - 1];
+      if (std::abs(axis[i] - expected[i]) <= kTolerance * std::abs(step)) continue;
+      if (i == 0)
+        fail(ErrorCode::UnsupportedData, member.path, "has the origin {} along axis {}; expected {}, as {}", axis[0],
+             label, expected[0], first.path.string());
+      fail(ErrorCode::UnsupportedData, member.path,
+           "has other steps along axis {}: sample {} lies at {}; expected {}, as {}", label, i, axis[i], expected[i],
+           first.path.string());
+    }
+  }
+  // How far the farthest corner may be displaced, in steps of the finest axis.
+  double least = std::abs(first.grid.axes[0].step());
+  double extent = 1;
+  for (const Axis& axis : first.grid.axes) {
+    least = std::min(least, std::abs(axis.step()));
+    extent = std::max(extent, static_cast<double>(axis.size()) * std::abs(axis.step()));
+  }
+  const bool turned = ((member.grid.linear - first.grid.linear).array().abs() * extent > kTolerance * least).any();
+  const bool shifted = ((member.grid.offset - first.grid.offset).array().abs() > kTolerance * least).any();
+  if (turned || shifted)
+    fail(ErrorCode::UnsupportedData, member.path, "has another {} in space than {}; expected the same",
+         turned ? "orientation" : "origin", first.path.string());
+}
+
+void require_same(const Member& member, const Member& first) {
+  if (member.type != first.type)
+    fail(ErrorCode::UnsupportedData, member.path, "has values of type {}; expected {}, as {}",
+         name_of_type(member.type), name_of_type(first.type), first.path.string());
+  if (member.info.value_unit != first.info.value_unit)
+    fail(ErrorCode::UnsupportedData, member.path, "has values in '{}'; expected '{}', as {}", member.info.value_unit,
+         first.info.value_unit, first.path.string());
+  if (member.info.world_frame != first.info.world_frame)
+    fail(ErrorCode::UnsupportedData, member.path, "is in the frame '{}'; expected '{}', as {}", member.info.world_frame,
+         first.info.world_frame, first.path.string());
+  require_same_grid(member, first);
+}
+
+/// Where the files lie along the first of the axes that they leave out and differ along; empty if there is none.
+std::vector<double> own_coordinates(const std::vector<Member>& members, Axis& axis) {
+  const std::vector<Axis>& singles = members.front().grid.single;
+  for (std::size_t s = 0; s < singles.size(); ++s) {
+    std::vector<double> coordinates;
+    for (const Member& member : members) {
+      if (member.grid.single.size() != singles.size()) return {};
+      coordinates.push_back(member.grid.single[s][0]);
+    }
+    if (std::all_of(coordinates.begin(), coordinates.end(), [&](double c) { return c == coordinates[0]; })) continue;
+    for (const Member& member : members)
+      if (member.grid.single[s].unit != singles[s].unit)
+        fail(ErrorCode::UnsupportedData, member.path,
+             "lies along '{}' in '{}'; expected '{}', as {}, or coordinates that are given", singles[s].name,
+             member.grid.single[s].unit, singles[s].unit, members.front().path.string());
+    axis = singles[s];
+    return coordinates;
+  }
+  return {};
+}
+
+/// Uniform where the coordinates are, bit by bit.
+Axis axis_of(const std::vector<double>& coordinates) {
+  const std::size_t n = coordinates.size();
+  const double step = coordinates[1] - coordinates[0];
+  bool uniform = true;
+  for (std::size_t i = 0; i < n; ++i)
+    uniform = uniform && coordinates[i] == coordinates[0] + static_cast<double>(i) * step;
+  return uniform ? Axis::uniform(n, coordinates[0], step) : Axis::rectilinear(coordinates);
+}
+
+void require_monotone(const std::vector<double>& coordinates, const std::vector<Member>& members, bool own) {
+  const bool descending = coordinates[1] < coordinates[0];
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (!std::isfinite(coordinates[i]))
+      fail(ErrorCode::InvalidArgument, members[i].path, "lies at {} along the new axis; expected a finite number",
+           coordinates[i]);
+    if (i == 0 || (descending ? coordinates[i] < coordinates[i - 1] : coordinates[i] > coordinates[i - 1])) continue;
+    fail(own ? ErrorCode::UnsupportedData : ErrorCode::InvalidArgument, members[i].path,
+         "lies at {} along the new axis{}, behind {} at {}; expected strictly {} coordinates{}", coordinates[i],
+         own ? " by its header" : "", members[i - 1].path.string(), coordinates[i - 1],
+         descending ? "descending" : "ascending", own ? ", or files in their order" : "");
+  }
+}
+
+/// The new axis. Sorts the members where that is asked for.
+Axis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
+  Axis found;
+  std::vector<double> coordinates = options.coordinates;
+  const bool own = coordinates.empty() && !options.step;
+  if (own) coordinates = own_coordinates(members, found);
+  if (coordinates.empty() && options.order == SeriesOrder::coordinate)
+    fail(ErrorCode::UnsupportedData, members.front().path,
+         "does not say where it lies along a further axis, or all say the same; expected files that do, to be ordered "
+         "by that");
+  if (coordinates.empty())
+    for (std::size_t i = 0; i < members.size(); ++i)
+      coordinates.push_back(static_cast<double>(i) * options.step.value_or(1.0));
+  if (options.order == SeriesOrder::coordinate) {
+    std::vector<std::size_t> order(members.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return coordinates[a] < coordinates[b]; });
+    std::vector<Member> sorted;
+    std::vector<double> sorted_coordinates;
+    for (const std::size_t i : order) {
+      sorted.push_back(std::move(members[i]));
+      sorted_coordinates.push_back(coordinates[i]);
+    }
+    members = std::move(sorted);
+    coordinates = std::move(sorted_coordinates);
+  }
+  require_monotone(coordinates, members, own);
+  Axis axis = axis_of(coordinates);
+  axis.name = found.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.name;
+  axis.unit = options.unit.empty() ? found.unit : options.unit;
+  return axis;
+}
+
+void require_sound(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (files.empty()) throw Error(ErrorCode::InvalidArgument, "no files; expected at least one");
+  if (!options.coordinates.empty() && options.step)
+    throw Error(ErrorCode::InvalidArgument, "coordinates and a step; expected one of the two");
+  if (!options.coordinates.empty() && options.coordinates.size() != files.size())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} coordinates for {} files; expected one for each",
+                                                        options.coordinates.size(), files.size()));
+  if (options.step && (!std::isfinite(*options.step) || *options.step == 0.0))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("a step of {}; expected a finite number other than 0", *options.step));
+}
+
+/// The headers of all files in their order, compared.
+std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOptions& options) {
+  std::vector<fs::path> paths(files.begin(), files.end());
+  if (options.order == SeriesOrder::by_name)
+    std::stable_sort(paths.begin(), paths.end(),
+                     [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
+  std::vector<Member> members;
+  for (const fs::path& path : paths) {
+    tick(options.progress, 0.0, path);
+    RawImage header = read_member(path, Extent::header, options, {});
+    members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index()});
+    const std::size_t axes = members.back().grid.axes.size();
+    if (axes != 2 && axes != 3)
+      fail(ErrorCode::UnsupportedData, path,
+           "has {} axes, one of several files; expected 2 or 3, which become one more", axes);
+    require_same(members.back(), members.front());
+  }
+  return members;
+}
+
+/// Adds the values of a file behind those of others.
+void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::path& path) {
+  std::visit(
+      [&]<class T>(std::vector<T>& values) {
+        const auto* const added = std::get_if<std::vector<T>>(&from);
+        if (added == nullptr || added->size() != expected)
+          fail(ErrorCode::MalformedFile, path, "has changed since its header was read");
+        values.insert(values.end(), added->begin(), added->end());
+      },
+      to);
+}
+
+/// The series as layers, a file each.
+RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& options) {
+  std::vector<Member> members = read_headers(files, options);
+  Axis last = make_axis(members, options);
+  RawLayers result;
+  const RawGrid& first = members.front().grid;
+  const auto n = static_cast<Eigen::Index>(first.axes.size());
+  result.grid.axes = first.axes;
+  result.grid.axes.push_back(std::move(last));
+  result.grid.linear = Eigen::MatrixXd::Identity(n + 1, n + 1);
+  result.grid.linear.topLeftCorner(n, n) = first.linear;
+  result.grid.offset = Eigen::VectorXd::Zero(n + 1);
+  result.grid.offset.head(n) = first.offset;
+  result.info = members.front().info;
+  std::vector<fs::path> paths;
+  for (const Member& member : members) paths.push_back(member.path);
+  const auto sizes = sizes_of(first);
+  const std::size_t layer =
+      std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });
+  result.read = [paths, layer, type = members.front().type, own = options](std::size_t begin, std::size_t count) {
+    ValueArray values = array_of_type(name_of_type(type));
+    std::visit([&](auto& all) { all.reserve(count * layer); }, values);
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      Progress progress;
+      if (own.progress)
+        progress = [&](double share) {
+          return own.progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
+        };
+      append(values, read_member(paths[i], Extent::whole, own, progress).values, layer, paths[i]);
+      tick(progress, 1.0, paths[i]);
+    }
+    return values;
+  };
+  return result;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+ReadImageResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
+  require_sound(files, options);
+  RawImage image;
+  if (files.size() == 1) {
+    image = read_member(files[0], Extent::whole, options, options.progress);
+  } else {
+    RawLayers layers = open_members(files, options);
+    image.values = layers.read(0, files.size());
+    image.grid = std::move(layers.grid);
+    image.info = std::move(layers.info);
+  }
+  ImageInfo info = std::move(image.info);
+  AnyImage result = to_any_image(std::move(image), files[0]);
+  return {std::move(result), std::move(info)};
+}
+
+OpenLayersResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
+  require_sound(files, options);
+  if (files.size() == 1)
+    return options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], options.variable);
+  SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
+  silent.progress = nullptr;
+  return to_open_layers(open_members(files, silent), files[0]);
+}
+
+bool natural_less(std::string_view a, std::string_view b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+      continue;
+    }
+    const auto run = [](std::string_view text, std::size_t& at) {
+      while (at < text.size() && text[at] == '0') ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string_view left = run(a, i);
+    const std::string_view right = run(b, j);
+    if (left.size() != right.size()) return left.size() < right.size();
+    if (left != right) return left < right;
+  }
+  if ((a.size() - i) != (b.size() - j)) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+}  // namespace tegl

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Several files as one image, in every command that reads one.
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Layer k of samples along their last axis.
+Samples layer(const Samples& samples, std::size_t k) {
+  Samples result;
+  result.sizes.assign(samples.sizes.begin(), samples.sizes.end() - 1);
+  const std::size_t size = samples.values.size() / samples.sizes.back();
+  const auto begin = samples.values.begin() + static_cast<std::ptrdiff_t>(k * size);
+  result.values.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
+  return result;
+}
+
+class SeriesCommand : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    balls_ = merging_balls(10, 12);
+    whole_ = write("whole.nrrd", nrrd_bytes(balls_));
+    for (std::size_t k = 0; k < 12; ++k)
+      frames_.push_back(write("frame_" + std::to_string(k) + ".nrrd", nrrd_bytes(layer(balls_, k))));
+  }
+
+  /// A command, the frames in the order of their numbers, and further arguments.
+  [[nodiscard]] std::vector<std::string> of_frames(std::vector<std::string> command,
+                                                   const std::vector<std::string>& more) const {
+    command.insert(command.end(), frames_.begin(), frames_.end());
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+  /// As a shell lists them: frame_10 before frame_2.
+  void sort_as_shells_do() { std::sort(frames_.begin(), frames_.end()); }
+
+  /// Runs without failure and gives the JSON.
+  static nlohmann::json run(std::vector<std::string> arguments) {
+    arguments.emplace_back("--json");
+    const RunResult result = run_tegl(arguments);
+    EXPECT_EQ(result.exit, 0) << result.err;
+    return result.json();
+  }
+  static void expect_refused(int exit, const std::vector<std::string>& arguments,
+                             const std::vector<std::string>& parts) {
+    const RunResult result = run_tegl(arguments);
+    EXPECT_EQ(result.exit, exit) << result.err;
+    for (const std::string& part : parts) EXPECT_THAT(result.err, HasSubstr(part));
+  }
+  void expect_same_mesh(const std::string& a, const std::string& b) const {
+    const Mesh x = read_mesh(path(a));
+    const Mesh y = read_mesh(path(b));
+    EXPECT_EQ(x.coordinates, y.coordinates);
+    EXPECT_EQ(x.simplices, y.simplices);
+    EXPECT_EQ(x.axis_names, y.axis_names);
+  }
+
+  Samples balls_;
+  std::string whole_;
+  std::vector<std::string> frames_;
+};
+
+TEST_F(SeriesCommand, GivesTheContourOfTheWholeImage) {
+  run({"contour", whole_, "--iso", "0.1", "-o", path("whole.vtkhdf")});
+  const nlohmann::json report = run(of_frames({"contour"}, {"--iso", "0.1", "-o", path("series.vtkhdf")}));
+  EXPECT_EQ(report["image_dim"], 4);
+  EXPECT_EQ(report["input"].size(), 12U);
+  EXPECT_EQ(report["input"][1], frames_[1]);
+  expect_same_mesh("whole.vtkhdf", "series.vtkhdf");
+  run(of_frames({"contour"}, {"--iso", "0.1", "--stream", "-o", path("streamed.vtkhdf")}));
+  expect_same_mesh("whole.vtkhdf", "streamed.vtkhdf");
+}
+
+TEST_F(SeriesCommand, IsReadByEveryCommandThatReadsAnImage) {
+  EXPECT_EQ(run(of_frames({"info"}, {}))["axes"][3]["size"], 12);
+  EXPECT_EQ(run(of_frames({"measure"}, {"--iso", "0.1"}))["size"], run({"measure", whole_, "--iso", "0.1"})["size"]);
+  EXPECT_EQ(run(of_frames({"components"}, {"--iso", "0.1"}))["input"].size(), 12U);
+  EXPECT_EQ(run(of_frames({"track"}, {"--iso", "0.1"}))["image_dim"], 4);
+  EXPECT_EQ(run(of_frames({"slice"}, {"--iso", "0.1", "--at", "t=5.5", "-o", path("cut.ply")}))["simplices"],
+            run({"slice", whole_, "--iso", "0.1", "--at", "t=5.5", "-o", path("whole.ply")})["simplices"]);
+  for (const char* const command : {"elements", "project", "simplify"}) {
+    std::vector<std::string> more = {"--iso", "0.1", "-o", path("out.vtkhdf")};
+    if (command == std::string("elements")) more.back() = path("out.dat");
+    if (command == std::string("simplify")) more.insert(more.end(), {"--ratio", "0.5"});
+    EXPECT_EQ(run(of_frames({command}, more))["input"].size(), 12U) << command;
+  }
+  EXPECT_EQ(run(of_frames({"index"}, {"-o", path("series.tindex")}))["image_dim"], 4);
+  run(of_frames({"contour"}, {"--iso", "0.1", "--index", path("series.tindex"), "-o", path("indexed.vtkhdf")}));
+}
+
+TEST_F(SeriesCommand, IsOneContourEachInAPageUnlessOneImageIsAskedFor) {
+  const RunResult each = run_tegl({"view", frames_[0], frames_[1], "--iso", "0.1", "-o", path("a.html"), "--json"});
+  if (each.exit == 6) GTEST_SKIP() << "no viewer in this build";
+  EXPECT_EQ(each.json()["files"].size(), 2U);
+  const nlohmann::json one = run(of_frames({"view"}, {"--one-image", "--iso", "0.1", "-o", path("b.html")}));
+  ASSERT_EQ(one["files"].size(), 1U);
+  EXPECT_EQ(one["files"][0]["image_dim"], 4);
+}
+
+TEST_F(SeriesCommand, InTheOrderOfAShellIsRefusedUnlessThatIsSaid) {
+  sort_as_shells_do();
+  const std::vector<std::string> more = {"--iso", "0.1", "-o", path("series.vtkhdf")};
+  expect_refused(2, of_frames({"contour"}, more), {"frame_11.nrrd comes before", "frame_2.nrrd", "--sort name"});
+  run({"contour", whole_, "--iso", "0.1", "-o", path("whole.vtkhdf")});
+  run(of_frames({"contour", "--sort", "name"}, more));
+  expect_same_mesh("whole.vtkhdf", "series.vtkhdf");
+  run(of_frames({"contour", "--sort", "given"}, more));
+  EXPECT_NE(read_mesh(path("whole.vtkhdf")).coordinates, read_mesh(path("series.vtkhdf")).coordinates);
+}
+
+TEST_F(SeriesCommand, LiesAtTheTimesThatAreGiven) {
+  const nlohmann::json step = run(of_frames({"info", "--time-step", "0.25", "--time-unit", "s"}, {}))["axes"][3];
+  EXPECT_EQ(step["step"], 0.25);
+  EXPECT_EQ(step["unit"], "s");
+  EXPECT_EQ(run(of_frames({"info", "--times", "1:12:12"}, {}))["axes"][3]["last"], 12);
+  EXPECT_EQ(run(of_frames({"info", "--times", "0,1,2,3,4,5,6,7,8,9,10,20"}, {}))["axes"][3]["coordinates"][11], 20);
+  expect_refused(2, of_frames({"info", "--times", "0,1"}, {}), {"--times has 2 numbers for 12 files"});
+  expect_refused(2, of_frames({"info", "--times", "0:1:12", "--time-step", "1"}, {}), {"one of the two"});
+  expect_refused(2, of_frames({"info", "--time-step", "none"}, {}), {"--time-step", "none"});
+  expect_refused(2, of_frames({"info", "--time-step", "0"}, {}), {"--time-step is 0"});
+  expect_refused(2, of_frames({"info", "--times", "0:1:12", "--sort", "time"}, {}), {"--sort time"});
+  expect_refused(2, {"info", whole_, "--times", "1"}, {"--times with one file", whole_});
+}
+
+TEST_F(SeriesCommand, OfFilesThatDoNotFitFailsNamingTheFileAndLeavesNothing) {
+  frames_[7] = write("frame_7.nrrd", nrrd_bytes(ball({10, 10, 9}, 3)));
+  const auto before = files();
+  for (const char* const stream : {"--no-check", "--stream"})
+    expect_refused(4, of_frames({"contour"}, {"--iso", "0.1", stream, "-o", path("out.vtkhdf")}),
+                   {frames_[7] + ": has 10 x 10 x 9 samples; expected 10 x 10 x 10, as " + frames_[0]});
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(SeriesCommand, OfRawFilesIsReadInMemoryAndStreamed) {
+  std::vector<std::string> raws;
+  for (std::size_t k = 0; k < 12; ++k) {
+    const Samples one = layer(balls_, k);
+    raws.push_back(write("raw_" + std::to_string(k) + ".raw",
+                         {reinterpret_cast<const char*>(one.values.data()), one.values.size() * sizeof(float)}));
+  }
+  frames_ = raws;
+  run({"contour", whole_, "--iso", "0.1", "-o", path("whole.vtkhdf")});
+  run(of_frames({"contour", "--raw", "10x10x10", "--raw-type", "float"}, {"--iso", "0.1", "-o", path("raw.vtkhdf")}));
+  const Mesh whole = read_mesh(path("whole.vtkhdf"));
+  EXPECT_EQ(whole.coordinates, read_mesh(path("raw.vtkhdf")).coordinates);
+  EXPECT_EQ(run(of_frames({"info", "--raw", "10x10x10", "--raw-type", "float"}, {}))["axes"][3]["size"], 12);
+  EXPECT_EQ(run({"info", "--raw", "10x10x10", "--raw-type", "float", raws[0]})["image_dim"], 3);
+}
+
+TEST_F(SeriesCommand, OfASavedContourIsRefused) {
+  run({"contour", whole_, "--iso", "0.1", "-o", path("saved.vtkhdf")});
+  expect_refused(2, {"measure", path("saved.vtkhdf"), path("saved.vtkhdf")}, {"saved contour", "one of 2 files"});
+  expect_refused(2, {"measure", path("saved.vtkhdf"), "--time-step", "2"}, {"saved contour", "--time-step"});
+}
+
+TEST_F(SeriesCommand, IsNeverItsOwnOutput) {
+  std::vector<std::string> more = {"--iso", "0.1", "-o", frames_[3]};
+  expect_refused(6, of_frames({"contour"}, more), {frames_[3]});
+  const std::string link = path("link.vtkhdf");
+  std::filesystem::create_symlink(frames_[3], link);
+  expect_refused(6, of_frames({"contour"}, {"--iso", "0.1", "-o", link}), {link, "is the input itself"});
+}
+
+}  // namespace
+}  // namespace tegl::test
