@@ -64,14 +64,15 @@ endif()
 tegl_needed_packages(tegl_core_dependencies ${tegl_core_targets})
 tegl_install_component(core ${tegl_core_targets})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/tegl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "io.hpp" EXCLUDE)
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "io.hpp" EXCLUDE PATTERN "series.hpp" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/generator/include/tegl/facets DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl)
 
 set(tegl_io_dependencies "")
 if(TEGL_BUILD_IO)
   tegl_needed_packages(tegl_io_dependencies tegl_io)
   tegl_install_component(io tegl_io)
-  install(FILES ${PROJECT_SOURCE_DIR}/runtime/include/tegl/io.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl)
+  install(FILES ${PROJECT_SOURCE_DIR}/runtime/include/tegl/io.hpp ${PROJECT_SOURCE_DIR}/runtime/include/tegl/series.hpp
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl)
   set_target_properties(tegl_io PROPERTIES EXPORT_NAME io)
 endif()
 

@@ -40,7 +40,7 @@ void AttributeOptions::add_to(CLI::App& app) {
 }
 
 void AttributeOptions::require_inputs() const {
-  for (const std::string& text : texts_) require_input(parse_file_and_variable(text).file);
+  for (const std::string& text : texts_) require_input(parse_file_and_variable(text).file, Folders::allowed);
 }
 
 template <int N, class Real>

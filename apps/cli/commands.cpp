@@ -7,7 +7,7 @@ namespace tegl::cli {
 
 Command::Command(CLI::App& program, const std::string& name, const std::string& description,
                  const std::string& file_help, Files files)
-    : app_(program.add_subcommand(name, description)) {
+    : app_(program.add_subcommand(name, description)), files_kind_(files) {
   if (files == Files::one)
     app_->add_option("FILE", files_.front(), file_help)->required();
   else
@@ -22,7 +22,8 @@ void Command::add_quiet() {
 }
 
 void Command::require_inputs() const {
-  for (const std::string& name : worked_on_) require_input(name);
+  for (const std::string& name : worked_on_)
+    require_input(name, files_kind_ == Files::one ? Folders::refused : Folders::allowed);
 }
 
 }  // namespace tegl::cli

@@ -75,6 +75,7 @@ class Command {
   CLI::Option* json_option_;
   std::vector<std::string> files_ = {""};
   std::vector<std::string> worked_on_ = {""};
+  Files files_kind_;
   ImageOptions images_;
   bool json_ = false;
   bool quiet_ = false;

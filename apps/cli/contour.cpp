@@ -43,11 +43,11 @@ constexpr const char* kExamples =
 class ContourCommand final : public Command {
  public:
   explicit ContourCommand(CLI::App& program)
-      : Command(
-            program, "contour", "The contour of an image in 2D, 3D or 4D",
-            "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped); several files are one image with an axis "
-            "more",
-            Files::image) {
+      : Command(program, "contour", "The contour of an image in 2D, 3D or 4D",
+                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); several files are "
+                "one image with an axis "
+                "more",
+                Files::image) {
     options_.add_to(app(), true);
     app()
         .add_option("-o,--output", output_,

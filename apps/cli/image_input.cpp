@@ -53,12 +53,13 @@ std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& file
 
 /// What --var is for is said where it is missing.
 template <class Read>
-auto with_hint(const std::string& variable, const Read& read) {
+auto with_hint(const std::string& variable, const std::vector<std::string>& files, const Read& read) {
   try {
     return read();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::VariableNotFound || !variable.empty()) throw;
-    throw Error(error.code(), fmt::format("{} (choose it with --var)", error.what()));
+    throw Error(error.code(),
+                fmt::format("{} (choose it with {})", error.what(), ImageOptions::choosing_option(files)));
   }
 }
 
@@ -68,6 +69,10 @@ void ImageOptions::add_to(CLI::App& app) {
   options_ = {
       app.add_option("--var", variable_, "netCDF: the variable to read; needed where the file has several")
           ->type_name("NAME"),
+      app.add_option("--series", series_,
+                     "DICOM: the series to read, by its UID, its description or its number in the list that an error "
+                     "shows; needed where a folder has several")
+          ->type_name("SERIES"),
       app.add_option("--times", times_,
                      "of several FILEs: where each one lies along the new axis: 0,0.5,2; or FIRST:LAST:COUNT; without, "
                      "as the files say, else 0, 1, 2 ...")
@@ -79,6 +84,7 @@ void ImageOptions::add_to(CLI::App& app) {
                      "of several FILEs: by the numbers in their names, by the times in their headers, or as given")
           ->check(CLI::IsMember({"given", "name", "time"})),
   };
+  options_[1]->excludes(options_[0]);
   raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
                     ->type_name("XxYxZ[xT]");
   CLI::Option* const type =
@@ -104,6 +110,14 @@ std::vector<std::string> ImageOptions::given() const {
   return names;
 }
 
+std::string ImageOptions::choosing_option(const std::vector<std::string>& files) {
+  const std::filesystem::path first = files.front();
+  const bool dicom = std::filesystem::is_directory(first) ||
+                     equal_ignoring_case(first.filename().string(), "DICOMDIR") ||
+                     equal_ignoring_case(first.extension().string(), ".dcm");
+  return dicom ? "--series" : "--var";
+}
+
 SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files) const {
   for (const char* const option : {"--times", "--time-step", "--time-unit", "--sort"}) {
     const auto names = given();
@@ -118,11 +132,12 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
   if (!time_step_.empty() && sort_ == "time")
     throw Error(ErrorCode::InvalidArgument,
                 "--sort time with --time-step; expected the times of the files' headers alone");
-  if (raw() && !variable_.empty())
+  if (raw() && !variable().empty())
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--var {} with --raw; expected no variable: raw values have no name", variable_));
+                fmt::format("{} {} with --raw; expected no variable: raw values have no name",
+                            series_.empty() ? "--var" : "--series", variable()));
   SeriesOptions options;
-  options.variable = variable_;
+  options.variable = variable();
   options.unit = time_unit_;
   if (!times_.empty()) {
     options.coordinates = parse_numbers("--times", times_);
@@ -142,16 +157,16 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
 }
 
 ReadImageResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
-  for (const std::string& file : files) require_input(file);
+  for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
   options.progress = progress;
-  return with_hint(variable_, [&] { return read_series(paths_of(files), options); });
+  return with_hint(variable(), files, [&] { return read_series(paths_of(files), options); });
 }
 
 OpenLayersResult ImageOptions::open(const std::vector<std::string>& files) const {
-  for (const std::string& file : files) require_input(file);
+  for (const std::string& file : files) require_input(file, Folders::allowed);
   const SeriesOptions options = series_options(files);
-  return with_hint(variable_, [&] { return open_series(paths_of(files), options); });
+  return with_hint(variable(), files, [&] { return open_series(paths_of(files), options); });
 }
 
 std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {

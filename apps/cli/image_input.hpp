@@ -14,7 +14,7 @@
 
 namespace tegl::cli {
 
-/// --var, --times, --time-step, --time-unit, --sort, --raw and what belongs to it.
+/// --var, --series, --times, --time-step, --time-unit, --sort, --raw and what belongs to it.
 class ImageOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
@@ -30,7 +30,10 @@ class ImageOptions {
   /// The variables of the files, as list_image_variables has them; none of raw ones.
   [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;
 
-  [[nodiscard]] const std::string& variable() const { return variable_; }
+  /// The variable or DICOM series that is chosen; may be empty.
+  [[nodiscard]] const std::string& variable() const { return series_.empty() ? variable_ : series_; }
+  /// The option that chooses among what these files hold.
+  [[nodiscard]] static std::string choosing_option(const std::vector<std::string>& files);
   [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
   /// The names of those that are given.
   [[nodiscard]] std::vector<std::string> given() const;
@@ -38,7 +41,7 @@ class ImageOptions {
  private:
   [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
 
-  std::string variable_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
+  std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
   CLI::Option* raw_option_ = nullptr;

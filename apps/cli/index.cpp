@@ -78,7 +78,7 @@ class IndexCommand final : public Command {
  public:
   explicit IndexCommand(CLI::App& program)
       : Command(program, "index", "An index of an image's active tiles, for contours at many isovalues",
-                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped)", Files::image) {
+                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder)", Files::image) {
     std::vector<std::string> names;
     for (const ActiveMethod method : active_methods()) names.emplace_back(active_method_name(method));
     app().add_option("-o,--output", output_, "the index; FILE with .tindex behind it if left out");
@@ -111,7 +111,7 @@ class IndexCommand final : public Command {
   ExitCode run(const Streams& streams) override {
     IndexResult result;
     result.input = inputs();
-    result.output = output_.empty() ? file() + kIndexExtension : output_;
+    result.output = output_.empty() ? default_output() : output_;
     result.method = method_;
     require_inputs();
     if (method_ != active_method_name(ActiveMethod::seed_set) &&
@@ -135,6 +135,13 @@ class IndexCommand final : public Command {
   }
 
  private:
+  /// FILE with .tindex behind it; of a folder, beside it.
+  [[nodiscard]] std::string default_output() const {
+    std::string name = file();
+    while (name.size() > 1 && name.back() == '/') name.pop_back();
+    return name + kIndexExtension;
+  }
+
   template <class Owned>
   void build(const Owned& owned, ProgressBar& bar, IndexResult& result) const {
     Stopwatch watch;

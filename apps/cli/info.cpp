@@ -233,14 +233,16 @@ std::string to_text(const Console& console, const Description& description, cons
 }
 
 /// What is said of a file with several variables when none was chosen.
-std::string choice_text(const Console& console, const std::string& file, const std::vector<ImageVariable>& variables) {
-  std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: several variables", file)));
+std::string choice_text(const Console& console, const InputFiles& input, const std::vector<ImageVariable>& variables) {
+  const std::string option = ImageOptions::choosing_option(input.names);
+  std::string text = fmt::format(
+      "{}\n", console.bold(fmt::format("{}: several {}", input.text(), option == "--series" ? "series" : "variables")));
   for (const ImageVariable& variable : variables) {
     text += report_line(variable.name, fmt::format("{}{}{}", fmt::join(variable.sizes, " x "),
                                                    variable.unit.empty() ? "" : " " + variable.unit,
                                                    variable.long_name.empty() ? "" : ", " + variable.long_name));
   }
-  return text + "\nChoose one with --var.\n";
+  return text + fmt::format("\nChoose one with {}.\n", option);
 }
 
 Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& variables) {
@@ -259,9 +261,10 @@ Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& vari
 class InfoCommand final : public Command {
  public:
   explicit InfoCommand(CLI::App& program)
-      : Command(program, "info", "What is in a file: axes, values, histogram, isovalues worth a try",
-                "the image: NIfTI, NRRD, MetaImage or netCDF (.nc, also gzipped); or an index (.tindex)",
-                Files::image) {
+      : Command(
+            program, "info", "What is in a file: axes, values, histogram, isovalues worth a try",
+            "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); or an index (.tindex)",
+            Files::image) {
     add_image_options();
     app().footer(kExamples);
   }
@@ -280,7 +283,7 @@ class InfoCommand final : public Command {
       const std::vector<ImageVariable> variables = images().variables(files());
       if (variables.size() > 1) {
         streams.out.write(json() ? dump(choice_json(inputs(), variables))
-                                 : choice_text(streams.out, inputs().text(), variables));
+                                 : choice_text(streams.out, inputs(), variables));
         return ExitCode::Ok;
       }
     }

@@ -27,7 +27,7 @@ using tegl::cli::Streams;
 
 constexpr const char* kDescription =
     "Contours of images in 2, 3 and 4 dimensions: closed, manifold, oriented.\n"
-    "Reads NIfTI, NRRD, MetaImage and netCDF; writes PLY, glTF and VTKHDF.";
+    "Reads NIfTI, NRRD, MetaImage, netCDF and DICOM; writes PLY, glTF and VTKHDF.";
 
 /// Writes the one message of a failed run, as text or as JSON, to standard error.
 ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_view code, std::string_view message) {

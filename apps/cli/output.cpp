@@ -30,14 +30,14 @@ const MeshFileFormat* find_output_format(const fs::path& path) {
 
 }  // namespace
 
-void require_input(const fs::path& path) {
+void require_input(const fs::path& path, Folders folders) {
   const auto fail_input = [&](std::string_view why) {
     throw Error(ErrorCode::FileNotFound, fmt::format("{}: {}", path.string(), why));
   };
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) fail_input("no such file");
-  if (fs::is_directory(status)) fail_input("is a directory; expected a file");
+  if (folders == Folders::refused && fs::is_directory(status)) fail_input("is a directory; expected a file");
   if (access(path.c_str(), R_OK) != 0) fail_input(fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 

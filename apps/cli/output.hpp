@@ -13,8 +13,11 @@
 
 namespace tegl::cli {
 
-/// Throws FileNotFound unless `path` is a file that can be read.
-void require_input(const std::filesystem::path& path);
+/// Whether an input may be a folder: those of DICOM series are.
+enum class Folders { refused, allowed };
+
+/// Throws FileNotFound unless `path` is a file (or folder) that can be read.
+void require_input(const std::filesystem::path& path, Folders folders = Folders::refused);
 
 /// Throws WriteFailed unless `output` can be expected to be written: a known extension, a folder that
 /// exists and can be written to, no directory, none of the inputs.

@@ -100,7 +100,7 @@ class ViewCommand final : public ContourInputCommand {
 
  private:
   void require_page() const {
-    for (const std::string& input : all_files()) require_input(input);
+    for (const std::string& input : all_files()) require_input(input, Folders::allowed);
     require_text_output(output_, all_files());
     const std::string extension = fs::path(output_).extension().string();
     if (!equal_ignoring_case(extension, ".html") && !equal_ignoring_case(extension, ".htm"))

@@ -109,6 +109,7 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
 }
 
 OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
+  if (is_dicom(path)) return to_open_layers(open_dicom(std::span(&path, 1), variable, {}), path);
   require_readable_file(path);
   return to_open_layers(open_netcdf_layers(path, variable), path);
 }

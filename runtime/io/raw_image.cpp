@@ -92,6 +92,24 @@ void name_axes(RawGrid& grid) {
     if (grid.axes[a].name.empty()) grid.axes[a].name = kNames[a];
 }
 
+Axis axis_of(const std::vector<double>& coordinates) {
+  const std::size_t n = coordinates.size();
+  const double step = coordinates[1] - coordinates[0];
+  bool uniform = true;
+  for (std::size_t i = 0; i < n; ++i)
+    uniform = uniform && coordinates[i] == coordinates[0] + static_cast<double>(i) * step;
+  return uniform ? Axis::uniform(n, coordinates[0], step) : Axis::rectilinear(coordinates);
+}
+
+RawGrid with_last_axis(const RawGrid& grid, Axis last) {
+  const auto n = static_cast<Eigen::Index>(grid.axes.size());
+  RawGrid result{grid.axes, Eigen::MatrixXd::Identity(n + 1, n + 1), Eigen::VectorXd::Zero(n + 1), {}};
+  result.axes.push_back(std::move(last));
+  result.linear.topLeftCorner(n, n) = grid.linear;
+  result.offset.head(n) = grid.offset;
+  return result;
+}
+
 void drop_trailing_axes(RawImage& image) {
   RawGrid& grid = image.grid;
   while (grid.axes.size() > 2 && grid.axes.back().size() == 1) {

@@ -41,6 +41,12 @@ RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd
 /// Names x, y, z, t by position, for axes that have none.
 void name_axes(RawGrid& grid);
 
+/// The axis of at least two coordinates: uniform where they are, bit by bit. InvalidGrid unless strictly monotone.
+Axis axis_of(const std::vector<double>& coordinates);
+
+/// The grid with an axis more, which no other is coupled with.
+RawGrid with_last_axis(const RawGrid& grid, Axis last);
+
 /// Drops trailing axes of one sample, but keeps two axes; where a dropped axis takes part in the orientation
 /// (a slice that lies obliquely in space), what is left is the plane's own coordinates and no world frame.
 void drop_trailing_axes(RawImage& image);

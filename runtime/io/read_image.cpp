@@ -55,7 +55,7 @@ Format format_of(const fs::path& path) {
   if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;
   fail(ErrorCode::UnsupportedFormat, path,
        "no image format known by its name or first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
-       ".nhdr), MetaImage (.mha, .mhd) or netCDF (.nc, .cdf, .nc4, also gzipped)",
+       ".nhdr), MetaImage (.mha, .mhd), netCDF (.nc, .cdf, .nc4, also gzipped) or DICOM (.dcm, a folder)",
        shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
 }
 
@@ -79,6 +79,12 @@ RawImage read_format(const fs::path& path, Extent extent, const ReadImageOptions
 }  // namespace
 
 RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImageOptions& options) {
+  if (is_dicom(path)) {
+    RawLayers layers = open_dicom(std::span(&path, 1), options.variable, options.progress);
+    const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
+    ValueArray values = layers.read(0, count);
+    return {std::move(layers.grid), std::move(values), std::move(layers.info)};
+  }
   require_readable_file(path);
   RawImage image = read_format(path, extent, options);
   drop_trailing_axes(image);
@@ -95,6 +101,7 @@ ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options
 }
 
 std::vector<ImageVariable> list_image_variables(const fs::path& path) {
+  if (is_dicom(path)) return list_dicom(path);
   require_readable_file(path);
   return format_of(path) == Format::NetCdf ? list_netcdf(path) : std::vector<ImageVariable>();
 }

@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "raw_image.hpp"
 
@@ -35,6 +37,13 @@ OpenLayersResult to_open_layers(RawLayers&& source, const std::filesystem::path&
 
 /// Files that hold nothing but values.
 RawLayers open_raw(const std::filesystem::path& path, const RawLayout& layout);
+/// Whether a path is a DICOM file, or a folder or DICOMDIR, which may hold some.
+bool is_dicom(const std::filesystem::path& path);
+/// The images of DICOM files and folders, as the one whose UID, number or description `series` says. `progress` is told
+/// of while headers are read (0), and of each read.
+RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::string& series, const Progress& progress);
+/// The series there.
+std::vector<ImageVariable> list_dicom(const std::filesystem::path& path);
 RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::string& variable);
 
 /// The variables of a netCDF file that can be read as images.

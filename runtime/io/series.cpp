@@ -126,16 +126,6 @@ std::vector<double> own_coordinates(const std::vector<Member>& members, Axis& ax
   return {};
 }
 
-/// Uniform where the coordinates are, bit by bit.
-Axis axis_of(const std::vector<double>& coordinates) {
-  const std::size_t n = coordinates.size();
-  const double step = coordinates[1] - coordinates[0];
-  bool uniform = true;
-  for (std::size_t i = 0; i < n; ++i)
-    uniform = uniform && coordinates[i] == coordinates[0] + static_cast<double>(i) * step;
-  return uniform ? Axis::uniform(n, coordinates[0], step) : Axis::rectilinear(coordinates);
-}
-
 void require_monotone(const std::vector<double>& coordinates, const std::vector<Member>& members, bool own) {
   const bool descending = coordinates[1] < coordinates[0];
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -234,13 +224,7 @@ RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& opt
   Axis last = make_axis(members, options);
   RawLayers result;
   const RawGrid& first = members.front().grid;
-  const auto n = static_cast<Eigen::Index>(first.axes.size());
-  result.grid.axes = first.axes;
-  result.grid.axes.push_back(std::move(last));
-  result.grid.linear = Eigen::MatrixXd::Identity(n + 1, n + 1);
-  result.grid.linear.topLeftCorner(n, n) = first.linear;
-  result.grid.offset = Eigen::VectorXd::Zero(n + 1);
-  result.grid.offset.head(n) = first.offset;
+  result.grid = with_last_axis(first, std::move(last));
   result.info = members.front().info;
   std::vector<fs::path> paths;
   for (const Member& member : members) paths.push_back(member.path);
@@ -264,6 +248,19 @@ RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& opt
   return result;
 }
 
+/// Whether these are planes of DICOM series, which say themselves where they lie.
+bool are_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  return !options.raw && std::all_of(files.begin(), files.end(),
+                                     [](const fs::path& file) { return is_dicom(file) && !fs::is_directory(file); });
+}
+
+RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
+    fail(ErrorCode::InvalidArgument, files[0],
+         "is a DICOM file, which says itself where it lies; expected neither coordinates, nor a step, unit or order");
+  return open_dicom(files, options.variable, options.progress);
+}
+
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
@@ -274,8 +271,9 @@ ReadImageResult read_series(std::span<const fs::path> files, const SeriesOptions
   if (files.size() == 1) {
     image = read_member(files[0], Extent::whole, options, options.progress);
   } else {
-    RawLayers layers = open_members(files, options);
-    image.values = layers.read(0, files.size());
+    RawLayers layers =
+        are_dicom_files(files, options) ? open_dicom_files(files, options) : open_members(files, options);
+    image.values = layers.read(0, layers.grid.axes.back().size());
     image.grid = std::move(layers.grid);
     image.info = std::move(layers.info);
   }
@@ -290,7 +288,8 @@ OpenLayersResult open_series(std::span<const fs::path> files, const SeriesOption
     return options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], options.variable);
   SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
   silent.progress = nullptr;
-  return to_open_layers(open_members(files, silent), files[0]);
+  return to_open_layers(are_dicom_files(files, silent) ? open_dicom_files(files, silent) : open_members(files, silent),
+                        files[0]);
 }
 
 bool natural_less(std::string_view a, std::string_view b) {

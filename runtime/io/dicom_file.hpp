@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A DICOM file through DCMTK: what its header says that an image is put together from, and its stored values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "value_array.hpp"
+
+namespace tegl::io_detail {
+
+/// One frame: a plane of samples. Most files have one.
+struct DicomFrame {
+  std::optional<Eigen::Vector3d> position;                ///< of the first sample's centre, mm, LPS
+  std::optional<Eigen::Matrix<double, 3, 2>> directions;  ///< along a row, along a column; of length 1
+  std::optional<Eigen::Vector2d> spacing;                 ///< of samples along a row and along a column, mm
+  double slope = 1;
+  double intercept = 0;
+  std::optional<double> temporal_position;  ///< Temporal Position Identifier or Index
+  std::optional<double> trigger_time;       ///< ms
+  std::optional<double> acquisition_time;   ///< s, since some midnight
+};
+
+/// What a header says.
+struct DicomFile {
+  std::filesystem::path path;
+  std::string series;        ///< Series Instance UID
+  std::string description;   ///< may be empty
+  std::string modality;      ///< such as "CT"
+  std::string value_unit;    ///< such as "HU"; may be empty
+  double series_number = 0;  ///< 0 if there is none
+  std::size_t columns = 0;
+  std::size_t rows = 0;
+  std::string type;            ///< of the stored values: "int16", ...
+  int bits_stored = 0;         ///< of each value
+  int high_bit = 0;            ///< the highest of them
+  double least = 0, most = 0;  ///< what stored values may be
+  std::vector<DicomFrame> frames;
+  std::optional<double> frame_time;  ///< ms between frames that are moments, not places
+};
+
+/// Whether a file looks like DICOM by its first bytes or its extension.
+bool is_dicom_file(const std::filesystem::path& path);
+
+/// The header of a file; none if it holds no image (a report, a directory of files). Errors: MalformedFile;
+/// UnsupportedData for colours and other values that are not one number per sample.
+std::optional<DicomFile> read_dicom_header(const std::filesystem::path& path);
+
+/// The stored values of all frames, decompressed. Errors: MalformedFile; UnsupportedFormat for a
+/// compression that DCMTK does not know (JPEG 2000).
+ValueArray read_dicom_values(const DicomFile& file);
+
+/// The files that a DICOMDIR lists.
+std::vector<std::filesystem::path> read_dicomdir(const std::filesystem::path& path);
+
+}  // namespace tegl::io_detail
