@@ -77,10 +77,12 @@ class ComponentsCommand final : public ContourInputCommand {
         .add_option("--largest", largest_, "of these, so many, the largest by size")
         ->check(whole_number(1))
         ->type_name("COUNT");
-    app().add_option("-o,--output", output_,
-                     "one file with the components chosen (.ply, .gltf, .glb, .vtkhdf), their labels as attribute");
-    app().add_option("--split", split_, "a file for each; {label} in the name stands for its label");
-    app().add_option("--csv", csv_, "the table as CSV");
+    app()
+        .add_option("-o,--output", output_,
+                    "one file with the components chosen (.ply, .gltf, .glb, .vtkhdf), their labels as attribute")
+        ->type_name("FILE");
+    app().add_option("--split", split_, "a file for each; {label} in the name stands for its label")->type_name("FILE");
+    app().add_option("--csv", csv_, "the table as CSV")->type_name("FILE");
     app()
         .add_option("--rows", rows_, "rows of the table that is shown, the largest first; 0: all")
         ->check(whole_number(0))

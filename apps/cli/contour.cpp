@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,11 +35,41 @@ constexpr const char* kExamples =
     "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
     "  tegl contour head.nii.gz --iso 60 --pick 12.5,-40,8 -o bone.ply\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --close -o warm_water.vtkhdf\n"
+    "  tegl contour ocean.nc --iso 15,20,25 -o 'warm_{iso}.vtkhdf'       (a file each; --one-file: all in one)\n"
+    "  tegl contour frame_*.nrrd --sort name --time-step 0.5 --iso 60 -o film.vtkhdf\n"
+    "  tegl contour scans/ --series 2 --iso 300 -o skull.ply             (a folder of DICOM files)\n"
     "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
     "  tegl contour head.nii.gz --iso 60 --triangulation halving-chord -o head.ply\n"
     "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
+
+/// Adds the vertices and simplices of a contour behind others, with the isovalue as an attribute of both.
+void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
+  const auto name = std::string("isovalue");
+  const std::size_t vertices =
+      all.space_dim == one.space_dim ? all.coordinates.size() / static_cast<std::size_t>(all.space_dim) : 0;
+  const std::size_t count = one.coordinates.size() / static_cast<std::size_t>(one.space_dim);
+  const std::size_t simplices = one.simplices.size() / static_cast<std::size_t>(one.dim + 1);
+  one.vertex_attributes.push_back({name, "", 1, Buffer<double>(count, isovalue)});
+  one.simplex_attributes.push_back({name, "", 1, Buffer<double>(simplices, isovalue)});
+  if (all.coordinates.empty()) {
+    all = std::move(one);
+    all.isovalue.reset();
+    return;
+  }
+  if (vertices + count > std::numeric_limits<Index>::max())
+    throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in one file; expected at most {}", vertices + count,
+                                                 std::numeric_limits<Index>::max()));
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  append(all.coordinates, one.coordinates);
+  append(all.normals, one.normals);
+  for (const Index vertex : one.simplices) all.simplices.push_back(static_cast<Index>(vertices + vertex));
+  for (std::size_t i = 0; i < all.vertex_attributes.size(); ++i)
+    append(all.vertex_attributes[i].values, one.vertex_attributes[i].values);
+  for (std::size_t i = 0; i < all.simplex_attributes.size(); ++i)
+    append(all.simplex_attributes[i].values, one.simplex_attributes[i].values);
+}
 
 class ContourCommand final : public Command {
  public:
@@ -52,15 +83,22 @@ class ContourCommand final : public Command {
     app()
         .add_option("-o,--output", output_,
                     "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too); with --facets .vtu or, in 2D and "
-                    "3D, .vtkhdf")
+                    "3D, .vtkhdf; with several isovalues {iso} in it stands for the number")
+        ->type_name("FILE")
         ->required();
+    app().add_flag("--one-file", one_file_,
+                   "several isovalues: all contours in one file, with the isovalue as an attribute");
     app().add_flag("--facets", facets_, "the contour without triangulation: segments, polygons or polyhedra");
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
-    app().add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote");
-    app().add_option(
-        "--pick", pick_,
-        "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
-        "the image's axes");
+    app()
+        .add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote")
+        ->type_name("FILE");
+    app()
+        .add_option(
+            "--pick", pick_,
+            "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
+            "the image's axes")
+        ->type_name("X,Y,Z[,T]");
     attributes_.add_to(app());
     app().add_flag(
         "--stream", stream_,
@@ -72,14 +110,17 @@ class ContourCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
-    const double isovalue = options_.isovalue();
+    const std::vector<SpelledNumber> isovalues = options_.isovalues();
     if (!index_.empty() && facets_)
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
     const std::vector<double> point = picked_point();
     ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
     require_inputs();
-    if (facets_) return run_facets(streams, {isovalue, options, options_.single_precision(), no_check_});
-    require_output(output_, files());
+    require_one_file_of_several(isovalues.size());
+    const std::vector<std::string> outputs =
+        one_file_ ? std::vector(isovalues.size(), output_) : isovalue_outputs(output_, isovalues);
+    if (facets_) return run_facets(streams, isovalues, outputs, options);
+    for (const std::string& output : outputs) require_output(output, files());
     if (!index_.empty()) {
       require_input(index_);
       if (is_streamed())
@@ -88,58 +129,127 @@ class ContourCommand final : public Command {
     attributes_.require_inputs();
 
     ProgressBar bar(streams.err, wants_progress());
-    ContourResult result;
-    if (!point.empty()) result.picked = Picked{point, {}, 0, 0, 0};
-    result.input = inputs();
-    result.output = output_;
-    result.isovalue = isovalue;
+    std::vector<ContourResult> results(isovalues.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (!point.empty()) results[i].picked = Picked{point, {}, 0, 0, 0};
+      results[i].input = inputs();
+      results[i].output = outputs[i];
+      results[i].isovalue = isovalues[i].value;
+    }
     if (is_streamed())
-      stream(options, bar, result);
+      stream(options, bar, results);
     else
-      contour(options, bar, result);
+      contour(options, bar, results);
     bar.clear();
-    if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
-    return result.exit_code();
+    return tell(streams, results);
   }
 
  private:
-  void contour(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
-    Stopwatch watch;
-    ReadImageResult input = read(bar.stage("read"));
-    result.variable = input.info.variable;
-    result.image_dim = image_dim(input.image);
-    require_output_holds(output_, result.image_dim - 1);
-    require_contour(input, *result.isovalue);
-    result.seconds.read = watch.lap();
-
-    if (result.picked) {
-      options.progress = bar.stage("contour");
-      pick(input.image, options, bar, result);
-      return finish(input, {}, bar, result);
-    }
-    ExtractStats& stats = result.stats.emplace();
-    if (const auto method = options_.polygon_triangulation()) {
-      auto polygons = triangulated_polygons(
-          input.image, {*result.isovalue, options, options_.single_precision(), no_check_}, *method, bar, stats);
-      result.mesh =
-          std::visit([&](auto& contour) { return with_additions(std::move(contour), options.threads, bar); }, polygons);
-      return finish(input, stats, bar, result);
-    }
-    options.progress = bar.stage("contour");
-    result.mesh =
-        index_.empty()
-            ? extract_any<Mesh>(input.image, *result.isovalue, options, options_.single_precision(), stats,
-                                [&](auto contour) { return with_additions(std::move(contour), options.threads, bar); })
-            : extract_by_index(input.image, options, bar, result);
-    finish(input, stats, bar, result);
+  void require_one_file_of_several(std::size_t isovalues) const {
+    if (!one_file_) return;
+    if (isovalues < 2)
+      throw Error(ErrorCode::InvalidArgument, "--one-file with one isovalue; expected several, as in --iso 20,25,30");
+    if (is_streamed() || facets_)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--one-file with {}; expected a file for each isovalue, as in -o 'out_{{iso}}.vtkhdf'",
+                              facets_ ? "--facets" : "--stream or --raw"));
   }
 
-  void finish(ReadImageResult& input, const ExtractStats& stats, ProgressBar& bar, ContourResult& result) const {
-    result.seconds.add(stats);
-    if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
-    input.image = AnyImage();  // its memory is of more use to the check
+  /// One object for one isovalue, a list for several.
+  template <class Result>
+  ExitCode tell(const Streams& streams, const std::vector<Result>& results) const {
+    ExitCode exit = ExitCode::Ok;
+    Json list = Json::array();
+    for (const Result& result : results) {
+      exit = std::max(exit, result.exit_code());
+      if (json())
+        list.push_back(to_json(result));
+      else if (!quiet())
+        streams.out.write(to_text(streams.out, result));
+    }
+    if (json()) streams.out.write(dump(results.size() == 1 ? list.front() : list));
+    return exit;
+  }
+
+  void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) const {
+    Stopwatch watch;
+    ReadImageResult input = read(bar.stage("read"));
+    require_output_holds(results.front().output, image_dim(input.image) - 1);
+    for (ContourResult& result : results) {
+      result.variable = input.info.variable;
+      result.image_dim = image_dim(input.image);
+      require_contour(input, *result.isovalue);
+    }
+    results.front().seconds.read = watch.lap();  // once for all
+    WrittenFiles written;
+    const auto finished = [&](ContourResult& result) {
+      if (result.stats) result.seconds.add(*result.stats);
+      if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
+      if (one_file_) return;
+      if (&result == &results.back()) input.image = AnyImage();  // its memory is of more use to the check
+      check_and_write(result, bar);
+      written.add(result.output);
+    };
+    if (index_.empty()) {
+      for (ContourResult& result : results) {
+        make(input.image, options, bar, result);
+        finished(result);
+        if (!one_file_) leave_the_sizes(result);
+      }
+    } else {
+      by_index(input.image, options, bar, results, finished);
+    }
+    if (one_file_) results = {merged(results, bar)};
+    written.keep();
+  }
+
+  void check_and_write(ContourResult& result, ProgressBar& bar) const {
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);
+  }
+
+  /// Of a mesh that is written what is told of it: others need the memory.
+  static void leave_the_sizes(ContourResult& result) {
+    result.streamed = result.size();
+    result.mesh = Mesh();
+  }
+
+  /// The contour of one isovalue, without an index.
+  void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+    options.progress = bar.stage("contour");
+    if (result.picked) return pick(image, options, bar, result);
+    ExtractStats& stats = result.stats.emplace();
+    if (const auto method = options_.polygon_triangulation()) {
+      auto polygons = triangulated_polygons(image, {*result.isovalue, options, options_.single_precision(), no_check_},
+                                            *method, bar, stats);
+      result.mesh =
+          std::visit([&](auto& contour) { return with_additions(std::move(contour), options.threads, bar); }, polygons);
+      return;
+    }
+    result.mesh =
+        extract_any<Mesh>(image, *result.isovalue, options, options_.single_precision(), stats,
+                          [&](auto contour) { return with_additions(std::move(contour), options.threads, bar); });
+  }
+
+  /// All contours as one, with the isovalue of each vertex and simplex, checked and written.
+  ContourResult merged(std::vector<ContourResult>& results, ProgressBar& bar) const {
+    ContourResult all = results.front();
+    all.mesh = Mesh();
+    all.isovalue.reset();
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      ContourResult& one = results[i];
+      all.isovalues.push_back(*one.isovalue);
+      if (i > 0) {
+        all.seconds.classify += one.seconds.classify;
+        all.seconds.find += one.seconds.find;
+        all.seconds.generate += one.seconds.generate;
+        all.seconds.close += one.seconds.close;
+        if (all.stats) all.stats->active_tiles += one.stats->active_tiles;
+      }
+      append_mesh(all.mesh, std::exchange(one.mesh, Mesh()), *one.isovalue);
+    }
+    check_and_write(all, bar);
+    return all;
   }
 
   /// Whether layers come in and the contour goes out as it comes.
@@ -194,24 +304,31 @@ class ContourCommand final : public Command {
     return to_mesh(contour);
   }
 
-  /// The contour by --index, whose reading counts as such.
-  Mesh extract_by_index(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+  /// The contours by --index, which is read once; its reading counts as such.
+  template <class Finished>
+  void by_index(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results,
+                const Finished& finished) const {
     const auto of_owned = [&](const auto& owned) {
       Stopwatch watch;
       const auto view = owned.view();
       const auto active = read_active_tiles(index_, view, {.threads = options.threads, .progress = bar.stage("index")});
-      result.seconds.read += watch.lap();
-      options.progress = bar.stage("contour");
-      if (options_.single_precision())
-        return with_additions(extract<float>(view, *result.isovalue, options, *active, &*result.stats), options.threads,
-                              bar);
-      return with_additions(extract<double>(view, *result.isovalue, options, *active, &*result.stats), options.threads,
-                            bar);
+      results.front().seconds.read += watch.lap();
+      for (ContourResult& result : results) {
+        options.progress = bar.stage("contour");
+        ExtractStats& stats = result.stats.emplace();
+        result.mesh =
+            options_.single_precision()
+                ? with_additions(extract<float>(view, *result.isovalue, options, *active, &stats), options.threads, bar)
+                : with_additions(extract<double>(view, *result.isovalue, options, *active, &stats), options.threads,
+                                 bar);
+      }
     };
-    return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+    for (ContourResult& result : results) finished(result);
   }
 
-  ExitCode run_facets(const Streams& streams, const FacetsWork& work) const {
+  ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
+                      const std::vector<std::string>& outputs, const ExtractOptions& options) const {
     const auto given = options_.given();
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(ErrorCode::InvalidArgument,
@@ -222,44 +339,51 @@ class ContourCommand final : public Command {
                   fmt::format("--facets with {}, which is for simplices; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "none" : "--normals gradient or sobel"));
-    require_facets_output(output_, files());
+    for (const std::string& output : outputs) require_facets_output(output, files());
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
-    FacetsResult result;
-    result.input = inputs();
-    result.variable = input.info.variable;
-    result.output = output_;
-    result.image_dim = image_dim(input.image);
-    result.isovalue = work.isovalue;
-    require_output_holds_facets(output_, result.image_dim);
-    require_contour(input, work.isovalue);
-    result.seconds.read = watch.lap();
-    write_image_facets(input.image, work, bar, result);
+    std::vector<FacetsResult> results(isovalues.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      FacetsResult& result = results[i];
+      result.input = inputs();
+      result.variable = input.info.variable;
+      result.output = outputs[i];
+      result.image_dim = image_dim(input.image);
+      result.isovalue = isovalues[i].value;
+      require_output_holds_facets(result.output, result.image_dim);
+      require_contour(input, result.isovalue);
+    }
+    results.front().seconds.read = watch.lap();
+    WrittenFiles written;
+    for (FacetsResult& result : results) {
+      write_image_facets(input.image, {result.isovalue, options, options_.single_precision(), no_check_}, bar, result);
+      written.add(result.output);
+    }
+    written.keep();
     bar.clear();
-    if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
-    return result.exit_code();
+    return tell(streams, results);
   }
 
-  void stream(ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
-    require_output_grows();
+  void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) const {
+    for (const ContourResult& result : results) require_output_grows(result.output);
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
     OpenLayersResult input = images().open(files());
-    result.variable = input.info.variable;
+    for (ContourResult& result : results) result.variable = input.info.variable;
     options.progress = bar.stage("stream");
-    stream_contour(input, *result.isovalue, options, options_.single_precision(), result);
-    result.output_bytes = std::filesystem::file_size(result.output);
+    stream_contours(input, options, options_.single_precision(), results);
+    for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);
   }
 
-  void require_output_grows() const {
-    const MeshFileFormat* const format = find_mesh_file_format(output_);
+  static void require_output_grows(const std::string& output) {
+    const MeshFileFormat* const format = find_mesh_file_format(output);
     if (format != nullptr && format->extension == ".vtkhdf") return;
     throw Error(ErrorCode::WriteFailed,
-                fmt::format("{}: a streamed contour needs a file that can grow; expected .vtkhdf", output_));
+                fmt::format("{}: a streamed contour needs a file that can grow; expected .vtkhdf", output));
   }
 
   ExtractionOptions options_;
@@ -267,6 +391,7 @@ class ContourCommand final : public Command {
   std::string output_;
   std::string index_;
   bool stream_ = false;
+  bool one_file_ = false;
   bool facets_ = false;
   std::string pick_;
   bool no_check_ = false;

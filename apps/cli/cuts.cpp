@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -36,12 +37,12 @@ std::pair<std::string, std::string_view> halves(std::string_view option, const s
 }
 
 /// "1,2.5" and "FIRST:LAST:COUNT": each number, and how it is spelled.
-std::vector<std::pair<double, std::string>> numbers_of(const std::string& option, std::string_view values) {
-  std::vector<std::pair<double, std::string>> result;
+std::vector<SpelledNumber> numbers_of(const std::string& option, std::string_view values) {
+  std::vector<SpelledNumber> result;
   for (const std::string_view text : split(values, ',')) {
     const auto ends = split(text, ':');
     if (ends.size() == 1) {
-      result.emplace_back(parse_finite(option, text), std::string(text));
+      result.push_back({parse_finite(option, text), std::string(text)});
       continue;
     }
     constexpr double kMost = 100000;
@@ -55,10 +56,21 @@ std::vector<std::pair<double, std::string>> numbers_of(const std::string& option
     for (double i = 0; i < count; ++i) {
       // Exact at both ends.
       const double value = first * ((count - 1 - i) / (count - 1)) + last * (i / (count - 1));
-      result.emplace_back(value, number(value));
+      result.push_back({value, number(value)});
     }
   }
   return result;
+}
+
+/// True if there was any.
+bool replace_all(std::string& output, const std::string& placeholder, const std::string& text) {
+  bool any = false;
+  for (auto at = output.find(placeholder); at != std::string::npos; at = output.find(placeholder, at)) {
+    output.replace(at, placeholder.size(), text);
+    at += text.size();
+    any = true;
+  }
+  return any;
 }
 
 /// "x + 2 t", of a normal.
@@ -105,6 +117,10 @@ std::string axis_names(const CutSpace& space) {
 }
 
 }  // namespace
+
+std::vector<SpelledNumber> parse_spelled_numbers(const std::string& option, std::string_view text) {
+  return numbers_of(option, text);
+}
 
 std::vector<double> parse_numbers(const std::string& option, std::string_view text) {
   std::vector<double> numbers;
@@ -255,15 +271,9 @@ std::vector<std::string> cut_outputs(const std::string& pattern, const std::vect
   std::vector<std::string> outputs;
   for (const Cut& cut : cuts) {
     std::string output = pattern;
-    const auto replace = [&](const std::string& placeholder, const std::string& text) {
-      for (auto at = output.find(placeholder); at != std::string::npos; at = output.find(placeholder, at)) {
-        output.replace(at, placeholder.size(), text);
-        at += text.size();
-      }
-    };
     for (const std::string& placeholder : {std::string("{t}"), std::string("{at}"), "{" + cut.axis + "}"})
-      replace(placeholder, cut.text);
-    replace("{axis}", cut.axis);
+      replace_all(output, placeholder, cut.text);
+    replace_all(output, "{axis}", cut.axis);
     if (std::find(outputs.begin(), outputs.end(), output) != outputs.end()) {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--output is '{}' for two cuts; expected {{t}} in it (and {{axis}} if there are several "
@@ -271,6 +281,21 @@ std::vector<std::string> cut_outputs(const std::string& pattern, const std::vect
                               output));
     }
     outputs.push_back(output);
+  }
+  return outputs;
+}
+
+std::vector<std::string> isovalue_outputs(const std::string& pattern, const std::vector<SpelledNumber>& isovalues) {
+  std::vector<std::string> outputs;
+  for (const SpelledNumber& isovalue : isovalues) {
+    std::string output = pattern;
+    if (!replace_all(output, "{iso}", isovalue.text) && isovalues.size() > 1) {
+      std::filesystem::path name(pattern);
+      const std::string extension = name.extension().string();
+      name.replace_filename(name.stem().string() + "_" + isovalue.text + extension);
+      output = name.string();
+    }
+    outputs.push_back(std::move(output));
   }
   return outputs;
 }

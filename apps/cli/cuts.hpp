@@ -20,7 +20,14 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at);
 /// The cuts that the values of --plane ask for: "1,0,0,0.5=3", a normal and what follows "=" in --at.
 std::vector<Cut> parse_planes(const std::vector<std::string>& planes);
 
+/// A number and how it was typed.
+struct SpelledNumber {
+  double value = 0;
+  std::string text;
+};
+
 /// "0,0.5,2" and "FIRST:LAST:COUNT" as numbers. Throws InvalidArgument, naming the option.
+std::vector<SpelledNumber> parse_spelled_numbers(const std::string& option, std::string_view text);
 std::vector<double> parse_numbers(const std::string& option, std::string_view text);
 
 /// A normal or direction, "1,0,0,0.5". Throws InvalidArgument, naming the option, unless it is numbers and not 0.
@@ -60,5 +67,9 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space);
 /// The output of each cut: `pattern` with "{t}" or "{at}", or the axis as it was typed in braces, replaced by the
 /// number as it was typed, and "{axis}" by that axis. Throws InvalidArgument if two cuts had the same file.
 std::vector<std::string> cut_outputs(const std::string& pattern, const std::vector<Cut>& cuts);
+
+/// The output of each isovalue: `pattern` with "{iso}" replaced by the number as it was typed; if there are several and
+/// no "{iso}", with _NUMBER before its extension.
+std::vector<std::string> isovalue_outputs(const std::string& pattern, const std::vector<SpelledNumber>& isovalues);
 
 }  // namespace tegl::cli

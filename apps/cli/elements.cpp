@@ -66,6 +66,7 @@ class ElementsCommand final : public ContourInputCommand {
                             "A contour as centroids with normal vectors times volume, as freeze-out codes take them") {
     app()
         .add_option("-o,--output", output_, "the elements: .dat or .txt (columns as Cornelius has them), or .h5")
+        ->type_name("FILE")
         ->required();
     app()
         .add_option("--per", per_,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "numbers.hpp"
@@ -18,7 +19,12 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
       CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"});
   if (!of_images_alone) triangulations.description("{compact,barycentric}");
   options_ = {
-      app.add_option("--iso", iso_, "the isovalue: samples at or above it are inside")->type_name("NUMBER"),
+      app.add_option("--iso", isos_,
+                     of_images_alone ? "the isovalue: samples at or above it are inside; or several: 20,25,30, or "
+                                       "FIRST:LAST:COUNT"
+                                     : "the isovalue: samples at or above it are inside")
+          ->allow_extra_args(false)
+          ->type_name(of_images_alone ? "NUMBERS" : "NUMBER"),
       app.add_option("--triangulation", triangulation_,
                      of_images_alone
                          ? "compact: few simplices; barycentric: even ones; of the polygons of 3D images: fan, zigzag, "
@@ -44,7 +50,8 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
           ->type_name("NUMBER")
           ->capture_default_str(),
       app.add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
-          ->check(CLI::Range(0u, 4096u))
+          ->type_name("COUNT")
+          ->check(CLI::Range(0u, 4096u).description(""))
           ->capture_default_str(),
       app.add_option("--precision", precision_, "arithmetic of the vertices")
           ->check(CLI::IsMember({"float", "double"}))
@@ -62,10 +69,26 @@ std::vector<std::string> ExtractionOptions::given() const {
 }
 
 double ExtractionOptions::isovalue() const {
-  if (options_.front()->count() == 0) {
+  const std::vector<SpelledNumber> all = isovalues();
+  if (all.size() > 1)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("--iso has {} numbers, {} and others; expected one: 'tegl contour' makes contours at several",
+                    all.size(), all.front().text));
+  return all.front().value;
+}
+
+std::vector<SpelledNumber> ExtractionOptions::isovalues() const {
+  if (options_.front()->count() == 0)
     throw Error(ErrorCode::InvalidArgument, "--iso is missing; expected the isovalue, as in --iso 20");
-  }
-  return parse_finite("--iso", iso_);
+  std::vector<SpelledNumber> all;
+  for (const std::string& text : isos_)
+    for (SpelledNumber& number : parse_spelled_numbers("--iso", text)) {
+      if (std::any_of(all.begin(), all.end(), [&](const SpelledNumber& other) { return other.value == number.value; }))
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--iso has {} twice; expected it once", number.text));
+      all.push_back(std::move(number));
+    }
+  return all;
 }
 
 std::optional<PolygonTriangulation> ExtractionOptions::polygon_triangulation() const {

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "cuts.hpp"
 #include "progress.hpp"
 #include "result.hpp"
 #include "tegl/extract.hpp"
@@ -27,8 +28,11 @@ class ExtractionOptions {
   /// The names of those that were given.
   [[nodiscard]] std::vector<std::string> given() const;
 
-  /// --iso as a number. Throws InvalidArgument if it is missing or not a finite number.
+  /// --iso as a number. Throws InvalidArgument if it is missing, not a finite number, or several.
   [[nodiscard]] double isovalue() const;
+  /// The numbers of --iso, which may be several, and may be given several times. Throws InvalidArgument if there is
+  /// none, or one twice.
+  [[nodiscard]] std::vector<SpelledNumber> isovalues() const;
   /// --threads: 0 for all that the machine has.
   [[nodiscard]] unsigned threads() const { return threads_; }
   /// True for --precision float.
@@ -46,7 +50,7 @@ class ExtractionOptions {
 
  private:
   std::vector<CLI::Option*> options_;
-  std::string iso_;
+  std::vector<std::string> isos_;
   std::string triangulation_ = "compact";
   std::string ambiguity_ = "low";
   std::string direction_ = "descent";

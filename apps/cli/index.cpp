@@ -81,7 +81,7 @@ class IndexCommand final : public Command {
                 "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder)", Files::image) {
     std::vector<std::string> names;
     for (const ActiveMethod method : active_methods()) names.emplace_back(active_method_name(method));
-    app().add_option("-o,--output", output_, "the index; FILE with .tindex behind it if left out");
+    app().add_option("-o,--output", output_, "the index; FILE with .tindex behind it if left out")->type_name("FILE");
     app()
         .add_option("--method", method_,
                     "how active tiles are to be found: docs/active-tiles.md says when to use which")
@@ -98,10 +98,12 @@ class IndexCommand final : public Command {
             "--scan-order", scan_order_,
             "with --method seed-set: the axes, the one that a scan runs along first, such as 2,0,1; 'cover' and "
             "'volume-thinning' do not depend on it")
+        ->type_name("AXES")
         ->delimiter(',');
     app()
         .add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
-        ->check(CLI::Range(0u, 4096u))
+        ->type_name("COUNT")
+        ->check(CLI::Range(0u, 4096u).description(""))
         ->capture_default_str();
     add_image_options();
     add_quiet();

@@ -10,12 +10,13 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
-#include "commands.hpp"
+#include "program.hpp"
 #include "progress.hpp"
 #include "result.hpp"
 
@@ -24,10 +25,6 @@ namespace {
 using tegl::cli::Command;
 using tegl::cli::ExitCode;
 using tegl::cli::Streams;
-
-constexpr const char* kDescription =
-    "Contours of images in 2, 3 and 4 dimensions: closed, manifold, oriented.\n"
-    "Reads NIfTI, NRRD, MetaImage, netCDF and DICOM; writes PLY, glTF and VTKHDF.";
 
 /// Writes the one message of a failed run, as text or as JSON, to standard error.
 ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_view code, std::string_view message) {
@@ -137,31 +134,35 @@ std::string_view after_normals(int argc, char** argv) {
   return {};
 }
 
+/// What `tegl --man` and `tegl --completion SHELL` write; nothing for other command lines.
+std::optional<ExitCode> write_reference(const CLI::App& program, int argc, char** argv, const Streams& streams) {
+  const std::string_view option = argc > 1 ? argv[1] : "";
+  if (option != "--man" && option != "--completion") return std::nullopt;
+  const int expected = option == "--man" ? 2 : 3;
+  try {
+    if (argc != expected)
+      throw tegl::Error(tegl::ErrorCode::InvalidArgument,
+                        option == "--man" ? "--man with other arguments; expected none"
+                                          : "--completion needs a shell; expected bash, zsh or fish");
+    streams.out.write(option == "--man" ? tegl::cli::man_page(program, TEGL_VERSION, TEGL_MANUAL_DATE)
+                                        : tegl::cli::completion_script(program, argv[2]));
+    return ExitCode::Ok;
+  } catch (const tegl::Error& error) {
+    return report(streams, false, tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), error.what());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond its limit is a failed write, which leaves nothing behind
   const Streams streams;
-  CLI::App program(kDescription, "tegl");
-  program.set_version_flag("--version", "tegl " TEGL_VERSION);
-  program.require_subcommand(1);
-  program.footer(tegl::cli::exit_code_help());
-  std::vector<std::unique_ptr<Command>> commands;
-  commands.push_back(tegl::cli::make_info_command(program));
-  commands.push_back(tegl::cli::make_contour_command(program));
-  commands.push_back(tegl::cli::make_slice_command(program));
-  commands.push_back(tegl::cli::make_elements_command(program));
-  commands.push_back(tegl::cli::make_check_command(program));
-  commands.push_back(tegl::cli::make_project_command(program));
-  commands.push_back(tegl::cli::make_index_command(program));
-  commands.push_back(tegl::cli::make_components_command(program));
-  commands.push_back(tegl::cli::make_measure_command(program));
-  commands.push_back(tegl::cli::make_track_command(program));
-  commands.push_back(tegl::cli::make_simplify_command(program));
-  commands.push_back(tegl::cli::make_view_command(program, TEGL_VERSION));
+  CLI::App program("", "tegl");
+  const std::vector<std::unique_ptr<Command>> commands = tegl::cli::add_commands(program, TEGL_VERSION);
   // Before anything is parsed, too, whoever asks for JSON wants errors in JSON.
   const bool asks_for_json =
       std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
+  if (const auto exit = write_reference(program, argc, argv, streams)) return static_cast<int>(*exit);
   try {
     program.parse(joined_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {

@@ -54,7 +54,7 @@ class MeasureCommand final : public ContourInputCommand {
         .add_option("--samples", samples_, "also of so many cuts, evenly from the contour's first to its last")
         ->check(whole_number(2, 1000000))
         ->type_name("COUNT");
-    app().add_option("--csv", csv_, "the measures of the cuts as CSV");
+    app().add_option("--csv", csv_, "the measures of the cuts as CSV")->type_name("FILE");
     app().footer(kExamples);
   }
 

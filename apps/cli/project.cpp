@@ -116,6 +116,7 @@ class ProjectCommand final : public ContourInputCommand {
         ->capture_default_str();
     app()
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb or .vtkhdf; tetrahedra: .vtkhdf")
+        ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
     attributes_.add_to(app());

@@ -143,6 +143,7 @@ Json to_json(const ContourResult& result) {
   json["output"] = result.output;
   json["image_dim"] = result.image_dim;
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
+  if (!result.isovalues.empty()) json["isovalues"] = result.isovalues;
   json["at"] = nullptr;
   if (result.cut) {
     json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
@@ -172,6 +173,11 @@ std::string to_text(const Console& console, const ContourResult& result) {
                                 : fmt::format("Contour in {}D", result.image_dim);
   if (!result.wording.heading.empty()) what = result.wording.heading;
   if (result.isovalue) what += fmt::format(" of the isovalue {}", number(*result.isovalue));
+  if (!result.isovalues.empty()) {
+    std::string all;
+    for (const double isovalue : result.isovalues) all += (all.empty() ? "" : ", ") + number(isovalue);
+    what += " of the isovalues " + all;
+  }
   std::string text = fmt::format("{}\n", console.bold(what));
   text += input_line(result.input, result.variable);
   if (result.picked) {

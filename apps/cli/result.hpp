@@ -123,7 +123,8 @@ struct ContourResult {
   std::string output;
   std::uint64_t output_bytes = 0;
   int image_dim = 0;
-  std::optional<double> isovalue;  ///< none for saved contours that do not say
+  std::optional<double> isovalue;  ///< none for saved contours that do not say, and for several
+  std::vector<double> isovalues;   ///< of several contours in one
   std::optional<Cut> cut;
   std::optional<Picked> picked;
   std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour, and for picks

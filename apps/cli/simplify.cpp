@@ -75,6 +75,7 @@ class SimplifyCommand final : public ContourInputCommand {
     app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: write what is no manifold, too");
     app()
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
+        ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
     app().footer(kExamples);

@@ -202,6 +202,7 @@ class SliceCommand final : public Command {
     app()
         .add_option("-o,--output", output_,
                     "the result: .ply, .gltf, .glb or .vtkhdf; {t} in it stands for the number, {axis} for its axis")
+        ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
     add_image_options();

@@ -4,44 +4,62 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "numbers.hpp"
+#include "output.hpp"
 #include "progress.hpp"
+#include "tegl/stream_several.hpp"
 
 namespace tegl::cli {
 
 namespace {
 
 template <int N, class Real, class T>
-void stream_typed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options, ContourResult& result) {
+void stream_typed(LayerReader<T, N>& layers, const ExtractOptions& options, std::vector<ContourResult>& results) {
   for (int a = 0; a < N; ++a)
     if (layers.grid().axes[a].size() < 2)
       throw Error(ErrorCode::EmptyResult,
                   fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
                               axis_label(layers.grid().axes[a].name, static_cast<std::size_t>(a))));
-  ContourFile<N, Real> file(result.output, layers.grid(), isovalue);
-  ExtractStats& stats = result.stats.emplace();
+  std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
+  std::vector<StreamedContour<N, Real>> contours;
+  for (const ContourResult& result : results) {
+    files.push_back(std::make_unique<ContourFile<N, Real>>(result.output, layers.grid(), result.isovalue));
+    contours.push_back({*result.isovalue, files.back().get(), {}, {}});
+  }
   Stopwatch watch;
-  const StreamedSize size = extract_streamed<Real>(layers, isovalue, options, file, &stats);
-  if (size.simplices == 0)
-    throw Error(ErrorCode::EmptyResult,
-                fmt::format("no contour at {}: no neighbouring samples lie on both sides of it", number(isovalue)));
-  file.commit();
-  result.streamed = MeshSize{N - 1, size.vertices, size.simplices};
-  result.seconds.add(stats);
-  result.seconds.write = std::max(0.0, watch.lap() - result.seconds.total());
+  extract_streamed_several<Real, T, N>(layers, contours, options);
+  for (const auto& contour : contours)
+    if (contour.size.simplices == 0)
+      throw Error(
+          ErrorCode::EmptyResult,
+          fmt::format("no contour at {}: no neighbouring samples lie on both sides of it", number(contour.isovalue)));
+  WrittenFiles written;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    files[i]->commit();
+    written.add(results[i].output);
+  }
+  written.keep();
+  const double seconds = watch.lap();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].image_dim = N;
+    results[i].stats = contours[i].stats;
+    results[i].streamed = MeshSize{N - 1, contours[i].size.vertices, contours[i].size.simplices};
+    results[i].seconds.add(contours[i].stats);
+    results[i].seconds.write = std::max(0.0, seconds - results[i].seconds.total());
+  }
 }
 
 }  // namespace
 
-void stream_contour(OpenLayersResult& input, double isovalue, const ExtractOptions& options, bool single_precision,
-                    ContourResult& result) {
+void stream_contours(OpenLayersResult& input, const ExtractOptions& options, bool single_precision,
+                     std::vector<ContourResult>& results) {
   const auto typed = [&]<class T, int N>(const std::unique_ptr<LayerReader<T, N>>& layers) {
-    result.image_dim = N;
     if (single_precision)
-      stream_typed<N, float>(*layers, isovalue, options, result);
+      stream_typed<N, float>(*layers, options, results);
     else
-      stream_typed<N, double>(*layers, isovalue, options, result);
+      stream_typed<N, double>(*layers, options, results);
   };
   std::visit([&](const auto& any) { std::visit(typed, any); }, input.layers);
 }

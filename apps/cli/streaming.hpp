@@ -3,15 +3,17 @@
 // Contours of images that are larger than memory: read layer by layer, written as they come.
 #pragma once
 
+#include <vector>
+
 #include "result.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
 
 namespace tegl::cli {
 
-/// Streams the contour to result.output; fills the result's sizes, counts and seconds. Throws EmptyResult, and leaves
-/// no file, where nothing comes out.
-void stream_contour(OpenLayersResult& input, double isovalue, const ExtractOptions& options, bool single_precision,
-                    ContourResult& result);
+/// Streams the contours at result.isovalue of each result to its output, in one pass; fills their sizes, counts and
+/// seconds. Throws EmptyResult, and leaves no file, where nothing comes out for one.
+void stream_contours(OpenLayersResult& input, const ExtractOptions& options, bool single_precision,
+                     std::vector<ContourResult>& results);
 
 }  // namespace tegl::cli

@@ -91,16 +91,20 @@ class TrackCommand final : public ContourInputCommand {
  public:
   explicit TrackCommand(CLI::App& program)
       : ContourInputCommand(program, "track", "What becomes of the parts of a moving contour") {
-    app().add_option("-o,--output", outputs_,
-                     "the graph as .json or .dot, its picture as .svg, or the contour with the track of each simplex "
-                     "as .vtkhdf, .ply or .glb; may be given several times");
+    app()
+        .add_option("-o,--output", outputs_,
+                    "the graph as .json or .dot, its picture as .svg, or the contour with the track of each simplex "
+                    "as .vtkhdf, .ply or .glb; may be given several times")
+        ->type_name("FILE");
     app()
         .add_option("--csv", csv_, "tables: NAME-events.csv, NAME-segments.csv and NAME-samples.csv")
         ->type_name("NAME");
-    app().add_option(
-        "--min-lifetime", min_lifetime_,
-        "leave out branches that live shorter than this, in the unit of the last axis; what splits and merges "
-        "again goes only if none of its ways splits in between");
+    app()
+        .add_option(
+            "--min-lifetime", min_lifetime_,
+            "leave out branches that live shorter than this, in the unit of the last axis; what splits and merges "
+            "again goes only if none of its ways splits in between")
+        ->type_name("NUMBER");
     app()
         .add_option("--samples", samples_, "how many times to measure the parts, evenly over the whole time")
         ->check(whole_number(0, 1000000))

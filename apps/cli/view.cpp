@@ -47,7 +47,7 @@ class ViewCommand final : public ContourInputCommand {
   ViewCommand(CLI::App& program, std::string version)
       : ContourInputCommand(program, "view", "One page for a browser, with a slider for the time", Files::each),
         version_(std::move(version)) {
-    app().add_option("-o,--output", output_, "the page: .html")->required();
+    app().add_option("-o,--output", output_, "the page: .html")->type_name("FILE")->required();
     app().add_flag("--one-image", one_image_,
                    "several FILEs are one image with an axis more, as other commands take them, not one contour each");
     app().add_option("--title", title_, "what stands above; by default the names of the files")->type_name("TEXT");

@@ -74,7 +74,7 @@ TEST_F(Errors, WrongUsageExitsWith2) {
 }
 
 TEST_F(Errors, NumbersThatAreNoneExitWith2) {
-  for (const char* iso : {"abc", "nan", "inf", "-inf", "7,3", "1e999", ""}) {
+  for (const char* iso : {"abc", "nan", "inf", "-inf", "7x", "1e999", ""}) {
     expect_contour_failure(2, ball_file(), iso, path("out.ply"), {iso, "--iso"});
   }
   for (const char* epsilon : {"0.5", "-0.1", "nan", "x"}) {
@@ -301,8 +301,9 @@ TEST_F(Errors, ConstantValuesExitWith5AndSaySo) {
 }
 
 TEST_F(Errors, AnOptionGivenTwiceIsNamed) {
-  expect_failure(2, {"contour", ball_file(), "--iso", "0", "--iso", "1", "-o", path("out.ply")},
-                 {"--iso", "more than once"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "--epsilon", "0", "--epsilon", "0.1", "-o", path("out.ply")},
+                 {"--epsilon", "more than once"});
+  expect_failure(2, {"measure", ball_file(), "--iso", "0", "--iso", "1"}, {"--iso has 2 numbers", "expected one"});
 }
 
 TEST_F(Errors, OutputChecksComeBeforeTheInputIsRead) {

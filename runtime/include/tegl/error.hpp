@@ -19,7 +19,7 @@ enum class ErrorCode {
   MalformedFile,      ///< the file is damaged or contradicts itself
   UnsupportedFormat,  ///< a format, or an extension, that nothing here reads or writes
   UnsupportedData,    ///< a sound file whose content (dimension, value type) does not fit
-  VariableNotFound,   ///< a file with several variables, and none by that name
+  VariableNotFound,   ///< a file with several variables (or DICOM series), and none by that name
   WriteFailed,        ///< the output could not be written; nothing is left behind
   TooLarge,           ///< more vertices than the index type can number
   Cancelled,          ///< the progress callback said stop

@@ -34,7 +34,7 @@ using AnyImage = std::variant<AnyImageN<2>, AnyImageN<3>, AnyImageN<4>>;
 
 /// What a file says beyond values and grid.
 struct ImageInfo {
-  std::string format;                  ///< "NIfTI", "NRRD", "MetaImage", "netCDF"
+  std::string format;                  ///< "NIfTI", "NRRD", "MetaImage", "netCDF", "DICOM", "raw"
   std::string variable;                ///< netCDF: the variable read
   std::vector<std::string> variables;  ///< netCDF: all that can be read as an image
   std::string value_unit;              ///< such as "degC"; may be empty
@@ -51,13 +51,14 @@ struct ReadImageResult {
 
 /// What to read of a file.
 struct ReadImageOptions {
-  std::string variable;  ///< netCDF: which; empty: the only one with at least two axes longer than 1
+  std::string variable;  ///< netCDF: which; DICOM: which series, by UID, description or number; empty: the only one
   Progress progress;     ///< see Progress
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
 /// (.mha, .mhd; one data file) and netCDF (.nc, .cdf, .nc4; also gzipped as a whole). A file of another extension is
-/// recognised by its first bytes.
+/// recognised by its first bytes. With DCMTK also DICOM: a file, a DICOMDIR, or a folder with all below it, whose
+/// slices are sorted by place, and by time where several lie at one place.
 ///
 /// Axes: the one that runs fastest in the file is axis 0, time is last. Trailing axes of one sample are dropped
 /// (netCDF: wherever they are); what is left must be 2, 3 or 4 axes. Units as the file states them. Orientations that
@@ -80,8 +81,9 @@ struct ImageVariable {
   std::string long_name;           ///< may be empty
 };
 
-/// The variables that ReadImageOptions::variable may name in a netCDF file; none for the other formats, whose files
-/// hold one image without a name. Reads no values. Errors: those of read_image.
+/// The variables that ReadImageOptions::variable may name in a netCDF file, or the series in DICOM (the description as
+/// long_name); none for the other formats, whose files hold one image without a name. Reads no values. Errors: those of
+/// read_image.
 std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path);
 
 /// The layers of an image of any value type in N dimensions.
@@ -101,10 +103,10 @@ struct OpenLayersResult {
 };
 
 /// Opens a variable of a netCDF file, or a dataset of an HDF5 file, to be read layer by layer: what read_image reads
-/// whole, with the same grid and values (uint32, int64 and uint64 as double). `variable` as in ReadImageOptions. The
-/// file stays open as long as the layers live. Memory: a layer, or as many as lie in one compressed block of the file,
-/// if these are no more than 256 MiB. Errors: those of read_image, now or by read(); UnsupportedData for a file that is
-/// gzipped as a whole.
+/// whole, with the same grid and values (uint32, int64 and uint64 as double). DICOM likewise, slice by slice.
+/// `variable` as in ReadImageOptions. The file stays open as long as the layers live. Memory: a layer, or as many as
+/// lie in one compressed block of the file, if these are no more than 256 MiB. Errors: those of read_image, now or by
+/// read(); UnsupportedData for a file that is gzipped as a whole.
 OpenLayersResult open_layers(const std::filesystem::path& path, const std::string& variable = {});
 
 /// Values that lie in a file one after the other, axis 0 fastest.

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of several isovalues of an image that is larger than memory, in one pass over it.
+#pragma once
+
+#include <span>
+
+#include "tegl/stream.hpp"
+
+namespace tegl {
+
+/// One of the contours of extract_streamed_several: its isovalue, where it goes, and how large it became.
+template <int N, class Real>
+struct StreamedContour {
+  double isovalue = 0;                   ///< finite
+  ContourSink<N, Real>* sink = nullptr;  ///< where the contour goes; not owned
+  StreamedSize size;                     ///< set by the extraction
+  ExtractStats stats;                    ///< likewise
+};
+
+/// What extract_streamed gives for each isovalue, each with the same vertices, normals and simplices in the same order;
+/// the layers are read once. Each contour is made by threads of its own, which share those of `options` out evenly. The
+/// reader is called by the thread of the caller; sinks by others as well, but never two of them, nor
+/// one and the reader, at the same time. Memory: that of extract_streamed for each isovalue. Errors: those of
+/// extract_streamed, of the first contour that had any; InvalidArgument for a sink that is null. The contours of the
+/// others are then unfinished.
+template <class Real = float, Value T, int N>
+void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
+                              const ExtractOptions& options);
+
+}  // namespace tegl

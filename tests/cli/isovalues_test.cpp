@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl contour at several isovalues: one read of the image, a file each or all in one, in memory and streamed.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kOcean = TEGL_SOURCE_DIR "/examples/data/ocean_temperature.nc";
+
+class Isovalues : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    ball_ = write("ball.nrrd", nrrd_bytes(ball({12, 12, 12}, 4)));
+  }
+  /// Runs `tegl contour` without failure and gives the JSON.
+  static nlohmann::json contour(const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"contour", file, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.json();
+  }
+  void expect_refused(int exit, const std::vector<std::string>& more, const std::vector<std::string>& parts) const {
+    const auto before = files();
+    std::vector<std::string> arguments = {"contour", ball_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, exit) << run.err;
+    for (const std::string& part : parts) EXPECT_THAT(run.err, HasSubstr(part));
+    EXPECT_EQ(files(), before);
+  }
+  void expect_same(const std::string& a, const std::string& b) const {
+    const Mesh x = read_mesh(path(a));
+    const Mesh y = read_mesh(path(b));
+    EXPECT_EQ(x.coordinates, y.coordinates) << a << " " << b;
+    EXPECT_EQ(x.simplices, y.simplices);
+    EXPECT_EQ(x.normals, y.normals);
+    EXPECT_EQ(x.isovalue, y.isovalue);
+  }
+  std::string ball_;
+};
+
+TEST_F(Isovalues, GiveAFileEachThatIsTheContourOfItsOwnRun) {
+  const nlohmann::json all = contour(ball_, {"--iso", "0,1.5", "--iso=-2", "--normals", "-o", path("out.ply")});
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[1]["isovalue"], 1.5);
+  EXPECT_EQ(all[2]["output"], path("out_-2.ply"));
+  for (const std::string iso : {"0", "1.5", "-2"}) {
+    const nlohmann::json one = contour(ball_, {"--iso=" + iso, "--normals", "-o", path("one.ply")});
+    expect_same("out_" + iso + ".ply", "one.ply");
+    const auto place =
+        std::find_if(all.begin(), all.end(), [&](const auto& other) { return other["isovalue"] == one["isovalue"]; });
+    for (const char* const key : {"vertices", "simplices", "components", "euler", "boundary_simplices", "active_tiles"})
+      EXPECT_EQ((*place)[key], one[key]) << key;
+  }
+}
+
+TEST_F(Isovalues, TakeTheirPlaceInAPattern) {
+  contour(ball_, {"--iso", "0:2:3", "-o", path("at{iso}.glb")});
+  EXPECT_THAT(files(), ElementsAre("at0.glb", "at1.glb", "at2.glb", "ball.nrrd"));
+  contour(ball_, {"--iso", "0.50", "-o", path("at{iso}.glb")});
+  EXPECT_THAT(files(), testing::Contains("at0.50.glb"));
+}
+
+TEST_F(Isovalues, AreAnAttributeInOneFile) {
+  const nlohmann::json report = contour(ball_, {"--iso", "0,1.5,-2", "--one-file", "-o", path("all.vtkhdf")});
+  EXPECT_EQ(report["isovalues"], (std::vector<double>{0, 1.5, -2}));
+  EXPECT_TRUE(report["isovalue"].is_null());
+  EXPECT_EQ(report["components"], 3);
+  EXPECT_EQ(report["euler"], 6);
+  EXPECT_EQ(report["nonmanifold_simplices"], 0);
+  const Mesh mesh = read_mesh(path("all.vtkhdf"));
+  ASSERT_EQ(mesh.vertex_attributes.size(), 1U);
+  ASSERT_EQ(mesh.simplex_attributes.size(), 1U);
+  EXPECT_EQ(mesh.vertex_attributes[0].name, "isovalue");
+  const auto& of_vertices = mesh.vertex_attributes[0].values;
+  const auto& of_simplices = mesh.simplex_attributes[0].values;
+  for (std::size_t s = 0; s < of_simplices.size(); ++s)
+    for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(of_vertices[mesh.simplices[3 * s + j]], of_simplices[s]);
+  for (const double iso : {0.0, 1.5, -2.0}) {
+    contour(ball_, {"--iso=" + std::to_string(iso), "-o", path("one.ply")});
+    EXPECT_EQ(static_cast<std::size_t>(std::count(of_simplices.begin(), of_simplices.end(), iso)),
+              read_mesh(path("one.ply")).simplices.size() / 3);
+  }
+}
+
+TEST_F(Isovalues, AreStreamedInOnePassWithTheSameBytes) {
+  const std::vector<std::string> isos = {"10", "20", "27.5"};
+  const nlohmann::json all =
+      contour(kOcean, {"--iso", "10,20,27.5", "--stream", "--normals", "-o", path("all_{iso}.vtkhdf")});
+  ASSERT_EQ(all.size(), 3U);
+  for (std::size_t i = 0; i < isos.size(); ++i) {
+    const nlohmann::json one = contour(kOcean, {"--iso", isos[i], "--stream", "--normals", "-o", path("one.vtkhdf")});
+    expect_same("all_" + isos[i] + ".vtkhdf", "one.vtkhdf");
+    EXPECT_EQ(all[i]["simplices"], one["simplices"]);
+    EXPECT_EQ(all[i]["active_tiles"], one["active_tiles"]);
+  }
+}
+
+TEST_F(Isovalues, WorkWithIndexFacetsPicksAndTriangulations) {
+  ASSERT_EQ(run_tegl({"index", ball_, "-o", path("ball.tindex")}).exit, 0);
+  contour(ball_, {"--iso", "0,1", "-o", path("plain.ply")});
+  contour(ball_, {"--iso", "0,1", "--index", path("ball.tindex"), "-o", path("indexed.ply")});
+  for (const std::string iso : {"0", "1"}) expect_same("plain_" + iso + ".ply", "indexed_" + iso + ".ply");
+  EXPECT_EQ(contour(ball_, {"--iso", "0,1", "--pick", "5,5,1", "-o", path("picked.ply")}).size(), 2U);
+  EXPECT_EQ(contour(ball_, {"--iso", "0,1", "--triangulation", "fan", "-o", path("fan.ply")}).size(), 2U);
+  EXPECT_EQ(contour(ball_, {"--iso", "0,1", "--facets", "-o", path("facets.vtu")})[1]["facets"]["polygons"],
+            contour(ball_, {"--iso", "1", "--facets", "-o", path("facet.vtu")})["facets"]["polygons"]);
+}
+
+TEST_F(Isovalues, LeaveNothingIfOneOfThemFails) {
+  for (const char* const more : {"--no-check", "--one-file"})
+    expect_refused(5, {"--iso", "0,99", more, "-o", path("out.vtkhdf")}, {"99"});
+  const std::string raw = write("ball.raw", [] {
+    const Samples samples = ball({12, 12, 12}, 4);
+    return std::string(reinterpret_cast<const char*>(samples.values.data()), samples.values.size() * sizeof(float));
+  }());
+  const auto before = files();
+  const RunResult run =
+      run_tegl({"contour", raw, "--raw", "12x12x12", "--raw-type", "float", "--iso", "0,99", "-o", path("out.vtkhdf")});
+  EXPECT_EQ(run.exit, 5) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("99"));
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Isovalues, ThatCannotBeAreRefused) {
+  expect_refused(2, {"--iso", "0,1,0", "-o", path("out.ply")}, {"--iso has 0 twice"});
+  expect_refused(2, {"--iso", "0,", "-o", path("out.ply")}, {"--iso"});
+  expect_refused(2, {"--iso", "0", "--one-file", "-o", path("out.ply")}, {"--one-file with one isovalue"});
+  expect_refused(2, {"--iso", "0,1", "--one-file", "--facets", "-o", path("out.vtu")}, {"--one-file with --facets"});
+  const RunResult run = run_tegl({"slice", ball_, "--iso", "0,1", "--at", "z=5", "-o", path("out.ply")});
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("--iso has 2 numbers"));
+}
+
+}  // namespace
+}  // namespace tegl::test

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The command line as a whole: one word for one thing in all commands, and what is generated from the options: the
+// manual page and the completion of shells, as those who read them see them.
+#include "program.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+
+namespace tegl::cli {
+namespace {
+
+using testing::HasSubstr;
+
+class Program : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<const CLI::App*> all() const {
+    const CLI::App& program = program_;
+    return program.get_subcommands([](const CLI::App*) { return true; });
+  }
+
+  /// Writes a file that the tests' shells read.
+  static std::string write(const std::string& name, const std::string& text) {
+    const std::string path = testing::TempDir() + name + "_" + std::to_string(getpid());
+    std::ofstream(path) << text;
+    return path;
+  }
+
+  /// What a command of the system writes, standard error too, and its exit status.
+  static std::pair<std::string, int> run(const std::string& command) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen((command + " 2>&1").c_str(), "r"),
+                                                               [](std::FILE*) { return 0; });
+    std::string text;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe.get()))
+      text.append(buffer.data(), got);
+    const int status = pclose(pipe.get());
+    return {text, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
+  }
+  static bool has(const std::string& program) { return run("command -v " + program).second == 0; }
+
+  CLI::App program_{"", "tegl"};
+  std::vector<std::unique_ptr<Command>> commands_ = add_commands(program_, "1.2.3");
+};
+
+TEST_F(Program, HasExamplesForEveryCommand) {
+  for (const CLI::App* command : all()) {
+    EXPECT_THAT(command->get_footer(), testing::StartsWith("Examples:\n  tegl " + command->get_name()));
+    EXPECT_FALSE(command->get_description().empty());
+  }
+}
+
+TEST_F(Program, NamesAndTypesEveryOption) {
+  for (const CLI::App* command : all())
+    for (const CLI::Option* option : command->get_options()) {
+      SCOPED_TRACE(command->get_name() + " " + option->get_name());
+      EXPECT_FALSE(option->get_description().empty());
+      if (option->nonpositional() && option->get_name() != "--title")
+        EXPECT_THAT(option->get_type_name(), testing::Not(testing::ContainsRegex("TEXT|INT|FLOAT"))) << "what is it?";
+      if (!option->get_description().ends_with(" ..."))
+        EXPECT_THAT(option->get_description(), testing::Not(testing::EndsWith(".")));
+    }
+}
+
+TEST_F(Program, CallsTheSameThingTheSameInAllCommands) {
+  // Options whose text or type differs from command to command, because what they do does.
+  const std::set<std::string> own = {"--output",  "--at",      "--iso", "--triangulation", "--scale",
+                                     "--require", "--method",  "--csv", "--components",    "--samples",
+                                     "--count",   "--largest", "--as",  "--limit"};
+  std::map<std::string, std::pair<std::string, std::string>> seen;
+  for (const CLI::App* command : all())
+    for (const CLI::Option* option : command->get_options()) {
+      if (!option->nonpositional() || own.contains(option->get_name())) continue;
+      const std::string name = option->get_name(false, true);
+      const std::string text =
+          option->get_type_name() + " | " + option->get_description() + " | " + option->get_default_str();
+      const auto [known, is_new] = seen.try_emplace(option->get_name(), name + " | " + text, command->get_name());
+      EXPECT_TRUE(is_new || known->second.first == name + " | " + text)
+          << command->get_name() << ": " << name << " | " << text << "\n"
+          << known->second.second << ": " << known->second.first;
+    }
+  for (const char* const everywhere : {"--json", "--help"})
+    for (const CLI::App* command : all()) EXPECT_NE(command->get_option_no_throw(everywhere), nullptr) << everywhere;
+}
+
+TEST_F(Program, HasAManualPageOfAllCommandsAndOptions) {
+  const std::string page = man_page(program_, "1.2.3", "2026-01-31");
+  EXPECT_THAT(page, HasSubstr(".TH TEGL 1 2026-01-31 \"tegl 1.2.3\""));
+  for (const CLI::App* command : all()) {
+    std::string title = command->get_name();
+    for (char& c : title) c = static_cast<char>(std::toupper(c));
+    EXPECT_THAT(page, HasSubstr(".SH TEGL " + title));
+    for (const CLI::Option* option : command->get_options())
+      for (std::string name : option->get_lnames()) {
+        for (std::size_t at = name.find('-'); at != std::string::npos; at = name.find('-', at + 2))
+          name.insert(at, "\\");
+        EXPECT_THAT(page, HasSubstr("\\fB\\-\\-" + name + "\\fR")) << command->get_name();
+      }
+  }
+}
+
+TEST_F(Program, HasAManualPageThatFormattersReadWithoutAWarning) {
+  const std::string page = write("tegl.1", man_page(program_, "1.2.3", "2026-01-31"));
+  bool any = false;
+  if (has("groff")) {
+    const auto [text, status] = run("groff -ww -man -Tutf8 -k -z " + page);
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(text, "");
+    any = true;
+  }
+  if (has("mandoc")) {
+    const auto [text, status] = run("mandoc -T lint -W warning " + page);
+    EXPECT_EQ(text, "");
+    EXPECT_EQ(status, 0);
+    EXPECT_THAT(run("mandoc -T ascii " + page + " | col -b").first, HasSubstr("--ambiguity low|high|mean|saddle"));
+    any = true;
+  }
+  std::filesystem::remove(page);
+  if (!any) GTEST_SKIP() << "neither groff nor mandoc";
+}
+
+TEST_F(Program, CompletesInBash) {
+  if (!has("bash")) GTEST_SKIP() << "no bash";
+  const std::string script = write("tegl.bash", completion_script(program_, "bash"));
+  const auto complete = [&](const std::string& words) {
+    return run("bash -c 'set -u; source " + script + "; COMP_WORDS=(tegl " + words +
+               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _tegl; echo ${COMPREPLY[*]}'")
+        .first;
+  };
+  EXPECT_EQ(complete("con"), "contour\n");
+  EXPECT_EQ(complete("contour --tri"), "--triangulation\n");
+  EXPECT_EQ(complete("contour a.nii --ambiguity s"), "saddle\n");
+  EXPECT_EQ(complete("check --require c"), "closed\n");
+  EXPECT_EQ(complete("info " + script.substr(0, script.size() - 3)), script + "\n");
+  std::filesystem::remove(script);
+}
+
+TEST_F(Program, CompletesInZshAndFish) {
+  bool any = false;
+  if (has("zsh")) {
+    const std::string script = write("tegl.zsh", completion_script(program_, "zsh"));
+    EXPECT_EQ(run("zsh -n " + script), std::pair(std::string(), 0));
+    EXPECT_EQ(
+        run("zsh -f -c 'autoload -U compinit && compinit -D && source " + script + " && echo $_comps[tegl]'").first,
+        "_tegl\n");
+    std::filesystem::remove(script);
+    any = true;
+  }
+  if (has("fish")) {
+    const std::string script = write("tegl.fish", completion_script(program_, "fish"));
+    const auto complete = [&](const std::string& line) {
+      return run("HOME=/nonexistent fish --no-config -c 'source " + script + "; complete -C \"" + line + "\"'").first;
+    };
+    EXPECT_THAT(complete("tegl con"), testing::StartsWith("contour\t"));
+    EXPECT_THAT(complete("tegl contour --tri"), testing::StartsWith("--triangulation\t"));
+    EXPECT_THAT(complete("tegl contour --ambiguity sa"), HasSubstr("saddle"));
+    std::filesystem::remove(script);
+    any = true;
+  }
+  if (!any) GTEST_SKIP() << "neither zsh nor fish";
+}
+
+TEST_F(Program, KnowsNoOtherShell) { EXPECT_THROW((void)completion_script(program_, "tcsh"), Error); }
+
+}  // namespace
+}  // namespace tegl::cli

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours of several isovalues in one pass: each as in a pass of its own, the layers read once, one call at a time;
+// and the end of all where one fails.
+#include "tegl/stream_several.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace tegl::test {
+namespace {
+
+using Layers = FunctionLayers<float, 3>;
+
+/// Keeps what comes; counts whoever calls at the same time.
+class KeepingSink final : public ContourSink<3, double> {
+ public:
+  explicit KeepingSink(std::atomic<int>& inside) : inside_(inside) {}
+  void add_vertices(std::span<const Vertex> more) override {
+    const Call call(*this);
+    if (fails_at != 0 && vertices.size() > fails_at) throw Error(ErrorCode::WriteFailed, "the disk is full");
+    vertices.insert(vertices.end(), more.begin(), more.end());
+  }
+  void add_normals(std::span<const Vertex> more) override {
+    const Call call(*this);
+    normals.insert(normals.end(), more.begin(), more.end());
+  }
+  void add_simplices(std::span<const Simplex> more) override {
+    const Call call(*this);
+    simplices.insert(simplices.end(), more.begin(), more.end());
+  }
+  void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override {
+    const Call call(*this);
+    simplices.at(simplex).at(static_cast<std::size_t>(corner)) = vertex;
+  }
+
+  std::vector<Vertex> vertices, normals;
+  std::vector<Simplex> simplices;
+  std::size_t fails_at = 0;  ///< number of vertices beyond which it fails; 0: never
+
+ private:
+  struct Call {
+    explicit Call(KeepingSink& sink) : inside(sink.inside_) { EXPECT_EQ(++inside, 1) << "two calls at a time"; }
+    ~Call() { --inside; }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+    std::atomic<int>& inside;
+  };
+  std::atomic<int>& inside_;
+};
+
+class StreamSeveral : public testing::Test {
+ protected:
+  static constexpr std::size_t kSize = 24;
+
+  void SetUp() override {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> values(0, 10);
+    for (float& value : values_) value = values(random);
+    values_[5 * kSize * kSize + 77] = std::numeric_limits<float>::quiet_NaN();
+  }
+  /// Layers that count how often each is read, and by whom.
+  Layers layers() {
+    return Layers(Grid<3>::unit({kSize, kSize, kSize}), [this](std::size_t k, float* to) {
+      EXPECT_EQ(++inside_, 1);
+      EXPECT_EQ(std::this_thread::get_id(), thread_);
+      ++reads_.at(k);
+      std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(k * kSize * kSize), kSize * kSize, to);
+      --inside_;
+    });
+  }
+  /// Contours at these isovalues that go to new sinks.
+  std::vector<StreamedContour<3, double>> contours(const std::vector<double>& isovalues) {
+    std::vector<StreamedContour<3, double>> result;
+    for (const double isovalue : isovalues) {
+      sinks_.push_back(std::make_unique<KeepingSink>(inside_));
+      result.push_back({isovalue, sinks_.back().get(), {}, {}});
+    }
+    return result;
+  }
+
+  std::vector<float> values_ = std::vector<float>(kSize * kSize * kSize);
+  std::vector<int> reads_ = std::vector<int>(kSize);
+  std::atomic<int> inside_ = 0;
+  std::thread::id thread_ = std::this_thread::get_id();
+  std::vector<std::unique_ptr<KeepingSink>> sinks_;
+};
+
+TEST_F(StreamSeveral, GivesEachContourOfAPassOfItsOwnAndReadsOnce) {
+  for (const bool close : {false, true}) {
+    sinks_.clear();
+    std::fill(reads_.begin(), reads_.end(), 0);
+    ExtractOptions options;
+    options.close = close;
+    options.normals = true;
+    auto several = contours({5, 2, 8, 99});
+    auto source = layers();
+    extract_streamed_several<double>(source, std::span(several), options);
+    EXPECT_THAT(reads_, testing::Each(1));
+    for (std::size_t i = 0; i < several.size(); ++i) {
+      KeepingSink alone(inside_);
+      ExtractStats stats;
+      auto again = layers();
+      const StreamedSize size = extract_streamed<double>(again, several[i].isovalue, options, alone, &stats);
+      EXPECT_EQ(several[i].size.vertices, size.vertices);
+      EXPECT_EQ(several[i].size.simplices, size.simplices);
+      EXPECT_EQ(several[i].stats.active_tiles, stats.active_tiles);
+      EXPECT_EQ(sinks_[i]->vertices, alone.vertices);
+      EXPECT_EQ(sinks_[i]->normals, alone.normals);
+      EXPECT_EQ(sinks_[i]->simplices, alone.simplices);
+    }
+    EXPECT_GT(several[0].size.simplices, 0U);
+    EXPECT_EQ(several[3].size.simplices, 0U);
+  }
+}
+
+TEST_F(StreamSeveral, EndsWithTheErrorOfWhoeverFails) {
+  for (std::size_t failing = 0; failing < 3; ++failing) {
+    sinks_.clear();
+    auto several = contours({5, 2, 8});
+    sinks_[failing]->fails_at = 500;
+    auto source = layers();
+    try {
+      extract_streamed_several<double>(source, std::span(several), {});
+      ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::WriteFailed) << error.what();
+    }
+  }
+}
+
+TEST_F(StreamSeveral, EndsWithTheErrorOfTheReader) {
+  auto several = contours({5, 2, 8});
+  Layers broken(Grid<3>::unit({kSize, kSize, kSize}), [&](std::size_t k, float* to) {
+    if (k == 9) throw Error(ErrorCode::MalformedFile, "cut short");
+    std::copy_n(values_.begin(), kSize * kSize, to);
+  });
+  try {
+    extract_streamed_several<double>(broken, std::span(several), {});
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::MalformedFile) << error.what();
+  }
+}
+
+TEST_F(StreamSeveral, CanBeCancelled) {
+  auto several = contours({5, 2, 8});
+  auto source = layers();
+  ExtractOptions options;
+  options.progress = [](double share) { return share < 0.4; };
+  try {
+    extract_streamed_several<double>(source, std::span(several), options);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+  }
+}
+
+TEST_F(StreamSeveral, RefusesAContourWithoutASink) {
+  auto several = contours({5, 2});
+  several[1].sink = nullptr;
+  auto source = layers();
+  EXPECT_THROW(extract_streamed_several<double>(source, std::span(several), {}), Error);
+  extract_streamed_several<double>(source, std::span<StreamedContour<3, double>>(), {});
+  EXPECT_THAT(reads_, testing::Each(0));
+}
+
+}  // namespace
+}  // namespace tegl::test
