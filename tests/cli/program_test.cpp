@@ -63,10 +63,12 @@ TEST_F(Program, NamesAndTypesEveryOption) {
     for (const CLI::Option* option : command->get_options()) {
       SCOPED_TRACE(command->get_name() + " " + option->get_name());
       EXPECT_FALSE(option->get_description().empty());
-      if (option->nonpositional() && option->get_name() != "--title")
+      if (option->nonpositional() && option->get_name() != "--title") {
         EXPECT_THAT(option->get_type_name(), testing::Not(testing::ContainsRegex("TEXT|INT|FLOAT"))) << "what is it?";
-      if (!option->get_description().ends_with(" ..."))
+      }
+      if (!option->get_description().ends_with(" ...")) {
         EXPECT_THAT(option->get_description(), testing::Not(testing::EndsWith(".")));
+      }
     }
 }
 
