@@ -74,8 +74,8 @@ TEST_F(Isovalues, TakeTheirPlaceInAPattern) {
 }
 
 TEST_F(Isovalues, AreAnAttributeInOneFile) {
-  const nlohmann::json report = contour(ball_, {"--iso", "0,1.5,-2", "--one-file", "-o", path("all.vtkhdf")});
-  EXPECT_EQ(report["isovalues"], (std::vector<double>{0, 1.5, -2}));
+  const nlohmann::json report = contour(ball_, {"--iso", "0,1.5,-1", "--one-file", "-o", path("all.vtkhdf")});
+  EXPECT_EQ(report["isovalues"], (std::vector<double>{0, 1.5, -1}));
   EXPECT_TRUE(report["isovalue"].is_null());
   EXPECT_EQ(report["components"], 3);
   EXPECT_EQ(report["euler"], 6);
@@ -88,7 +88,7 @@ TEST_F(Isovalues, AreAnAttributeInOneFile) {
   const auto& of_simplices = mesh.simplex_attributes[0].values;
   for (std::size_t s = 0; s < of_simplices.size(); ++s)
     for (std::size_t j = 0; j < 3; ++j) EXPECT_EQ(of_vertices[mesh.simplices[3 * s + j]], of_simplices[s]);
-  for (const double iso : {0.0, 1.5, -2.0}) {
+  for (const double iso : {0.0, 1.5, -1.0}) {
     contour(ball_, {"--iso=" + std::to_string(iso), "-o", path("one.ply")});
     EXPECT_EQ(static_cast<std::size_t>(std::count(of_simplices.begin(), of_simplices.end(), iso)),
               read_mesh(path("one.ply")).simplices.size() / 3);
