@@ -229,6 +229,9 @@ void measure_field_in(const std::string& name, const std::string& field, std::si
   throw Error(ErrorCode::InvalidArgument, fmt::format("{}: type '{}'; expected float, uint8 or uint16", name, type));
 }
 
+/// Along each axis, for 2^32 in all.
+constexpr std::size_t most_samples(int dim) { return dim == 2 ? 1u << 16 : dim == 3 ? 1625 : 1u << 8; }
+
 /// FIELD:N[^D][@TYPE]
 void measure_field(const std::string& name, const Arguments& arguments) {
   const std::string field = name.substr(0, name.find(':'));
@@ -244,21 +247,26 @@ void measure_field(const std::string& name, const Arguments& arguments) {
   };
   const std::string type(take_after('@', "float"));
   const int dim = whole_number(name + ", dimensions", take_after('^', "3"), 2, 4);
-  const auto samples = whole_number<std::size_t>(name + ", samples along an axis", rest, 2, 1u << 16);
+  const auto samples = whole_number<std::size_t>(name + ", samples along an axis", rest, 2, most_samples(dim));
   if (dim == 2) return measure_field_in<2>(name, field, samples, type, arguments);
   if (dim == 3) return measure_field_in<3>(name, field, samples, type, arguments);
   measure_field_in<4>(name, field, samples, type, arguments);
 }
 
-/// Those of `all` whose names are in a list with commas.
+/// Those of `all` whose names are in the list with commas that follows an option.
 template <class Each, class Name>
-std::vector<Each> choose(const std::string& list, const std::vector<Each>& all, const Name& name) {
+std::vector<Each> choose(const std::string& option, const std::string& list, const std::vector<Each>& all,
+                         const Name& name) {
   std::vector<Each> chosen;
   for (std::size_t from = 0; from <= list.size();) {
     const std::size_t to = std::min(list.find(',', from), list.size());
     const std::string one = list.substr(from, to - from);
     const auto at = std::find_if(all.begin(), all.end(), [&](Each each) { return name(each) == one; });
-    if (at == all.end()) throw Error(ErrorCode::InvalidArgument, fmt::format("'{}' is none of the choices", one));
+    if (at == all.end()) {
+      std::string names;
+      for (const Each each : all) names += (names.empty() ? "" : ", ") + std::string(name(each));
+      throw Error(ErrorCode::InvalidArgument, fmt::format("{}: '{}'; expected one or more of {}", option, one, names));
+    }
     chosen.push_back(*at);
     from = to + 1;
   }
@@ -276,10 +284,11 @@ int run(int argc, char** argv) {
     const std::string argument = argv[i];
     const bool more = i + 1 < argc;
     if (argument == "--methods" && more)
-      arguments.methods = choose(argv[++i], seed_methods(), seed_method_name);
+      arguments.methods = choose(argument, argv[++i], seed_methods(), seed_method_name);
     else if (argument == "--neighbourhoods" && more)
       arguments.neighbourhoods = choose<Neighbourhood>(
-          argv[++i], {Neighbourhood::faces, Neighbourhood::faces_and_edges, Neighbourhood::all}, neighbourhood_name);
+          argument, argv[++i], {Neighbourhood::faces, Neighbourhood::faces_and_edges, Neighbourhood::all},
+          neighbourhood_name);
     else if (argument == "--orders")
       arguments.orders = true;
     else if (argument == "--picks" && more)

@@ -24,8 +24,8 @@ namespace {
 // How far the progress is after each step.
 constexpr double kNearestShare = 0.1;  ///< the search of the nearest tile
 constexpr double kFlooded = 0.35;
-constexpr double kExtracted = 0.75;
-constexpr double kLabelled = 0.85;
+constexpr double kExtracted = 0.5;
+constexpr double kLabelled = 0.6;
 constexpr double kChosen = 0.95;
 
 /// A point in steps of the grid.
@@ -143,22 +143,39 @@ Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& 
   return nearest;
 }
 
-/// The components with a simplex whose middle lies in one of these tiles.
-template <int N, class Real>
-std::vector<bool> components_in(const Contour<N, Real>& contour, const ComponentLabels& labels,
-                                const detail::GridLocator<N>& locator, const TileGrid<N>& grid,
-                                const std::vector<TileNumber>& tiles, const Progress& progress) {
+/// The options for a contour of the same simplices whose vertices are no corners of tiles.
+ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progress) {
+  ExtractOptions inside = options;
+  inside.epsilon = 0.25;
+  inside.normals = false;
+  inside.progress = progress;
+  return inside;
+}
+
+/// The components with a simplex in one of these tiles. `inside`: the same contour, simplex by simplex, on a grid of
+/// steps of 1, its points on edges well inside of them: no simplex lies in a face of its tile, so its middle is inside
+/// of the tile too, whatever samples equal the isovalue and whatever the image's own coordinates are.
+template <int N>
+std::vector<bool> components_in(const Contour<N, double>& inside, const ComponentLabels& labels,
+                                const TileGrid<N>& grid, const std::vector<TileNumber>& tiles,
+                                const Progress& progress) {
+  // Only an estimator that answers now so, now so gives another contour than before.
+  if (inside.simplices.size() != labels.simplices.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the same contour has {} simplices, and then {}; expected an estimator whose answers do "
+                            "not change",
+                            labels.simplices.size(), inside.simplices.size()));
   std::vector<bool> result(labels.count);
   const auto look_at = [&](std::size_t s) {
     if (result[labels.simplices[s]]) return;
     std::array<double, N> middle{};
-    for (const Index v : contour.simplices[s])
-      for (int a = 0; a < N; ++a) middle[a] += static_cast<double>(contour.vertices[v][a]) / N;
-    detail::CellPlace<N> place;
-    if (locator.find(middle, place) && std::binary_search(tiles.begin(), tiles.end(), grid.number(place.base)))
-      result[labels.simplices[s]] = true;
+    for (const Index v : inside.simplices[s])
+      for (int a = 0; a < N; ++a) middle[a] += inside.vertices[v][a] / N;
+    std::array<std::size_t, N> at;
+    for (int a = 0; a < N; ++a) at[a] = std::min(static_cast<std::size_t>(middle[a]), grid.size(a) - 1);
+    if (std::binary_search(tiles.begin(), tiles.end(), grid.number(at))) result[labels.simplices[s]] = true;
   };
-  detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
+  detail::in_parts(inside.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) look_at(s);
   });
   return result;
@@ -217,8 +234,11 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   };
   const detail::TileFlood<T, N> flood(image, isovalue);
   if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress)) {
-    if (!options.close)
-      return extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, options);  // names, units, no tiles
+    if (!options.close) {
+      auto nothing = extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // names, units, no tiles
+      detail::tell(options.progress, 1.0);
+      return nothing;
+    }
     // All that there is lies in the border: the component of the nearest vertex.
     return nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
   }
@@ -228,23 +248,27 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
                 detail::part_of(options.progress, kNearestShare, kFlooded), &at_missing);
   std::sort(tiles.begin(), tiles.end());
   found.tiles = tiles.size();
+  const bool in_tiles = !detail::is_tile_by_tile<N>(options) && !options.close;
   // Where missing values part the tiles around an edge, a vertex there is doubled for the components on either side,
   // and comes first in the one and last in the others (pinches.hpp): so all tiles that have it must be there.
   std::vector<TileNumber> around;
-  if (at_missing) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
+  if (at_missing && in_tiles) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
   std::vector<TileNumber> looked_at = tiles;
   looked_at.insert(looked_at.end(), around.begin(), around.end());
   std::sort(looked_at.begin(), looked_at.end());
-  const bool in_tiles = !detail::is_tile_by_tile<N>(options) && !options.close;
-  Contour<N, Real> contour;
-  if constexpr (N <= 4)
-    if (in_tiles) contour = extract<Real>(image, isovalue, rest, *choose_tiles(image, looked_at));
-  if (!in_tiles) contour = extract<Real>(image, isovalue, rest);
-  return nearest_part(
-      contour, locator, at, options, found.components, [&](const ComponentLabels& labels, const Progress& progress) {
-        return in_tiles && around.empty() ? all_of(labels, progress)
-                                          : components_in(contour, labels, locator, flood.grid(), tiles, progress);
-      });
+  const auto contour_of = [&]<class R>(const Image<T, N>& of, const ExtractOptions& with, R) {
+    if constexpr (N <= 4)
+      if (in_tiles) return extract<R>(of, isovalue, with, *choose_tiles(of, looked_at));
+    return extract<R>(of, isovalue, with);
+  };
+  const auto allowed = [&](const ComponentLabels& labels, const Progress& progress) {
+    if (in_tiles && around.empty()) return all_of(labels, progress);
+    const Progress extracting = detail::part_of(progress, 0.0, 0.9);
+    const Image<T, N> on_steps_of_1(image.data(), Grid<N>::unit(image.grid().sizes()), image.strides());
+    return components_in(contour_of(on_steps_of_1, inside_edges(options, extracting), double{}), labels, flood.grid(),
+                         tiles, detail::part_of(progress, 0.9, 1.0));
+  };
+  return nearest_part(contour_of(image, rest, Real{}), locator, at, options, found.components, allowed);
 }
 
 #define TEGL_INSTANTIATE_REAL(T, N, Real)                                                                           \

@@ -43,6 +43,32 @@ TileNumber nearest_by_trial(const TileGrid<N>& grid, const std::vector<TileNumbe
   return nearest;
 }
 
+template <int N>
+double squared_distance(const Contour<N, double>& contour, const std::array<double, N>& at) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& vertex : contour.vertices) {
+    double square = 0;
+    for (int a = 0; a < N; ++a) square += (vertex[a] - at[a]) * (vertex[a] - at[a]);
+    least = std::min(least, square);
+  }
+  return least;
+}
+
+/// The tiles of a contour's simplices, as far as these do not lie in a tile's face.
+template <int N>
+std::vector<TileNumber> tiles_of(const Contour<N, double>& contour, const TileGrid<N>& grid) {
+  std::vector<TileNumber> tiles;
+  for (const auto& simplex : contour.simplices) {
+    std::array<double, N> middle{};
+    for (const Index v : simplex)
+      for (int a = 0; a < N; ++a) middle[a] += contour.vertices[v][a] / N;
+    std::array<std::size_t, N> index;
+    for (int a = 0; a < N; ++a) index[a] = std::min(static_cast<std::size_t>(middle[a]), grid.size(a) - 1);
+    tiles.push_back(grid.number(index));
+  }
+  return tiles;
+}
+
 /// For grids of step 1 from the origin.
 template <Value T, int N>
 void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions options, int picks) {
@@ -51,6 +77,11 @@ void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions
   const auto parts = split_components(whole, labels);
   const TileGrid<N> grid(image.view().grid().sizes());
   const auto active = PlainRanges<N>(image.view()).active(isovalue);
+  ExtractOptions apart = options;
+  apart.epsilon = 0.3;  // where no simplex lies in a tile's face
+  std::vector<std::vector<TileNumber>> tiles;
+  for (const auto& part : split_components(extract<double>(image.view(), isovalue, apart), labels))
+    tiles.push_back(tiles_of<N>(part, grid));
   std::mt19937_64 random(5);
   for (int i = 0; i < picks; ++i) {
     Point<N> at;
@@ -59,13 +90,19 @@ void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions
     PickReport<N> report;
     options.threads = 1 + static_cast<unsigned>(i % 4);
     const auto picked = extract_component<double>(image.view(), isovalue, at, options, &report);
-    ASSERT_TRUE(report.found);
+    ASSERT_EQ(report.found, !active.empty());
+    if (active.empty()) continue;
     EXPECT_EQ(report.tile, nearest_by_trial<N>(grid, active, at));
     EXPECT_EQ(grid.number(report.at), report.tile);
     std::size_t which = parts.size();
     for (std::size_t k = 0; k < parts.size(); ++k)
       if (same(parts[k], picked)) which = k;
     ASSERT_LT(which, parts.size()) << "pick " << i << ": not a component of the whole";
+    ASSERT_GE(report.components, 1u);
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      if (std::find(tiles[k].begin(), tiles[k].end(), report.tile) == tiles[k].end()) continue;
+      ASSERT_LE(squared_distance<N>(picked, at), squared_distance<N>(parts[k], at)) << "pick " << i << ", component " << k;
+    }
     expect_oriented_manifold(picked);
   }
 }
@@ -123,6 +160,31 @@ TEST(Pick, AcrossMissingValuesFromOthersHasTheOrderOfTheWhole) {
     expect_picks(noise_with_missing<float, 4>(Grid<4>::unit({7, 6, 5, 6}), seed, 0.05), 0.9, {}, 8);
     expect_picks(noise_with_missing<float, 4>(Grid<4>::unit({7, 7, 6, 6}), seed, 0.1), 0.8, {}, 8);
   }
+}
+
+/// 0, 1 and missing: at 0 and 1 the vertices are samples, and simplices may have no size, or lie in faces of tiles.
+template <int N>
+void expect_picks_of_ties(const std::array<std::size_t, N>& sizes, std::uint64_t seed, double missing, bool close) {
+  auto image = noise_with_missing<float, N>(Grid<N>::unit(sizes), seed, missing);
+  for (float& value : image.values)
+    if (value == value) value = value < 0.5f ? 0.0f : 1.0f;
+  ExtractOptions options;
+  options.close = close;
+  for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::saddle}) {
+    options.ambiguity = ambiguity;
+    for (const double isovalue : {1.0, 0.5, 0x1p-1074}) expect_picks<float, N>(image, isovalue, options, 4);
+  }
+}
+
+TEST(Pick, WhereSamplesEqualTheIsovalueIsAComponentOfTheWhole) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed)
+    for (const bool close : {false, true}) {
+      SCOPED_TRACE(testing::Message() << seed << (close ? ", closed" : ""));
+      expect_picks_of_ties<2>({9, 8}, seed, 0.15, close);
+      expect_picks_of_ties<3>({4, 5, 4}, seed, 0.15, close);
+      expect_picks_of_ties<3>({5, 4, 5}, seed, 0.0, close);
+      expect_picks_of_ties<4>({3, 4, 3, 3}, seed, 0.12, close);
+    }
 }
 
 TEST(Pick, In5dIsAComponentOfTheWhole) { expect_picks(noise<float, 5>({5, 4, 3, 4, 3}, 11), 0.995, {}, 3); }

@@ -125,6 +125,11 @@ TEST(SeedProgress, OfPicksRisesToTheEnd) {
     options.progress = progress;
     extract_component<float>(image.view(), 0.5, {10.0, 12.0, 14.0}, options);
   });
+  expect_rising_progress([&](const Progress& progress) {  // of nothing
+    ExtractOptions options;
+    options.progress = progress;
+    extract_component<float>(image.view(), 2.0, {10.0, 12.0, 14.0}, options);
+  });
 }
 
 }  // namespace
