@@ -226,10 +226,12 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
   return CommonPlace{rounded(near ? from_scaled(best) : middle), std::nullopt};
 }
 
-/// The root mean square of the distances from all hyperplanes that went into the two vertices.
+/// The root mean square of the distances from all hyperplanes that went into the two vertices. No tolerance forbids
+/// all: where simplices have no size there are no hyperplanes, so that all places would cost nothing.
 template <int N>
 bool Shrinker<N>::within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const {
   const double tolerance = std::min(tolerance_[u], tolerance_[v]);
+  if (!(tolerance > 0.0)) return false;
   if (tolerance == std::numeric_limits<double>::infinity()) return true;
   const double weight = quadrics_[u].weight() + quadrics_[v].weight();
   return place.cost <= tolerance * tolerance * weight;

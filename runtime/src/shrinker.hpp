@@ -29,7 +29,8 @@ template <int N>
 struct ShrinkStart {
   std::span<const std::array<Index, N>> simplices;
   std::vector<PointN<N>> points;  ///< #V, in the contour's coordinates
-  std::vector<double> tolerance;  ///< #V: how large the root mean square of the distances from planes may be there
+  std::vector<double>
+      tolerance;  ///< #V: how large the root mean square of the distances from planes may be; 0: it stays
   std::array<double, N> scale{};
   std::size_t carried_width = 0;  ///< numbers that each vertex carries
   std::vector<double> carried;    ///< #V x carried_width

@@ -189,12 +189,19 @@ class Simplifier {
   };
 
   Contour<N, Real> run_rounds() {
+    if (options_.max_error && earlier_error_ > *options_.max_error + kRounding * size_)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format(
+              "the largest error is {}, but the contour's error from before (its attribute {}, by this scale) is {}; "
+              "expected at least that, or a contour without one",
+              *options_.max_error, kErrorName, earlier_error_));
     // Rounding alone moves points by more than nothing: only what is left as it is has no error.
     if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
       return hand_out(untouched(may_anything_go() ? SimplifyEnd::error : end_without_limits(contour_)));
     if (options_.max_error) return hand_out(until_error_holds());
     if (!options_.measure) return hand_out(one_round(uniform_tolerance(kInfinity), 1.0, count_));
-    return hand_out(as_near_as_can_be());
+    return hand_out(as_near_as_can_be(kInfinity));
   }
 
   [[nodiscard]] std::vector<double> uniform_tolerance(double error) const {
@@ -202,25 +209,25 @@ class Simplifier {
   }
   [[nodiscard]] bool by_count() const { return options_.count || options_.ratio; }
 
-  /// By the largest error, or what an earlier one leaves of it. Nothing was near enough after all rounds: then what is
-  /// sure to be is the contour itself.
+  /// By the largest error, or what an earlier one leaves of it; with a count too, as by that alone, if it is within the
+  /// error. Nothing was near enough after all rounds: then what is sure to be is the contour itself.
   Round until_error_holds() {
     const double allowed = *options_.max_error - earlier_error_ + kRounding * size_;
-    Round best;
-    if (by_count() && count_ > 0) {  // perhaps the error is no matter
-      best = one_round(uniform_tolerance(allowed), part_of_rest(0.25), count_);
-      if (best.end == SimplifyEnd::count) measure(best, part_of_rest(1.0 / 3.0), 0.5 * allowed);
-      if (best.error_of_original && own_error(best) <= allowed) return best;
+    if (by_count() && count_ > 0) {
+      Round by_count = as_near_as_can_be(allowed);
+      if (by_count.end == SimplifyEnd::count && own_error(by_count) <= allowed) return by_count;
     }
-    if (comes_within(allowed, best)) return best;
-    return untouched(SimplifyEnd::rounds);
+    Round best;
+    if (!comes_within(allowed, best, false)) return untouched(SimplifyEnd::rounds);
+    if (own_error(best) <= 0.5 * allowed) measure_closer(best);
+    return best;
   }
 
-  /// Whether there is a round that keeps this error (and reaches the count, if that is the only goal). `best` becomes
-  /// that, or what is nearer of those with the count.
-  bool comes_within(double allowed, Round& best) {
+  /// Whether there is a round that keeps this error (and reaches the count, if it has to). `best` becomes that, or, of
+  /// those that reach a count that has to be, one that is nearer.
+  bool comes_within(double allowed, Round& best, bool to_count) {
     std::vector<double> tolerance = uniform_tolerance(allowed);
-    std::optional<Round> all = all_that_goes(allowed, tolerance);
+    std::optional<Round> all = all_that_goes(allowed, tolerance, to_count);
     if (!all) return false;
     if (all->result.simplices.size() >= count_ || !by_count()) {
       best = std::move(*all);
@@ -232,20 +239,20 @@ class Simplifier {
       measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
       const bool near = own_error(round) <= allowed;
       if (!near) tighten(tolerance, round, allowed, tried);
-      if (near || (!options_.max_error && error(round) < error(best))) best = std::move(round);
+      if (near || (to_count && error(round) < error(best))) best = std::move(round);
       if (near) return true;
     }
-    if (options_.max_error) best = std::move(*all);
-    return options_.max_error.has_value();
+    if (!to_count) best = std::move(*all);
+    return !to_count;
   }
 
   /// Simplified as far as this error lets it, whatever the count: parts that are too far off are simplified anew with
   /// less tolerance. (Stopped at a count, others would go in their place, and be too far off in their turn.) Nothing if
-  /// that is not enough for a count that is the only goal, or after too many rounds.
-  std::optional<Round> all_that_goes(double allowed, std::vector<double>& tolerance) {
+  /// that is not enough for a count that has to be, or after too many rounds.
+  std::optional<Round> all_that_goes(double allowed, std::vector<double>& tolerance, bool to_count) {
     for (unsigned tried = 1; tried <= kMostRounds; ++tried) {
       Round round = one_round(tolerance, part_of_rest(0.25), 0);
-      if (!options_.max_error && round.end != SimplifyEnd::count) break;
+      if (to_count && round.end != SimplifyEnd::count) break;
       // Closer bounds than half of what decides are of no use to anyone.
       measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
       if (own_error(round) <= allowed) return round;
@@ -255,17 +262,19 @@ class Simplifier {
   }
 
   /// By a count: a few contractions, where parts are thin, make most of the error. So the least of the largest errors
-  /// is searched for with which the count is still reached.
-  Round as_near_as_can_be() {
-    Round best = one_round(uniform_tolerance(kInfinity), part_of_rest(0.25), count_);
+  /// is searched for with which the count is still reached; up to `most`, beyond which it is of no use.
+  Round as_near_as_can_be(double most) {
+    const bool fast = options_.method == SimplifyMethod::fast;
+    Round best = one_round(uniform_tolerance(fast ? most : kInfinity), part_of_rest(0.25), count_);
     measure(best, part_of_rest(1.0 / 3.0));
-    if (best.end != SimplifyEnd::count || options_.method == SimplifyMethod::fast) return best;
+    if (best.end != SimplifyEnd::count || fast) return best;
     double low = least_tolerance(own_error(best));
     double allowed = kErrorOfTolerance * low;
     bool found = false, failed = false;
     for (unsigned tried = 0; tried < kMostTries && own_error(best) > kNarrow * low; ++tried) {
       if (!(allowed < own_error(best))) allowed = std::sqrt(low * own_error(best));
-      const bool reached = comes_within(allowed, best);
+      if (!(allowed <= most)) break;
+      const bool reached = comes_within(allowed, best, true);
       found = found || reached;
       failed = failed || !reached;
       if (!reached) low = allowed;
@@ -318,12 +327,14 @@ class Simplifier {
     return by_count() && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
   }
 
-  /// Whether there is more than was asked for, and anything of it could go, whatever the error.
+  /// Whether there is more than was asked for, and anything of it could go, whatever the error. Errors: those of a
+  /// contour that is no manifold, too.
   bool may_anything_go() {
     const std::size_t before = contour_.simplices.size();
-    if (end_without_limits(contour_) == SimplifyEnd::count) return false;
+    is_trial_ = true;
     const Round round = one_round(uniform_tolerance(kInfinity), part_of_rest(0.5), before - 1);
     stats_.rounds = 0;
+    if (end_without_limits(contour_) == SimplifyEnd::count) return false;
     return limited_ || round.result.simplices.size() < before;
   }
 
@@ -339,6 +350,11 @@ class Simplifier {
   }
 
   Contour<N, Real> hand_out(Round round) {
+    if (round.result.simplices.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("meshoptimizer left none of {} triangles; expected some: a larger count, or another "
+                              "method",
+                              contour_.simplices.size()));
     stats_.end = round.end;
     if (!options_.measure && !options_.max_error) return std::move(round.result);
     stats_.error_of_original = round.error_of_original;
@@ -414,7 +430,7 @@ class Simplifier {
       stats_.simplify_seconds += seconds_since(start);
     }
     Contour<N, Real> result = to_contour(remains, nullptr);
-    if (!options_.allow_nonmanifold) require_manifold(result, "meshoptimizer's result");
+    if (!options_.allow_nonmanifold && !is_trial_) require_manifold(result, "meshoptimizer's result");
     return result;
   }
 
@@ -495,6 +511,18 @@ class Simplifier {
     round.error_of_original = of_original.bound + earlier_error_;
     round.error_of_result = of_result.bound + earlier_error_;
     stats_.measure_seconds += seconds_since(start);
+  }
+
+  /// What was near enough not to look closer, looked at closer.
+  void measure_closer(Round& round) {
+    if (round.survivors.empty()) return;  // the contour itself
+    const Round before{{}, round.errors, round.error_of_original, round.error_of_result, round.end, {}, {}};
+    round.error_of_original.reset();
+    measure(round, part_of_rest(0.5));
+    if (error(round) <= error(before)) return;
+    round.errors = before.errors;  // other parts, other bounds: both hold
+    round.error_of_original = before.error_of_original;
+    round.error_of_result = before.error_of_result;
   }
 
   /// Less tolerance (or care) for all that became part of a simplex with too large an error.
@@ -635,6 +663,7 @@ class Simplifier {
   std::vector<const Attribute*> carried_attributes_;
   double earlier_error_ = 0.0;
   bool limited_ = false;          ///< of the round: more would have gone but for a largest error or curvature
+  bool is_trial_ = false;         ///< the round is none whose result anyone gets
   double progress_ = 0.0;         ///< told so far
   std::vector<Index> survivors_;  ///< of the round: what each vertex became part of; empty if that is not known
   std::vector<Index> kept_;       ///< of the round: the original numbers of the result's vertices

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // tegl simplify, as a user's shell runs it.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -93,6 +94,28 @@ TEST_F(SimplifyCommand, OfASavedContourIsThatOfTheImage) {
   const auto a = saved("a.ply"), b = saved("b.ply");
   EXPECT_TRUE(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), b.vertices.end()));
   EXPECT_TRUE(std::equal(a.simplices.begin(), a.simplices.end(), b.simplices.begin(), b.simplices.end()));
+}
+
+/// What is farther from its original than is allowed now is refused, not handed out as if it were near enough.
+TEST_F(SimplifyCommand, RefusesALargestErrorBelowTheOneThatAContourHas) {
+  const nlohmann::json report = run_json({"--ratio", "0.1"}, "tenth.vtkhdf");
+  const RunResult run =
+      run_tegl({"simplify", path("tenth.vtkhdf"), "--max-error", "0.001", "-o", path("again.vtkhdf")});
+  EXPECT_EQ(run.exit, 2);
+  EXPECT_THAT(run.err, HasSubstr("0.001"));
+  EXPECT_THAT(run.err, HasSubstr("from before"));
+  EXPECT_THAT(run.err, HasSubstr(fmt::format("{}", report["error"].get<double>())));
+  EXPECT_EQ(run.out, "");
+  EXPECT_FALSE(std::filesystem::exists(path("again.vtkhdf")));
+  // As the page says: the bound can be forgotten.
+  EXPECT_EQ(run_tegl({"simplify", path("tenth.vtkhdf"), "--ratio", "1", "--no-bound", "-o", path("new.vtkhdf")}).exit,
+            0);
+  EXPECT_EQ(run_tegl({"simplify", path("new.vtkhdf"), "--max-error", "0.001", "-o", path("again.vtkhdf")}).exit, 0);
+}
+
+TEST_F(SimplifyCommand, RefusesToLeaveNothing) {
+  if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
+  expect_refused(2, {"--method", "fast", "--ratio", "0"}, {"left none of"});
 }
 
 TEST_F(SimplifyCommand, ScalesDistances) {

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "distance_oracle.hpp"
 #include "errors.hpp"
 #include "fields.hpp"
@@ -341,6 +343,70 @@ TYPED_TEST(Simplify, RemovesSimplicesOfZeroSize) {
   EXPECT_LT(check(result).degenerate_simplices, check(contour).degenerate_simplices);
 }
 
+/// Samples that equal the isovalue make parts of no size, whose vertices have no hyperplanes that would hold them.
+TYPED_TEST(Simplify, KeepsTheLargestErrorWhereSimplicesHaveNoSize) {
+  constexpr int N = TypeParam::value;
+  constexpr std::size_t kSize = N == 2 ? 60 : (N == 3 ? 9 : 4);
+  const auto image = coarse_noise<std::uint8_t, N>(centred_grid<N>(kSize, 0.5 * (kSize - 1)), 14, 3);
+  const auto contour = extract<double>(image.view(), 1.0);
+  const MeshReport before = check(contour);
+  ASSERT_GT(before.degenerate_simplices, before.simplices / 20);
+  for (const double largest : {0.05, 0.2}) {
+    if (N == 4 && largest < 0.2) continue;  // time
+    SCOPED_TRACE(largest);
+    SimplifyOptions<N> options;
+    options.max_error = largest;
+    SimplifyStats stats;
+    const auto result = simplify(contour, options, &stats);
+    expect_same_topology(before, check(result));
+    EXPECT_LE(*stats.error(), largest + 1e-9);
+    EXPECT_LE(deviation(contour, result).least, largest + 1e-9);
+    EXPECT_LE(deviation(result, contour).least, largest + 1e-9);
+    EXPECT_EQ(stats.end, SimplifyEnd::error);
+    EXPECT_LT(result.simplices.size(), contour.simplices.size() * 97 / 100);
+  }
+}
+
+/// By a count, a few contractions where parts are thin would make most of the error: the search finds others.
+TYPED_TEST(Simplify, IsNearerByACountThanOneRoundIs) {
+  constexpr int N = TypeParam::value;
+  if (N == 4) GTEST_SKIP() << "noise that small is as rough as one round is";
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    const auto image = noise<float, N>(N == 3 ? 8 : 40, seed);
+    const auto contour = extract<double>(image.view(), 0.55);
+    auto options = with_ratio<N>(SimplifyMethod::quadric, 0.8);
+    SimplifyStats stats;
+    simplify(contour, options, &stats);
+    options.measure = false;
+    const auto once = simplify(contour, options);
+    const double reached = std::max(deviation(contour, once).least, deviation(once, contour).least);
+    EXPECT_LT(*stats.error(), 0.8 * reached);
+  }
+}
+
+/// A largest error that does not matter leaves what the count alone leaves, and no worse.
+TYPED_TEST(Simplify, IsAsNearByTwoGoalsAsByTheCountWhereTheErrorLetsIt) {
+  constexpr int N = TypeParam::value;
+  const auto contour = ball<N>(N == 2 ? 60 : (N == 3 ? 16 : 5));
+  for (const SimplifyMethod method : kMethods) {
+    if (N > 2 && method != SimplifyMethod::quadric) continue;  // time
+    SCOPED_TRACE(name(method));
+    auto options = with_ratio<N>(method, 0.5);
+    SimplifyStats alone, both;
+    const auto by_count = simplify(contour, options, &alone);
+    options.max_error = 50.0;
+    const auto by_both = simplify(contour, options, &both);
+    EXPECT_EQ(by_both.vertices, by_count.vertices);
+    EXPECT_EQ(by_both.simplices, by_count.simplices);
+    EXPECT_EQ(both.error(), alone.error());
+    EXPECT_EQ(both.end, SimplifyEnd::count);
+    options.max_error = 0.5 * *alone.error();
+    simplify(contour, options, &both);
+    EXPECT_LE(*both.error(), *options.max_error + 1e-9);
+    EXPECT_GE(both.simplices_after, alone.simplices_after);
+  }
+}
+
 TEST(Simplify2, CapsOfASlantedGridStayInItsBorder) {
   auto grid = centred_grid<3>(12, 1.0);
   grid.linear(0, 1) = 0.4;
@@ -447,6 +513,25 @@ TEST(SimplifyErrors, AnEarlierErrorIsANumberAndNotNegative) {
   }
 }
 
+/// What has a larger error already cannot come within a smaller one.
+TEST(SimplifyErrors, AnEarlierErrorIsAtMostTheLargest) {
+  SimplifyOptions<3> options;
+  options.max_error = 0.1;
+  SimplifyStats stats;
+  const auto once = simplify(ball<3>(16), options, &stats);
+  const double earlier = *stats.error();
+  options.max_error = 0.5 * earlier;
+  expect_error(ErrorCode::InvalidArgument, "from before", [&] { simplify(once, options); });
+  expect_error(ErrorCode::InvalidArgument, fmt::format("{}", earlier), [&] { simplify(once, options); });
+  options.max_error = 0.0;
+  expect_error(ErrorCode::InvalidArgument, "from before", [&] { simplify(once, options); });
+  for (const double enough : {earlier, 0.1}) {
+    options.max_error = enough;
+    simplify(once, options, &stats);
+    EXPECT_LE(*stats.error(), enough + 1e-9);
+  }
+}
+
 /// What ends a simplification: the error only where more would have gone without it.
 TEST(SimplifyEnds, AreWhatKeepsTheRest) {
   const auto contour = ball<3>(16);
@@ -530,12 +615,43 @@ TEST(SimplifyTwice, UsesWhatIsLeftOfTheError) {
   EXPECT_GE(*stats.error_of_original, sampled_deviation(contour, again, kSamples<3>, 1));
 }
 
+/// The bound is as close as it can be, not as close as a large error makes enough.
+TEST(SimplifyErrors, AreNotLooseWhereTheLargestIsLarge) {
+  const auto contour = ball<3>(16);
+  SimplifyOptions<3> options;
+  options.max_error = 1e9;
+  SimplifyStats stats;
+  const auto result = simplify(contour, options, &stats);
+  const double reached = std::max(deviation(contour, result).least, deviation(result, contour).least);
+  EXPECT_LE(*stats.error(), 2.0 * reached);
+}
+
+/// Meshoptimizer may take all of a closed surface: that is no contour of it.
+TEST(SimplifyFast, LeavesSomethingOrSaysSo) {
+  if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
+  auto options = with_ratio<3>(SimplifyMethod::fast, 0.0);
+  for (const bool allow : {false, true}) {
+    options.allow_nonmanifold = allow;
+    expect_error(ErrorCode::InvalidArgument, "left none", [&] { simplify(ball<3>(16), options); });
+  }
+  options = SimplifyOptions<3>();
+  options.method = SimplifyMethod::fast;
+  options.max_error = 0.0;
+  const auto contour = ball<3>(4);
+  SimplifyStats stats;
+  EXPECT_EQ(simplify(contour, options, &stats).simplices, contour.simplices);
+  EXPECT_EQ(stats.error(), 0.0);
+}
+
 TEST(SimplifyFast, RefusesWhatIsNoManifoldToBeginWith) {
   if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
   const auto options = with_ratio<3>(SimplifyMethod::fast, 0.5);
   auto broken = ball<3>(8);
   broken.simplices.push_back(broken.simplices[0]);
   expect_error(ErrorCode::UnsupportedData, "3 simplices", [&] { simplify(broken, options); });
+  auto exact = with_ratio<3>(SimplifyMethod::fast, 1.0);  // nothing is to go
+  exact.max_error = 0.0;
+  expect_error(ErrorCode::UnsupportedData, "3 simplices", [&] { simplify(broken, exact); });
 }
 
 TEST(SimplifyErrors, NothingStaysNothing) {

@@ -46,7 +46,8 @@ template <int N>
 std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
 
 /// At least one of `count`, `ratio` and `max_error` has to be given (or, for facets, `max_curvature`); with several,
-/// the first that is reached ends it.
+/// the first that is reached ends it. (A count that can be reached within max_error is, with the error that it has
+/// alone.)
 template <int N>
 struct SimplifyOptions {
   SimplifyMethod method = SimplifyMethod::quadric;  ///< what is removed, in which order
@@ -54,7 +55,7 @@ struct SimplifyOptions {
   std::optional<double> ratio;                      ///< of the simplices that there are, in [0, 1]
   /// The largest distance between any point of one of the two contours and the other one. The result keeps it by its
   /// bound: where the bound is too large for a part of the contour, that part is simplified anew with more care. 0
-  /// leaves the contour as it is.
+  /// leaves the contour as it is. At least the error that the contour has from an earlier simplification.
   std::optional<double> max_error;
   /// facets: no facet of more curvature (1 / radius) than this is removed.
   double max_curvature = std::numeric_limits<double>::infinity();
@@ -67,7 +68,7 @@ struct SimplifyOptions {
   std::array<double, N> scale = all_one();
   /// Whether the result gets its error bounds: the vertex attribute "simplification_error". Is done anyway if
   /// max_error is given. With a count or ratio alone, the least largest error is searched for with which the count is
-  /// reached, in some 10 to 30 rounds (but for `fast`); without bounds there is one round, with up to 15 times the
+  /// reached, in some 5 to 35 rounds (but for `fast`); without bounds there is one round, with up to 40 times the
   /// error.
   bool measure = true;
   /// fast: hand out what is no manifold, too.
@@ -123,21 +124,22 @@ struct SimplifyStats {
 /// simplex is within the largest one of that simplex's vertices, and every point of the simplex is so near to the
 /// original. Its unit is that of the axes, or "scale 1,1,0.5" where distances were those after a scale. If the contour
 /// has this attribute, from an earlier simplification, its largest value is added, by the axis that grew most from that
-/// scale to this one; so the bound holds. (scale_axes leaves attributes: after it, the earlier bound is another's.)
+/// scale to this one; so the bound holds, and a smaller max_error is refused. (scale_axes leaves attributes: after it,
+/// the earlier bound is another's.)
 ///
 /// A result may have more simplices than was asked for: closed contours need a few, and what the conditions forbid
 /// stays. It is the same for any number of threads.
 ///
-/// Errors: InvalidArgument (options; an earlier error that is negative or not finite, or whose unit is a scale of other
-/// numbers than N above 0; a vertex number out of range, a coordinate that is not finite; `fast` for other than
-/// triangles, or without meshoptimizer), UnsupportedData (no manifold: a face in three simplices, a repeated vertex;
-/// for `fast` also a pinched vertex, faces of two orientations and triangles with the same corners; or the result of
-/// `fast` is none), Cancelled.
+/// Errors: InvalidArgument (options; an earlier error that is negative, not finite or above max_error, or whose unit is
+/// a scale of other numbers than N above 0; a vertex number out of range, a coordinate that is not finite; `fast` for
+/// other than triangles, without meshoptimizer, or where it leaves no triangle at all), UnsupportedData (no manifold: a
+/// face in three simplices, a repeated vertex; for `fast` also a pinched vertex, faces of two orientations and
+/// triangles with the same corners; or the result of `fast` is none), Cancelled.
 ///
 /// Time: O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three
 /// times that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
-/// the result, in each of up to 12 rounds if there is a `max_error`, 16 more if there is a count too, and of 10 to 30
-/// if there is a count alone (a third of those without the error). If no round keeps max_error, the result is the
+/// the result, in each of up to 12 rounds if there is a `max_error`, and of 5 to 35 if there is a count (a third of
+/// those without the error); with both, in as many as for each. If no round keeps max_error, the result is the
 /// contour itself, and SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
