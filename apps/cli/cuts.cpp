@@ -85,14 +85,10 @@ std::string formula(const std::vector<double>& normal, const CutSpace& space) {
   return text;
 }
 
-/// The axis by its own name, or by its customary letter if no other has that name.
-std::size_t axis_called(const std::string& name, const CutSpace& space) {
-  constexpr std::string_view kLetters = "xyzt";
-  for (std::size_t a = 0; a < space.axes.size(); ++a)
-    if (equal_ignoring_case(name, space.axes[a].name)) return a;
-  for (std::size_t a = 0; a < space.axes.size(); ++a)
-    if (name == kLetters.substr(a, 1)) return a;
-  return space.axes.size();
+std::vector<std::string> labels_of(const CutSpace& space) {
+  std::vector<std::string> labels;
+  for (const CutAxis& axis : space.axes) labels.push_back(axis.name);
+  return labels;
 }
 
 /// Tells cuts across axes of a saved contour where the vertices are that they mean.
@@ -110,11 +106,7 @@ void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
   }
 }
 
-std::string axis_names(const CutSpace& space) {
-  std::vector<std::string> names;
-  for (const CutAxis& axis : space.axes) names.push_back(axis.name);
-  return fmt::format("{}", fmt::join(names, ", "));
-}
+std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::join(labels_of(space), ", ")); }
 
 }  // namespace
 
@@ -200,7 +192,7 @@ std::vector<double> parse_scale(const std::vector<std::string>& scale, const Cut
     for (const std::string_view part : split(argument, ',')) {
       const std::string text(part);
       const auto [name, value] = halves("--scale", text, "an axis and a factor, as in t=10");
-      const std::size_t axis = axis_called(name, space);
+      const std::size_t axis = axis_called(name, labels_of(space));
       if (axis == space.axes.size())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("--scale {} names no axis; expected one of {}", text, axis_names(space)));
@@ -245,7 +237,7 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
       cut.axis = formula(cut.normal, space);
       continue;
     }
-    const std::size_t a = axis_called(cut.axis, space);
+    const std::size_t a = axis_called(cut.axis, labels_of(space));
     if (a == space.axes.size())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--at {}={} names no axis; expected one of {}", cut.axis, cut.text, axis_names(space)));

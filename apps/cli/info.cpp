@@ -69,11 +69,26 @@ void describe_grid(const OwnedImage<T, N>& image, Description& description) {
   }
 }
 
+/// Where an axis grows to, in a word; empty where the file does not say.
+std::string_view direction_name(const ImageInfo& info, std::size_t axis) {
+  if (axis >= info.axis_directions.size()) return "";
+  switch (info.axis_directions[axis]) {
+    case AxisDirection::up:
+      return "up";
+    case AxisDirection::down:
+      return "down";
+    default:
+      return "";
+  }
+}
+
 Json axis_json(const Description& description, std::size_t at) {
   const Axis& axis = description.axes[at];
   Json json;
   json["name"] = axis_label(axis.name, at);
   json["unit"] = axis.unit;
+  const std::string_view direction = direction_name(description.info, at);
+  json["direction"] = direction.empty() ? Json(nullptr) : Json(direction);
   json["size"] = axis.size();
   json["first"] = axis[0];
   json["last"] = axis[axis.size() - 1];
@@ -135,8 +150,10 @@ Json to_json(const Description& description, const InputFiles& input) {
 std::string axis_text(const Description& description, std::size_t at) {
   const Axis& axis = description.axes[at];
   const std::string unit = axis.unit.empty() ? "" : " " + axis.unit;
-  std::string text = fmt::format("{:<6} {:>6} samples, {} .. {}{}", axis_label(axis.name, at), axis.size(),
-                                 number(axis[0]), number(axis[axis.size() - 1]), unit);
+  const std::string_view direction = direction_name(description.info, at);
+  std::string text =
+      fmt::format("{:<6} {:>6} samples, {} .. {}{}{}", axis_label(axis.name, at), axis.size(), number(axis[0]),
+                  number(axis[axis.size() - 1]), unit, direction.empty() ? "" : fmt::format(" ({}wards)", direction));
   if (axis.size() < 2) return text;
   if (axis.is_uniform()) return text + fmt::format(", step {}", number(axis.step()));
   double least = std::abs(axis[1] - axis[0]);

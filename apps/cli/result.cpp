@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -67,6 +68,13 @@ std::string input_line(const InputFiles& input, const std::string& variable) {
 
 std::string axis_label(const std::string& name, std::size_t axis) {
   return name.empty() ? std::string(1, "xyzt"[axis]) : name;
+}
+
+std::size_t axis_called(const std::string& name, const std::vector<std::string>& labels) {
+  constexpr std::string_view kLetters = "xyzt";
+  for (std::size_t a = 0; a < labels.size(); ++a)
+    if (equal_ignoring_case(name, labels[a])) return a;
+  return std::min(name.size() == 1 ? kLetters.find(name[0]) : std::string_view::npos, labels.size());
 }
 
 std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }

@@ -26,6 +26,9 @@ std::string report_line(std::string_view label, std::string_view value);
 /// The name of an axis, or the customary letter x, y, z, t for one without.
 std::string axis_label(const std::string& name, std::size_t axis);
 
+/// Which of the axes has that name (any case), or that customary letter if none has it; labels.size() if none.
+std::size_t axis_called(const std::string& name, const std::vector<std::string>& labels);
+
 /// The document as text with a newline at its end. Bytes that are no UTF-8 (units in old files) are replaced.
 std::string dump(const Json& json);
 

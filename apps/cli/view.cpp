@@ -62,6 +62,11 @@ class ViewCommand final : public ContourInputCommand {
         ->check(whole_number(0, 10000))
         ->type_name("COUNT")
         ->capture_default_str();
+    app()
+        .add_option("--down", down_,
+                    "the axis that points down, by its name or letter, or none; by default what a netCDF file says, "
+                    "else those with 'depth' in their name")
+        ->type_name("AXIS");
     app().footer(kExamples);
   }
 
@@ -126,8 +131,13 @@ class ViewCommand final : public ContourInputCommand {
   Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
     ContourInput input = read_contour(bar, true);
     std::optional<double> first, last;
-    if (input.image) std::tie(first, last) = ends_of_last_axis(input.image->image);
+    ImageInfo info;
+    if (input.image) {
+      std::tie(first, last) = ends_of_last_axis(input.image->image);
+      info = std::move(input.image->info);
+    }
     input.image.reset();
+    const Json down = axes_down(input, info);
     Shown& here = shown.emplace_back();
     here.dim = input.space_dim();
     here.input_text = input_text(input);
@@ -138,7 +148,39 @@ class ViewCommand final : public ContourInputCommand {
       if constexpr (N == 4) tracks = page_tracks(contour, first, last, tracks_, {threads(), bar.stage("track")});
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };
-    return std::visit([&](auto& contour) { return add(contour); }, input.contour);
+    Json layer = std::visit([&](auto& contour) { return add(contour); }, input.contour);
+    layer["unit"] = info.value_unit;
+    for (std::size_t a = 0; a < down.size(); ++a) layer["axes"][a]["down"] = down[a];
+    return layer;
+  }
+
+  /// Of each axis in space whether it points down; null where nothing says so. Throws InvalidArgument if --down asks
+  /// for an axis that there is not.
+  [[nodiscard]] Json axes_down(const ContourInput& input, const ImageInfo& info) const {
+    std::vector<std::string> labels;
+    for (int a = 0; a < std::min(input.space_dim(), 3); ++a) labels.push_back(input.axis_name(a));
+    const std::size_t chosen = down_ ? axis_called(*down_, labels) : labels.size();
+    if (down_ && chosen == labels.size() && !equal_ignoring_case(*down_, "none"))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--down {} names no axis in space of {}; expected {} or none",
+                                                          *down_, input.file, fmt::join(labels, ", ")));
+    Json down = Json::array();
+    for (std::size_t a = 0; a < labels.size(); ++a) {
+      const AxisDirection said = a < info.axis_directions.size() ? info.axis_directions[a] : AxisDirection::unknown;
+      if (down_)
+        down.push_back(a == chosen);
+      else if (said != AxisDirection::unknown)
+        down.push_back(said == AxisDirection::down);
+      else
+        down.push_back(has_depth(labels[a]) ? Json(true) : Json(nullptr));
+    }
+    return down;
+  }
+
+  /// Whether a name says that it is of depths.
+  [[nodiscard]] static bool has_depth(std::string_view name) {
+    constexpr std::string_view kDepth = "depth";
+    const auto is_alike = [](char a, char b) { return equal_ignoring_case({&a, 1}, {&b, 1}); };
+    return std::search(name.begin(), name.end(), kDepth.begin(), kDepth.end(), is_alike) != name.end();
   }
 
   [[nodiscard]] std::string names() const {
@@ -151,9 +193,10 @@ class ViewCommand final : public ContourInputCommand {
   [[nodiscard]] std::string left_out(const Shown& shown) const {
     if (!shown.thinned.left_out()) return "";
     const Thinned& thinned = shown.thinned;
-    return fmt::format("the {} largest of {} components, {} of {}: more than --limit {}", grouped(thinned.components),
-                       grouped(thinned.of_components), grouped(thinned.simplices),
-                       counted_simplices(shown.dim - 1, thinned.of_simplices), grouped(limit_));
+    return fmt::format("the {}largest of {} components, {} of {}: more than --limit {}",
+                       thinned.components == 1 ? "" : grouped(thinned.components) + " ", grouped(thinned.of_components),
+                       grouped(thinned.simplices), counted_simplices(shown.dim - 1, thinned.of_simplices),
+                       grouped(limit_));
   }
 
   void warn(const Console& console, const std::vector<Shown>& shown) const {
@@ -198,6 +241,7 @@ class ViewCommand final : public ContourInputCommand {
   std::string output_;
   std::string title_;
   bool one_image_ = false;
+  std::optional<std::string> down_;
   std::uint64_t limit_ = kDefaultLimit;
   std::size_t tracks_ = 60;
 };

@@ -312,6 +312,24 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
+/// What says so when a page was cut off on its way: it stands before all that could be missing, and looks when the
+/// browser has come to the end. A browser that cannot run the program reads the page up to its end nevertheless.
+constexpr std::string_view kEndCheck = R"(<script>
+addEventListener('DOMContentLoaded', function () {
+  if (window.teglStarted) return;
+  var text = document.getElementById('end')
+    ? 'This browser cannot run the program of the page; expected a newer one.'
+    : 'The page is cut off: its end is missing. Get the whole file once more.';
+  var place = document.getElementById('fatal');
+  if (place) {
+    place.getElementsByTagName('p')[0].textContent = text;
+    place.hidden = false;
+  } else document.body.textContent = text;
+  window.teglError = text;
+});
+</script>
+)";
+
 std::string make_page(const Json& scene, const std::string& title, std::string_view packed) {
   std::string page;
   page.reserve(kViewerProgram.size() + packed.size() / 3 * 4 + (std::size_t{1} << 20));
@@ -321,6 +339,7 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
   page +=
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
       "style-src 'unsafe-inline'; img-src data: blob:\">\n";
+  page += kEndCheck;
   page += "<link rel=\"icon\" href=\"data:,\">\n";
   page += fmt::format("<title>{}</title>\n<!--\n{}-->\n<style>\n{}</style>\n</head>\n<body>\n{}", escaped(title),
                       kViewerNotice, kViewerStyle, kViewerMarkup);
@@ -329,7 +348,7 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
   page += base64(packed);
   page += "</script>\n<script>\n";
   page += kViewerProgram;
-  page += "</script>\n</body>\n</html>\n";
+  page += "</script>\n<i id=\"end\" hidden></i>\n</body>\n</html>\n";
   return page;
 }
 

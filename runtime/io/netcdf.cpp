@@ -5,11 +5,14 @@
 // Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
 // conventions of the NetCDF Users' Guide.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <fmt/ranges.h>
 
@@ -158,6 +161,20 @@ Axis make_axis(std::vector<double> coordinates) {
   return Axis::rectilinear(std::move(coordinates));
 }
 
+/// By the attribute "positive" of a vertical coordinate; without it, pressures grow downwards (CF conventions, section
+/// 4.3).
+AxisDirection direction_of(const NcFile& file, const NcVariable& coordinate) {
+  static constexpr std::array<std::string_view, 21> kPressures = {
+      "pa",         "pascal",      "pascals", "hpa",  "hectopascal", "hectopascals", "kpa",
+      "kilopascal", "kilopascals", "bar",     "bars", "mb",          "mbar",         "mbars",
+      "millibar",   "millibars",   "db",      "dbar", "dbars",       "decibar",      "decibars"};
+  const std::string positive = lower(file.text(coordinate, "positive"));
+  if (positive == "down") return AxisDirection::down;
+  if (positive == "up") return AxisDirection::up;
+  const std::string unit = lower(file.text(coordinate, "units"));
+  return std::ranges::find(kPressures, unit) != kPressures.end() ? AxisDirection::down : AxisDirection::unknown;
+}
+
 /// With the calendar, where time is counted in one that is not everybody's (CF conventions, section 4.4.1): nobody may
 /// take "days since 2000-01-01 (noleap)" for a date.
 std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
@@ -168,12 +185,20 @@ std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
   return is_common || unit.find(" since ") == std::string::npos ? unit : fmt::format("{} ({})", unit, calendar);
 }
 
-Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimension, bool& is_time) {
+/// An axis, and what the file says of it.
+struct AxisOfFile {
+  Axis axis;
+  AxisDirection direction = AxisDirection::unknown;
+  bool is_time = false;
+};
+
+AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimension) {
   const std::string name = file.dimension_name(variable, dimension);
   const auto coordinate = file.coordinate(variable, dimension);
   Axis axis = Axis::uniform(variable.sizes[dimension]);
   std::string unit;
   std::string role;
+  AxisDirection direction = AxisDirection::unknown;
   if (coordinate) {
     std::vector<double> values =
         std::visit([](const auto& stored) { return std::vector<double>(stored.begin(), stored.end()); },
@@ -184,22 +209,22 @@ Axis read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimen
       fail(e.code(), file.path(), "coordinate variable '{}': {}", coordinate->name, e.what());
     }
     unit = unit_of(file, *coordinate);
+    direction = direction_of(file, *coordinate);
     role = file.text(*coordinate, "axis") + " " + file.text(*coordinate, "standard_name") + " ";
   }
   axis.name = name;
   axis.unit = unit;
-  is_time = role.starts_with("T ") || role.ends_with(" time ") || unit.find(" since ") != std::string::npos ||
-            lower(name) == "t" || lower(name) == "time";
-  return axis;
+  const bool is_time = role.starts_with("T ") || role.ends_with(" time ") ||
+                       unit.find(" since ") != std::string::npos || lower(name) == "t" || lower(name) == "time";
+  return {std::move(axis), direction, is_time};
 }
 
 /// Where the variable lies along a dimension of one sample, times first. Whatever is wrong with its coordinate is none
 /// of the image's business.
 void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::vector<Axis>& singles) {
   try {
-    bool is_time = false;
-    Axis single = read_axis(file, variable, dimension, is_time);
-    singles.insert(is_time ? singles.begin() : singles.end(), std::move(single));
+    AxisOfFile single = read_axis(file, variable, dimension);
+    singles.insert(single.is_time ? singles.begin() : singles.end(), std::move(single.axis));
   } catch (const Error&) {
     return;
   }
@@ -208,6 +233,7 @@ void add_single(const NcFile& file, const NcVariable& variable, std::size_t dime
 /// The grid of a variable, and which of its dimensions is the image's last axis: time, else the slowest one.
 struct VariableGrid {
   RawGrid grid;
+  std::vector<AxisDirection> directions;  ///< of the grid's axes
   std::size_t last_dimension = 0;
   std::size_t time_axis = 0;  ///< where the last axis lies in the file, counted from the fastest
 };
@@ -218,18 +244,21 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable) {
   std::vector<bool> is_time;
   std::vector<std::size_t> dimension_of;
   for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
-    bool time = false;
     if (variable.sizes[d] == 1) {
       add_single(file, variable, d, result.grid.single);
       continue;
     }
-    axes.push_back(read_axis(file, variable, d, time));
-    is_time.push_back(time);
+    AxisOfFile read = read_axis(file, variable, d);
+    axes.push_back(std::move(read.axis));
+    result.directions.push_back(read.direction);
+    is_time.push_back(read.is_time);
     dimension_of.push_back(d);
   }
   const auto found = is_time.back() ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
   const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
-  std::rotate(axes.begin() + last, axes.begin() + last + 1, axes.end());
+  const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
+  move_last(axes);
+  move_last(result.directions);
   result.time_axis = static_cast<std::size_t>(last);
   result.last_dimension = dimension_of[result.time_axis];
   const auto n = static_cast<Eigen::Index>(axes.size());
@@ -278,15 +307,16 @@ Found find_variable(const NcFile& file, const std::string& wanted) {
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
   const NcFile file(path, options.progress);
-  const Found found = find_variable(file, options.variable);
+  Found found = find_variable(file, options.variable);
   VariableGrid grid = read_grid(file, found.variable);
+  found.info.axis_directions = std::move(grid.directions);
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   image.values = extent == Extent::header ? unpack(file.values(found.variable, grid.last_dimension, 0, 0), packing)
                                           : in_order(unpack(file.values(found.variable, options.progress), packing),
                                                      grid, grid.grid.axes.back().size());
   image.grid = std::move(grid.grid);
-  image.info = found.info;
+  image.info = std::move(found.info);
   return image;
 }
 
@@ -295,8 +325,9 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::strin
   if (file->is_compressed())
     fail(ErrorCode::UnsupportedData, path,
          "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");
-  const Found found = find_variable(*file, variable);
+  Found found = find_variable(*file, variable);
   const VariableGrid grid = read_grid(*file, found.variable);
+  found.info.axis_directions = grid.directions;
   const Packing packing = read_packing(*file, found.variable);
   return {grid.grid, found.info, file->block_length(found.variable, grid.last_dimension),
           [file, packing, grid, variable = found.variable](std::size_t first, std::size_t count) {

@@ -226,6 +226,7 @@ RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& opt
   const RawGrid& first = members.front().grid;
   result.grid = with_last_axis(first, std::move(last));
   result.info = members.front().info;
+  if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(AxisDirection::unknown);
   std::vector<fs::path> paths;
   for (const Member& member : members) paths.push_back(member.path);
   const auto sizes = sizes_of(first);

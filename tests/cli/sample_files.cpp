@@ -119,7 +119,8 @@ std::string metaimage_bytes(const Samples& samples) {
 }
 
 void write_netcdf(const std::string& path, const std::vector<std::string>& names,
-                  const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables) {
+                  const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables,
+                  const std::vector<NetcdfAttribute>& of_axes) {
   int file = 0;
   require(nc_create(path.c_str(), NC_CLOBBER, &file));
   std::vector<int> dimensions(names.size());
@@ -128,6 +129,8 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
     require(nc_def_dim(file, names[a].c_str(), coordinates[a].size(), &dimensions[a]));
     require(nc_def_var(file, names[a].c_str(), NC_DOUBLE, 1, &dimensions[a], &axes[a]));
   }
+  for (const auto& [axis, name, text] : of_axes)
+    require(nc_put_att_text(file, axes.at(axis), name.c_str(), text.size(), text.c_str()));
   // The last dimension of netCDF runs fastest.
   const std::vector<int> slow_first(dimensions.rbegin(), dimensions.rend());
   std::vector<int> ids;

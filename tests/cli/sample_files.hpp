@@ -45,8 +45,15 @@ struct NetcdfVariable {
   std::string name;
   Samples samples;
 };
+/// What a netCDF file says of an axis.
+struct NetcdfAttribute {
+  std::size_t axis = 0;
+  std::string name;
+  std::string text;
+};
 /// netCDF classic with coordinate variables: axis i is named names[i] and has coordinates[i]; -999 is missing.
 void write_netcdf(const std::string& path, const std::vector<std::string>& names,
-                  const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables);
+                  const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables,
+                  const std::vector<NetcdfAttribute>& of_axes = {});
 
 }  // namespace tegl::test

@@ -114,13 +114,54 @@ TEST_F(View, LeavesOutTheSmallerComponentsBeyondTheLimitAndSaysSo) {
   EXPECT_GT(less.json()["files"][0]["simplices_shown"], count / 2);  // the larger one
   EXPECT_EQ(scene(path("less.html"))["layers"][0]["of_simplices"], count);
   const RunResult told = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit});
-  EXPECT_THAT(told.out, HasSubstr("the 1 largest of 2 components"));
+  EXPECT_THAT(told.out, HasSubstr("the largest of 2 components"));
   const RunResult quiet = run_tegl({"view", two, "--iso", "0", "-o", path("less.html"), "--limit", limit, "-q"});
-  EXPECT_THAT(quiet.err, HasSubstr("the 1 largest of 2 components"));
+  EXPECT_THAT(quiet.err, HasSubstr("shown are the largest of 2 components"));
   const RunResult none = run_tegl({"view", two, "--iso", "0", "-o", path("none.html"), "--limit", "10"});
   EXPECT_EQ(none.exit, 4);
   EXPECT_THAT(none.err, HasSubstr("two.nrrd: the largest component has"));
   EXPECT_THAT(none.err, HasSubstr("expected at most 10"));
+}
+
+TEST_F(View, AxesPointWhereTheFileOrTheOptionSays) {
+  const std::vector<double> places = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  using Attributes = std::vector<NetcdfAttribute>;
+  const auto file_with = [&](const std::string& upright, const Attributes& attributes) {
+    write_netcdf(path("a.nc"), {"lon", "lat", upright}, {places, places, places}, {{"heat", ball({10, 10, 10}, 3)}},
+                 attributes);
+    return path("a.nc");
+  };
+  const auto downs = [&](const std::string& input, std::vector<std::string> options) {
+    const bool is_image = input.ends_with(".nc");
+    options.insert(options.begin(), {"view", input, "-o", path("page.html"), "-q"});
+    if (is_image) options.insert(options.end(), {"--iso", "0"});
+    const RunResult run = run_tegl(options);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    const nlohmann::json layer = scene(path("page.html"))["layers"][0];
+    EXPECT_EQ(layer["unit"], is_image ? "degC" : "");
+    nlohmann::json result = nlohmann::json::array();
+    for (const auto& axis : layer["axes"]) result.push_back(axis["down"]);
+    return result;
+  };
+  const auto are = [](const char* json) { return nlohmann::json::parse(json); };
+  EXPECT_EQ(downs(file_with("level", {}), {}), are("[null, null, null]"));
+  EXPECT_EQ(downs(file_with("level", {{2, "positive", "down"}}), {}), are("[null, null, true]"));
+  EXPECT_EQ(downs(file_with("level", {{2, "units", "hPa"}}), {}), are("[null, null, true]"));
+  EXPECT_EQ(downs(file_with("sea_DEPTH", {}), {}), are("[null, null, true]"));
+  EXPECT_EQ(downs(file_with("depth", {{2, "positive", "up"}}), {}), are("[null, null, false]"));
+  EXPECT_EQ(downs(path("a.nc"), {"--down", "z"}), are("[false, false, true]"));
+  EXPECT_EQ(downs(path("a.nc"), {"--down", "Depth"}), are("[false, false, true]"));
+  EXPECT_EQ(downs(path("a.nc"), {"--down", "lat"}), are("[false, true, false]"));
+  EXPECT_EQ(downs(file_with("level", {{2, "positive", "down"}}), {"--down", "none"}), are("[false, false, false]"));
+  // Saved contours know names alone.
+  ASSERT_EQ(run_tegl({"contour", path("a.nc"), "--iso", "0", "-o", path("a.ply"), "-q"}).exit, 0);
+  EXPECT_EQ(downs(path("a.ply"), {}), are("[null, null, null]"));
+  EXPECT_EQ(downs(path("a.ply"), {"--down", "level"}), are("[false, false, true]"));
+  const RunResult wrong = run_tegl({"view", path("a.nc"), "--iso", "0", "-o", path("wrong.html"), "--down", "t"});
+  EXPECT_EQ(wrong.exit, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--down t names no axis in space of"));
+  EXPECT_THAT(wrong.err, HasSubstr("expected lon, lat, level or none"));
+  EXPECT_THAT(files(), Not(testing::Contains("wrong.html")));
 }
 
 TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {

@@ -212,6 +212,41 @@ TEST(NetCdf, TimeIsMovedToTheEnd) {
         EXPECT_EQ(view({x, z, t}), static_cast<int>((z * 3 + t) * 4 + x)) << x << z << t;
 }
 
+TEST(NetCdf, SaysWhichAxesPointDown) {
+  TempDir dir;
+  const auto directions = [&](const std::string& unit, const std::string& positive) {
+    {
+      NcWriter file(dir / "a.nc");
+      const int t = file.dimension("time", 3);
+      const int z = file.dimension("level", 2);
+      const int x = file.dimension("x", 2);
+      const int zv = file.variable("level", NC_FLOAT, {z});
+      if (!unit.empty()) file.text(zv, "units", unit);
+      if (!positive.empty()) file.text(zv, "positive", positive);
+      // Time is not the slowest here, so that axes are put into another order.
+      const int v = file.variable("v", NC_INT, {z, t, x});
+      file.end();
+      file.values(zv, {1, 2});
+      file.values(v, std::vector<double>(12, 1.0));
+    }
+    const auto whole = read_image(dir / "a.nc").info.axis_directions;
+    EXPECT_EQ(open_layers(dir / "a.nc").info.axis_directions, whole);
+    return whole;
+  };
+  const auto level_is = [](AxisDirection direction) {
+    return ElementsAre(AxisDirection::unknown, direction, AxisDirection::unknown);
+  };
+  EXPECT_THAT(directions("m", "down"), level_is(AxisDirection::down));
+  EXPECT_THAT(directions("METERS", "Down"), level_is(AxisDirection::down));
+  EXPECT_THAT(directions("m", "up"), level_is(AxisDirection::up));
+  EXPECT_THAT(directions("m", ""), level_is(AxisDirection::unknown));
+  EXPECT_THAT(directions("", "sideways"), level_is(AxisDirection::unknown));
+  for (const char* pressure : {"Pa", "hPa", "mbar", "mb", "millibar", "millibars", "dbar"})
+    EXPECT_THAT(directions(pressure, ""), level_is(AxisDirection::down)) << pressure;
+  EXPECT_THAT(directions("hPa", "up"), level_is(AxisDirection::up));
+  EXPECT_THAT(directions("parsec", ""), level_is(AxisDirection::unknown));
+}
+
 TEST(NetCdf, OtherCalendarsAreSaidInTheUnit) {
   TempDir dir;
   const auto unit_under = [&](const std::string& calendar) {

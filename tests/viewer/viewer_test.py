@@ -389,6 +389,43 @@ class Viewer(unittest.TestCase):
         self.assertLess(drawn["ranges"], 20)
         self.assertGreater(drawn["tetrahedra"], browser.run("return tegl.count()") / 2)
 
+    def test_axes_that_point_down_have_their_low_end_above(self):
+        for options, is_down in (([], False), (["--down", "z"], True)):
+            tegl("view", self.folder / "balls.vtkhdf", *options, "-o", self.folder / "down.html", "-q")
+            browser = self.open("down.html")
+            low, high = (browser.run("return arguments[0].getBoundingClientRect().y", element) for element in (
+                browser.driver.find_elements("css selector", f".axis-label.{end}")[2] for end in ("lowest", "highest")))
+            self.assertEqual(low < high, is_down)
+            browser.element("#flip").click()
+            self.assertEqual(browser.run("return tegl.app.stage.scale[2] < 0"), not is_down)
+
+    def test_titles_say_each_variable_once_with_its_unit(self):
+        tegl("contour", self.folder / "balls.nrrd", "--iso", 0.5, "-o", self.folder / "half.vtkhdf", "-q")
+        tegl("view", self.folder / "balls.vtkhdf", self.folder / "half.vtkhdf", "-o", self.folder / "two.html", "-q")
+        self.assertTrue(self.open("two.html").element("#subtitle").text.startswith("isovalue = 0, 0.5 · "))
+        tegl("view", OCEAN, "--iso", 27, "-o", self.folder / "warm27.html", "-q")
+        self.assertTrue(self.open("warm27.html").element("#subtitle").text.startswith("temperature = 27 degC · "))
+
+    def test_the_colors_of_the_first_parts_are_told_apart(self):
+        data = self.open().run("return Array.from(tegl.app.layers[0].uniforms.uColors.value.image.data)")
+        parts = np.array(data).reshape(2, 256, 4)[1, :10, :3] / 255
+        linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+        xyz = linear @ np.array([[0.4339, 0.2126, 0.0178], [0.3762, 0.7152, 0.1095], [0.1899, 0.0722, 0.8730]])
+        x, y, z = np.cbrt(xyz).T  # CIE 1976, but for the darkest
+        lab = np.stack([116 * y, 500 * (x - y), 200 * (y - z)], axis=1)
+        apart = np.linalg.norm(lab[:, None] - lab, axis=2)[~np.eye(10, dtype=bool)]
+        self.assertGreater(apart.min(), 30)
+
+    def test_a_page_that_is_cut_off_says_so(self):
+        whole = (self.folder / "balls.html").read_text(encoding="utf-8")
+        for start in ("--ground", 'id="scene">', 'id="numbers">', "</script>\n<script>\n"):
+            (self.folder / "cut.html").write_text(whole[:whole.rindex(start) + len(start) + 100], encoding="utf-8")
+            self.assertIn("cut off", self.browser.open(self.folder / "cut.html"), start)
+            self.assertIn("cut off", self.browser.element("body").text, start)
+        (self.folder / "cut.html").write_text(whole.replace("</script>\n<script>\n", "</script>\n<script>\n)(", 1), encoding="utf-8")
+        self.assertIn("expected a newer one", self.browser.open(self.folder / "cut.html"))
+        self.browser.errors()
+
     def test_says_so_where_the_browser_cannot_show_it(self):
         with Browser(CHROMIUM, CHROMEDRIVER, gpu=["--disable-gpu", "--disable-3d-apis"]) as blind:
             blind.open(self.folder / "balls.html")

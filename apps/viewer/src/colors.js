@@ -15,14 +15,15 @@ export function ofShare(share) {
 /** How many colours parts have before they repeat. */
 export const PART_COLORS = 64;
 
-// Six of Okabe and Ito, which colour-blind people tell apart, and a violet; then hues by the golden angle.
+// Six of Okabe and Ito, which colour-blind people tell apart, and a violet; then hues by the golden angle, from where
+// the next ones are least like these.
 const FIRST = [[86, 160, 220], [230, 159, 0], [0, 158, 115], [204, 121, 167], [213, 94, 0], [240, 228, 66], [134, 104, 214]];
 
 /** The colour [r, g, b] of the i-th part. */
 export function ofPart(i) {
   const place = i % PART_COLORS;
   if (place < FIRST.length) return FIRST[place];
-  const hue = (place * 137.508) % 360;
+  const hue = (place * 137.508 + 291) % 360;
   const light = 0.45 + 0.08 * (place % 4);
   const channel = (n) => {
     const k = (n + hue / 30) % 12;

@@ -23,6 +23,20 @@ const KEYS = [['space', 'play, pause'], ['← →', 'a little earlier, later (wi
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
+/** "temperature = 15, 20 degC": each variable once, with what of it is shown. */
+function isovaluesOf(layers) {
+  const values = new Map();
+  for (const { isovalue, variable, unit } of layers) {
+    if (isovalue === null) continue;
+    const key = JSON.stringify([variable || 'isovalue', unit]);
+    values.set(key, (values.get(key) ?? new Set()).add(+isovalue.toPrecision(7)));
+  }
+  return [...values].map(([key, numbers]) => {
+    const [name, unit] = JSON.parse(key);
+    return `${name} = ${[...numbers].join(', ')}${unit ? ` ${unit}` : ''}`;
+  }).join('; ');
+}
+
 class App {
   constructor(description, bytes) {
     this.description = description;
@@ -51,13 +65,12 @@ class App {
   showTitles() {
     const { title, layers, program } = this.description;
     document.title = $('title').textContent = title;
-    const isovalues = layers.filter((layer) => layer.isovalue !== null)
-      .map((layer) => `${layer.variable || 'isovalue'} = ${+layer.isovalue.toPrecision(7)}`);
     const parts = layers.reduce((sum, layer) => sum + layer.components, 0);
-    $('subtitle').textContent = [[...new Set(isovalues)].join(', '), `${grouped(parts)} component${parts === 1 ? '' : 's'}`,
+    $('subtitle').textContent = [isovaluesOf(layers), `${grouped(parts)} component${parts === 1 ? '' : 's'}`,
       program].filter(Boolean).join(' · ');
     const left = layers.filter((layer) => layer.components < layer.of_components).map((layer) =>
-      `${layer.file.replace(/^.*\//, '')}: too large to show all. Shown are the ${grouped(layer.components)} largest of ` +
+      `${layer.file.replace(/^.*\//, '')}: too large to show all. Shown ` +
+      `${layer.components === 1 ? 'is the largest' : `are the ${grouped(layer.components)} largest`} of ` +
       `${grouped(layer.of_components)} components, ${grouped(layer.simplices)} of ${grouped(layer.of_simplices)} simplices.`);
     if (left.length === 0) return;
     $('notice').textContent = left.join(' ');
@@ -289,6 +302,8 @@ function interfaceOf(app) {
     app,
   };
 }
+
+window.teglStarted = true; // the page has come as far as this, whole
 
 async function start() {
   // The first paint comes before the work.

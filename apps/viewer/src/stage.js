@@ -19,8 +19,7 @@ function scales(axes, extents) {
     return wanted / (Math.max(...alike) || 1);
   });
   while (result.length < 3) result.push(result[0]);
-  // Depths grow downwards.
-  return result.map((scale, a) => (a < axes.length && /depth/i.test(axes[a].name) ? -scale : scale));
+  return result.map((scale, a) => (axes[a]?.down ? -scale : scale));
 }
 
 export class Stage {
@@ -68,7 +67,9 @@ export class Stage {
 
   /** The box around all contours in space. */
   measure() {
-    const axes = this.layers[0].description.axes.slice(0, this.isFlat ? 2 : 3);
+    // Where axes point is what the first of the files says that says anything.
+    const axes = this.layers[0].description.axes.slice(0, this.isFlat ? 2 : 3).map((axis, a) => ({ ...axis,
+      down: this.layers.map(({ description }) => description.axes[a].down).find((down) => down !== null) ?? false }));
     this.axes = axes;
     this.lower = axes.map((_, a) => Math.min(...this.layers.map((layer) => layer.description.axes[a].lowest)));
     this.upper = axes.map((_, a) => Math.max(...this.layers.map((layer) => layer.description.axes[a].highest)));

@@ -32,15 +32,20 @@ using AnyImageN =
 /// An image of any value type in 2, 3 or 4 dimensions.
 using AnyImage = std::variant<AnyImageN<2>, AnyImageN<3>, AnyImageN<4>>;
 
+/// Where the coordinates of an axis grow to, as far as a file says so: the depths of an ocean and the pressures of an
+/// atmosphere grow downwards.
+enum class AxisDirection : std::uint8_t { unknown, up, down };
+
 /// What a file says beyond values and grid.
 struct ImageInfo {
-  std::string format;                  ///< "NIfTI", "NRRD", "MetaImage", "netCDF", "DICOM", "raw"
-  std::string variable;                ///< netCDF: the variable read
-  std::vector<std::string> variables;  ///< netCDF: all that can be read as an image
-  std::string value_unit;              ///< such as "degC"; may be empty
-  std::string value_name;              ///< long name; may be empty
-  std::string world_frame;             ///< such as "RAS", "LPS", "" where there is none
-  std::string stored_type;             ///< value type in the file, before any conversion
+  std::string format;                          ///< "NIfTI", "NRRD", "MetaImage", "netCDF", "DICOM", "raw"
+  std::string variable;                        ///< netCDF: the variable read
+  std::vector<std::string> variables;          ///< netCDF: all that can be read as an image
+  std::string value_unit;                      ///< such as "degC"; may be empty
+  std::string value_name;                      ///< long name; may be empty
+  std::string world_frame;                     ///< such as "RAS", "LPS", "" where there is none
+  std::string stored_type;                     ///< value type in the file, before any conversion
+  std::vector<AxisDirection> axis_directions;  ///< netCDF: of each axis of the image; else empty
 };
 
 /// An image, and what its file says of it.
