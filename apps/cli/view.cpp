@@ -161,8 +161,8 @@ class ViewCommand final : public ContourInputCommand {
     for (int a = 0; a < std::min(input.space_dim(), 3); ++a) labels.push_back(input.axis_name(a));
     const std::size_t chosen = down_ ? axis_called(*down_, labels) : labels.size();
     if (down_ && chosen == labels.size() && !equal_ignoring_case(*down_, "none"))
-      throw Error(ErrorCode::InvalidArgument, fmt::format("--down {} names no axis in space of {}; expected {} or none",
-                                                          *down_, input.file, fmt::join(labels, ", ")));
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--down {} names no axis in space; expected {} or none",
+                                                          *down_, fmt::join(labels, ", ")));
     Json down = Json::array();
     for (std::size_t a = 0; a < labels.size(); ++a) {
       const AxisDirection said = a < info.axis_directions.size() ? info.axis_directions[a] : AxisDirection::unknown;
