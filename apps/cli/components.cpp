@@ -146,14 +146,13 @@ class ComponentsCommand final : public ContourInputCommand {
     WrittenFiles written;
     if (!output_.empty()) {
       add_component_attribute(contour, labels);
-      write_output(mesh_of(select_components(contour, labels, found.chosen), input), output_, bar.stage("write"));
-      written.add(output_);
+      const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen), input);
+      const Progress progress = bar.stage("write");
+      written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress); });
     }
     if (!split_.empty()) write_split(contour, input, labels, found, bar.stage("split"), written);
-    if (!csv_.empty()) {
-      write_text(table(input, found, &exact_number).to_csv(), csv_);
-      written.add(csv_);
-    }
+    if (!csv_.empty())
+      written.write(csv_, [&](const auto& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
     written.keep();
     write_seconds_ = watch.lap();
     return found;
@@ -196,8 +195,7 @@ class ComponentsCommand final : public ContourInputCommand {
       const std::string name = split_name(label);
       require_output(name, files());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
-      write_output(mesh_of(parts[label], input), name, {});
-      written.add(name);
+      written.write(name, [&](const auto& file) { write_mesh(mesh_of(parts[label], input), file); });
     }
   }
 

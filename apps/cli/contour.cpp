@@ -187,8 +187,7 @@ class ContourCommand final : public Command {
       if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
       if (one_file_) return;
       if (&result == &results.back()) input.image = AnyImage();  // its memory is of more use to the check
-      check_and_write(result, bar);
-      written.add(result.output);
+      check_and_write(result, bar, written);
     };
     if (index_.empty()) {
       for (ContourResult& result : results) {
@@ -199,13 +198,13 @@ class ContourCommand final : public Command {
     } else {
       by_index(input.image, options, bar, results, finished);
     }
-    if (one_file_) results = {merged(results, bar)};
+    if (one_file_) results = {merged(results, bar, written)};
     written.keep();
   }
 
-  void check_and_write(ContourResult& result, ProgressBar& bar) const {
+  void check_and_write(ContourResult& result, ProgressBar& bar, WrittenFiles& written) const {
     if (!no_check_) check_result(result, bar);
-    write_result(result, bar);
+    write_result(result, bar, written);
   }
 
   /// Of a mesh that is written what is told of it: others need the memory.
@@ -232,7 +231,7 @@ class ContourCommand final : public Command {
   }
 
   /// All contours as one, with the isovalue of each vertex and simplex, checked and written.
-  ContourResult merged(std::vector<ContourResult>& results, ProgressBar& bar) const {
+  ContourResult merged(std::vector<ContourResult>& results, ProgressBar& bar, WrittenFiles& written) const {
     ContourResult all = results.front();
     all.mesh = Mesh();
     all.isovalue.reset();
@@ -248,7 +247,7 @@ class ContourCommand final : public Command {
       }
       append_mesh(all.mesh, std::exchange(one.mesh, Mesh()), *one.isovalue);
     }
-    check_and_write(all, bar);
+    check_and_write(all, bar, written);
     return all;
   }
 
@@ -356,16 +355,22 @@ class ContourCommand final : public Command {
     }
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
-    for (FacetsResult& result : results) {
-      write_image_facets(input.image, {result.isovalue, options, options_.single_precision(), no_check_}, bar, result);
-      written.add(result.output);
-    }
+    for (FacetsResult& result : results)
+      write_image_facets(input.image, {result.isovalue, options, options_.single_precision(), no_check_}, bar, result,
+                         written);
     written.keep();
     bar.clear();
     return tell(streams, results);
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) const {
+    // Each has a thread, a few layers and an open file.
+    constexpr std::size_t kMostStreamed = 64;
+    if (results.size() > kMostStreamed)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--iso has {} numbers to be streamed in one pass; expected at most {}: more in several runs",
+                      results.size(), kMostStreamed));
     for (const ContourResult& result : results) require_output_grows(result.output);
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,

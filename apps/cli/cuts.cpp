@@ -48,9 +48,9 @@ std::vector<SpelledNumber> numbers_of(const std::string& option, std::string_vie
     constexpr double kMost = 100000;
     const double count = ends.size() == 3 ? parse_finite(option, ends[2]) : 0.0;
     if (!(count >= 2 && count <= kMost) || count != std::floor(count))
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("{} has '{}'; expected FIRST:LAST:COUNT with a COUNT of 2 or more, as in 0:10:21", option, text));
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} has '{}'; expected FIRST:LAST:COUNT with a COUNT of 2 to {}, as in 0:10:21", option,
+                              text, kMost));
     const double first = parse_finite(option, ends[0]);
     const double last = parse_finite(option, ends[1]);
     for (double i = 0; i < count; ++i) {

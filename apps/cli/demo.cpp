@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -62,6 +63,12 @@ bool knows_unicode() {
     return text.find("UTF-8") != std::string::npos || text.find("utf8") != std::string::npos;
   }
   return false;
+}
+
+/// Whether frames can be drawn over each other.
+bool moves_its_cursor() {
+  const char* const terminal = std::getenv("TERM");
+  return terminal != nullptr && *terminal != '\0' && std::string_view(terminal) != "dumb";
 }
 
 bool shows_colours(const Console& console) { return console.bold("x") != "x"; }
@@ -185,7 +192,7 @@ class DemoCommand final : public Command {
         ->check(whole_number(2, 100000))
         ->type_name("COUNT")
         ->capture_default_str();
-    app().add_flag("--no-animation", no_animation_, "one map at the end of July in its place");
+    app().add_flag("--no-animation", no_animation_, "one map at the beginning of August in its place");
     add_quiet();
     app().footer(kExamples);
   }
@@ -206,7 +213,7 @@ class DemoCommand final : public Command {
     const Contour<4, double> contour = extract<double>(image->view(), kIsovalue, options);
     const double seconds = watch.lap();
     bar.clear();
-    const bool animated = streams.out.is_terminal() && !json() && !quiet() && !no_animation_;
+    const bool animated = streams.out.is_terminal() && !json() && !quiet() && !no_animation_ && moves_its_cursor();
     if (animated) play(streams.out, *image, contour);
     if (json())
       streams.out.write(dump(document(data, *image, contour, seconds)));

@@ -182,10 +182,17 @@ void check_result(ContourResult& result, ProgressBar& bar) {
 }
 
 void write_result(ContourResult& result, ProgressBar& bar) {
+  WrittenFiles written;
+  write_result(result, bar, written);
+  written.keep();
+}
+
+void write_result(ContourResult& result, ProgressBar& bar, WrittenFiles& written) {
   const Progress progress = bar.stage("write");
   Stopwatch watch;
   result.mesh.isovalue = result.isovalue;
-  result.output_bytes = write_output(result.mesh, result.output, progress);
+  result.output_bytes =
+      written.write(result.output, [&](const auto& file) { write_mesh(result.mesh, file, progress); });
   result.seconds.write = watch.lap();
 }
 

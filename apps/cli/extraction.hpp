@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cuts.hpp"
+#include "output.hpp"
 #include "progress.hpp"
 #include "result.hpp"
 #include "tegl/extract.hpp"
@@ -87,5 +88,7 @@ void check_result(ContourResult& result, ProgressBar& bar);
 
 /// Writes the mesh to its output, and fills the size of the file and the seconds.
 void write_result(ContourResult& result, ProgressBar& bar);
+/// The same for one of several files.
+void write_result(ContourResult& result, ProgressBar& bar, WrittenFiles& written);
 
 }  // namespace tegl::cli

@@ -73,7 +73,7 @@ Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const E
 
 template <int N, class Real>
 void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& work, ProgressBar& bar,
-                     FacetsResult& result) {
+                     FacetsResult& result, WrittenFiles& written) {
   if (facets.count(N - 1) == 0) fail_without_contour(work.isovalue);
   for (int k = 0; k < N; ++k) result.facets.at(static_cast<std::size_t>(k)) = facets.count(k);
   Stopwatch watch;
@@ -84,7 +84,7 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
     result.seconds.check = watch.lap();
   }
   const Progress progress = bar.stage("write");
-  result.output_bytes = write_file(result.output, [&] { write_facets(facets, result.output, progress); });
+  result.output_bytes = written.write(result.output, [&](const auto& file) { write_facets(facets, file, progress); });
   result.seconds.write = watch.lap();
 }
 
@@ -166,7 +166,8 @@ void require_output_holds_facets(const fs::path& output, int image_dim) {
                                     output.extension().string()));
 }
 
-void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result) {
+void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
+                        WrittenFiles& written) {
   ExtractOptions options = work.options;
   options.progress = bar.stage("facets");
   Stopwatch watch;
@@ -174,7 +175,7 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
     use_facets<void>(owned, work, options, [&](const auto& facets) {
       result.seconds.generate = watch.lap();
       result.stats = stats_of(facets, result.seconds.generate);
-      check_and_write(facets, work, bar, result);
+      check_and_write(facets, work, bar, result, written);
     });
   };
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "output.hpp"
 #include "progress.hpp"
 #include "result.hpp"
 #include "tegl/facet_hierarchy.hpp"
@@ -50,9 +51,10 @@ struct FacetsWork {
   bool no_check = false;
 };
 
-/// Makes the facets of an image, checks them and writes them to result.output; fills the rest of the result. Throws
-/// EmptyResult if there are none.
-void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result);
+/// Makes the facets of an image, checks them and writes them to result.output, one of the files written; fills the rest
+/// of the result. Throws EmptyResult if there are none.
+void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
+                        WrittenFiles& written);
 
 /// The contour of a 3D image from its polygons. Throws InvalidArgument for an image of other dimensions.
 std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,

@@ -70,8 +70,8 @@ void ImageOptions::add_to(CLI::App& app) {
       app.add_option("--var", variable_, "netCDF: the variable to read; needed where the file has several")
           ->type_name("NAME"),
       app.add_option("--series", series_,
-                     "DICOM: the series to read, by its UID, its description or its number in the list that an error "
-                     "shows; needed where a folder has several")
+                     "DICOM: the series to read, by its UID, its description or its number in the list that "
+                     "'tegl info' shows; needed where a folder has several")
           ->type_name("SERIES"),
       app.add_option("--times", times_,
                      "of several FILEs: where each one lies along the new axis: 0,0.5,2; or FIRST:LAST:COUNT; without, "
@@ -151,7 +151,7 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
   options.order = sort_ == "name"   ? SeriesOrder::by_name
                   : sort_ == "time" ? SeriesOrder::coordinate
                                     : SeriesOrder::given;
-  if (sort_.empty()) require_order_that_is_meant(files);
+  if (sort_.empty() && (raw() || !are_dicom_files(paths_of(files)))) require_order_that_is_meant(files);
   if (raw()) options.raw = RawLayout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_};
   return options;
 }

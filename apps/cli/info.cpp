@@ -254,12 +254,14 @@ std::string choice_text(const Console& console, const InputFiles& input, const s
   const std::string option = ImageOptions::choosing_option(input.names);
   std::string text = fmt::format(
       "{}\n", console.bold(fmt::format("{}: several {}", input.text(), option == "--series" ? "series" : "variables")));
+  std::size_t number = 0;  // what --series takes
   for (const ImageVariable& variable : variables) {
-    text += report_line(variable.name, fmt::format("{}{}{}", fmt::join(variable.sizes, " x "),
-                                                   variable.unit.empty() ? "" : " " + variable.unit,
-                                                   variable.long_name.empty() ? "" : ", " + variable.long_name));
+    const std::string name = option == "--series" ? fmt::format("{:>2}  {}", ++number, variable.name) : variable.name;
+    text += report_line(
+        name, fmt::format("{}{}{}", fmt::join(variable.sizes, " x "), variable.unit.empty() ? "" : " " + variable.unit,
+                          variable.long_name.empty() ? "" : ", " + variable.long_name));
   }
-  return text + fmt::format("\nChoose one with {}.\n", option);
+  return text + fmt::format("\nChoose one with {}{}.\n", option, number > 0 ? ", by its number or name" : "");
 }
 
 Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& variables) {

@@ -78,11 +78,6 @@ void require_output_holds(const fs::path& output, int simplex_dim) {
                    simplex_dim + 1, simplex_dim == 3 ? "tetrahedra" : "simplices", simplex_dim + 1));
 }
 
-WrittenFiles::~WrittenFiles() {
-  std::error_code ignored;
-  for (const fs::path& path : paths_) fs::remove(path, ignored);
-}
-
 std::uint64_t write_file(const fs::path& output, const std::function<void()>& write) {
   try {
     write();
@@ -98,8 +93,57 @@ std::uint64_t write_file(const fs::path& output, const std::function<void()>& wr
   return error ? 0 : size;
 }
 
-std::uint64_t write_output(const Mesh& mesh, const fs::path& output, const Progress& progress) {
-  return write_file(output, [&] { write_mesh(mesh, output, progress); });
+WrittenFiles::~WrittenFiles() {
+  std::error_code ignored;
+  for (const Staged& staged : staged_) fs::remove(staged.file, ignored);
+}
+
+fs::path WrittenFiles::stage(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) fail(target, "is no file; expected the name of one");
+  if (fs::exists(status) && access(target.c_str(), W_OK) != 0)
+    fail(target, fmt::format("cannot be overwritten: {}", std::strerror(errno)));
+  // Links are written through, as those of single files are.
+  fs::path place = fs::is_symlink(target, error) ? fs::weakly_canonical(target, error) : target;
+  if (error) place = target;
+  fs::path file;
+  do {
+    file =
+        place.parent_path() / fmt::format(".{}-{}.{}", static_cast<long>(getpid()), next_++, place.filename().string());
+  } while (fs::exists(fs::symlink_status(file, error)));
+  staged_.push_back({target, place, file});
+  return file;
+}
+
+void WrittenFiles::with_target_names(const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const Error& error) {
+    std::string message = error.what();
+    for (const Staged& staged : staged_) {
+      const std::string name = staged.file.string();
+      for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name))
+        message.replace(at, name.size(), staged.target.string());
+    }
+    throw Error(error.code(), message);
+  }
+}
+
+std::uint64_t WrittenFiles::write(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  const fs::path file = stage(target);
+  std::uint64_t bytes = 0;
+  with_target_names([&] { bytes = write_file(file, [&] { write(file); }); });
+  return bytes;
+}
+
+void WrittenFiles::keep() {
+  for (const Staged& staged : staged_) {
+    std::error_code error;
+    fs::rename(staged.file, staged.place, error);
+    if (error) fail(staged.target, fmt::format("cannot be put in place: {}", error.message()));
+  }
+  staged_.clear();
 }
 
 }  // namespace tegl::cli

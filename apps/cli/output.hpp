@@ -33,22 +33,36 @@ void require_text_output(const std::filesystem::path& output, const std::vector<
 /// Cancelled.
 std::uint64_t write_file(const std::filesystem::path& output, const std::function<void()>& write);
 
-/// Writes the mesh and returns the file's size in bytes. Errors: WriteFailed, Cancelled.
-std::uint64_t write_output(const Mesh& mesh, const std::filesystem::path& output, const Progress& progress);
-
-/// The files that a command has written so far: removed again unless all could be.
+/// Several files that appear together or not at all: written beside their targets, and put in place at the end. Until
+/// then whatever was there stays.
 class WrittenFiles {
  public:
   WrittenFiles() = default;
+  /// Removes what was not kept.
   ~WrittenFiles();
   WrittenFiles(const WrittenFiles&) = delete;
   WrittenFiles& operator=(const WrittenFiles&) = delete;
 
-  void add(std::filesystem::path written) { paths_.push_back(std::move(written)); }
-  void keep() noexcept { paths_.clear(); }
+  /// The name to write a target under, with the same extension. Errors: WriteFailed, if what is there is no file or
+  /// cannot be overwritten.
+  std::filesystem::path stage(const std::filesystem::path& target);
+  /// Calls `write` with the name to write the target under, and returns the file's size in bytes. Errors: WriteFailed,
+  /// whatever is wrong, naming the target; Cancelled.
+  std::uint64_t write(const std::filesystem::path& target,
+                      const std::function<void(const std::filesystem::path&)>& write);
+  /// Calls `work`; its errors name the targets in place of the names that these are written under.
+  void with_target_names(const std::function<void()>& work) const;
+  /// Puts all files in place. Errors: WriteFailed.
+  void keep();
 
  private:
-  std::vector<std::filesystem::path> paths_;
+  struct Staged {
+    std::filesystem::path target;  ///< as the user named it
+    std::filesystem::path place;   ///< behind symbolic links
+    std::filesystem::path file;    ///< what is written
+  };
+  std::vector<Staged> staged_;
+  unsigned next_ = 0;
 };
 
 }  // namespace tegl::cli

@@ -136,8 +136,15 @@ std::string single_quoted(const std::string& text) { return "'" + replaced(text,
 
 /// The first clause of a description: menus are narrow.
 std::string brief(const std::string& description) {
-  std::string text = description.substr(0, std::min(description.find(':'), description.find(';')));
-  return replaced(text, "\n", " ");
+  constexpr std::size_t kShort = 60;
+  std::string text = replaced(description, "\n", " ");
+  if (text.size() > kShort) {
+    // "netCDF: the variable to read": what comes before a colon may say little by itself.
+    std::size_t end = std::min(text.find(';'), text.size());
+    if (const std::size_t colon = text.find(": ", kShort / 2); colon < end) end = colon;
+    text.resize(end);
+  }
+  return text;
 }
 
 std::string bash_script(const CLI::App& program) {
@@ -153,11 +160,11 @@ std::string bash_script(const CLI::App& program) {
       words.insert(words.end(), own.begin(), own.end());
       if (const auto allowed = words_of(*option); !allowed.empty())
         for (const std::string& name : own)
-          values += fmt::format("    {}:{}) COMPREPLY=($(compgen -W \"{}\" -- \"$cur\")); return ;;\n",
+          values += fmt::format("    {}:{}) mapfile -t COMPREPLY < <(compgen -W \"{}\" -- \"$cur\"); return ;;\n",
                                 command->get_name(), name, fmt::join(allowed, " "));
     }
-    options += fmt::format("      {}) COMPREPLY=($(compgen -W \"{}\" -- \"$cur\")) ;;\n", command->get_name(),
-                           fmt::join(words, " "));
+    options += fmt::format("      {}) mapfile -t COMPREPLY < <(compgen -W \"{}\" -- \"$cur\") ;;\n",
+                           command->get_name(), fmt::join(words, " "));
   }
   return fmt::format(
       "# bash completion of tegl, made by 'tegl --completion bash'\n"
@@ -165,11 +172,11 @@ std::string bash_script(const CLI::App& program) {
       "  local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command=${{COMP_WORDS[1]}}\n"
       "  COMPREPLY=()\n"
       "  if ((COMP_CWORD == 1)); then\n"
-      "    COMPREPLY=($(compgen -W \"{} --help --version --man --completion\" -- \"$cur\"))\n"
+      "    mapfile -t COMPREPLY < <(compgen -W \"{} --help --version --man --completion\" -- \"$cur\")\n"
       "    return\n"
       "  fi\n"
       "  case $command:$prev in\n"
-      "    --completion:--completion) COMPREPLY=($(compgen -W \"bash zsh fish\" -- \"$cur\")); return ;;\n"
+      "    --completion:--completion) mapfile -t COMPREPLY < <(compgen -W \"bash zsh fish\" -- \"$cur\"); return ;;\n"
       "{}"
       "  esac\n"
       "  if [[ $cur == -* ]]; then\n"
@@ -177,7 +184,7 @@ std::string bash_script(const CLI::App& program) {
       "    return\n"
       "  fi\n"
       "  compopt -o filenames 2>/dev/null\n"
-      "  COMPREPLY=($(compgen -f -- \"$cur\"))\n"
+      "  mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
       "}}\n"
       "complete -F _tegl tegl\n",
       all, values, options);
@@ -230,10 +237,22 @@ std::string fish_script(const CLI::App& program) {
   const auto in_fish = [](const std::string& words) {
     return "'" + replaced(replaced(words, "\\", "\\\\"), "'", "\\'") + "'";
   };
-  text += "complete -c tegl -n __fish_use_subcommand -f\n";
+  text +=
+      "function __tegl_needs_command; test (count (commandline -opc)) -eq 1; end\n"
+      "complete -c tegl -n __tegl_needs_command -f\n";
+  for (const CLI::Option* option : options_of(program)) {
+    text += "complete -c tegl -n __tegl_needs_command";
+    for (const std::string& letter : option->get_snames()) text += " -s " + letter;
+    for (const std::string& word : option->get_lnames()) text += " -l " + word;
+    if (const auto words = words_of(*option); !words.empty()) text += fmt::format(" -x -a '{}'", fmt::join(words, " "));
+    text += fmt::format(" -d {}\n", in_fish(brief(option->get_description())));
+  }
+  text +=
+      "complete -c tegl -n __tegl_needs_command -l man -d 'the manual page'\n"
+      "complete -c tegl -n __tegl_needs_command -l completion -x -a 'bash zsh fish' -d 'of a shell'\n";
   for (const CLI::App* command : commands_of(program)) {
     const std::string& name = command->get_name();
-    text += fmt::format("complete -c tegl -n __fish_use_subcommand -a {} -d {}\n", name,
+    text += fmt::format("complete -c tegl -n __tegl_needs_command -a {} -d {}\n", name,
                         in_fish(brief(command->get_description())));
     for (const CLI::Option* option : options_of(*command)) {
       text += fmt::format("complete -c tegl -n '__fish_seen_subcommand_from {}'", name);

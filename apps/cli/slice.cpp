@@ -348,13 +348,10 @@ class SliceCommand final : public Command {
     return results;
   }
 
-  /// All or nothing: what was written is removed if one of the files cannot be.
+  /// All or nothing.
   static void write_all(std::vector<ContourResult>& results, ProgressBar& bar) {
     WrittenFiles written;
-    for (ContourResult& result : results) {
-      write_result(result, bar);
-      written.add(result.output);
-    }
+    for (ContourResult& result : results) write_result(result, bar, written);
     written.keep();
   }
 

@@ -24,22 +24,23 @@ void stream_typed(LayerReader<T, N>& layers, const ExtractOptions& options, std:
                               axis_label(layers.grid().axes[a].name, static_cast<std::size_t>(a))));
   std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
   std::vector<StreamedContour<N, Real>> contours;
+  WrittenFiles written;
+  Stopwatch watch;
   for (const ContourResult& result : results) {
-    files.push_back(std::make_unique<ContourFile<N, Real>>(result.output, layers.grid(), result.isovalue));
+    const std::filesystem::path file = written.stage(result.output);
+    written.with_target_names(
+        [&] { files.push_back(std::make_unique<ContourFile<N, Real>>(file, layers.grid(), result.isovalue)); });
     contours.push_back({*result.isovalue, files.back().get(), {}, {}});
   }
-  Stopwatch watch;
-  extract_streamed_several<Real, T, N>(layers, contours, options);
-  for (const auto& contour : contours)
-    if (contour.size.simplices == 0)
-      throw Error(
-          ErrorCode::EmptyResult,
-          fmt::format("no contour at {}: no neighbouring samples lie on both sides of it", number(contour.isovalue)));
-  WrittenFiles written;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    files[i]->commit();
-    written.add(results[i].output);
-  }
+  written.with_target_names([&] {
+    extract_streamed_several<Real, T, N>(layers, contours, options);
+    for (const auto& contour : contours)
+      if (contour.size.simplices == 0)
+        throw Error(
+            ErrorCode::EmptyResult,
+            fmt::format("no contour at {}: no neighbouring samples lie on both sides of it", number(contour.isovalue)));
+    for (const auto& file : files) file->commit();
+  });
   written.keep();
   const double seconds = watch.lap();
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -205,16 +205,15 @@ class TrackCommand final : public ContourInputCommand {
     WrittenFiles written;
     for (const std::string& output : outputs_) {
       const Progress writing = bar.stage("write");
-      if (is_track_file(output)) {
-        write_track(graph, output, {.title = title(input)});
-      } else {
-        const auto write_labelled = [&](auto& contour) {
-          add_labels(contour, graph);
-          write_output(mesh_of(contour, input), output, writing);
-        };
+      const auto write_labelled = [&](auto& contour) {
+        add_labels(contour, graph);
+        const Mesh mesh = mesh_of(contour, input);
+        written.write(output, [&](const auto& file) { write_mesh(mesh, file, writing); });
+      };
+      if (is_track_file(output))
+        written.write(output, [&](const auto& file) { write_track(graph, file, {.title = title(input)}); });
+      else
         std::visit(write_labelled, input.contour);
-      }
-      written.add(output);
     }
     if (!csv_.empty()) write_track_csv(graph, csv_);
     written.keep();

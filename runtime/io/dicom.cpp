@@ -180,7 +180,7 @@ bool sort_by_time(Volume& volume, const TimeKey& key) {
   const double first = key.from_zero ? times[0] : 0.0;
   constexpr double kResolution = 1e6;  // DICOM's times have no more digits
   for (double& time : times) time = std::round((time - first) * kResolution) / kResolution;
-  if (!std::is_sorted(times.begin(), times.end(), std::less_equal<>())) return false;
+  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) return false;
   volume.time = axis_of(times);
   volume.time.name = "t";
   volume.time.unit = key.unit;
@@ -344,11 +344,12 @@ class PlaneReader {
   ValueArray read(std::size_t first, std::size_t count, const Progress& progress) {
     const std::size_t size = volume_.files.front().columns * volume_.files.front().rows;
     ValueArray values = array_of_type(rescaling_.type);
-    std::visit([&](auto& all) { all.reserve(size * count); }, values);
     for (std::size_t i = first; i < first + count; ++i) {
       const Plane& plane = volume_.planes[i];
       tick(progress, static_cast<double>(i - first) / static_cast<double>(count), volume_.path(plane));
       decode(plane.file);
+      // A file that promises too much has failed by now.
+      if (i == first) std::visit([&](auto& all) { all.reserve(size * count); }, values);
       append(volume_.frame(plane), plane.frame * size, size, values);
     }
     return values;

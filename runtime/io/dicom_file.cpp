@@ -230,6 +230,19 @@ void load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
          status.bad() ? status.text() : "it holds nothing");
 }
 
+/// Throws if a file is too short for the values that its header promises, before these get memory. (How long compressed
+/// ones are shows as they are decompressed.)
+void require_bytes(const DicomFile& file, E_TransferSyntax stored_as) {
+  const DcmXfer syntax(stored_as);
+  if (syntax.isEncapsulated() || syntax.getStreamCompression() != ESC_none) return;
+  const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
+  const std::uint64_t bits = file.type.ends_with("32") ? 32 : file.type.ends_with("16") ? 16 : 8;
+  const std::uint64_t needed = checked_bytes(sizes, bits / 8, file.path);
+  if (const std::uintmax_t there = fs::file_size(file.path); there < needed)
+    fail(ErrorCode::MalformedFile, file.path, "{} bytes; expected at least {} of pixels, for {} of type {}", there,
+         needed, shape_text(sizes), file.type);
+}
+
 /// Moves the stored bits of each value down and extends its sign: what is above and below them is anyone's.
 template <class T>
 void keep_stored_bits(std::vector<T>& values, const DicomFile& file) {
@@ -277,6 +290,7 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
     fail(ErrorCode::MalformedFile, path, "{} x {} samples; expected at least one", file.columns, file.rows);
   read_type(data, file);
   read_frames(data, file);
+  require_bytes(file, format.getDataset()->getOriginalXfer());
   return file;
 }
 

@@ -249,17 +249,15 @@ RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& opt
   return result;
 }
 
-/// Whether these are planes of DICOM series, which say themselves where they lie.
-bool are_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
-  return !options.raw && std::all_of(files.begin(), files.end(),
-                                     [](const fs::path& file) { return is_dicom(file) && !fs::is_directory(file); });
-}
-
 RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
   if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
     fail(ErrorCode::InvalidArgument, files[0],
          "is a DICOM file, which says itself where it lies; expected neither coordinates, nor a step, unit or order");
   return open_dicom(files, options.variable, options.progress);
+}
+
+RawLayers open_several(std::span<const fs::path> files, const SeriesOptions& options) {
+  return !options.raw && are_dicom_files(files) ? open_dicom_files(files, options) : open_members(files, options);
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -272,8 +270,7 @@ ReadImageResult read_series(std::span<const fs::path> files, const SeriesOptions
   if (files.size() == 1) {
     image = read_member(files[0], Extent::whole, options, options.progress);
   } else {
-    RawLayers layers =
-        are_dicom_files(files, options) ? open_dicom_files(files, options) : open_members(files, options);
+    RawLayers layers = open_several(files, options);
     image.values = layers.read(0, layers.grid.axes.back().size());
     image.grid = std::move(layers.grid);
     image.info = std::move(layers.info);
@@ -289,8 +286,12 @@ OpenLayersResult open_series(std::span<const fs::path> files, const SeriesOption
     return options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], options.variable);
   SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
   silent.progress = nullptr;
-  return to_open_layers(are_dicom_files(files, silent) ? open_dicom_files(files, silent) : open_members(files, silent),
-                        files[0]);
+  return to_open_layers(open_several(files, silent), files[0]);
+}
+
+bool are_dicom_files(std::span<const fs::path> files) {
+  return std::all_of(files.begin(), files.end(),
+                     [](const fs::path& file) { return is_dicom(file) && !fs::is_directory(file); });
 }
 
 bool natural_less(std::string_view a, std::string_view b) {

@@ -70,6 +70,14 @@ TEST_F(Demo, ShowsOneMapIfNoAnimationIsWanted) {
   EXPECT_EQ(run_tegl_on_terminal({"demo", "--quiet"}, {}).out, "");
 }
 
+TEST_F(Demo, ShowsOneMapWithoutEscapesOnATerminalThatKnowsNone) {
+  if (!has_terminals()) GTEST_SKIP() << "this machine gives no pseudo-terminals";
+  const RunResult run = run_tegl_on_terminal({"demo"}, {"TERM=dumb", "LC_ALL=C.UTF-8"});
+  EXPECT_EQ(run.exit, 0);
+  EXPECT_THAT(run.out, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(run.out, HasSubstr("%%%"));
+}
+
 TEST_F(Demo, EndsWhenItIsInterrupted) {
   if (!has_terminals()) GTEST_SKIP() << "this machine gives no pseudo-terminals";
   const RunResult run = run_tegl_on_terminal({"demo", "--frames", "100000"}, {"LC_ALL=C.UTF-8"}, "t =  1.00");

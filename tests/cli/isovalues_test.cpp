@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -47,6 +50,14 @@ class Isovalues : public ProgramTest {
     EXPECT_EQ(x.simplices, y.simplices);
     EXPECT_EQ(x.normals, y.normals);
     EXPECT_EQ(x.isovalue, y.isovalue);
+  }
+  static std::string raw_ball() {
+    const Samples samples = ball({12, 12, 12}, 4);
+    return {reinterpret_cast<const char*>(samples.values.data()), samples.values.size() * sizeof(float)};
+  }
+  static std::string read_text(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
   }
   std::string ball_;
 };
@@ -119,19 +130,58 @@ TEST_F(Isovalues, WorkWithIndexFacetsPicksAndTriangulations) {
             contour(ball_, {"--iso", "1", "--facets", "-o", path("facet.vtu")})["facets"]["polygons"]);
 }
 
+// The name of the second output is longer than file systems allow, which shows when it is written.
+TEST_F(Isovalues, KeepWhatWasThereIfALateOneFails) {
+  const std::string late = "1." + std::string(240, '0');
+  const std::string raw = write("ball.raw", raw_ball());
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"contour", ball_, "-o", path("out_{iso}.vtkhdf")},
+        {"contour", ball_, "--facets", "-o", path("out_{iso}.vtkhdf")},
+        {"contour", raw, "--raw", "12x12x12", "--raw-type", "float", "-o", path("out_{iso}.vtkhdf")}}) {
+    const std::string old = write("out_0.vtkhdf", "what was there before");
+    const auto before = files();
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--iso", "0," + late});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 6) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(path("out_" + late + ".vtkhdf")));
+    EXPECT_EQ(read_text(old), "what was there before") << command[2];
+    EXPECT_EQ(files(), before) << command[2];
+  }
+}
+
+TEST_F(Isovalues, AreWrittenThroughLinksAndOverWhatWasThere) {
+  write("old_0.ply", "what was there before");
+  std::filesystem::create_symlink(path("old_0.ply"), path("out_0.ply"));
+  write("out_1.ply", "what was there before");
+  contour(ball_, {"--iso", "0,1", "-o", path("out.ply")});
+  EXPECT_TRUE(std::filesystem::is_symlink(path("out_0.ply")));
+  for (const char* const name : {"old_0.ply", "out_1.ply"}) EXPECT_GT(read_mesh(path(name)).simplices.size(), 0U);
+}
+
 TEST_F(Isovalues, LeaveNothingIfOneOfThemFails) {
   for (const char* const more : {"--no-check", "--one-file"})
     expect_refused(5, {"--iso", "0,99", more, "-o", path("out.vtkhdf")}, {"99"});
-  const std::string raw = write("ball.raw", [] {
-    const Samples samples = ball({12, 12, 12}, 4);
-    return std::string(reinterpret_cast<const char*>(samples.values.data()), samples.values.size() * sizeof(float));
-  }());
+  const std::string raw = write("ball.raw", raw_ball());
   const auto before = files();
   const RunResult run =
       run_tegl({"contour", raw, "--raw", "12x12x12", "--raw-type", "float", "--iso", "0,99", "-o", path("out.vtkhdf")});
   EXPECT_EQ(run.exit, 5) << run.err;
   EXPECT_THAT(run.err, HasSubstr("99"));
   EXPECT_EQ(files(), before);
+}
+
+TEST_F(Isovalues, AreStreamedUpToANumber) {
+  const std::string raw = write("ball.raw", raw_ball());
+  const std::vector<std::string> command = {"contour", raw, "--raw", "12x12x12", "--raw-type", "float", "--quiet"};
+  for (const auto& [isovalues, exit] : {std::pair("0:2:64", 0), std::pair("0:2:65", 2)}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--iso", isovalues, "-o", path("at_{iso}.vtkhdf")});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, exit) << run.err;
+    EXPECT_EQ(files().size(), 66U) << "the raw values, the image, and 64 contours";
+    if (exit != 0) EXPECT_THAT(run.err, HasSubstr("65 numbers to be streamed"));
+  }
 }
 
 TEST_F(Isovalues, ThatCannotBeAreRefused) {

@@ -18,7 +18,9 @@
 namespace tegl::cli {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Program : public testing::Test {
  protected:
@@ -142,6 +144,12 @@ TEST_F(Program, CompletesInBash) {
   EXPECT_EQ(complete("contour a.nii --ambiguity s"), "saddle\n");
   EXPECT_EQ(complete("check --require c"), "closed\n");
   EXPECT_EQ(complete("info " + script.substr(0, script.size() - 3)), script + "\n");
+  const std::string blank = write("with two blanks.nrrd", "");
+  EXPECT_EQ(run("bash -c 'source " + script + "; COMP_WORDS=(tegl info \"" + blank.substr(0, blank.size() - 8) +
+                "\"); COMP_CWORD=2; _tegl; echo ${#COMPREPLY[@]} \"${COMPREPLY[0]}\"'")
+                .first,
+            "1 " + blank + "\n");
+  std::filesystem::remove(blank);
   std::filesystem::remove(script);
 }
 
@@ -153,6 +161,7 @@ TEST_F(Program, CompletesInZshAndFish) {
     EXPECT_EQ(
         run("zsh -f -c 'autoload -U compinit && compinit -D && source " + script + " && echo $_comps[tegl]'").first,
         "_tegl\n");
+    EXPECT_THAT(completion_script(program_, "zsh"), HasSubstr("--var[netCDF\\: the variable to read"));
     std::filesystem::remove(script);
     any = true;
   }
@@ -164,6 +173,9 @@ TEST_F(Program, CompletesInZshAndFish) {
     EXPECT_THAT(complete("tegl con"), testing::StartsWith("contour\t"));
     EXPECT_THAT(complete("tegl contour --tri"), testing::StartsWith("--triangulation\t"));
     EXPECT_THAT(complete("tegl contour --ambiguity sa"), HasSubstr("saddle"));
+    EXPECT_THAT(complete("tegl --comp"), testing::StartsWith("--completion\t"));
+    EXPECT_THAT(complete("tegl --completion "), AllOf(HasSubstr("zsh"), Not(HasSubstr("contour"))));
+    EXPECT_THAT(complete("tegl contour --var"), HasSubstr("variable to read")) << "more than what comes before a colon";
     std::filesystem::remove(script);
     any = true;
   }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <filesystem>
 
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
@@ -25,6 +26,42 @@ Samples layer(const Samples& samples, std::size_t k) {
   result.values.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
   return result;
 }
+
+/// An element of DICOM, explicit VR, little endian.
+std::string element(unsigned group, unsigned number, const std::string& type, std::string value) {
+  if (value.size() % 2 == 1) value += type == "UI" ? '\0' : ' ';
+  const auto bytes = [](std::size_t integer, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += static_cast<char>(integer >> (8 * i) & 0xff);
+    return text;
+  };
+  const std::string length = type == "OW" ? bytes(0, 2) + bytes(value.size(), 4) : bytes(value.size(), 2);
+  return bytes(group, 2) + bytes(number, 2) + type + length + value;
+}
+
+std::string short_value(unsigned value) { return {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)}; }
+
+/// A slice of `size` x `size` samples at z, 1 in the middle and 0 at its border.
+std::string dicom_bytes(double z, unsigned size, const std::string& series = "1.2.3", unsigned frames = 1,
+                        unsigned told_size = 0) {
+  std::string pixels;
+  for (unsigned y = 0; y < size; ++y)
+    for (unsigned x = 0; x < size; ++x)
+      pixels += short_value(x > 0 && y > 0 && x + 1 < size && y + 1 < size ? 100 + x + 7 * y : 0);
+  const std::string told = short_value(told_size == 0 ? size : told_size);
+  return std::string(128, '\0') + "DICM" + element(2, 0, "UL", std::string("\x1c\0\0\0", 4)) +
+         element(2, 0x10, "UI", "1.2.840.10008.1.2.1") + element(8, 0x60, "CS", "MR") +
+         element(0x20, 0xe, "UI", series) + element(0x20, 0x32, "DS", "0\\0\\" + std::to_string(z)) +
+         element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0") + element(0x28, 2, "US", short_value(1)) +
+         element(0x28, 4, "CS", "MONOCHROME2") + element(0x28, 8, "IS", std::to_string(frames)) +
+         element(0x28, 0x10, "US", told) + element(0x28, 0x11, "US", told) + element(0x28, 0x30, "DS", "1\\1") +
+         element(0x28, 0x100, "US", short_value(16)) + element(0x28, 0x101, "US", short_value(16)) +
+         element(0x28, 0x102, "US", short_value(15)) + element(0x28, 0x103, "US", short_value(0)) +
+         element(0x7fe0, 0x10, "OW", pixels);
+}
+
+/// Whether `tegl` was built with DICOM.
+bool reads_dicom(const std::string& file) { return run_tegl({"info", file}).err.find("DCMTK") == std::string::npos; }
 
 class SeriesCommand : public ProgramTest {
  protected:
@@ -71,6 +108,41 @@ class SeriesCommand : public ProgramTest {
   std::string whole_;
   std::vector<std::string> frames_;
 };
+
+// Planes of DICOM say where they lie: the order of their names is of no meaning.
+TEST_F(SeriesCommand, TakesDicomFilesInTheOrderOfAShell) {
+  std::filesystem::create_directory(path("scan"));
+  std::vector<std::string> arguments = {"contour"};
+  for (const int k : {0, 1, 10, 11, 2, 3, 4, 5, 6, 7, 8, 9})
+    arguments.push_back(write("scan/a" + std::to_string(k) + ".dcm", dicom_bytes(2.5 * k, 6)));
+  if (!reads_dicom(arguments[1])) GTEST_SKIP() << "built without DICOM";
+  arguments.insert(arguments.end(), {"--iso", "50", "-o", path("files.ply")});
+  const nlohmann::json files = run(arguments);
+  EXPECT_EQ(files["image_dim"], 3);
+  EXPECT_GT(files["simplices"], 0);
+  run({"contour", path("scan"), "--iso", "50", "-o", path("folder.ply")});
+  expect_same_mesh("files.ply", "folder.ply");
+}
+
+TEST_F(SeriesCommand, NumbersTheSeriesOfAFolder) {
+  std::filesystem::create_directory(path("scan"));
+  for (int k = 0; k < 4; ++k) {
+    write("scan/a" + std::to_string(k) + ".dcm", dicom_bytes(k, 6, "1.2.3"));
+    write("scan/b" + std::to_string(k) + ".dcm", dicom_bytes(k, 8, "1.2.4"));
+  }
+  if (!reads_dicom(path("scan/a0.dcm"))) GTEST_SKIP() << "built without DICOM";
+  const RunResult list = run_tegl({"info", path("scan")});
+  EXPECT_THAT(list.out, testing::ContainsRegex("1 +1\\.2\\.3 .*\n.*2 +1\\.2\\.4 "));
+  EXPECT_EQ(run({"info", path("scan")})["variables"][1], "1.2.4");
+  EXPECT_EQ(run({"info", path("scan"), "--series", "2"})["axes"][0]["size"], 8);
+}
+
+TEST_F(SeriesCommand, RefusesDicomHeadersThatPromiseMoreThanTheFileHas) {
+  const std::string sound = write("sound.dcm", dicom_bytes(0, 6));
+  if (!reads_dicom(sound)) GTEST_SKIP() << "built without DICOM";
+  const std::string huge = write("huge.dcm", dicom_bytes(0, 6, "1.2.3", 100000, 60000));
+  expect_refused(4, {"info", huge}, {"huge.dcm", "60000 x 60000 x 100000"});
+}
 
 TEST_F(SeriesCommand, GivesTheContourOfTheWholeImage) {
   run({"contour", whole_, "--iso", "0.1", "-o", path("whole.vtkhdf")});

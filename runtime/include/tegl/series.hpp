@@ -55,6 +55,10 @@ ReadImageResult read_series(std::span<const std::filesystem::path> files, const 
 /// file has become another since. One file alone is opened by open_layers, or open_raw_layers.
 OpenLayersResult open_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
+/// Whether these are DICOM files, which say themselves where they lie: read_series reads them in any order, and takes
+/// neither coordinates nor a SeriesOrder for them.
+bool are_dicom_files(std::span<const std::filesystem::path> files);
+
 /// Whether name `a` comes before `b` where runs of digits count as numbers: "frame_2" before "frame_10". Names that
 /// differ in leading zeros alone come in the order of their bytes.
 bool natural_less(std::string_view a, std::string_view b);
