@@ -74,7 +74,8 @@ void ImageOptions::add_to(CLI::App& app) {
                      "'tegl info' shows; needed where a folder has several")
           ->type_name("SERIES"),
       app.add_option("--times", times_,
-                     "of several FILEs: where each one lies along the new axis: 0,0.5,2; or FIRST:LAST:COUNT; without, "
+                     "of several FILEs: where each one lies along the new axis, in the order of --sort: 0,0.5,2; or "
+                     "FIRST:LAST:COUNT; without, "
                      "as the files say, else 0, 1, 2 ...")
           ->type_name("NUMBERS"),
       app.add_option("--time-step", time_step_, "of several FILEs: they lie at 0, this, twice this ...")

@@ -43,6 +43,9 @@ struct Volume {
   [[nodiscard]] const fs::path& path(const Plane& plane) const { return files[plane.file].path; }
 };
 
+/// Whether macOS put a file there, beside the one whose name follows.
+bool is_of_finder(const fs::path& path) { return path.filename().string().starts_with("._"); }
+
 /// The files below a folder, by name; those of a DICOMDIR; or the file itself.
 std::vector<fs::path> candidates(const fs::path& path) {
   if (!fs::is_directory(path)) {
@@ -52,7 +55,8 @@ std::vector<fs::path> candidates(const fs::path& path) {
   std::vector<fs::path> files;
   try {
     for (const auto& entry : fs::recursive_directory_iterator(path, fs::directory_options::skip_permission_denied))
-      if (lower_name(entry.path()) != "dicomdir" && is_dicom_file(entry.path())) files.push_back(entry.path());
+      if (lower_name(entry.path()) != "dicomdir" && !is_of_finder(entry.path()) && is_dicom_file(entry.path()))
+        files.push_back(entry.path());
   } catch (const fs::filesystem_error& error) {
     fail(ErrorCode::FileNotFound, path, "cannot be read ({})", error.code().message());
   }
@@ -60,6 +64,23 @@ std::vector<fs::path> candidates(const fs::path& path) {
   if (files.empty())
     fail(ErrorCode::FileNotFound, path, "is a directory without DICOM files; expected a file, or a folder with some");
   return files;
+}
+
+/// Series of colours and the like (screenshots beside a scan) are left out, unless there are no others.
+void leave_out_unsupported(std::vector<std::vector<DicomFile>>& all) {
+  const auto is_unsupported = [](const std::vector<DicomFile>& series) {
+    return std::all_of(series.begin(), series.end(), [](const DicomFile& file) {
+      return file.fault && file.fault->code() == ErrorCode::UnsupportedData;
+    });
+  };
+  if (!std::all_of(all.begin(), all.end(), is_unsupported)) std::erase_if(all, is_unsupported);
+}
+
+/// The series, without a file whose values cannot be read. Throws what is wrong with the first one.
+std::vector<DicomFile> sound(std::vector<DicomFile>&& series) {
+  for (const DicomFile& file : series)
+    if (file.fault) throw *file.fault;
+  return std::move(series);
 }
 
 /// The files that hold images, series by series in the order of their numbers.
@@ -74,6 +95,7 @@ std::vector<std::vector<DicomFile>> read_all_series(std::span<const fs::path> pa
   for (auto& [uid, files] : by_uid) all.push_back(std::move(files));
   if (all.empty())
     fail(ErrorCode::UnsupportedData, paths.front(), "holds no image in DICOM; expected at least one file with pixels");
+  leave_out_unsupported(all);
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.front().series_number < b.front().series_number; });
   return all;
@@ -97,7 +119,7 @@ std::string listing(const std::vector<std::vector<DicomFile>>& all) {
 /// The series of that UID, number in the list, or description.
 std::vector<DicomFile> choose(std::vector<std::vector<DicomFile>>&& all, const std::string& wanted,
                               const fs::path& path) {
-  if (wanted.empty() && all.size() == 1) return std::move(all.front());
+  if (wanted.empty() && all.size() == 1) return sound(std::move(all.front()));
   if (wanted.empty())
     fail(ErrorCode::VariableNotFound, path, "{} DICOM series, and none chosen; expected one of {}", all.size(),
          listing(all));
@@ -110,7 +132,7 @@ std::vector<DicomFile> choose(std::vector<std::vector<DicomFile>>&& all, const s
   if (found.size() != 1)
     fail(ErrorCode::VariableNotFound, path, "{} DICOM series '{}'; expected one of {}",
          found.empty() ? "no" : "several", wanted, listing(all));
-  return std::move(all[found.front()]);
+  return sound(std::move(all[found.front()]));
 }
 
 /// Throws unless all files have planes of the same size, type, directions and spacing.

@@ -286,11 +286,15 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   file.series_number = number_of(data, DCM_SeriesNumber).value_or(0);
   file.rows = static_cast<std::size_t>(number_of(data, DCM_Rows).value_or(0));
   file.columns = static_cast<std::size_t>(number_of(data, DCM_Columns).value_or(0));
-  if (file.rows == 0 || file.columns == 0)
-    fail(ErrorCode::MalformedFile, path, "{} x {} samples; expected at least one", file.columns, file.rows);
-  read_type(data, file);
-  read_frames(data, file);
-  require_bytes(file, format.getDataset()->getOriginalXfer());
+  try {
+    if (file.rows == 0 || file.columns == 0)
+      fail(ErrorCode::MalformedFile, path, "{} x {} samples; expected at least one", file.columns, file.rows);
+    read_type(data, file);
+    read_frames(data, file);
+    require_bytes(file, format.getDataset()->getOriginalXfer());
+  } catch (const Error& error) {
+    file.fault = error;
+  }
   return file;
 }
 

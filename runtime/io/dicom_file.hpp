@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "tegl/error.hpp"
 #include "value_array.hpp"
 
 namespace tegl::io_detail {
@@ -44,13 +45,15 @@ struct DicomFile {
   double least = 0, most = 0;  ///< what stored values may be
   std::vector<DicomFrame> frames;
   std::optional<double> frame_time;  ///< ms between frames that are moments, not places
+  std::optional<Error> fault;        ///< why its values are none that can be read: for whoever wants them
 };
 
 /// Whether a file looks like DICOM by its first bytes or its extension.
 bool is_dicom_file(const std::filesystem::path& path);
 
-/// The header of a file; none if it holds no image (a report, a directory of files). Errors: MalformedFile;
-/// UnsupportedData for colours and other values that are not one number per sample.
+/// The header of a file; none if it holds no image (a report, a directory of files). Errors: MalformedFile. What
+/// is wrong with its values is in `fault`: MalformedFile; UnsupportedData for colours and other values that are not one
+/// number per sample.
 std::optional<DicomFile> read_dicom_header(const std::filesystem::path& path);
 
 /// The stored values of all frames, decompressed. Errors: MalformedFile; UnsupportedFormat for a

@@ -138,9 +138,10 @@ TEST(Output, TheDimensionsThatAreAllowedCanBeWritten) {
         allowed = false;
       }
       if (allowed) {
-        EXPECT_GT(write_output(mesh, path, {}), 0u) << path;
+        EXPECT_GT(write_file(path, [&] { write_mesh(mesh, path); }), 0u) << path;
       } else {
-        EXPECT_EQ(error_of([&] { (void)write_output(mesh, path, {}); }).code(), ErrorCode::WriteFailed) << path;
+        EXPECT_EQ(error_of([&] { write_file(path, [&] { write_mesh(mesh, path); }); }).code(), ErrorCode::WriteFailed)
+            << path;
       }
       EXPECT_EQ(std::filesystem::exists(path), allowed) << path;
       std::filesystem::remove(path);

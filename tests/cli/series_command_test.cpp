@@ -137,6 +137,18 @@ TEST_F(SeriesCommand, NumbersTheSeriesOfAFolder) {
   EXPECT_EQ(run({"info", path("scan"), "--series", "2"})["axes"][0]["size"], 8);
 }
 
+TEST_F(SeriesCommand, LeavesAsideColoursAndFilesOfTheFinder) {
+  std::filesystem::create_directory(path("scan"));
+  for (int k = 0; k < 4; ++k) write("scan/a" + std::to_string(k) + ".dcm", dicom_bytes(k, 6));
+  std::string colours = dicom_bytes(0, 6, "1.2.4");
+  colours.replace(colours.find("MONOCHROME2"), 11, "PALETTE    ");
+  const std::string screenshot = write("scan/b.dcm", colours);
+  write("scan/._a0.dcm", "Mac OS X");
+  if (!reads_dicom(path("scan/a0.dcm"))) GTEST_SKIP() << "built without DICOM";
+  EXPECT_EQ(run({"info", path("scan")})["axes"][2]["size"], 4);
+  expect_refused(4, {"info", screenshot}, {"b.dcm", "PALETTE"});
+}
+
 TEST_F(SeriesCommand, RefusesDicomHeadersThatPromiseMoreThanTheFileHas) {
   const std::string sound = write("sound.dcm", dicom_bytes(0, 6));
   if (!reads_dicom(sound)) GTEST_SKIP() << "built without DICOM";
