@@ -249,7 +249,8 @@ std::string fish_script(const CLI::App& program) {
   }
   text +=
       "complete -c tegl -n __tegl_needs_command -l man -d 'the manual page'\n"
-      "complete -c tegl -n __tegl_needs_command -l completion -x -a 'bash zsh fish' -d 'of a shell'\n";
+      "function __tegl_takes_shell; __tegl_needs_command; or test (commandline -opc)[-1] = --completion; end\n"
+      "complete -c tegl -n __tegl_takes_shell -l completion -x -a 'bash zsh fish' -d 'of a shell'\n";
   for (const CLI::App* command : commands_of(program)) {
     const std::string& name = command->get_name();
     text += fmt::format("complete -c tegl -n __tegl_needs_command -a {} -d {}\n", name,

@@ -113,6 +113,7 @@ class ProjectCommand final : public ContourInputCommand {
     app()
         .add_option("--count", count_, "of --as cuts: how many")
         ->check(whole_number(1, 100000))
+        ->type_name("COUNT")
         ->capture_default_str();
     app()
         .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb or .vtkhdf; tetrahedra: .vtkhdf")
