@@ -98,7 +98,7 @@ class MemoryFile final : public ByteSink, public ByteSource {
   }
   std::size_t read(void* data, std::size_t bytes) override {
     const std::size_t count = std::min(bytes, content.size() - at_);
-    std::memcpy(data, content.data() + at_, count);
+    if (count > 0) std::memcpy(data, content.data() + at_, count);
     at_ += count;
     return count;
   }
