@@ -55,21 +55,6 @@ requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isova
 #define TEGL_INSTANTIATE_ONE(T, N, Real)                                                           \
   template Contour<N, Real> extract<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
                                                 const ActiveTiles<N>&, ExtractStats*);
-#define TEGL_INSTANTIATE(T)          \
-  TEGL_INSTANTIATE_ONE(T, 2, float)  \
-  TEGL_INSTANTIATE_ONE(T, 2, double) \
-  TEGL_INSTANTIATE_ONE(T, 3, float)  \
-  TEGL_INSTANTIATE_ONE(T, 3, double) \
-  TEGL_INSTANTIATE_ONE(T, 4, float)  \
-  TEGL_INSTANTIATE_ONE(T, 4, double)
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
-#undef TEGL_INSTANTIATE_ONE
+#include "instantiate_reals.hpp"
 
 }  // namespace tegl
