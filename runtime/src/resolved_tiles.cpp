@@ -485,8 +485,8 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
       local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
     }
     const auto tetrahedra = all.tetrahedra(region);
-    if (simplices_.size() < simplex_count_ + tetrahedra.size() + kMoreSimplices)
-      simplices_.resize(2 * simplex_count_ + 256);
+    const std::size_t needed = simplex_count_ + tetrahedra.size() + kMoreSimplices;
+    if (simplices_.size() < needed) simplices_.resize(std::max(2 * simplex_count_ + 256, needed));
     map_simplices(tetrahedra.data()->data(), tetrahedra.size(), local.data(), cubes_.is_reversed(cube),
                   reinterpret_cast<std::uint8_t*>(simplices_.data() + simplex_count_));
     simplex_count_ += tetrahedra.size();
