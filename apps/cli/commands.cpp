@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "output.hpp"
 
 namespace tegl::cli {
@@ -19,6 +22,23 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
 
 void Command::add_quiet() {
   app_->add_flag("-q,--quiet", quiet_, "no report and no progress bar")->excludes(json_option_);
+}
+
+ReadImageResult Command::read(const Progress& progress) {
+  ReadSeriesResult result = images_.read(worked_on_, progress);
+  take_order(result.files);
+  return {std::move(result.image), std::move(result.info)};
+}
+
+OpenLayersResult Command::open() {
+  OpenSeriesResult result = images_.open(worked_on_);
+  take_order(result.files);
+  return {std::move(result.layers), std::move(result.info)};
+}
+
+void Command::take_order(const std::vector<std::filesystem::path>& files) {
+  std::transform(files.begin(), files.end(), worked_on_.begin(),
+                 [](const std::filesystem::path& file) { return file.string(); });
 }
 
 void Command::require_inputs() const {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -65,12 +66,17 @@ class Command {
   /// Adds the options that say how FILE is read as an image.
   void add_image_options() { images_.add_to(*app_); }
   [[nodiscard]] const ImageOptions& images() const { return images_; }
-  /// Reads the image that FILE and these options name.
-  [[nodiscard]] ReadImageResult read(const Progress& progress) const { return images_.read(worked_on_, progress); }
+  /// Reads the image that FILE and these options name. From then on the files that are worked on stand in the order in
+  /// which they follow each other.
+  [[nodiscard]] ReadImageResult read(const Progress& progress);
+  /// The same to be read layer by layer.
+  [[nodiscard]] OpenLayersResult open();
   /// Throws FileNotFound unless the files that are worked on can be read.
   void require_inputs() const;
 
  private:
+  void take_order(const std::vector<std::filesystem::path>& files);
+
   CLI::App* app_;
   CLI::Option* json_option_;
   std::vector<std::string> files_ = {""};

@@ -132,7 +132,6 @@ class ContourCommand final : public Command {
     std::vector<ContourResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
       if (!point.empty()) results[i].picked = Picked{point, {}, 0, 0, 0};
-      results[i].input = inputs();
       results[i].output = outputs[i];
       results[i].isovalue = isovalues[i].value;
     }
@@ -171,11 +170,12 @@ class ContourCommand final : public Command {
     return exit;
   }
 
-  void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) const {
+  void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     Stopwatch watch;
     ReadImageResult input = read(bar.stage("read"));
     require_output_holds(results.front().output, image_dim(input.image) - 1);
     for (ContourResult& result : results) {
+      result.input = inputs();
       result.variable = input.info.variable;
       result.image_dim = image_dim(input.image);
       require_contour(input, *result.isovalue);
@@ -327,7 +327,7 @@ class ContourCommand final : public Command {
   }
 
   ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
-                      const std::vector<std::string>& outputs, const ExtractOptions& options) const {
+                      const std::vector<std::string>& outputs, const ExtractOptions& options) {
     const auto given = options_.given();
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(ErrorCode::InvalidArgument,
@@ -363,7 +363,7 @@ class ContourCommand final : public Command {
     return tell(streams, results);
   }
 
-  void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) const {
+  void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
     // Each has a thread, a few layers and an open file.
     constexpr std::size_t kMostStreamed = 64;
     if (results.size() > kMostStreamed)
@@ -377,8 +377,11 @@ class ContourCommand final : public Command {
                   fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
-    OpenLayersResult input = images().open(files());
-    for (ContourResult& result : results) result.variable = input.info.variable;
+    OpenLayersResult input = open();
+    for (ContourResult& result : results) {
+      result.input = inputs();
+      result.variable = input.info.variable;
+    }
     options.progress = bar.stage("stream");
     stream_contours(input, options, options_.single_precision(), results);
     for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);

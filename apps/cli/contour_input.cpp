@@ -147,7 +147,7 @@ ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& n
   add_quiet();
 }
 
-ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) const {
+ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) {
   require_inputs();
   ContourInput result;
   result.file = inputs();
@@ -167,6 +167,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();
   ReadImageResult input = read(bar.stage("read"));
+  result.file = inputs();
   result.variable = input.info.variable;
   require_contour(input, *result.isovalue);
   result.seconds.read = watch.lap();

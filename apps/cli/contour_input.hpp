@@ -82,7 +82,7 @@ class ContourInputCommand : public Command {
   /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`. Throws InvalidArgument if --iso is
   /// missing for an image, or options of images are given with a saved contour; EmptyResult if there is no contour; and
   /// what the readers throw.
-  [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false) const;
+  [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false);
 
  private:
   ExtractionOptions options_;

@@ -51,12 +51,18 @@ std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& file
   return {files.begin(), files.end()};
 }
 
-/// What --var is for is said where it is missing.
+/// What --var is for is said where it is missing, and which options contradict each other where files do not follow
+/// each other.
 template <class Read>
-auto with_hint(const std::string& variable, const std::vector<std::string>& files, const Read& read) {
+auto with_hint(const std::string& variable, const std::vector<std::string>& files, const SeriesOptions& options,
+               const Read& read) {
   try {
     return read();
   } catch (const Error& error) {
+    if (error.code() == ErrorCode::InvalidArgument && options.order == SeriesOrder::by_name &&
+        !options.coordinates.empty())
+      throw Error(error.code(),
+                  fmt::format("{} (--sort name, with --times, which go with the files as listed)", error.what()));
     if (error.code() != ErrorCode::VariableNotFound || !variable.empty()) throw;
     throw Error(error.code(),
                 fmt::format("{} (choose it with {})", error.what(), ImageOptions::choosing_option(files)));
@@ -74,15 +80,16 @@ void ImageOptions::add_to(CLI::App& app) {
                      "'tegl info' shows; needed where a folder has several")
           ->type_name("SERIES"),
       app.add_option("--times", times_,
-                     "of several FILEs: where each one lies along the new axis, in the order of --sort: 0,0.5,2; or "
-                     "FIRST:LAST:COUNT; without, "
-                     "as the files say, else 0, 1, 2 ...")
+                     "of several FILEs: where each one lies along the new axis, in the order in which they are listed: "
+                     "0,0.5,2; or FIRST:LAST:COUNT; without, as the files say, else 0, 1, 2 ...")
           ->type_name("NUMBERS"),
-      app.add_option("--time-step", time_step_, "of several FILEs: they lie at 0, this, twice this ...")
+      app.add_option("--time-step", time_step_,
+                     "of several FILEs: they lie at 0, this, twice this ..., in the order of --sort")
           ->type_name("NUMBER"),
       app.add_option("--time-unit", time_unit_, "of several FILEs: the unit of the new axis")->type_name("UNIT"),
       app.add_option("--sort", sort_,
-                     "of several FILEs: by the numbers in their names, by the times in their headers, or as given")
+                     "of several FILEs: by the numbers in their names, by their times (--times, which go with them, "
+                     "or those in their headers), or as given")
           ->check(CLI::IsMember({"given", "name", "time"})),
   };
   options_[1]->excludes(options_[0]);
@@ -128,11 +135,9 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
   }
   if (!times_.empty() && !time_step_.empty())
     throw Error(ErrorCode::InvalidArgument, "--times with --time-step; expected one of the two");
-  if (!times_.empty() && sort_ == "time")
-    throw Error(ErrorCode::InvalidArgument, "--sort time with --times; expected the times of the files' headers alone");
   if (!time_step_.empty() && sort_ == "time")
     throw Error(ErrorCode::InvalidArgument,
-                "--sort time with --time-step; expected the times of the files' headers alone");
+                "--sort time with --time-step, which follows the order; expected --times, or those of the headers");
   if (raw() && !variable().empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} {} with --raw; expected no variable: raw values have no name",
@@ -157,17 +162,17 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
   return options;
 }
 
-ReadImageResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
+ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
   options.progress = progress;
-  return with_hint(variable(), files, [&] { return read_series(paths_of(files), options); });
+  return with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); });
 }
 
-OpenLayersResult ImageOptions::open(const std::vector<std::string>& files) const {
+OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
   const SeriesOptions options = series_options(files);
-  return with_hint(variable(), files, [&] { return open_series(paths_of(files), options); });
+  return with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); });
 }
 
 std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {

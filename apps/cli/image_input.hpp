@@ -22,10 +22,10 @@ class ImageOptions {
 
   /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that contradict each other
   /// or the files, and for files in an order that only a shell would choose.
-  [[nodiscard]] ReadImageResult read(const std::vector<std::string>& files, const Progress& progress) const;
+  [[nodiscard]] ReadSeriesResult read(const std::vector<std::string>& files, const Progress& progress) const;
 
   /// The same to be read layer by layer.
-  [[nodiscard]] OpenLayersResult open(const std::vector<std::string>& files) const;
+  [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
 
   /// The variables of the files, as list_image_variables has them; none of raw ones.
   [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;

@@ -112,7 +112,6 @@ class IndexCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     IndexResult result;
-    result.input = inputs();
     result.output = output_.empty() ? default_output() : output_;
     result.method = method_;
     require_inputs();
@@ -126,6 +125,7 @@ class IndexCommand final : public Command {
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
+    result.input = inputs();
     result.variable = input.info.variable;
     result.image_dim = image_dim(input.image);
     result.read_seconds = watch.lap();

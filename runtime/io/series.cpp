@@ -26,6 +26,7 @@ struct Member {
   RawGrid grid;
   ImageInfo info;
   std::size_t type = 0;  ///< index of ValueArray
+  double at = 0;         ///< where it lies along the new axis
 };
 
 RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {
@@ -126,48 +127,49 @@ std::vector<double> own_coordinates(const std::vector<Member>& members, Axis& ax
   return {};
 }
 
-void require_monotone(const std::vector<double>& coordinates, const std::vector<Member>& members, bool own) {
-  const bool descending = coordinates[1] < coordinates[0];
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (!std::isfinite(coordinates[i]))
-      fail(ErrorCode::InvalidArgument, members[i].path, "lies at {} along the new axis; expected a finite number",
-           coordinates[i]);
-    if (i == 0 || (descending ? coordinates[i] < coordinates[i - 1] : coordinates[i] > coordinates[i - 1])) continue;
-    fail(own ? ErrorCode::UnsupportedData : ErrorCode::InvalidArgument, members[i].path,
-         "lies at {} along the new axis{}, behind {} at {}; expected strictly {} coordinates{}", coordinates[i],
-         own ? " by its header" : "", members[i - 1].path.string(), coordinates[i - 1],
-         descending ? "descending" : "ascending", own ? ", or files in their order" : "");
+/// Who says where the members lie.
+enum class Says { header, step, caller };
+
+void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder order) {
+  const bool descending = members[1].at < members[0].at;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member& member = members[i];
+    if (!std::isfinite(member.at))
+      fail(ErrorCode::InvalidArgument, member.path, "lies at {} along the new axis; expected a finite number",
+           member.at);
+    if (i == 0 || (descending ? member.at < members[i - 1].at : member.at > members[i - 1].at)) continue;
+    if (order == SeriesOrder::by_name && says == Says::caller)
+      fail(ErrorCode::InvalidArgument, member.path,
+           "lies at {} by the coordinates that are given, behind {} at {} by the order of their names; expected "
+           "coordinates that rise or fall strictly in that order",
+           member.at, members[i - 1].path.string(), members[i - 1].at);
+    fail(says == Says::header ? ErrorCode::UnsupportedData : ErrorCode::InvalidArgument, member.path,
+         "lies at {} along the new axis{}, behind {} at {}; expected strictly {} coordinates{}", member.at,
+         says == Says::header ? " by its header" : "", members[i - 1].path.string(), members[i - 1].at,
+         descending ? "descending" : "ascending", says == Says::header ? ", or files in their order" : "");
   }
 }
 
-/// The new axis. Sorts the members where that is asked for.
+/// The new axis. Says where each member lies, and sorts them by that if it is asked for.
 Axis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
   Axis found;
-  std::vector<double> coordinates = options.coordinates;
-  const bool own = coordinates.empty() && !options.step;
-  if (own) coordinates = own_coordinates(members, found);
-  if (coordinates.empty() && options.order == SeriesOrder::coordinate)
-    fail(ErrorCode::UnsupportedData, members.front().path,
-         "does not say where it lies along a further axis, or all say the same; expected files that do, to be ordered "
-         "by that");
-  if (coordinates.empty())
+  const bool by_coordinate = options.order == SeriesOrder::coordinate;
+  Says says = options.coordinates.empty() ? Says::step : Says::caller;
+  if (says == Says::step) {
+    const auto own = options.step ? std::vector<double>() : own_coordinates(members, found);
+    if (own.empty() && by_coordinate)
+      fail(ErrorCode::UnsupportedData, members.front().path,
+           "does not say where it lies along a further axis, or all say the same; expected files that do, to be "
+           "ordered by that");
+    if (!own.empty()) says = Says::header;
     for (std::size_t i = 0; i < members.size(); ++i)
-      coordinates.push_back(static_cast<double>(i) * options.step.value_or(1.0));
-  if (options.order == SeriesOrder::coordinate) {
-    std::vector<std::size_t> order(members.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return coordinates[a] < coordinates[b]; });
-    std::vector<Member> sorted;
-    std::vector<double> sorted_coordinates;
-    for (const std::size_t i : order) {
-      sorted.push_back(std::move(members[i]));
-      sorted_coordinates.push_back(coordinates[i]);
-    }
-    members = std::move(sorted);
-    coordinates = std::move(sorted_coordinates);
+      members[i].at = own.empty() ? static_cast<double>(i) * options.step.value_or(1.0) : own[i];
   }
-  require_monotone(coordinates, members, own);
+  if (by_coordinate)
+    std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.at < b.at; });
+  require_monotone(members, says, options.order);
+  std::vector<double> coordinates;
+  for (const Member& member : members) coordinates.push_back(member.at);
   Axis axis = axis_of(coordinates);
   axis.name = found.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.name;
   axis.unit = options.unit.empty() ? found.unit : options.unit;
@@ -186,17 +188,20 @@ void require_sound(std::span<const fs::path> files, const SeriesOptions& options
                 fmt::format("a step of {}; expected a finite number other than 0", *options.step));
 }
 
-/// The headers of all files in their order, compared.
+/// The headers of all files in their order, compared; a coordinate that is given goes with its file.
 std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOptions& options) {
-  std::vector<fs::path> paths(files.begin(), files.end());
+  std::vector<std::size_t> order(files.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   if (options.order == SeriesOrder::by_name)
-    std::stable_sort(paths.begin(), paths.end(),
-                     [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return natural_less(files[a].native(), files[b].native()); });
   std::vector<Member> members;
-  for (const fs::path& path : paths) {
+  for (const std::size_t i : order) {
+    const fs::path& path = files[i];
     tick(options.progress, 0.0, path);
     RawImage header = read_member(path, Extent::header, options, {});
-    members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index()});
+    members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index(),
+                       options.coordinates.empty() ? 0.0 : options.coordinates[i]});
     const std::size_t axes = members.back().grid.axes.size();
     if (axes != 2 && axes != 3)
       fail(ErrorCode::UnsupportedData, path,
@@ -218,8 +223,14 @@ void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::p
       to);
 }
 
+/// Layers, and the files in the order of the new axis.
+struct OrderedLayers {
+  RawLayers layers;
+  std::vector<fs::path> files;
+};
+
 /// The series as layers, a file each.
-RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& options) {
+OrderedLayers open_members(std::span<const fs::path> files, const SeriesOptions& options) {
   std::vector<Member> members = read_headers(files, options);
   Axis last = make_axis(members, options);
   RawLayers result;
@@ -246,7 +257,7 @@ RawLayers open_members(std::span<const fs::path> files, const SeriesOptions& opt
     }
     return values;
   };
-  return result;
+  return {std::move(result), std::move(paths)};
 }
 
 RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
@@ -256,37 +267,42 @@ RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions&
   return open_dicom(files, options.variable, options.progress);
 }
 
-RawLayers open_several(std::span<const fs::path> files, const SeriesOptions& options) {
-  return !options.raw && are_dicom_files(files) ? open_dicom_files(files, options) : open_members(files, options);
+OrderedLayers open_several(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (options.raw || !are_dicom_files(files)) return open_members(files, options);
+  return {open_dicom_files(files, options), {files.begin(), files.end()}};
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 
-ReadImageResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
+ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
   RawImage image;
+  std::vector<fs::path> order(files.begin(), files.end());
   if (files.size() == 1) {
     image = read_member(files[0], Extent::whole, options, options.progress);
   } else {
-    RawLayers layers = open_several(files, options);
+    auto [layers, ordered] = open_several(files, options);
     image.values = layers.read(0, layers.grid.axes.back().size());
     image.grid = std::move(layers.grid);
     image.info = std::move(layers.info);
+    order = std::move(ordered);
   }
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), files[0]);
-  return {std::move(result), std::move(info)};
+  return {{std::move(result), std::move(info)}, std::move(order)};
 }
 
-OpenLayersResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
+OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
   if (files.size() == 1)
-    return options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], options.variable);
+    return {options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], options.variable),
+            {files[0]}};
   SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
   silent.progress = nullptr;
-  return to_open_layers(open_several(files, silent), files[0]);
+  OrderedLayers opened = open_several(files, silent);
+  return {to_open_layers(std::move(opened.layers), files[0]), std::move(opened.files)};
 }
 
 bool are_dicom_files(std::span<const fs::path> files) {

@@ -214,8 +214,29 @@ TEST_F(SeriesCommand, LiesAtTheTimesThatAreGiven) {
   expect_refused(2, of_frames({"info", "--times", "0:1:12", "--time-step", "1"}, {}), {"one of the two"});
   expect_refused(2, of_frames({"info", "--time-step", "none"}, {}), {"--time-step", "none"});
   expect_refused(2, of_frames({"info", "--time-step", "0"}, {}), {"--time-step is 0"});
-  expect_refused(2, of_frames({"info", "--times", "0:1:12", "--sort", "time"}, {}), {"--sort time"});
+  expect_refused(2, of_frames({"info", "--time-step", "1", "--sort", "time"}, {}), {"--sort time", "--time-step"});
   expect_refused(2, {"info", whole_, "--times", "1"}, {"--times with one file", whole_});
+}
+
+TEST_F(SeriesCommand, TimesGoWithTheFilesAsListedAndInputIsTheOrderRead) {
+  run({"contour", whole_, "--iso", "0.1", "-o", path("whole.vtkhdf")});
+  const std::vector<std::string> in_order = frames_;
+  std::reverse(frames_.begin(), frames_.end());
+  for (const char* const sort : {"name", "time"}) {
+    for (const char* const stream : {"--no-check", "--stream"}) {
+      const nlohmann::json report = run(of_frames({"contour", "--times", "11:0:12", "--sort", sort, stream},
+                                                  {"--iso", "0.1", "-o", path("series.vtkhdf")}));
+      EXPECT_EQ(report["input"], in_order) << sort << stream;
+      expect_same_mesh("whole.vtkhdf", "series.vtkhdf");
+    }
+    EXPECT_EQ(run(of_frames({"info", "--times", "11:0:12", "--sort", sort}, {}))["input"], in_order);
+    EXPECT_EQ(run(of_frames({"measure", "--times", "11:0:12", "--sort", sort}, {"--iso", "0.1"}))["input"], in_order);
+  }
+  const nlohmann::json listed = run(of_frames({"info", "--times", "11:0:12", "--sort", "given"}, {}));
+  EXPECT_EQ(listed["input"], frames_);
+  EXPECT_EQ(listed["axes"][3]["first"], 11);
+  expect_refused(2, of_frames({"info", "--times", "3,2,1,0,4,5,6,7,8,9,10,11", "--sort", "name"}, {}),
+                 {"lies at 1 by", frames_[2], frames_[3] + " at 0", "--times", "--sort name"});
 }
 
 TEST_F(SeriesCommand, OfFilesThatDoNotFitFailsNamingTheFileAndLeavesNothing) {

@@ -127,6 +127,39 @@ TEST_F(Series, IsOrderedByNumbersInNamesOrByCoordinatesIfThatIsAskedFor) {
   EXPECT_THAT(last_axis(options), ElementsAre(4, 5, 6));
 }
 
+TEST_F(Series, CoordinatesStayWithTheirFilesInEveryOrder) {
+  for (const int k : {10, 2, 1}) add("frame_" + std::to_string(k) + ".nrrd", nrrd({2, 2, 2}, k));
+  const auto names = [](const std::vector<fs::path>& files) {
+    std::vector<std::string> result;
+    for (const fs::path& file : files) result.push_back(file.stem().string());
+    return result;
+  };
+  SeriesOptions options;
+  options.coordinates = {1.5, 0.5, 0};
+  for (const SeriesOrder order : {SeriesOrder::given, SeriesOrder::by_name, SeriesOrder::coordinate}) {
+    options.order = order;
+    const ReadSeriesResult read = read_series(files_, options);
+    const auto image = image_as<std::int16_t, 4>(read.image);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int k = image.values[8 * i];
+      EXPECT_EQ(image.grid.axes[3][i], k == 10 ? 1.5 : k == 2 ? 0.5 : 0);
+      EXPECT_EQ(read.files[i].stem(), "frame_" + std::to_string(k));
+    }
+    const OpenSeriesResult opened = open_series(files_, options);
+    expect_layers_of(read.image, opened.layers);
+    EXPECT_EQ(opened.files, read.files);
+  }
+  options.order = SeriesOrder::given;
+  EXPECT_THAT(names(read_series(files_, options).files), ElementsAre("frame_10", "frame_2", "frame_1"));
+  options.order = SeriesOrder::by_name;
+  EXPECT_THAT(names(read_series(files_, options).files), ElementsAre("frame_1", "frame_2", "frame_10"));
+  options.coordinates = {0.5, 1.5, 0};  // frame_10 before frame_2
+  expect_refused(
+      ErrorCode::InvalidArgument,
+      {"frame_10.nrrd", "lies at 0.5", "coordinates that are given", "frame_2.nrrd at 1.5", "order of their names"},
+      options);
+}
+
 TEST_F(Series, LiesWhereTheHeadersSay) {
   for (const int k : {3, 1, 2})
     add("frame_" + std::to_string(k) + ".nrrd", nrrd({2, 2, 2, 1}, k,

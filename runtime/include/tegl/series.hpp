@@ -19,13 +19,13 @@ namespace tegl {
 enum class SeriesOrder {
   given,       ///< as they are listed
   by_name,     ///< by their names, whose numbers count as such: frame_2 before frame_10
-  coordinate,  ///< by where they lie along the new axis, ascending
+  coordinate,  ///< by where they lie along the new axis, ascending; by `coordinates`, or as they say themselves
 };
 
 /// How files become one image.
 struct SeriesOptions {
   std::string variable;                    ///< netCDF: as in ReadImageOptions, of every file
-  std::vector<double> coordinates;         ///< one for each file, in SeriesOrder's order; empty: see read_series
+  std::vector<double> coordinates;         ///< where each file lies, as they are listed; empty: see read_series
   std::optional<double> step;              ///< instead of them: 0, step, 2 step, ...
   std::string unit;                        ///< of the new axis; empty: the files' own
   SeriesOrder order = SeriesOrder::given;  ///< of the files
@@ -33,13 +33,24 @@ struct SeriesOptions {
   Progress progress;                       ///< of read_series, over all files
 };
 
+/// An image of several files, which is a ReadImageResult as any other, and those files.
+struct ReadSeriesResult : ReadImageResult {
+  std::vector<std::filesystem::path> files;  ///< in the order of the new axis; of DICOM as they were listed
+};
+
+/// The same to be read layer by layer.
+struct OpenSeriesResult : OpenLayersResult {
+  std::vector<std::filesystem::path> files;  ///< as above
+};
+
 /// Reads files of one shape as one image with one axis more, the last: 3D files as a 4D image, 2D files as a 3D one.
 /// Any formats of read_image, or raw values. One file alone is read as it is.
 ///
-/// The new axis is named t (of 3D files) or z (of 2D ones). Its coordinates are `coordinates`, or multiples of `step`;
-/// without either the files' own, where each says in an axis of one sample where it lies (netCDF: a coordinate
-/// variable; NIfTI: toffset, or the position of a slice; NRRD and MetaImage: the last axis) and these differ, and the
-/// name and unit they give; else 0, 1, 2, ... They have to be strictly monotone.
+/// The new axis is named t (of 3D files) or z (of 2D ones). Its coordinates are `coordinates`, each of which stays with
+/// its file whatever the order, or multiples of `step` in that order; without either the files' own, where each says in
+/// an axis of one sample where it lies (netCDF: a coordinate variable; NIfTI: toffset, or the position of a slice; NRRD
+/// and MetaImage: the last axis) and these differ, and the name and unit they give; else 0, 1, 2, ... They have to be
+/// strictly monotone in the order of the files.
 ///
 /// Values and coordinates are those of read_image. The files must have the same sizes, type of values, unit of values,
 /// frame and coordinates; the latter up to a thousandth of a step, and those of the first file count. All headers are
@@ -48,12 +59,12 @@ struct SeriesOptions {
 /// Errors, naming the file and what differs from the first: UnsupportedData (files that do not fit together; more than
 /// 3 axes), InvalidArgument (no file; coordinates that are not one for each file or not monotone, both `coordinates`
 /// and `step`), and those of read_image.
-ReadImageResult read_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
+ReadSeriesResult read_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
 /// The same to be read layer by layer, a file for each layer: what is larger than memory as a whole. Values as in
 /// open_layers (uint32, int64 and uint64 as double). Memory: one file. Errors: as above, at once; and by read() if a
 /// file has become another since. One file alone is opened by open_layers, or open_raw_layers.
-OpenLayersResult open_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
+OpenSeriesResult open_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
 /// Whether these are DICOM files, which say themselves where they lie: read_series reads them in any order, and takes
 /// neither coordinates nor a SeriesOrder for them.
