@@ -79,7 +79,7 @@ class ComponentsCommand final : public ContourInputCommand {
         ->type_name("COUNT");
     app()
         .add_option("-o,--output", output_,
-                    "one file with the components chosen (.ply, .gltf, .glb, .vtkhdf), their labels as attribute")
+                    fmt::format("one file with the components chosen, their labels as attribute: {}", kContourFiles))
         ->type_name("FILE");
     app().add_option("--split", split_, "a file for each; {label} in the name stands for its label")->type_name("FILE");
     app().add_option("--csv", csv_, "the table as CSV")->type_name("FILE");
@@ -111,13 +111,17 @@ class ComponentsCommand final : public ContourInputCommand {
 
  private:
   void require_outputs() const {
-    if (!output_.empty()) require_output(output_, files());
+    if (!output_.empty()) {
+      require_output(output_, files());
+      require_output_keeps(output_, normals(), false);
+    }
     if (!csv_.empty()) require_text_output(csv_, files());
     if (split_.empty()) return;
     if (split_.find(kLabel) == std::string::npos)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--split is '{}'; expected {{label}} in it, for the label of each component", split_));
     require_output(split_name(0), files());
+    require_output_keeps(split_name(0), normals(), false);
   }
 
   void require_outputs_hold(int dim) const {

@@ -82,8 +82,9 @@ class ContourCommand final : public Command {
     options_.add_to(app(), true);
     app()
         .add_option("-o,--output", output_,
-                    "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too); with --facets .vtu or, in 2D and "
-                    "3D, .vtkhdf; with several isovalues {iso} in it stands for the number")
+                    std::string("the result: ") + kContourFiles +
+                        "; with --facets .vtu or, in 2D and 3D, .vtkhdf; with several isovalues {iso} in it stands for "
+                        "the number, {n} for its place")
         ->type_name("FILE")
         ->required();
     app().add_flag("--one-file", one_file_,
@@ -120,7 +121,10 @@ class ContourCommand final : public Command {
     const std::vector<std::string> outputs =
         one_file_ ? std::vector(isovalues.size(), output_) : isovalue_outputs(output_, isovalues);
     if (facets_) return run_facets(streams, isovalues, outputs, options);
-    for (const std::string& output : outputs) require_output(output, files());
+    for (const std::string& output : outputs) {
+      require_output(output, files());
+      require_output_keeps(output, options_.normals(), attributes_.wanted());
+    }
     if (!index_.empty()) {
       require_input(index_);
       if (is_streamed())

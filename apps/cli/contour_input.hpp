@@ -79,6 +79,9 @@ class ContourInputCommand : public Command {
   /// --threads: 0 for all that the machine has.
   [[nodiscard]] unsigned threads() const { return options_.threads(); }
 
+  /// The kind that --normals asks for; empty: none.
+  [[nodiscard]] const std::string& normals() const { return options_.normals(); }
+
   /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`. Throws InvalidArgument if --iso is
   /// missing for an image, or options of images are given with a saved contour; EmptyResult if there is no contour; and
   /// what the readers throw.

@@ -43,6 +43,8 @@ class ExtractionOptions {
   /// The library's options, without progress. Throws InvalidArgument for an epsilon outside of [0, 0.5), and for a
   /// triangulation of polygons unless the caller sees to those itself.
   [[nodiscard]] ExtractOptions library_options(bool knows_polygons = false) const;
+  /// The kind that --normals asks for; empty: none.
+  [[nodiscard]] const std::string& normals() const { return normals_; }
   /// Whether --normals asks for some that follow the contour's own shape.
   [[nodiscard]] bool wants_shape_normals() const { return normals_ == "geometric" || normals_ == "flat"; }
   /// Gives them to the contour: `geometric` as its normals, `flat` as the attribute "normal" of its simplices.

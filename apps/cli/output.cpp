@@ -17,13 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kExpectedExtensions = "expected .ply, .gltf or .glb (2D and 3D contours) or .vtkhdf";
-
-const MeshFileFormat* find_output_format(const fs::path& path) {
-  const MeshFileFormat* const format = find_mesh_file_format(path);
-  return format != nullptr && format->writable ? format : nullptr;
-}
-
 [[noreturn]] void fail(const fs::path& output, std::string_view why) {
   throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", output.string(), why));
 }
@@ -60,22 +53,42 @@ void require_text_output(const fs::path& output, const std::vector<std::string>&
 }
 
 void require_output(const fs::path& output, const std::vector<std::string>& inputs) {
-  if (find_output_format(output) == nullptr) {
+  if (find_mesh_file_format(output) == nullptr) {
     const std::string extension = output.extension().string();
-    fail(output, fmt::format("{}; {}",
+    fail(output, fmt::format("{}; expected {}",
                              extension.empty() ? "the name has no extension"
                                                : fmt::format("the extension '{}' is not known", extension),
-                             kExpectedExtensions));
+                             kContourFiles));
   }
   require_text_output(output, inputs);
 }
 
 void require_output_holds(const fs::path& output, int simplex_dim) {
-  const MeshFileFormat* const format = find_output_format(output);
-  if (format != nullptr && simplex_dim <= format->most_dim) return;
-  fail(output,
-       fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf", output.extension().string(),
-                   simplex_dim + 1, simplex_dim == 3 ? "tetrahedra" : "simplices", simplex_dim + 1));
+  const MeshFileFormat* const format = find_mesh_file_format(output);
+  const std::string extension = output.extension().string();
+  if (format == nullptr || simplex_dim > format->most_dim)
+    fail(
+        output,
+        fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf, or a surface: cut the contour "
+                    "first ('tegl slice')",
+                    extension, simplex_dim + 1, simplex_dim == 3 ? "tetrahedra" : "simplices", simplex_dim + 1));
+  if (simplex_dim < format->least_dim)
+    fail(output, fmt::format("'{}' cannot hold a {}D contour, which is made of lines; expected .ply, .gltf, .glb, .obj "
+                             "or .vtkhdf",
+                             extension, simplex_dim + 1));
+}
+
+void require_output_keeps(const fs::path& output, std::string_view normals, bool attributes) {
+  const MeshFileFormat* const format = find_mesh_file_format(output);
+  if (format == nullptr || (format->extension != ".stl" && format->extension != ".obj")) return;
+  if (attributes)
+    fail(output,
+         fmt::format("'{}' has no place for attributes; expected .vtkhdf, .ply, .gltf or .glb", format->extension));
+  // The facets' own normals are what STL has anyway; other programs make them of OBJ themselves.
+  if (normals.empty() || (normals == "flat") == (format->extension == ".stl")) return;
+  fail(output, fmt::format("'{}' has no place for normals of {}; expected .vtkhdf, .ply{} with --normals {}",
+                           format->extension, normals == "flat" ? "triangles" : "vertices",
+                           normals == "flat" ? "" : ", .obj, .gltf or .glb", normals));
 }
 
 std::uint64_t write_file(const fs::path& output, const std::function<void()>& write) {

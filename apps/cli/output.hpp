@@ -6,12 +6,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "tegl/io.hpp"
 
 namespace tegl::cli {
+
+/// What contours are written to, for help and errors.
+inline constexpr const char* kContourFiles = ".ply, .gltf, .glb, .obj, .stl (3D alone) or .vtkhdf (4D too)";
 
 /// Whether an input may be a folder: those of DICOM series are.
 enum class Folders { refused, allowed };
@@ -25,6 +30,10 @@ void require_output(const std::filesystem::path& output, const std::vector<std::
 
 /// Throws WriteFailed unless the format of `output` holds simplices of this dimension.
 void require_output_holds(const std::filesystem::path& output, int simplex_dim);
+
+/// Throws WriteFailed if the format of `output` would leave out what options ask for: `normals` of this kind (as
+/// --normals has it; empty: none), or `attributes`.
+void require_output_keeps(const std::filesystem::path& output, std::string_view normals, bool attributes);
 
 /// Throws WriteFailed unless `output` can be expected to be written as a text file, of any extension.
 void require_text_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);

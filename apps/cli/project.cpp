@@ -116,7 +116,7 @@ class ProjectCommand final : public ContourInputCommand {
         ->type_name("COUNT")
         ->capture_default_str();
     app()
-        .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb or .vtkhdf; tetrahedra: .vtkhdf")
+        .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
@@ -129,6 +129,7 @@ class ProjectCommand final : public ContourInputCommand {
     require_inputs();
     require_output(output_, files());
     require_output_holds(output_, kind_ == "tetrahedra" ? 3 : 2);
+    require_output_keeps(output_, normals(), attributes_.wanted());
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);

@@ -74,7 +74,7 @@ class SimplifyCommand final : public ContourInputCommand {
         "leave out the bound of the error (and that of an earlier simplification), and the rounds that make it small");
     app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: write what is no manifold, too");
     app()
-        .add_option("-o,--output", output_, "the result: .ply, .gltf, .glb (2D and 3D) or .vtkhdf (4D too)")
+        .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
         ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
@@ -84,6 +84,7 @@ class SimplifyCommand final : public ContourInputCommand {
   ExitCode run(const Streams& streams) override {
     require_inputs();
     require_output(output_, files());
+    require_output_keeps(output_, normals(), false);
     require_goal();
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);

@@ -36,8 +36,6 @@ constexpr const char* kExamples =
     "exact times between the steps. 'begin' and 'end' are at the first and last step of the data, 'enter' and 'leave'\n"
     "at the image's other borders and beside missing values.";
 
-constexpr const char* kExpected = "expected .json, .dot, .svg, or a contour's: .vtkhdf, .ply, .gltf or .glb";
-
 /// Adds to each simplex the track and the segment that it is in when it first appears; -1: in none.
 template <int N>
 void add_labels(Contour<N, double>& contour, const TrackGraph& graph) {
@@ -163,12 +161,20 @@ class TrackCommand final : public ContourInputCommand {
       if (is_track_file(output))
         require_text_output(output, files());
       else if (find_mesh_file_format(output) != nullptr)
-        require_output(output, files());
+        require_mesh_output(output);
       else
-        throw Error(ErrorCode::WriteFailed, fmt::format("{}: the extension is not known; {}", output, kExpected));
+        throw Error(ErrorCode::WriteFailed,
+                    fmt::format("{}: the extension is not known; expected .json, .dot, .svg, or a contour's: {}",
+                                output, kContourFiles));
     }
     if (!csv_.empty())
       for (const char* const table : kTables) require_text_output(csv_ + table, files());
+  }
+
+  /// The contour is written for the track of each simplex.
+  void require_mesh_output(const std::string& output) const {
+    require_output(output, files());
+    require_output_keeps(output, normals(), true);
   }
 
   template <int N>

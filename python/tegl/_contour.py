@@ -219,7 +219,7 @@ class Contour:
 
     @_arguments.documents("write_mesh")
     def save(self, path: str | os.PathLike, *, progress: Progress | None = None) -> None:
-        """Writes a file, in the format of its suffix: .ply, .gltf, .glb (2D, 3D) or .vtkhdf (4D too).
+        """Writes a file, in the format of its suffix: .ply, .gltf, .glb, .obj (2D, 3D), .stl (3D) or .vtkhdf (4D too).
 
         Files have x, y, z and t: the library's order of axes, so that what NumPy has as (t, z, y, x) comes out right.
         """

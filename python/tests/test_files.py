@@ -69,6 +69,23 @@ def test_what_is_saved_comes_back(suffix, ndim, time_axis, tmp_path):
     assert "simplification_error" in tegl.load(tmp_path / "simplified.ply").vertex_attributes
 
 
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_stl_and_obj_hold_the_same_closed_surface_with_high_inside(time_axis, tmp_path):
+    contour = tegl.contour(ball(3, 21), 0.0, spacing=(1.0, 0.5, 2.0), time_axis=time_axis)
+    assert contour.check().is_closed
+    for name in ("ball.stl", "ball.obj"):
+        contour.save(tmp_path / name)
+        loaded = tegl.load(tmp_path / name, time_axis=time_axis)
+        assert loaded.check().is_closed and loaded.check().euler == 2
+        assert np.array_equal(loaded.vertices[loaded.simplices], contour.vertices[contour.simplices])
+        assert loaded.measure().content == pytest.approx(contour.measure().content, rel=1e-6) and loaded.measure().content > 0
+    assert (tmp_path / "ball.stl").stat().st_size == 84 + 50 * len(contour.simplices)
+    tegl.contour(ball(2, 21), 0.0).save(tmp_path / "line.obj")
+    assert tegl.load(tmp_path / "line.obj").check().is_closed
+    with pytest.raises(ValueError, match="expected .vtkhdf, or a cut of it"):
+        tegl.contour(ball(4, 9), 0.0).save(tmp_path / "no.stl")
+
+
 def test_files_that_cannot_be(tmp_path):
     contour = tegl.contour(ball(3), 0.0)
     with pytest.raises(OSError):

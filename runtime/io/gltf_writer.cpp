@@ -37,15 +37,10 @@ Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
   result.high.fill(-std::numeric_limits<float>::infinity());
   result.values.resize(vertex_count(mesh));
   for (std::size_t v = 0; v < result.values.size(); ++v) {
-    const auto point = position(mesh, v);
+    result.values[v] = float_position(mesh, v, path);
     for (std::size_t a = 0; a < 3; ++a) {
-      if (!(std::abs(point[a]) <= static_cast<double>(std::numeric_limits<float>::max())))
-        fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected what float holds", v,
-             point[a]);
-      const auto value = static_cast<float>(point[a]);
-      result.values[v][a] = value;
-      result.low[a] = std::min(result.low[a], value);
-      result.high[a] = std::max(result.high[a], value);
+      result.low[a] = std::min(result.low[a], result.values[v][a]);
+      result.high[a] = std::max(result.high[a], result.values[v][a]);
     }
   }
   return result;

@@ -3,7 +3,8 @@
 // Meshes: between contours and files.
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <cmath>
+#include <limits>
 
 #include "attributes.hpp"
 #include "common.hpp"
@@ -17,17 +18,14 @@ namespace {
 
 using namespace io_detail;
 
-constexpr std::array<MeshFileFormat, 6> kFormats = {{{".ply", 2, true},
-                                                     {".gltf", 2, true},
-                                                     {".glb", 2, true},
-                                                     {".vtkhdf", 3, true},
-                                                     {".stl", 2, false},
-                                                     {".obj", 2, false}}};
+constexpr std::array<MeshFileFormat, 6> kFormats = {
+    {{".ply", 1, 2}, {".gltf", 1, 2}, {".glb", 1, 2}, {".vtkhdf", 1, 3}, {".stl", 2, 2}, {".obj", 1, 2}}};
 
-const MeshFileFormat& format_of(const fs::path& path, std::string_view expected) {
+const MeshFileFormat& format_of(const fs::path& path) {
   if (const MeshFileFormat* const format = find_mesh_file_format(path)) return *format;
-  fail(ErrorCode::UnsupportedFormat, path, "no mesh format known by the extension '{}'; expected {}",
-       path.extension().string(), expected);
+  fail(ErrorCode::UnsupportedFormat, path,
+       "no mesh format known by the extension '{}'; expected .ply, .gltf, .glb, .vtkhdf, .stl or .obj",
+       path.extension().string());
 }
 
 bool is_gltf(const MeshFileFormat& format) { return format.extension == ".gltf" || format.extension == ".glb"; }
@@ -53,15 +51,17 @@ void check_mesh(const Mesh& mesh, const fs::path& path) {
     fail(ErrorCode::InvalidArgument, path, "mesh with vertex number {}; expected less than {}", *bad, vertices);
 }
 
-/// Lines and triangles go into every format; tetrahedra, and a fourth coordinate, only where tetrahedra go.
+/// Triangles go into every format, and lines into those but STL; tetrahedra, and a fourth coordinate, only where
+/// tetrahedra go.
 void check_combination(const Mesh& mesh, const MeshFileFormat& format, const fs::path& path) {
-  if (!format.writable)
-    fail(ErrorCode::UnsupportedFormat, path, "'{}' is read only; expected .ply, .gltf, .glb or .vtkhdf to write",
-         path.extension().string());
+  if (mesh.dim < format.least_dim)
+    fail(ErrorCode::UnsupportedFormat, path,
+         "'{}' cannot hold {}-simplices, which lines are made of; expected .ply, .gltf, .glb, .obj or .vtkhdf",
+         path.extension().string(), mesh.dim);
   if (mesh.dim > format.most_dim || (mesh.space_dim == 4 && format.most_dim < 3))
     fail(ErrorCode::UnsupportedFormat, path,
          "'{}' cannot hold {}-simplices in {}-space (the contour of a {}D image); "
-         "expected .vtkhdf",
+         "expected .vtkhdf, or a cut of it",
          path.extension().string(), mesh.dim, mesh.space_dim, mesh.space_dim);
 }
 
@@ -85,6 +85,18 @@ void ReadProgress::add(std::uint64_t bytes) {
   if (done_ - told_ < kTellEvery) return;
   told_ = done_;
   tick(progress_, static_cast<double>(done_) / static_cast<double>(size_), path_);
+}
+
+std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const fs::path& path) {
+  std::array<float, 3> result{};
+  const auto point = position(mesh, vertex);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(std::abs(point[a]) <= static_cast<double>(std::numeric_limits<float>::max())))
+      fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected what float holds", vertex,
+           point[a]);
+    result[a] = static_cast<float>(point[a]);
+  }
+  return result;
 }
 
 void flatten(Mesh& mesh, const fs::path& path) {
@@ -174,7 +186,7 @@ const MeshFileFormat* find_mesh_file_format(const fs::path& path) {
 }
 
 void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress) {
-  const MeshFileFormat& format = format_of(path, ".ply, .gltf, .glb or .vtkhdf");
+  const MeshFileFormat& format = format_of(path);
   check_mesh(mesh, path);
   check_combination(mesh, format, path);
   tick(progress, 0.0, path);
@@ -182,13 +194,17 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress
     write_ply(mesh, path, progress);
   else if (is_gltf(format))
     write_gltf(mesh, path, progress);
+  else if (format.extension == ".stl")
+    write_stl(mesh, path, progress);
+  else if (format.extension == ".obj")
+    write_obj(mesh, path, progress);
   else
     write_vtkhdf(mesh, path, progress);
 }
 
 Mesh read_mesh(const fs::path& path, const Progress& progress) {
   require_readable_file(path);
-  const MeshFileFormat& format = format_of(path, ".ply, .gltf, .glb, .vtkhdf, .stl or .obj");
+  const MeshFileFormat& format = format_of(path);
   ReadProgress read(progress, path);
   Mesh mesh = format.extension == ".ply"      ? read_ply(path, read)
               : format.extension == ".vtkhdf" ? read_vtkhdf(path, read)

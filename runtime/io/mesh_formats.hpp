@@ -43,7 +43,13 @@ Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress);
 void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
 Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress);
 
-/// STL and OBJ: triangle soups, whose vertices are joined where their coordinates are equal.
+void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+/// The number as the file has it; TooLarge beyond 2^32 - 1.
+std::uint32_t stl_triangle_count(std::uint64_t triangles, const std::filesystem::path& path);
+
+void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+
+/// STL and OBJ: triangles, or segments where there are none; vertices are joined where their coordinates are equal.
 Mesh read_with_assimp(const std::filesystem::path& path, ReadProgress& progress);
 
 /// Name or unit of an axis; "" where the mesh has none.
@@ -70,6 +76,9 @@ inline std::array<double, 3> position(const Mesh& mesh, std::size_t vertex) {
   return row_of(mesh.coordinates, mesh, vertex);
 }
 inline std::array<double, 3> normal(const Mesh& mesh, std::size_t vertex) { return row_of(mesh.normals, mesh, vertex); }
+
+/// The position as float; UnsupportedData for what float cannot hold.
+std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const std::filesystem::path& path);
 
 /// Makes a mesh that was read with space_dim 3 planar, as the file says that it was written from the plane (`space_dim`
 /// 2); MalformedFile if it is not in the plane z = 0.

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "attributes.hpp"
+#include "block_writer.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
 #include "output_file.hpp"
@@ -19,8 +20,6 @@ namespace tegl::io_detail {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they are in memory");
-
-constexpr std::size_t kBlock = std::size_t{1} << 16;  ///< vertices or simplices between two reports
 
 /// Comments end at the line's end: other control characters would end them too early.
 std::string one_line(std::string text) {
@@ -57,15 +56,15 @@ class PlyWriter {
   PlyWriter(const Mesh& mesh, OutputFile& file, const Progress& progress)
       : mesh_(mesh),
         file_(file),
-        progress_(progress),
+        out_(file, progress),
         of_vertices_(properties_of(mesh.vertex_attributes, FileNames({"x", "y", "z", "nx", "ny", "nz"}))),
         of_simplices_(properties_of(mesh.simplex_attributes,
                                     FileNames({"vertex_indices", "vertex_index", "vertex1", "vertex2"}))) {}
 
   void run() {
     file_.write(header());
-    in_blocks(vertex_count(mesh_), 0.0, [this](std::size_t v) { put_vertex(v); });
-    in_blocks(simplex_count(mesh_), 0.5, [this](std::size_t s) { put_simplex(s); });
+    out_.write_rows(vertex_count(mesh_), 0.0, 0.5, [this](std::size_t v) { put_vertex(v); });
+    out_.write_rows(simplex_count(mesh_), 0.5, 1.0, [this](std::size_t s) { put_simplex(s); });
   }
 
  private:
@@ -112,54 +111,35 @@ class PlyWriter {
     return text;
   }
 
-  /// Calls put(row) for all rows; what these put is written a block at a time.
-  template <class Put>
-  void in_blocks(std::size_t rows, double done, const Put& put) {
-    for (std::size_t first = 0; first < rows; first += kBlock) {
-      tick(progress_, done + 0.5 * static_cast<double>(first) / static_cast<double>(rows), file_.target());
-      block_.clear();
-      for (std::size_t row = first; row < std::min(first + kBlock, rows); ++row) put(row);
-      file_.write(block_.data(), block_.size());
-    }
-  }
-
-  template <class T>
-  void put(const T* values, std::size_t count) {
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(values);
-    block_.insert(block_.end(), bytes, bytes + count * sizeof(T));
-  }
-
   void put_attributes(const std::vector<Properties>& all, std::size_t row) {
     for (const Properties& properties : all) {
       const auto width = static_cast<std::size_t>(properties.attribute->width);
       const double* const values = properties.attribute->values.data() + row * width;
       if (!properties.are_bytes) {
-        put(values, width);
+        out_.put(values, width);
         continue;
       }
-      for (std::size_t i = 0; i < width; ++i)
-        block_.push_back(static_cast<unsigned char>(std::lround(255.0 * values[i])));
+      for (std::size_t i = 0; i < width; ++i) out_.put_byte(static_cast<unsigned char>(std::lround(255.0 * values[i])));
     }
   }
 
   void put_vertex(std::size_t v) {
-    put(position(mesh_, v).data(), 3);
-    if (!mesh_.normals.empty()) put(normal(mesh_, v).data(), 3);
+    out_.put(position(mesh_, v).data(), 3);
+    if (!mesh_.normals.empty()) out_.put(normal(mesh_, v).data(), 3);
     put_attributes(of_vertices_, v);
   }
 
   void put_simplex(std::size_t s) {
     const auto corners = static_cast<std::size_t>(mesh_.dim) + 1;
-    if (mesh_.dim == 2) block_.push_back(3);
-    put(mesh_.simplices.data() + s * corners, corners);
+    if (mesh_.dim == 2) out_.put_byte(3);
+    out_.put(mesh_.simplices.data() + s * corners, corners);
     put_attributes(of_simplices_, s);
   }
 
   const Mesh& mesh_;
   OutputFile& file_;
-  const Progress& progress_;
+  BlockWriter out_;
   std::vector<Properties> of_vertices_, of_simplices_;
-  std::vector<unsigned char> block_;
 };
 
 }  // namespace

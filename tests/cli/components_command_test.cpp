@@ -153,7 +153,7 @@ TEST_F(Components, WrongOptionsAreRefusedBeforeAnythingIsWritten) {
     EXPECT_THAT(files(), ElementsAre("balls.nii"));
   };
   refused({"--iso", "0", "--split", path("a.ply")}, 2, "expected {label} in it");
-  refused({"--iso", "0", "--split", path("a_{label}.stl")}, 6, ".stl");
+  refused({"--iso", "0", "--split", path("a_{label}.xyz")}, 6, ".xyz");
   refused({"--iso", "0", "--select", "size >"}, 2, "expected a number");
   refused({"--iso", "0", "--largest", "0"}, 2, "--largest");
   refused({"--iso", "0", "-o", path("nowhere/a.ply")}, 6, "does not exist");

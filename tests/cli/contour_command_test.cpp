@@ -64,6 +64,37 @@ TEST_F(Contour, OfMovingBallsIsAManifoldOfTetrahedra) {
   EXPECT_EQ(closed["euler"], 0) << "a closed 3-manifold";
 }
 
+TEST_F(Contour, GoesIntoStlAndObjWhereTheseHoldIt) {
+  const std::string ball_file = write("ball.nrrd", nrrd_bytes(ball({12, 13, 14}, 4.3)));
+  const nlohmann::json stl = contour(ball_file, "0", "part.stl", {"--normals", "flat"});
+  EXPECT_EQ(std::filesystem::file_size(path("part.stl")), 84 + 50 * stl["simplices"].get<std::size_t>());
+  const nlohmann::json obj = contour(ball_file, "0", "part.obj", {"--normals"});
+  for (const char* const name : {"part.stl", "part.obj"}) {
+    const RunResult run = run_tegl({"check", path(name), "--require", "closed", "--json"});
+    ASSERT_EQ(run.exit, 0) << run.err;
+    for (const char* const key : {"vertices", "simplices", "components", "euler"}) EXPECT_EQ(run.json()[key], obj[key]);
+  }
+  const std::string disc_file = write("disc.nrrd", nrrd_bytes(ball({16, 15}, 4.3)));
+  contour(disc_file, "0", "line.obj");
+  const auto refused = [&](const std::vector<std::string>& rest, const std::string& message) {
+    std::vector<std::string> arguments = {"contour", "--iso", "0", "-o", path("no.stl")};
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 6) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(message));
+  };
+  refused({disc_file}, "'.stl' cannot hold a 2D contour, which is made of lines");
+  refused({write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 1}))},
+          "cut the contour first ('tegl slice')");
+  refused({ball_file, "--normals"}, "no place for normals of vertices");
+  refused({ball_file, "--attribute", ball_file}, "no place for attributes");
+  refused({ball_file, "--stream"}, "expected .vtkhdf");
+  const RunResult line = run_tegl({"slice", ball_file, "--iso", "0", "--at", "z=5", "-o", path("no.stl")});
+  EXPECT_EQ(line.exit, 6);
+  EXPECT_THAT(line.err, HasSubstr("made of lines"));
+  EXPECT_THAT(files(), ElementsAre("ball.nrrd", "balls.nii", "disc.nrrd", "line.obj", "part.obj", "part.stl"));
+}
+
 TEST_F(Contour, ReportsEveryKey) {
   const nlohmann::json report = contour(write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2))), "0", "out.glb");
   for (const char* key : {"dim", "vertices", "simplices", "components", "euler", "boundary_simplices",

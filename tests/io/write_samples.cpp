@@ -4,7 +4,9 @@
 #include <array>
 #include <filesystem>
 #include <iostream>
+#include <random>
 
+#include "tegl/extract.hpp"
 #include "tegl/io.hpp"
 
 namespace {
@@ -41,6 +43,18 @@ tegl::FacetHierarchy<N, double> facets_of_plane() {
   return tegl::extract_facets<double>(image.view(), 0.0, options);
 }
 
+/// A closed surface of noise, many components and tunnels, with normals. No sample is near the isovalue.
+tegl::Contour<3, double> closed_noise() {
+  tegl::OwnedImage<float, 3> image{tegl::Grid<3>::unit({12, 13, 14}), {}};
+  std::mt19937 random(7);
+  for (int i = 0; i < 12 * 13 * 14; ++i)
+    image.values.push_back((random() % 2 == 0 ? 1.0F : -1.0F) * static_cast<float>(1 + random() % 100));
+  tegl::ExtractOptions options;
+  options.close = true;
+  options.normals = true;
+  return tegl::extract<double>(image.view(), 0.0, options);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -63,6 +77,10 @@ int main(int argc, char** argv) {
     tegl::write_mesh(surface, folder / "surface.ply");
     tegl::write_mesh(contour4, folder / "contour4.vtkhdf");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.vtkhdf");
+    for (const char* const name : {"noise.ply", "noise.stl", "noise.obj"})
+      tegl::write_mesh(tegl::to_mesh(closed_noise()), folder / name);
+    tegl::write_mesh(lines, folder / "lines.obj");
+    tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.stl");
     tegl::write_facets(facets_of_plane<2>(), folder / "segments.vtu");
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtu");
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtkhdf");

@@ -143,8 +143,8 @@ struct Mesh {
 /// What a file with a certain extension holds.
 struct MeshFileFormat {
   std::string_view extension;  ///< with its dot, in lower case
-  int most_dim;                ///< simplices up to this dimension; 3: in 4-space as well
-  bool writable;               ///< by write_mesh; all can be read
+  int least_dim;               ///< simplices from this dimension
+  int most_dim;                ///< up to this one; 3: in 4-space as well
 };
 
 /// The formats of read_mesh and write_mesh, by extension.
@@ -161,17 +161,19 @@ Mesh to_mesh(const Contour<N, Real>& contour);
 template <int N>
 Contour<N, double> to_contour(const Mesh& mesh);
 
-/// Writes by extension: .ply (lossless) and .gltf/.glb (coordinates as float) hold segments and triangles in the plane
-/// or in space; .vtkhdf (lossless) these and 4D contours, as tetrahedra with t as a point array. Normals go
-/// into all of them: as nx, ny, nz (.ply), NORMAL (.gltf/.glb; 0 as (0, 0, 1), as the format has none of length 0), and
-/// the point arrays Normals and, in 4-space, normal_t (.vtkhdf). Attributes become properties of vertices and of faces
-/// or edges (.ply), point and cell arrays (.vtkhdf; both as double, with names and units), and _NAME attributes of
-/// vertices (.gltf/.glb; as float, of up to four numbers: others, and those of simplices, have no place there and are
-/// left out). The isovalue goes into the field array `isovalue` (.vtkhdf), a comment (.ply), or asset.extras. Written
-/// under another name beside the target and renamed at the end: never half a file. An empty mesh gives a valid file.
+/// Writes by extension: .ply, .obj (text; both lossless) and .gltf/.glb (coordinates as float) hold segments and
+/// triangles in the plane or in space; .stl (binary, float) triangles alone; .vtkhdf (lossless) segments, triangles and
+/// 4D contours, as tetrahedra with t as a point array. Normals go into all but .stl, which has the facets' own: as nx,
+/// ny, nz (.ply), vn (.obj), NORMAL (.gltf/.glb; 0 as (0, 0, 1), as the format has none of length 0), and the point
+/// arrays Normals and, in 4-space, normal_t (.vtkhdf). Attributes become properties of vertices and of faces or edges
+/// (.ply), point and cell arrays (.vtkhdf; both as double, with names and units), and _NAME attributes of vertices
+/// (.gltf/.glb; as float, of up to four numbers: others, and those of simplices, have no place there and are left
+/// out). The isovalue goes into the field array `isovalue` (.vtkhdf), a comment (.ply), or asset.extras. .stl and .obj
+/// have no place for attributes, isovalue, names and units: these are left out. Written under another name beside the
+/// target and renamed at the end: never half a file. An empty mesh gives a valid file.
 /// Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh), InvalidArgument (a mesh that
-/// contradicts itself), UnsupportedData (.gltf: coordinates or attributes beyond float), TooLarge (.glb beyond 4 GiB),
-/// WriteFailed, Cancelled.
+/// contradicts itself), UnsupportedData (.gltf, .stl: coordinates or attributes beyond float; .obj: not finite),
+/// TooLarge (.glb beyond 4 GiB, .stl beyond 2^32 - 1 triangles), WriteFailed, Cancelled.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
 
 /// Writes bytes as they are: tables and graphs as text. Under another name first, so never half a file. Errors:
@@ -214,11 +216,12 @@ class ContourFile final : public ContourSink<N, Real> {
 };
 
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
-/// triangles; glTF: nodes applied), and triangles of .stl and .obj, where vertices with equal coordinates become one.
-/// Normals are read where one of the formats of write_mesh has them for all vertices, and so are attributes: of other
+/// triangles; glTF: nodes applied). Of .stl and .obj come triangles (.obj: or segments, if there are none) with
+/// coordinates as float, where vertices with equal coordinates become one, and nothing else; empty ones are refused.
+/// Normals are read where one of the other formats has them for all vertices, and so are attributes: of other
 /// programs any numbers by a name of their own (PLY: scalar properties; VTKHDF: arrays of one or two dimensions; glTF:
-/// _NAME as float). What write_mesh wrote comes back with the same numbering, names, units and isovalue. Errors:
-/// FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge, Cancelled.
+/// _NAME as float). What write_mesh wrote to these comes back with the same numbering, names, units and isovalue.
+/// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge, Cancelled.
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace tegl
