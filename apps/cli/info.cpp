@@ -167,16 +167,42 @@ std::string axis_text(const Description& description, std::size_t at) {
   return text + fmt::format(", steps {} to {}", number(least), number(most));
 }
 
+/// An entry of a matrix whose largest has this size. What is nothing beside it, as rounding leaves where a 0 is meant,
+/// has one digit: it is there, and of what size is all that can be said of it.
+std::string matrix_entry(double value, double largest) {
+  constexpr double kRounding = 1e-9;
+  return value != 0.0 && std::abs(value) < kRounding * largest ? fmt::format("{:.0e}", value) : number(value);
+}
+
+/// Lines of cells in columns as wide as their widest cell, aligned to the right, with two blanks between them.
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::string> lines(rows.size());
+  for (std::size_t column = 0; column < rows.front().size(); ++column) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, row[column].size());
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      lines[row] += fmt::format("{}{:>{}}", column == 0 ? "" : "  ", rows[row][column], width);
+  }
+  return lines;
+}
+
 std::string world_text(const Description& description) {
   const std::string& frame = description.info.world_frame;
   if (description.linear.empty()) return report_line("world", frame.empty() ? "the axes themselves" : frame);
-  std::string text;
+  double largest = 0.0;
+  for (const auto& row : description.linear)
+    for (const double value : row) largest = std::max(largest, std::abs(value));
+  std::vector<std::vector<std::string>> rows;
   for (std::size_t row = 0; row < description.linear.size(); ++row) {
-    std::string cells;
-    for (const double cell : description.linear[row]) cells += fmt::format("{:>11}", number(cell));
-    text += report_line(row == 0 ? "world" : "", fmt::format("{} | {:>11}{}", cells, number(description.offset[row]),
-                                                             row == 0 && !frame.empty() ? "  " + frame : ""));
+    auto& cells = rows.emplace_back();
+    for (const double value : description.linear[row]) cells.push_back(matrix_entry(value, largest));
+    cells.emplace_back("|");
+    cells.push_back(number(description.offset[row]));
   }
+  const std::vector<std::string> lines = aligned(rows);
+  std::string text;
+  for (std::size_t row = 0; row < lines.size(); ++row)
+    text += report_line(row == 0 ? "world" : "", lines[row] + (row == 0 && !frame.empty() ? "  " + frame : ""));
   return text;
 }
 

@@ -55,6 +55,21 @@ TEST_F(Info, TellsTheTimeAxisAndTheWorldOfANiftiFile) {
   EXPECT_EQ(info["world_frame"], "RAS");
 }
 
+TEST_F(Info, ShowsTheWorldMatrixInColumnsWhateverItsEntries) {
+  const std::string file =
+      write("tilted.nrrd", nrrd_bytes(ball({7, 6, 5}, 2),
+                                      "space: left-posterior-superior\nspace origin: (117.855, -35.7229, 1e-19)\n"
+                                      "space directions: (-1,-3.35736e-19,4.12774e-18) (0,0.986856,0.161604) "
+                                      "(1.5e-8,-0.161604,0.986856)\n"));
+  const RunResult run = run_tegl({"info", file});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  // What rounding left beside entries of 1 has one digit; what is no rounding has all that are shown.
+  EXPECT_THAT(run.out, HasSubstr("  world            -1         0    1.5e-08  |   117.855  LPS\n"
+                                 "               -3e-19  0.986856  -0.161604  |  -35.7229\n"
+                                 "                4e-18  0.161604   0.986856  |     1e-19\n"));
+  EXPECT_EQ(run_tegl({"info", file, "--json"}).json()["world"]["linear"][2][0], 4.12774e-18) << "exact for programs";
+}
+
 TEST_F(Info, ReadsMetaImage) {
   const std::string file = write("ball.mha", metaimage_bytes(ball({7, 6}, 2)));
   const RunResult run = run_tegl({"info", file, "--json"});
