@@ -73,6 +73,12 @@ bool replace_all(std::string& output, const std::string& placeholder, const std:
   return any;
 }
 
+/// Puts the place in its row, 1 for the first, where "{n}" stands: as many digits for all, so that names sort. True if
+/// there was any.
+bool replace_place(std::string& output, std::size_t place, std::size_t count) {
+  return replace_all(output, "{n}", fmt::format("{:0{}}", place, std::to_string(count).size()));
+}
+
 /// "x + 2 t", of a normal.
 std::string formula(const std::vector<double>& normal, const CutSpace& space) {
   std::string text;
@@ -266,10 +272,11 @@ std::vector<std::string> cut_outputs(const std::string& pattern, const std::vect
     for (const std::string& placeholder : {std::string("{t}"), std::string("{at}"), "{" + cut.axis + "}"})
       replace_all(output, placeholder, cut.text);
     replace_all(output, "{axis}", cut.axis);
+    replace_place(output, outputs.size() + 1, cuts.size());
     if (std::find(outputs.begin(), outputs.end(), output) != outputs.end()) {
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--output is '{}' for two cuts; expected {{t}} in it (and {{axis}} if there are several "
-                              "axes), and each cut once",
+                  fmt::format("--output is '{}' for two cuts; expected {{t}} or {{n}} in it (and {{axis}} if there "
+                              "are several axes), and each cut once",
                               output));
     }
     outputs.push_back(output);
@@ -281,7 +288,8 @@ std::vector<std::string> isovalue_outputs(const std::string& pattern, const std:
   std::vector<std::string> outputs;
   for (const SpelledNumber& isovalue : isovalues) {
     std::string output = pattern;
-    if (!replace_all(output, "{iso}", isovalue.text) && isovalues.size() > 1) {
+    const bool is_numbered = replace_place(output, outputs.size() + 1, isovalues.size());
+    if (!replace_all(output, "{iso}", isovalue.text) && !is_numbered && isovalues.size() > 1) {
       std::filesystem::path name(pattern);
       const std::string extension = name.extension().string();
       name.replace_filename(name.stem().string() + "_" + isovalue.text + extension);

@@ -65,11 +65,12 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space);
 
 /// The output of each cut: `pattern` with "{t}" or "{at}", or the axis as it was typed in braces, replaced by the
-/// number as it was typed, and "{axis}" by that axis. Throws InvalidArgument if two cuts had the same file.
+/// number as it was typed, "{axis}" by that axis, and "{n}" by the cut's place, 1 for the first, with as many digits as
+/// the last one has. Throws InvalidArgument if two cuts had the same file.
 std::vector<std::string> cut_outputs(const std::string& pattern, const std::vector<Cut>& cuts);
 
-/// The output of each isovalue: `pattern` with "{iso}" replaced by the number as it was typed; if there are several and
-/// no "{iso}", with _NUMBER before its extension.
+/// The output of each isovalue: `pattern` with "{iso}" replaced by the number as it was typed, and "{n}" by its place as
+/// above; if there are several and neither is in it, with _NUMBER before its extension.
 std::vector<std::string> isovalue_outputs(const std::string& pattern, const std::vector<SpelledNumber>& isovalues);
 
 }  // namespace tegl::cli

@@ -30,7 +30,7 @@ constexpr const char* kExamples =
     "  tegl slice heart.nii.gz --iso 400 --at t=7.3 -o heart.ply\n"
     "  tegl contour ocean.nc --iso 20 -o ocean.vtkhdf\n"
     "  tegl slice ocean.vtkhdf --at t=1.5,3.25,7.3 -o 'ocean_{t}.ply'\n"
-    "  tegl slice ocean.vtkhdf --at t=1:12:45 -o 'film_{t}.glb'      (45 times from 1 to 12)\n"
+    "  tegl slice ocean.vtkhdf --at t=1:12:45 -o 'film_{n}.glb'      (45 times from 1 to 12: film_01 to film_45)\n"
     "  tegl slice ocean.vtkhdf --at x=329.5 -o meridian.vtkhdf       (a surface in y, z and t)\n"
     "  tegl slice ocean.vtkhdf --at t=7.3 --attribute ocean.nc -o july.ply\n"
     "  tegl slice ocean.vtkhdf --plane 1,0,0,5=200 --scale t=10 -o moving.vtkhdf   (where x + 5 t = 200)\n"
@@ -201,7 +201,9 @@ class SliceCommand final : public Command {
     attributes_.add_to(app());
     app()
         .add_option("-o,--output", output_,
-                    "the result: .ply, .gltf, .glb or .vtkhdf; {t} in it stands for the number, {axis} for its axis")
+                    std::string("the result: ") + kContourFiles +
+                        "; {t} in it stands for the number, {axis} for its axis, {n} for 1, 2, 3 ... with zeros in "
+                        "front, so that films sort")
         ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
@@ -216,9 +218,12 @@ class SliceCommand final : public Command {
     if (cuts.empty())
       throw Error(ErrorCode::InvalidArgument,
                   "neither --at nor --plane is given; expected a place to cut, as in --at t=7.3");
-    const std::vector<std::string> outputs = cut_outputs(output_, cuts);
+    outputs_ = cut_outputs(output_, cuts);
     require_inputs();
-    for (const std::string& output : outputs) require_output(output, files());
+    for (const std::string& output : outputs_) {
+      require_output(output, files());
+      require_output_keeps(output, options_.normals(), attributes_.wanted());
+    }
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
@@ -229,7 +234,7 @@ class SliceCommand final : public Command {
       add_attributes<3>(attributes_, factors_, options_.threads(), results, bar);
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
-      results[i].output = outputs[i];
+      results[i].output = outputs_[i];
       if (!no_check_) check_result(results[i], bar);
     }
     write_all(results, bar);
@@ -253,6 +258,12 @@ class SliceCommand final : public Command {
     return list;
   }
 
+  /// Of an image or a contour of this dimension.
+  void require_cuts(int dim, std::string_view what) const {
+    require_cuttable(dim, what);
+    for (const std::string& output : outputs_) require_output_holds(output, dim - 2);
+  }
+
   /// A result for each cut, with what is known before it is made.
   static std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) {
     std::vector<ContourResult> results;
@@ -264,7 +275,7 @@ class SliceCommand final : public Command {
     const double isovalue = options_.isovalue();
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
-    require_cuttable(image_dim(input.image), "image");
+    require_cuts(image_dim(input.image), "image");
     require_contour(input, isovalue);
     const CutSpace space = space_of(input.image);
     factors_ = parse_scale(scale_, space);
@@ -331,7 +342,7 @@ class SliceCommand final : public Command {
     const Progress reading = bar.stage("read");
     Stopwatch watch;
     const Mesh mesh = read_saved_contour(file());
-    require_cuttable(mesh.space_dim, "contour");
+    require_cuts(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
@@ -359,7 +370,8 @@ class SliceCommand final : public Command {
   AttributeOptions attributes_;
   std::vector<double> factors_;  ///< of --scale, by axis
   std::vector<std::string> at_, planes_, scale_;
-  std::string output_;
+  std::string output_;                ///< with placeholders
+  std::vector<std::string> outputs_;  ///< of each cut
   bool no_check_ = false;
 };
 

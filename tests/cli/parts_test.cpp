@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The parts of the program that are functions: numbers, cuts, output paths, exit codes.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -101,27 +103,71 @@ TEST(Cuts, HaveAnOutputEach) {
   const std::vector<Cut> cuts = parse_cuts({"TIME=1,2.50"});
   EXPECT_THAT(cut_outputs("a_{t}.ply", cuts), ElementsAre("a_1.ply", "a_2.50.ply"));
   EXPECT_THAT(cut_outputs("{TIME}/{t}.ply", cuts), ElementsAre("1/1.ply", "2.50/2.50.ply"));
+  EXPECT_THAT(cut_outputs("{n}_{t}_{n}.ply", cuts), ElementsAre("1_1_1.ply", "2_2.50_2.ply"));
   EXPECT_EQ(error_of([&] { (void)cut_outputs("a.ply", cuts); }).code(), ErrorCode::InvalidArgument);
   EXPECT_EQ(error_of([&] { (void)cut_outputs("{t}.ply", parse_cuts({"t=1,1"})); }).code(), ErrorCode::InvalidArgument);
 }
 
+TEST(Cuts, AreNumberedSoThatTheirNamesSort) {
+  for (const std::size_t count : {2U, 9U, 10U, 100U, 101U, 1000U}) {
+    std::vector<std::string> outputs = cut_outputs("film_{n}.glb", parse_cuts({fmt::format("t=0:1000:{}", count)}));
+    ASSERT_EQ(outputs.size(), count);
+    EXPECT_EQ(outputs.back(), fmt::format("film_{}.glb", count));
+    EXPECT_EQ(outputs.front().size(), outputs.back().size());
+    EXPECT_TRUE(std::is_sorted(outputs.begin(), outputs.end())) << count;
+  }
+  // Cuts of several directions, and an axis of that name, whose number goes first.
+  EXPECT_THAT(cut_outputs("{n}.ply", parse_cuts({"t=1", "x=5,1"})), ElementsAre("1.ply", "2.ply", "3.ply"));
+  EXPECT_THAT(cut_outputs("{n}.ply", parse_cuts({"n=7,5"})), ElementsAre("7.ply", "5.ply"));
+}
+
+TEST(Isovalues, HaveAnOutputEach) {
+  const std::vector<SpelledNumber> isovalues = {{20, "20"}, {5, "5.0"}};
+  EXPECT_THAT(isovalue_outputs("a.ply", isovalues), ElementsAre("a_20.ply", "a_5.0.ply"));
+  EXPECT_THAT(isovalue_outputs("a_{n}.ply", isovalues), ElementsAre("a_1.ply", "a_2.ply"));
+  EXPECT_THAT(isovalue_outputs("{iso}/{n}.ply", isovalues), ElementsAre("20/1.ply", "5.0/2.ply"));
+  EXPECT_THAT(isovalue_outputs("a.ply", std::vector<SpelledNumber>{{20, "20"}}), ElementsAre("a.ply"));
+}
+
 TEST(Output, FormatsHoldTheDimensionsThatTheyHold) {
-  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.vtkhdf", "A.PLY"}) {
+  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.obj", "a.vtkhdf", "A.PLY"}) {
     EXPECT_NO_THROW(require_output_holds(name, 1)) << name;
     EXPECT_NO_THROW(require_output_holds(name, 2)) << name;
   }
+  EXPECT_NO_THROW(require_output_holds("a.stl", 2));
   EXPECT_NO_THROW(require_output_holds("a.vtkhdf", 3));
-  for (const char* name : {"a.ply", "a.gltf", "a.glb"}) {
+  for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.stl", "a.obj"}) {
     const Error error = error_of([&] { require_output_holds(name, 3); });
     EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
-    EXPECT_THAT(error.what(), HasSubstr(".vtkhdf"));
+    EXPECT_THAT(error.what(), HasSubstr("expected .vtkhdf, or a surface: cut the contour first ('tegl slice')"));
   }
+  const Error lines = error_of([] { require_output_holds("a.stl", 1); });
+  EXPECT_EQ(lines.code(), ErrorCode::WriteFailed);
+  EXPECT_THAT(lines.what(), HasSubstr("'.stl' cannot hold a 2D contour, which is made of lines; expected .ply"));
+}
+
+TEST(Output, WhatOptionsAskForIsNotLeftOut) {
+  for (const char* name : {"a.vtkhdf", "a.ply", "a.glb"})
+    for (const char* normals : {"", "gradient", "geometric", "flat"})
+      EXPECT_NO_THROW(require_output_keeps(name, normals, true)) << name;
+  for (const char* name : {"a.stl", "a.obj"}) {
+    EXPECT_NO_THROW(require_output_keeps(name, "", false));
+    EXPECT_THAT(error_of([&] { require_output_keeps(name, "", true); }).what(), HasSubstr("no place for attributes"));
+  }
+  // STL has the normals of facets, OBJ those of vertices.
+  EXPECT_NO_THROW(require_output_keeps("a.stl", "flat", false));
+  EXPECT_NO_THROW(require_output_keeps("a.obj", "sobel", false));
+  const Error error = error_of([] { require_output_keeps("A.STL", "gradient", false); });
+  EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
+  EXPECT_THAT(error.what(), HasSubstr("'.stl' has no place for normals of vertices; expected .vtkhdf, .ply, .obj"));
+  EXPECT_THAT(error_of([] { require_output_keeps("a.obj", "flat", false); }).what(),
+              HasSubstr("normals of triangles; expected .vtkhdf, .ply with --normals flat"));
 }
 
 TEST(Output, TheDimensionsThatAreAllowedCanBeWritten) {
   // The table of formats here and the writers must not drift apart.
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir());
-  for (const char* extension : {".ply", ".gltf", ".glb", ".vtkhdf"}) {
+  for (const char* extension : {".ply", ".gltf", ".glb", ".vtkhdf", ".stl", ".obj"}) {
     for (int dim = 1; dim <= 3; ++dim) {
       const std::filesystem::path path = folder / (std::string("tegl_writable_") + std::to_string(dim) + extension);
       Mesh mesh;
