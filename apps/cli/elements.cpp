@@ -207,8 +207,8 @@ class ElementsCommand final : public ContourInputCommand {
     text += report_line(
         "", report.closure_error < 1e-9
                 ? fmt::format("0 up to rounding ({:.1e} of the whole): it closes up (Gauss)", report.closure_error)
-                : fmt::format("{} of the whole: the contour is open, and this is what would close it",
-                              number(report.closure_error)));
+                : fmt::format("the contour is open: {:.3g} % of what there is along one axis is not balanced",
+                              100.0 * report.closure_error));
     text += report_line("measure", number(report.measure));
     for (const auto& range : report.attributes) {
       std::string values =

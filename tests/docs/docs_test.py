@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What README.md and docs/ show is what works.
 
-    docs_test.py commands SOURCE BIN    runs every block marked ```sh in a scratch folder, BIN first in the PATH
+    docs_test.py commands SOURCE BIN    runs every block marked ```sh in a scratch checkout, BIN first in the PATH
     docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
     docs_test.py links SOURCE           every link leads to a file, every anchor to a heading, and the front page to all pages
     docs_test.py transcripts SOURCE BIN [--update]
                                         the ```console blocks of getting-started.md and guides.md: what is behind each $ runs,
-                                        and says what stands below it. --update writes what it says into the page
+                                        and says what stands below it. --update writes what it says into the page. Neither
+                                        these nor the pages' ```sh blocks leave anything that git status would show
     docs_test.py html SOURCE FOLDER     builds the documentation as scripts/docs does, into FOLDER
     docs_test.py checkers SOURCE        what looks for dead links and stale output finds them
     docs_test.py options SOURCE BIN     docs/command-line.md names every option that the programs' help names
@@ -58,23 +59,63 @@ def runs_here(text, programs):
         [f"{programs}/tegl", "view", __file__, "-o", "probe.html"], text=True, capture_output=True, check=False).stderr
 
 
+class Shell:
+    """A reader's shell in the root of a checkout: commands run one after the other, each where the last one went. The checkout
+    is a scratch folder with what the commands read of it, and knows by git what they leave there."""
+
+    def __init__(self, source, programs):
+        self._scratch = tempfile.TemporaryDirectory()
+        self._root = pathlib.Path(self._scratch.name) / "checkout"
+        self._place = pathlib.Path(self._scratch.name) / "place"
+        self._environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}", "DOCS_TEST_PLACE": str(self._place)}
+        self._root.mkdir()
+        self._place.write_text(f"{self._root}\n", encoding="utf-8")
+        os.symlink(source / "examples", self._root / "examples")
+        (self._root / ".gitignore").write_bytes((source / ".gitignore").read_bytes())
+        self._git("init", "--quiet")
+        self._git("add", "--all")
+        self._git("-c", "user.name=test", "-c", "user.email=test@example.org", "commit", "--quiet", "--message", "before")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._scratch.cleanup()
+
+    def _git(self, *arguments):
+        return subprocess.run(["git", "-C", self._root, *arguments], text=True, capture_output=True, check=True).stdout
+
+    def run(self, text):
+        """(exit status, what was said in either stream)"""
+        folder = self._place.read_text(encoding="utf-8").rstrip("\n")
+        done = subprocess.run(["bash", "-euo", "pipefail", "-c", f"{text}\npwd >\"$DOCS_TEST_PLACE\""], cwd=folder, text=True,
+                              env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        return done.returncode, done.stdout
+
+    def left_behind(self):
+        """What `git status --short` says."""
+        return self._git("status", "--short")
+
+
+def require_clean(page, shell):
+    if shell.left_behind():
+        sys.exit(f"{page}: the commands leave files in the checkout:\n{shell.left_behind()}")
+
+
 def commands(source, programs):
     """Runs the blocks of each page one after the other, as a reader would, and reports the first that fails."""
     count = 0
     for page in pages(source):
-        with tempfile.TemporaryDirectory() as folder:
-            # Commands are written for the root of the checkout, but must not leave files there.
-            for name in ("examples",):
-                os.symlink(source / name, pathlib.Path(folder) / name)
-            environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+        with Shell(source, programs) as shell:
             for line, _, text in blocks(page, {"sh"}):
                 if not runs_here(text, programs):
                     continue
-                done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment, text=True,
-                                      capture_output=True, check=False)
-                if done.returncode != 0:
-                    sys.exit(f"{page}:{line}: exit status {done.returncode}\n{text}{done.stdout}{done.stderr}")
+                status, said = shell.run(text)
+                if status != 0:
+                    sys.exit(f"{page}:{line}: exit status {status}\n{text}{said}")
                 count += 1
+            if str(page.relative_to(source)) in TRANSCRIPTS:
+                require_clean(page, shell)
     assert count > 0, "no commands found: the pages have lost their blocks"
     print(f"{count} blocks of commands ran")
 
@@ -162,24 +203,22 @@ def transcripts(source, programs, update=None):
     count = 0
     for page in (source / name for name in TRANSCRIPTS):
         text = page.read_text(encoding="utf-8")
-        with tempfile.TemporaryDirectory() as folder:
-            os.symlink(source / "examples", pathlib.Path(folder) / "examples")
-            environment = {**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}
+        with Shell(source, programs) as shell:
             for line, _, block in blocks(page, {"console"}):
                 for command, shown in steps(block):
-                    done = subprocess.run(["bash", "-euc", command], cwd=folder, env=environment, text=True, check=False,
-                                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-                    said = done.stdout.rstrip("\n").splitlines()
-                    if done.returncode != 0:
-                        sys.exit(f"{page}:{line}: exit status {done.returncode}\n$ {command}\n{done.stdout}")
+                    status, output = shell.run(command)
+                    said = output.rstrip("\n").splitlines()
+                    if status != 0:
+                        sys.exit(f"{page}:{line}: exit status {status}\n$ {command}\n{output}")
                     if update and "..." not in shown:
                         before = "\n".join([f"$ {command}", *shown]) + "\n"
                         assert text.count(before) == 1, f"{page}:{line}: not there once: {before}"
                         text = text.replace(before, "\n".join([f"$ {command}", *said]) + "\n")
                     elif not same_output(shown, said):
                         sys.exit(f"{page}:{line}: says something else (docs_test.py transcripts … --update takes it over)\n"
-                                 f"$ {command}\n{done.stdout}\nand not\n" + "\n".join(shown))
+                                 f"$ {command}\n{output}\nand not\n" + "\n".join(shown))
                     count += 1
+            require_clean(page, shell)
         if update:
             page.write_text(text, encoding="utf-8")
     assert count > 0, "no transcripts found: the pages have lost their blocks"
@@ -224,6 +263,11 @@ def checkers(source):
     assert not same_output(["Contour", "...", "  output       b.glb (1.5 kB)"], said)
     assert not same_output([said[0], "  size         17 681 vertices", *said[2:]], said)
     assert not same_output(said[:3], said) and not same_output([*said, "more"], said)
+    with Shell(source, "/usr/bin") as shell:
+        assert shell.run("mkdir -p try && cd try\ntouch film_1.glb") == (0, "") and shell.left_behind() == ""
+        assert shell.run("basename \"$PWD\"") == (0, "try\n"), "each command runs where the last one went"
+        assert shell.run("touch ../stray") == (0, "") and shell.left_behind() == "?? stray\n"
+        assert shell.run("false | true")[0] == 1
     assert same_line("area 1771.30 mm", "area 1771.3001 mm") and not same_line("area 1771.3 mm", "area 1771.4 mm")
     print("all faults were found")
 
