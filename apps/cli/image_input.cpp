@@ -33,19 +33,8 @@ std::vector<std::size_t> parse_sizes(const std::string& text) {
   return sizes;
 }
 
-/// A shell lists frame_10 before frame_2. Whoever meant that can say so; a contour through frames in that order looks
-/// like one, and is wrong.
-void require_order_that_is_meant(const std::vector<std::string>& files) {
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const std::string& a = files[i - 1];
-    const std::string& b = files[i];
-    if (a < b && natural_less(b, a))
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("{} comes before {}, as shells list names; expected --sort name for the order of the "
-                              "numbers in them, or --sort given for this one",
-                              a, b));
-  }
-}
+constexpr SeriesWords kWords{"--times",     "--time-step", "--time-unit", "--sort",
+                             "--sort time", "--sort name", "--sort given"};
 
 std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& files) {
   return {files.begin(), files.end()};
@@ -59,10 +48,8 @@ auto with_hint(const std::string& variable, const std::vector<std::string>& file
   try {
     return read();
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::InvalidArgument && options.order == SeriesOrder::by_name &&
-        !options.coordinates.empty())
-      throw Error(error.code(),
-                  fmt::format("{} (--sort name, with --times, which go with the files as listed)", error.what()));
+    if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
+      throw Error(error.code(), error.what() + hint);
     if (error.code() != ErrorCode::VariableNotFound || !variable.empty()) throw;
     throw Error(error.code(),
                 fmt::format("{} (choose it with {})", error.what(), ImageOptions::choosing_option(files)));
@@ -127,39 +114,25 @@ std::string ImageOptions::choosing_option(const std::vector<std::string>& files)
 }
 
 SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files) const {
-  for (const char* const option : {"--times", "--time-step", "--time-unit", "--sort"}) {
-    const auto names = given();
-    if (files.size() == 1 && std::find(names.begin(), names.end(), option) != names.end())
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("{} with one file, {}; expected several files that become one image", option, files[0]));
-  }
-  if (!times_.empty() && !time_step_.empty())
-    throw Error(ErrorCode::InvalidArgument, "--times with --time-step; expected one of the two");
-  if (!time_step_.empty() && sort_ == "time")
-    throw Error(ErrorCode::InvalidArgument,
-                "--sort time with --time-step, which follows the order; expected --times, or those of the headers");
   if (raw() && !variable().empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} {} with --raw; expected no variable: raw values have no name",
                             series_.empty() ? "--var" : "--series", variable()));
-  SeriesOptions options;
-  options.variable = variable();
-  options.unit = time_unit_;
-  if (!times_.empty()) {
-    options.coordinates = parse_numbers("--times", times_);
-    if (options.coordinates.size() != files.size())
-      throw Error(ErrorCode::InvalidArgument, fmt::format("--times has {} numbers for {} files; expected one for each",
-                                                          options.coordinates.size(), files.size()));
-  }
-  if (!time_step_.empty()) options.step = parse_finite("--time-step", time_step_);
-  if (options.step && *options.step == 0)
-    throw Error(ErrorCode::InvalidArgument, "--time-step is 0; expected another number");
-  options.order = sort_ == "name"   ? SeriesOrder::by_name
-                  : sort_ == "time" ? SeriesOrder::coordinate
-                                    : SeriesOrder::given;
-  if (sort_.empty() && (raw() || !are_dicom_files(paths_of(files)))) require_order_that_is_meant(files);
-  if (raw()) options.raw = RawLayout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_};
-  return options;
+  const auto names = given();
+  const auto is_given = [&](const char* option) {
+    return std::find(names.begin(), names.end(), option) != names.end();
+  };
+  SeriesRequest request;
+  request.variable = variable();
+  if (is_given("--times")) request.times = parse_numbers("--times", times_);
+  if (is_given("--time-step")) request.time_step = parse_finite("--time-step", time_step_);
+  if (is_given("--time-unit")) request.time_unit = time_unit_;
+  if (is_given("--sort"))
+    request.sort = sort_ == "name"   ? SeriesOrder::by_name
+                   : sort_ == "time" ? SeriesOrder::coordinate
+                                     : SeriesOrder::given;
+  if (raw()) request.raw = RawLayout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_};
+  return tegl::series_options(paths_of(files), request, kWords);
 }
 
 ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {

@@ -6,6 +6,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/io.hpp"
+#include "tegl/series.hpp"
 
 namespace tegl::python {
 
@@ -60,14 +61,48 @@ void put_image(py::dict& result, OwnedImage<T, N>& image) {
   result["array"] = py::array(py::dtype::of<T>(), shape, strides, values.data(), owner);
 }
 
-py::dict read_any(const std::string& path, const std::string& variable, const py::object& progress) {
+/// What `variable` and `series` choose among, said where the choice is missing.
+const char* choosing_argument(const std::vector<std::filesystem::path>& files) {
+  return std::filesystem::is_directory(files.front()) || are_dicom_files(files) ? "series=" : "variable=";
+}
+
+constexpr SeriesWords kWords{"times", "time_step", "time_unit", "sort", "sort='time'", "sort='name'", "sort='given'"};
+
+ReadImageResult read_with_hint(const std::vector<std::filesystem::path>& files, const SeriesOptions& options) {
+  try {
+    return read_series(files, options);
+  } catch (const Error& error) {
+    if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
+      throw Error(error.code(), error.what() + hint);
+    if (error.code() != ErrorCode::VariableNotFound || !options.variable.empty()) throw;
+    throw Error(error.code(), fmt::format("{} (choose it with {})", error.what(), choosing_argument(files)));
+  }
+}
+
+py::list directions_of(const ImageInfo& info) {
+  py::list result;
+  for (const AxisDirection direction : info.axis_directions)
+    result.append(direction == AxisDirection::up ? "up" : direction == AxisDirection::down ? "down" : "unknown");
+  return result;
+}
+
+py::dict read_any(const std::vector<std::string>& paths, const std::string& variable,
+                  const std::optional<std::vector<double>>& times, std::optional<double> time_step,
+                  const std::optional<std::string>& time_unit, const std::optional<std::string>& sort,
+                  const py::object& progress) {
   Call call(progress);
-  ReadImageOptions options;
-  options.variable = variable;
-  options.progress = call.progress();
+  const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
+  SeriesRequest request{variable, times, time_step, time_unit, {}, {}};
+  if (sort)
+    request.sort = named<SeriesOrder>(
+        "sort", *sort,
+        {{"given", SeriesOrder::given}, {"name", SeriesOrder::by_name}, {"time", SeriesOrder::coordinate}});
+  const Progress tell = call.progress();
   ReadImageResult read = call.run([&] {
-    const FileLock lock(options.progress);
-    return read_image(path, options);
+    const FileLock lock(tell);
+    SeriesOptions options = series_options(files, request, kWords);
+    options.progress = tell;
+    return read_with_hint(files, options);
   });
   py::dict result;
   std::visit([&](auto& images) { std::visit([&](auto& image) { put_image(result, image); }, images); }, read.image);
@@ -77,6 +112,7 @@ py::dict read_any(const std::string& path, const std::string& variable, const py
   put(result, "value_unit", read.info.value_unit);
   put(result, "value_name", read.info.value_name);
   put(result, "world_frame", read.info.world_frame);
+  result["axis_directions"] = directions_of(read.info);
   return result;
 }
 
@@ -123,7 +159,8 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, const py::object& 
 }  // namespace
 
 void bind_files(py::module_& m) {
-  m.def("read_image", &read_any, py::arg("path"), py::arg("variable"), py::arg("progress"), doc::read_image);
+  m.def("read_series", &read_any, py::arg("paths"), py::arg("variable"), py::arg("times"), py::arg("time_step"),
+        py::arg("time_unit"), py::arg("sort"), py::arg("progress"), doc::read_series);
   m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
   m.def("load_contour", &load_any, py::arg("path"), py::arg("progress"), doc::read_mesh);
 }

@@ -13,7 +13,7 @@ import datetime
 import inspect
 import os
 import typing
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -119,7 +119,10 @@ def _as_date(at: object) -> np.datetime64 | None:
     if isinstance(at, datetime.datetime) and at.tzinfo is not None:  # pandas' timestamps are datetimes
         at = at.astimezone(datetime.timezone.utc).replace(tzinfo=None)
     if isinstance(at, (str, datetime.date)):
-        return np.datetime64(typing.cast(str, at))
+        try:
+            return np.datetime64(typing.cast(str, at))
+        except ValueError:
+            raise ValueError(f"the coordinate {at!r} is no number, and no date; expected one") from None
     if getattr(getattr(at, "dtype", None), "kind", "") == "M" and np.ndim(typing.cast(float, at)) == 0:
         return np.asarray(at)[()]
     return None
@@ -131,7 +134,7 @@ def number_on_axis(at: object, unit: str) -> float:
     if date is None:
         if getattr(getattr(at, "dtype", None), "kind", "") == "m":
             raise ValueError(f"the coordinate {at!r} is a duration; expected a number, or a date")
-        return float(typing.cast(float, at))
+        return as_number("the coordinate", at)
     if not unit.startswith("days since "):
         raise ValueError(f"the coordinate {at!r} is a date, and the axis has the unit '{unit}'; expected a number")
     if unit.rstrip().endswith(")"):
@@ -141,6 +144,28 @@ def number_on_axis(at: object, unit: str) -> float:
         raise ValueError("the coordinate is no date (NaT); expected one")
     start = np.datetime64(unit.removeprefix("days since ").strip().replace(" ", "T"))
     return float((date - start) / np.timedelta64(1, "D"))
+
+
+def as_number(name: str, value: object) -> float:
+    """A real number, by the name that the caller knows it by."""
+    try:
+        return float(typing.cast(float, value))
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is {value!r}; expected a number") from None
+
+
+def as_text(name: str, value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} is {value!r}; expected text")
+    return value
+
+
+def as_list(name: str, value: object, expected: str) -> list:
+    """The entries of a list, a tuple or an array."""
+    if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__") or np.ndim(
+            np.empty(0) if isinstance(value, (list, tuple)) else typing.cast(np.ndarray, value)) == 0:
+        raise TypeError(f"{name} is {value!r}; expected {expected}")
+    return list(typing.cast(typing.Iterable, value))
 
 
 def _per_axis(value, ndim: int, name: str, default: float) -> list[float]:

@@ -90,6 +90,8 @@ class Image:
     variable: str  #: that was read, of a file with several
     variables: tuple[str, ...]  #: all that can be read as an image
     world_frame: str  #: such as "RAS"; "" where there is none
+    #: where the coordinates of each axis grow to, as far as the file says so: "up", "down" (depths, pressures) or "unknown"
+    axis_directions: tuple[str, ...]
     _axes: tuple = dataclasses.field(repr=False, default=())
 
     def __tegl_image__(self):
@@ -100,14 +102,16 @@ class Image:
         return contour(self, level, **options)
 
     def to_xarray(self):
-        """An xarray.DataArray with these names, coordinates and units; the affine map as the attribute "affine"."""
+        """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map as the
+        attribute "affine"."""
         try:
             import xarray
         except ImportError as error:
             raise ImportError(f"to_xarray needs xarray, which Python does not find: {error}") from error
         dims = [name or f"axis_{number}" for number, name in enumerate(self.axis_names)]
-        coords = {dim: (dim, values, {"units": unit} if unit else {})
-                  for dim, values, unit in zip(dims, self.coords, self.axis_units)}
+        coords = {dim: (dim, values, {**({"units": unit} if unit else {}),
+                                      **({"positive": direction} if direction != "unknown" else {})})
+                  for dim, values, unit, direction in zip(dims, self.coords, self.axis_units, self.axis_directions)}
         attrs: dict[str, typing.Any] = {"units": self.value_unit} if self.value_unit else {}
         if self.value_name:
             attrs["long_name"] = self.value_name
@@ -116,15 +120,46 @@ class Image:
         return xarray.DataArray(self.array, dims=dims, coords=coords, name=self.variable or None, attrs=attrs)
 
 
-@_arguments.documents("read_image")
-def read(path: str | os.PathLike, variable: str = "", *, time_axis: int = 0,
+Path = typing.Union[str, "os.PathLike[str]"]
+
+
+@_arguments.documents("read_image", "read_series")
+def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None = None, times=None,
+         time_step: float | None = None, time_unit: str | None = None, sort: str | None = None, time_axis: int = 0,
          progress: Progress | None = None) -> Image:
-    """Reads an image: NIfTI, NRRD, MetaImage, netCDF. The values are not copied from the library's memory.
+    """Reads an image: NIfTI, NRRD, MetaImage, netCDF, DICOM. The values are not copied from the library's memory.
+
+    ::
+
+        tegl.read("ocean.nc", "temp")                             # a variable of a file
+        tegl.read("scan/")                                        # a folder of DICOM files
+        tegl.read("scan/", series="T1")                           # one series of several there
+        tegl.read(glob.glob("step_*.nrrd"), sort="name", time_step=0.5, time_unit="s")
+
+    path
+        A file or a folder; or a list of files of one shape that become one image with one axis more: 3D files over time,
+        2D ones as the slices of a volume. As `tegl contour` on the terminal reads them.
+    variable, series
+        netCDF: the variable to read. DICOM: the series, by its UID, its description or its number. Needed where there
+        are several.
+    times, time_step, time_unit
+        Of a list: where each file lies along the new axis, in the order of the list; or how far one is from the next, in
+        the order of `sort`; and the unit. Without, as the files say, else 0, 1, 2 ...
+    sort
+        Of a list: "name", by the numbers in the names; "time", by `times`, or those in the headers; or "given".
 
     The array's first axis is the one that runs slowest in the file: (t, z, y, x), in C order. With `time_axis=-1` the
     axes are the other way round, (x, y, z, t) in Fortran order, as nibabel has them.
     """
-    found = _tegl.read_image(os.fspath(path), variable, progress)
+    paths = [_path(one) for one in path] if isinstance(path, (list, tuple)) else [_path(path)]
+    if series is not None and variable:
+        raise ValueError(f"variable is {variable!r} and series {series!r}; expected one of the two")
+    found = _tegl.read_series(
+        paths, _arguments.as_text("variable", variable) if series is None else _arguments.as_text("series", series),
+        None if times is None else _times(times, len(paths), time_unit),
+        None if time_step is None else _arguments.as_number("time_step", time_step),
+        None if time_unit is None else _arguments.as_text("time_unit", time_unit),
+        None if sort is None else _arguments.as_text("sort", sort), progress)
     array = found["array"]
     ndim = array.ndim
     is_reversed = _arguments.turn_around(time_axis, ndim)
@@ -141,4 +176,15 @@ def read(path: str | os.PathLike, variable: str = "", *, time_axis: int = 0,
                  axis_units=tuple(found["units"])[turn], affine=affine, time_axis=0 if is_reversed else ndim - 1,
                  value_name=found["value_name"], value_unit=found["value_unit"], format=found["format"],
                  variable=found["variable"], variables=tuple(found["variables"]), world_frame=found["world_frame"],
-                 _axes=axes)
+                 axis_directions=tuple(found["axis_directions"] or ["unknown"] * ndim)[turn], _axes=axes)
+
+
+def _path(path) -> str:
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"path is {path!r}; expected a path, or a list of them")
+    return os.fspath(path)
+
+
+def _times(times, files: int, unit: str | None) -> list[float]:
+    return [_arguments.number_on_axis(time, unit or "")
+            for time in _arguments.as_list("times", times, f"a list of numbers, one for each of {files} files")]

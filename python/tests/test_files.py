@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files in and out, other programs' structures, and that the program `tegl` gives the same."""
 
+import importlib.util
+import json
 import os
 import pathlib
 import subprocess
@@ -262,3 +264,36 @@ def test_who_waits_for_files_can_be_cancelled(tmp_path):
 
     tegl.load(path, progress=hold)
     assert result == ["cancelled"]
+
+
+def test_the_directions_of_axes_are_the_files(tmp_path):
+    """As the terminal says them: depths and pressures grow downwards."""
+    netcdf = pytest.importorskip("netCDF4")
+    path = tmp_path / "column.nc"
+    with netcdf.Dataset(path, "w") as file:
+        for name, size in (("time", 2), ("depth", 3), ("level", 4), ("height", 5)):
+            file.createDimension(name, size)
+            file.createVariable(name, "f8", (name,))[:] = np.arange(size) + 1.0
+        file["depth"].positive, file["depth"].units = "down", "m"
+        file["level"].units = "millibar"
+        file["height"].positive, file["height"].units = "up", "m"
+        file["time"].units = "s"
+        file.createVariable("temp", "f4", ("time", "depth", "level", "height"))[:] = noise((2, 3, 4, 5), 1)
+    image = tegl.read(path)
+    assert image.axis_names == ("time", "depth", "level", "height")
+    assert image.axis_directions == ("unknown", "down", "down", "up")
+    assert tegl.read(path, time_axis=-1).axis_directions == ("up", "down", "down", "unknown")
+    assert tegl.read(OCEAN).axis_directions == tegl.read(OCEAN, time_axis=-1).axis_directions[::-1]
+    if PROGRAM.exists():
+        told = subprocess.run([PROGRAM, "info", path, "--json"], capture_output=True, text=True, check=True).stdout
+        said = [axis["direction"] or "unknown" for axis in json.loads(told)["axes"]]
+        assert tuple(said) == image.axis_directions[::-1]
+    if importlib.util.find_spec("xarray"):
+        data = image.to_xarray()
+        assert [data[name].attrs.get("positive") for name in data.dims] == [None, "down", "down", "up"]
+
+
+def test_formats_without_directions_do_not_know_them(tmp_path):
+    path = tmp_path / "a.nrrd"
+    path.write_bytes(b"NRRD0004\ntype: uchar\nencoding: raw\ndimension: 3\nsizes: 2 2 2\n\n" + bytes(8))
+    assert tegl.read(path).axis_directions == ("unknown",) * 3

@@ -311,5 +311,60 @@ TEST(NaturalOrder, CountsRunsOfDigitsAsNumbers) {
   EXPECT_TRUE(natural_less("a99999999999999999999998", "a99999999999999999999999"));
 }
 
+class SeriesRequests : public Series {
+ protected:
+  [[nodiscard]] SeriesOptions options(const SeriesRequest& request) const {
+    return series_options(files_, request, {"TIMES", "STEP", "UNIT", "SORT", "SORT time", "SORT name", "SORT given"});
+  }
+  void expect_refused_in_words(const std::vector<std::string>& parts, const SeriesRequest& request) const {
+    expect_error(ErrorCode::InvalidArgument, parts, [&] { (void)options(request); });
+  }
+};
+
+TEST_F(SeriesRequests, BecomeOptions) {
+  add_three();
+  SeriesRequest request;
+  EXPECT_EQ(options(request).order, SeriesOrder::given);
+  request.variable = "v";
+  request.times = {5, 6, 4};
+  request.time_unit = "s";
+  request.sort = SeriesOrder::by_name;
+  EXPECT_THAT(options(request).coordinates, ElementsAre(5, 6, 4));
+  EXPECT_EQ(options(request).variable, "v");
+  EXPECT_EQ(options(request).unit, "s");
+  EXPECT_EQ(options(request).order, SeriesOrder::by_name);
+  request.times.reset();
+  request.time_step = -2;
+  EXPECT_EQ(options(request).step, -2);
+}
+
+TEST_F(SeriesRequests, ThatMakeNoSenseAreRefusedInTheCallersWords) {
+  add_three();
+  SeriesRequest request;
+  request.times = {1, 2};
+  expect_refused_in_words({"TIMES has 2 numbers for 3 files"}, request);
+  request.times = std::vector<double>();
+  expect_refused_in_words({"TIMES has 0 numbers for 3 files"}, request);
+  request.times = {1, 2, 3};
+  request.time_step = 1;
+  expect_refused_in_words({"TIMES with STEP"}, request);
+  request.times.reset();
+  request.sort = SeriesOrder::coordinate;
+  expect_refused_in_words({"SORT time with STEP"}, request);
+  request.time_step = 0;
+  request.sort = SeriesOrder::by_name;
+  expect_refused_in_words({"STEP is 0"}, request);
+  files_.resize(1);
+  expect_refused_in_words({"STEP with one file, ", "frame_0.nrrd"}, request);
+}
+
+TEST_F(SeriesRequests, OfFilesAsAShellListsThemAskForTheOrderThatIsMeant) {
+  for (const int k : {1, 10, 2}) add("frame_" + std::to_string(k) + ".nrrd", nrrd({2, 2, 2}, k));
+  expect_refused_in_words({"frame_10.nrrd comes before ", "frame_2.nrrd", "SORT name", "SORT given"}, {});
+  SeriesRequest request;
+  request.sort = SeriesOrder::given;
+  EXPECT_NO_THROW((void)options(request));
+}
+
 }  // namespace
 }  // namespace tegl::test

@@ -43,6 +43,39 @@ struct OpenSeriesResult : OpenLayersResult {
   std::vector<std::filesystem::path> files;  ///< as above
 };
 
+/// What a person asks of a series, where each is said or not.
+struct SeriesRequest {
+  std::string variable;                      ///< as in SeriesOptions
+  std::optional<std::vector<double>> times;  ///< where each file lies along the new axis
+  std::optional<double> time_step;           ///< or how far one is from the next
+  std::optional<std::string> time_unit;      ///< of the new axis
+  std::optional<SeriesOrder> sort;           ///< of the files
+  std::optional<RawLayout> raw;              ///< as in SeriesOptions
+};
+
+/// What these are called where they are asked for: "--times" on a command line.
+struct SeriesWords {
+  std::string_view times;      ///< of SeriesRequest::times
+  std::string_view time_step;  ///< of SeriesRequest::time_step
+  std::string_view time_unit;  ///< of SeriesRequest::time_unit
+  std::string_view sort;       ///< of SeriesRequest::sort
+  std::string_view by_time;    ///< of SeriesRequest::sort as SeriesOrder::coordinate
+  std::string_view by_name;    ///< as SeriesOrder::by_name
+  std::string_view given;      ///< as SeriesOrder::given
+};
+
+/// The options for what is asked for, where that makes sense together and for these files. Errors, all InvalidArgument
+/// and in these words: what belongs to several files, asked of one; `times` with `time_step`; a step with an order by
+/// times; other than one time for each file; a step of 0; and files without `sort` in an order that only
+/// a shell would choose, frame_10 before frame_2, as a contour through these looks like one and is wrong. (DICOM files,
+/// which say themselves where they lie, may come in any.)
+SeriesOptions series_options(std::span<const std::filesystem::path> files, const SeriesRequest& request,
+                             const SeriesWords& words);
+
+/// What to add to an error of read_series or open_series, so that it says which requests do not go together where files
+/// do not follow each other; empty where there is nothing.
+std::string series_hint(const Error& error, const SeriesOptions& options, const SeriesWords& words);
+
 /// Reads files of one shape as one image with one axis more, the last: 3D files as a 4D image, 2D files as a 3D one.
 /// Any formats of read_image, or raw values. One file alone is read as it is.
 ///
