@@ -36,14 +36,14 @@ july.save(output / "july.ply")
 assert july.check().is_manifold
 
 # %% Straight from the array: only July and August are looked at, and the surface is the same
-direct = tegl.slice(image, 20.0, time=7.3)
+direct = tegl.slice(image, 20.0, at=7.3)
 print(f"straight from the array: {direct}")
 assert np.isclose(direct.measure().size, july.measure().size, rtol=1e-3)
 
 # %% The same from xarray, with its own names, coordinates and missing values; any part of it will do
 data: xarray.DataArray = image.to_xarray()
 pacific = data.sel(lon=slice(120, 290), lat=slice(-40, 40))
-surface = tegl.slice(pacific, 20.0, time=[1.5, 7.3, 10.9])
+surface = tegl.slice(pacific, 20.0, at=[1.5, 7.3, 10.9])
 for at, cut in zip((1.5, 7.3, 10.9), surface):
     depth = cut.vertices[:, cut.axis_names.index("depth")]
     print(f"Pacific at t = {at:4}: {len(cut.simplices)} triangles, down to {depth.max():.0f} m")

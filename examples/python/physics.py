@@ -49,8 +49,9 @@ assert closed.check().is_closed and total.closure_error < 1e-12
 # %% A current's flux through it is the divergence inside: for j = position, 4 times the content
 elements = closed.elements()
 flux = (elements.centroids * elements.normals).sum()
-print(f"flux of x: {flux:.3f} = 4 x {closed.measure().content:.3f}")
-assert np.isclose(flux, 4 * closed.measure().content, rtol=1e-9)
+inside = closed.measure().content
+print(f"flux of x: {flux:.3f} = 4 x {inside:.3f}")
+assert inside is not None and np.isclose(flux, 4 * inside, rtol=1e-9)
 
 # %% A current n u^mu with n = 0.6, in the coordinates' order, through the open surface: the velocity is sampled on it
 elements = surface.elements()

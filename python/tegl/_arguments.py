@@ -124,7 +124,7 @@ def _as_date(at: object) -> np.datetime64 | None:
         except ValueError:
             raise ValueError(f"the coordinate {at!r} is no number, and no date; expected one") from None
     if getattr(getattr(at, "dtype", None), "kind", "") == "M" and np.ndim(typing.cast(float, at)) == 0:
-        return np.asarray(at)[()]
+        return typing.cast(np.datetime64, np.asarray(at)[()])
     return None
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import datetime
 import os
 import typing
 from collections.abc import Callable, Mapping, Sequence
@@ -12,10 +13,21 @@ import numpy as np
 from . import _arguments, _tegl
 
 if typing.TYPE_CHECKING:
-    from ._operations import Components, Elements, Measures, MeshReport
+    from ._operations import Components, Elements, Measures, MeshReport, SimplifyStats
     from ._track import TrackGraph
 
 Progress = Callable[[float], object]
+#: A coordinate: a number, or on an axis with dates a date, in any of Python's forms.
+Place = typing.Union[float, str, datetime.date, np.generic]
+#: Several of them.
+Places = typing.Union["list[typing.Any]", "tuple[typing.Any, ...]", "np.ndarray[typing.Any, typing.Any]"]
+
+
+class Labelled(typing.Protocol):
+    """An xarray of one place or of several: its type does not say."""
+
+    @property
+    def dims(self) -> typing.Any: ...
 
 
 class Contour:
@@ -162,6 +174,23 @@ class Contour:
 
     # What can be done with it: see the functions of the same names.
 
+    @typing.overload
+    def slice(self, at: Place | None = None, *, axis: int | str | None = None,
+              normal: Sequence[float] | np.ndarray | None = None, offset: float | None = None, threads: int = 0,
+              progress: Progress | None = None, **coordinate: Place) -> Contour: ...
+
+    @typing.overload
+    def slice(self, at: Places, *, axis: int | str | None = None, threads: int = 0,
+              progress: Progress | None = None) -> list[Contour]: ...
+
+    @typing.overload
+    def slice(self, at: Labelled, *, axis: int | str | None = None, threads: int = 0,
+              progress: Progress | None = None) -> Contour | list[Contour]: ...
+
+    @typing.overload
+    def slice(self, at: None = None, *, axis: None = None, normal: None = None, offset: None = None, threads: int = 0,
+              progress: Progress | None = None, **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
+
     def slice(self, at=None, *, axis: int | str | None = None, normal=None, offset=None, threads: int = 0,
               progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
         """The cut by a hyperplane: see `tegl.slice`."""
@@ -184,7 +213,14 @@ class Contour:
         from . import _operations
         return _operations.check(self, progress=progress)
 
-    def simplify(self, **options) -> Contour:
+    @typing.overload
+    def simplify(self, *, return_stats: typing.Literal[False] = False, **options: typing.Any) -> Contour: ...
+
+    @typing.overload
+    def simplify(self, *, return_stats: typing.Literal[True],
+                 **options: typing.Any) -> tuple[Contour, SimplifyStats]: ...
+
+    def simplify(self, **options) -> typing.Any:
         """Fewer simplices, the same manifold: see `tegl.simplify`."""
         from . import _operations
         return _operations.simplify(self, **options)
@@ -194,7 +230,7 @@ class Contour:
         from . import _operations
         return _operations.elements(self, by_cell=by_cell, threads=threads, progress=progress)
 
-    def track(self, **options) -> TrackGraph:
+    def track(self, **options: typing.Any) -> TrackGraph:
         """What becomes of the parts: see `tegl.track`."""
         from . import _track
         return _track.track(self, **options)
@@ -239,18 +275,18 @@ class Contour:
             raise ValueError(f"cells of a {self.ndim}D contour; expected 2 to 4 dimensions")
         return self._core.vertices, [(kind, self._core.simplices)]
 
-    def to_meshio(self):
+    def to_meshio(self) -> typing.Any:
         """A meshio.Mesh, points as x, y, z; the t of 4D contours as point data. Needs meshio."""
         from . import _export
         return _export.to_meshio(self)
 
-    def to_vtk(self):
+    def to_vtk(self) -> typing.Any:
         """A vtkPolyData of segments or triangles, or a vtkUnstructuredGrid of tetrahedra with t as a point array, with
         normals and attributes, points as x, y, z. Needs VTK's Python modules."""
         from . import _export
         return _export.to_vtk(self)
 
-    def to_pyvista(self):
+    def to_pyvista(self) -> typing.Any:
         """The same as a mesh of pyvista. Needs pyvista."""
         from . import _export
         return _export.to_pyvista(self)

@@ -101,7 +101,7 @@ class Image:
         """`tegl.contour` of it."""
         return contour(self, level, **options)
 
-    def to_xarray(self):
+    def to_xarray(self) -> typing.Any:
         """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map as the
         attribute "affine"."""
         try:
@@ -167,8 +167,8 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
     affine = None if found["affine"] is None else np.array(found["affine"])
     if affine is not None and is_reversed:
         affine = np.column_stack([affine[::-1, ndim - 1::-1], affine[::-1, ndim]])
-    axes = tuple(_arguments.UniformAxis(*axis) if isinstance(axis, tuple) else np.array(axis)
-                 for axis in found["axes"])[turn]
+    axes: tuple[typing.Any, ...] = tuple(_arguments.UniformAxis(*axis) if isinstance(axis, tuple) else np.array(axis)
+                                         for axis in found["axes"])[turn]
     array = array.T if is_reversed else array
     coords = tuple(axis.origin + np.arange(size) * axis.step if isinstance(axis, _arguments.UniformAxis) else axis
                    for axis, size in zip(axes, array.shape))

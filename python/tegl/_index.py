@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import typing
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -85,9 +86,20 @@ class Index:
             np.empty((0, len(sizes)), dtype=np.intp)
         return corners[:, ::-1] if self._prepared.is_reversed else corners
 
+    @typing.overload
+    def pick(self, point: Sequence[float] | np.ndarray, level: float, *, dtype: typing.Any = ...,
+             return_report: typing.Literal[False] = False, progress: Progress | None = None,
+             **options: typing.Any) -> Contour: ...
+
+    @typing.overload
+    def pick(self, point: Sequence[float] | np.ndarray, level: float, *, dtype: typing.Any = ...,
+             return_report: typing.Literal[True], progress: Progress | None = None,
+             **options: typing.Any) -> tuple[Contour, PickReport]: ...
+
     @_arguments.documents("extract_component")
     def pick(self, point, level: float, *, dtype=np.float32, return_report: bool = False,
-             progress: Progress | None = None, **options: typing.Any) -> typing.Any:
+             progress: Progress | None = None,
+             **options: typing.Any) -> Contour | tuple[Contour, PickReport]:
         """The one component of the contour that is nearest to a point, in the array's coordinates.
 
         It is found from the point, without the index. With `return_report`: (contour, PickReport).

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import builtins
 import dataclasses
 import os
 import typing
@@ -11,7 +12,43 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import _arguments, _tegl
-from ._contour import Contour, Progress
+from ._contour import Contour, Labelled, Place, Places, Progress
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: Place | None = None, axis: int | str | None = None,
+          normal: Sequence[float] | np.ndarray | None = None, offset: float | None = None, threads: int = 0,
+          progress: Progress | None = None, **coordinate: Place) -> Contour: ...
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: Places, axis: int | str | None = None,
+          threads: int = 0, progress: Progress | None = None) -> list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: Labelled, axis: int | str | None = None,
+          threads: int = 0, progress: Progress | None = None) -> Contour | list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: None = None, axis: None = None, normal: None = None,
+          offset: None = None, threads: int = 0, progress: Progress | None = None, **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: typing.Any, level: float, *, at: Place, axis: int | str | None = None, threads: int = 0,
+          progress: Progress | None = None, **more: typing.Any) -> Contour: ...
+
+
+@typing.overload
+def slice(contour_or_array: typing.Any, level: float, *, at: Places, axis: int | str | None = None, threads: int = 0,
+          progress: Progress | None = None, **more: typing.Any) -> list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: typing.Any, level: float, *, axis: int | str | None = None, threads: int = 0,
+          progress: Progress | None = None, **more: typing.Any) -> Contour | list[Contour]: ...
 
 
 @_arguments.documents("slice", "slice_2", "slice_image_across")
@@ -164,6 +201,15 @@ class CutMeasures:
     content: np.ndarray  #: the enclosed area, volume, ...; NaN where the cut is open
 
 
+@typing.overload
+def measure(contour: Contour, *, at: None = None, threads: int = 0, progress: Progress | None = None) -> Measures: ...
+
+
+@typing.overload
+def measure(contour: Contour, *, at: Place | Places | Labelled, threads: int = 0,
+            progress: Progress | None = None) -> CutMeasures: ...
+
+
 @_arguments.documents("measure", "Measures", "measure_cuts")
 def measure(contour: Contour, *, at=None, threads: int = 0,
             progress: Progress | None = None) -> Measures | CutMeasures:
@@ -215,6 +261,12 @@ class Components(Sequence[Component]):
 
     def __len__(self) -> int:
         return len(self._found)
+
+    @typing.overload
+    def __getitem__(self, index: typing.SupportsIndex) -> Component: ...
+
+    @typing.overload
+    def __getitem__(self, index: builtins.slice) -> list[Component]: ...
 
     def __getitem__(self, index):
         return self._found[index]
@@ -352,12 +404,28 @@ class SimplifyStats:
     rounds: int
 
 
+@typing.overload
+def simplify(contour: Contour, *, ratio: float | None = None, count: int | None = None,
+             max_error: float | None = None, method: str = "quadric", border: str = "fixed",
+             max_curvature: float | None = None, scale: Sequence[float] | str | None = None, measure: bool = True,
+             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             return_stats: typing.Literal[False] = False) -> Contour: ...
+
+
+@typing.overload
+def simplify(contour: Contour, *, ratio: float | None = None, count: int | None = None,
+             max_error: float | None = None, method: str = "quadric", border: str = "fixed",
+             max_curvature: float | None = None, scale: Sequence[float] | str | None = None, measure: bool = True,
+             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             return_stats: typing.Literal[True]) -> tuple[Contour, SimplifyStats]: ...
+
+
 @_arguments.documents("simplify", "SimplifyOptions", "SimplifyStats")
 def simplify(contour: Contour, *, ratio: float | None = None, count: int | None = None,
              max_error: float | None = None, method: str = "quadric", border: str = "fixed",
              max_curvature: float | None = None, scale: Sequence[float] | str | None = None, measure: bool = True,
              allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
-             return_stats: bool = False) -> typing.Any:
+             return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
     """The same contour with fewer simplices, and a bound of the error: the attribute "simplification_error".
 
     method: "quadric", "facets", "vertices" or "fast"; border: "fixed" or "within"; scale: a number for each axis of the
@@ -366,7 +434,7 @@ def simplify(contour: Contour, *, ratio: float | None = None, count: int | None 
     if isinstance(scale, str):
         if scale != "auto":
             raise ValueError(f"scale is '{scale}'; expected 'auto' or a number for each axis")
-        factors = _tegl.automatic_scale(contour._core)
+        factors: list[float] | None = _tegl.automatic_scale(_arguments.core_of(contour))
     else:
         factors = None if scale is None else contour._listed(float(factor) for factor in scale)
     options = {"method": method, "border": border, "ratio": ratio, "count": count, "max_error": max_error,

@@ -9,7 +9,8 @@ from . import _arguments, _tegl
 
 
 def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_direction="descent", step_size=1,
-                   allow_degenerate=True, method="lewiner", mask=None):
+                   allow_degenerate=True, method="lewiner", mask=None
+                   ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Surfaces of a volume, with the arguments and the results of skimage.measure.marching_cubes.
 
     Returns (verts, faces, normals, values): #V x 3 coordinates in the order of the volume's axes, #F x 3 vertex numbers,

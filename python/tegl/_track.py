@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import os
 import typing
 
@@ -84,15 +85,18 @@ class TrackGraph:
         self._core = core
         self._unit = unit
 
-        def turned(found: dict, *names: str) -> dict:
+        def turned(found: dict[str, typing.Any], *names: str) -> dict[str, typing.Any]:
             return {**found, **{name: np.array(found[name][::-1] if is_reversed else found[name]) for name in names}}
 
         self.events: list[TrackEvent] = [TrackEvent(**turned(one, "place")) for one in core.events()]
         self.handles: list[TrackHandle] = [TrackHandle(**turned(one, "place")) for one in core.handles()]
         self.tracks: list[Track] = [Track(**one) for one in core.tracks()]
-        self.segments: list[TrackSegment] = [
-            TrackSegment(**{**one, "samples": [TrackSample(**turned(sample, "centroid", "lower", "upper"))
-                                               for sample in one["samples"]]}) for one in core.segments()]
+
+        def segment(one: dict[str, typing.Any]) -> TrackSegment:
+            one["samples"] = [TrackSample(**turned(sample, "centroid", "lower", "upper")) for sample in one["samples"]]
+            return TrackSegment(**one)
+
+        self.segments: list[TrackSegment] = [segment(one) for one in core.segments()]
 
     @property
     def first(self) -> float:
@@ -132,10 +136,10 @@ class TrackGraph:
         return {"first": self.first, "last": self.last, "time_unit": self._unit, "events": plain(self.events),
                 "segments": plain(self.segments), "tracks": plain(self.tracks), "handles": plain(self.handles)}
 
-    def to_networkx(self):
+    def to_networkx(self) -> typing.Any:
         """A networkx.MultiDiGraph: events are nodes and segments edges, with what is known of them. Needs networkx."""
         try:
-            import networkx
+            networkx = importlib.import_module("networkx")
         except ImportError as error:
             raise ImportError(f"to_networkx needs networkx, which Python does not find: {error}") from error
         graph = networkx.MultiDiGraph(first=self.first, last=self.last, time_unit=self._unit)

@@ -55,7 +55,8 @@ def test_the_signature_is_scikit_images():
     assert [parameters[name].kind for name in parameters] == [inspect.Parameter.POSITIONAL_OR_KEYWORD] * 2 + \
         [inspect.Parameter.KEYWORD_ONLY] * 6
     if of_skimage is not None:
-        assert str(inspect.signature(of_skimage)) == str(inspect.signature(tegl.marching_cubes))
+        mine = inspect.signature(tegl.marching_cubes).replace(return_annotation=inspect.Signature.empty)
+        assert str(inspect.signature(of_skimage)) == str(mine)
 
 
 @pytest.mark.parametrize("method", ["lewiner", "lorensen", "_lorensen"])

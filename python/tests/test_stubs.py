@@ -70,8 +70,7 @@ def test_the_package_has_type_hints(name):
     ] if inspect.isclass(thing) else []
     for function in functions:
         hints = typing.get_type_hints(function, {**vars(tegl), **function.__globals__})
-        if function.__name__ not in ("marching_cubes", "to_meshio", "to_vtk", "to_pyvista", "to_xarray", "to_networkx"):
-            assert "return" in hints, function
+        assert "return" in hints, function
 
 
 def test_the_package_is_marked_as_typed():
