@@ -83,7 +83,8 @@ inline std::vector<std::pair<const char*, GradientDirection>> gradient_direction
 /// Ctrl-C ends it as it ends Python code.
 class Call {
  public:
-  explicit Call(py::object progress) : callback_(std::move(progress)) {}
+  /// Throws TypeError for what is neither a function nor None.
+  explicit Call(py::object progress);
 
   /// What the library takes. Valid as long as this.
   [[nodiscard]] Progress progress() {

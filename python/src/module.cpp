@@ -15,6 +15,23 @@ void throw_dimension(const char* operation, int dim, const char* expected) {
   throw Error(ErrorCode::UnsupportedData, fmt::format("{} of a {}D contour; expected {}", operation, dim, expected));
 }
 
+Call::Call(py::object progress) : callback_(std::move(progress)) {
+  if (!callback_ || callback_.is_none() || PyCallable_Check(callback_.ptr()) != 0) return;
+  throw py::type_error(fmt::format("progress is {}; expected a function that takes a fraction, or None",
+                                   std::string(py::repr(callback_))));
+}
+
+namespace {
+
+/// Whether what a progress function returned is False, Python's or NumPy's, which comparisons of its numbers give.
+bool is_false(const py::object& returned) {
+  if (py::isinstance<py::bool_>(returned)) return !returned.cast<bool>();
+  if (returned.is_none() || !py::hasattr(returned, "dtype")) return false;
+  return py::dtype::from_args(returned.attr("dtype")).kind() == 'b' && !py::bool_(returned);
+}
+
+}  // namespace
+
 bool Call::tell(double fraction) {
   // Now and then is enough: the lock is waited for each time.
   const std::scoped_lock only_one(mutex_);
@@ -28,7 +45,7 @@ bool Call::tell(double fraction) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!callback_ || callback_.is_none()) return true;
     told_ = fraction;
-    return !callback_(fraction).is(py::bool_(false));
+    return !is_false(callback_(fraction));
   } catch (...) {
     error_ = std::current_exception();
     return false;

@@ -8,16 +8,18 @@ that goes in and comes out is turned around here and in `Contour`; the library's
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-import datetime
 import inspect
+import operator
 import os
+import re
 import typing
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _tegl
+from . import _dates, _tegl
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
@@ -58,8 +60,33 @@ def core_of(contour) -> _tegl.Contour:
 
 def part_of(progress, first: float, last: float):
     """The progress of a call that takes the whole from `first` to `last`."""
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress is {progress!r}; expected a function that takes a fraction, or None")
     return None if progress is None else lambda fraction: progress(
         first + (last - first) * fraction if fraction < 1 else last)
+
+
+def _in_array_order(text: str, ndim: int) -> str:
+    """A message of the library, which numbers axes from the array's last one: numbers of axes, points (x, y, z) and sizes
+    x x y x z, turned around."""
+    text = re.sub(r"\b(axis|row|column) (\d)\b", lambda found: f"{found[1]} {ndim - 1 - int(found[2])}", text)
+    text = text.replace("of its last axis", "of its axis 0")
+    for pattern, separator in ((r"(?<=\()[^(),]+(?:, [^(),]+){%d}(?=\))" % (ndim - 1), ", "),
+                               (r"\b\d+(?: x \d+){%d}\b" % (ndim - 1), " x ")):
+        text = re.sub(pattern, lambda found: separator.join(found[0].split(separator)[::-1]), text)
+    return text
+
+
+@contextlib.contextmanager
+def _array_terms(is_reversed: bool, ndim: int, about: str = "") -> typing.Iterator[None]:
+    try:
+        yield
+    except ValueError as error:
+        if not is_reversed:
+            raise
+        text = str(error)
+        start = len(about) if text.startswith(about) else 0
+        raise type(error)(text[:start] + _in_array_order(text[start:], ndim)) from None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -70,10 +97,15 @@ class Prepared:
     is_reversed: bool
     names: tuple[str, ...]
     units: tuple[str, ...]
+    reach: list[float]  #: how far from 0 coordinates in the world are, at most
 
     @property
     def ndim(self) -> int:
         return self.image.ndim
+
+    def terms(self, about: str = "") -> contextlib.AbstractContextManager[None]:
+        """Errors of the library in here are told in the array's order of axes; but not the name of the file `about`."""
+        return _array_terms(self.is_reversed, self.ndim, about)
 
     def turned(self, per_axis: Sequence) -> list:
         """Numbers of the array's axes, in the library's order."""
@@ -89,7 +121,10 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     if isinstance(axis, str):
         if axis not in names:
             raise ValueError(f"no axis is named '{axis}'; expected one of {', '.join(repr(n) for n in names)}")
+        if list(names).count(axis) > 1:
+            raise ValueError(f"{list(names).count(axis)} axes are named '{axis}'; expected axis= with the number of one")
         return list(names).index(axis)
+    axis = as_whole("axis", axis)
     if not -ndim <= axis < ndim:
         raise ValueError(f"axis is {axis}; expected {-ndim} to {ndim - 1}")
     return axis % ndim
@@ -98,7 +133,7 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
 def turn_around(time_axis: int, ndim: int) -> bool:
     """Whether the library's axes are the array's from the last to the first."""
     if time_axis not in (0, -1, ndim - 1):
-        raise ValueError(f"time_axis is {time_axis}; expected 0 or -1, the array's first or last axis; numpy.moveaxis "
+        raise ValueError(f"time_axis is {time_axis!r}; expected 0 or -1, the array's first or last axis; numpy.moveaxis "
                          "gives a view with another axis first")
     return time_axis == 0
 
@@ -107,43 +142,15 @@ def is_xarray(data: object) -> bool:
     return type(data).__module__.split(".")[0] == "xarray" and hasattr(data, "dims")
 
 
-def time_as_numbers(times: np.ndarray) -> tuple[np.ndarray, str]:
-    """Days since the first of these dates, and the unit that says so."""
-    start = times.astype("datetime64[ns]").min()
-    return (times.astype("datetime64[ns]") - start) / np.timedelta64(1, "D"), f"days since {start.astype('datetime64[s]')}"
-
-
-def _as_date(at: object) -> np.datetime64 | None:
-    """What a date is, in any of the forms that Python has for them: NumPy's, xarray's, pandas' and its own. None for
-    what is no date."""
-    if isinstance(at, datetime.datetime) and at.tzinfo is not None:  # pandas' timestamps are datetimes
-        at = at.astimezone(datetime.timezone.utc).replace(tzinfo=None)
-    if isinstance(at, (str, datetime.date)):
-        try:
-            return np.datetime64(typing.cast(str, at))
-        except ValueError:
-            raise ValueError(f"the coordinate {at!r} is no number, and no date; expected one") from None
-    if getattr(getattr(at, "dtype", None), "kind", "") == "M" and np.ndim(typing.cast(float, at)) == 0:
-        return typing.cast(np.datetime64, np.asarray(at)[()])
-    return None
-
-
 def number_on_axis(at: object, unit: str) -> float:
-    """A coordinate as a number; dates on an axis whose unit is `days since DATE`, as of xarray's times."""
-    date = _as_date(at)
-    if date is None:
-        if getattr(getattr(at, "dtype", None), "kind", "") == "m":
-            raise ValueError(f"the coordinate {at!r} is a duration; expected a number, or a date")
-        return as_number("the coordinate", at)
-    if not unit.startswith("days since "):
-        raise ValueError(f"the coordinate {at!r} is a date, and the axis has the unit '{unit}'; expected a number")
-    if unit.rstrip().endswith(")"):
-        raise ValueError(f"the coordinate {at!r} is a date, and the axis has '{unit}', of another calendar; expected a "
-                         "number")
-    if np.isnat(date):
-        raise ValueError("the coordinate is no date (NaT); expected one")
-    start = np.datetime64(unit.removeprefix("days since ").strip().replace(" ", "T"))
-    return float((date - start) / np.timedelta64(1, "D"))
+    """A coordinate as a number; of dates and durations, by the unit of the axis."""
+    date = _dates.as_date(at)
+    if date is not None:
+        return _dates.date_on_axis(at, date, unit)
+    duration = _dates.duration_of(at)
+    if duration is not None:
+        return _dates.duration_on_axis(at, duration, unit)
+    return as_number("the coordinate", at)
 
 
 def as_number(name: str, value: object) -> float:
@@ -152,6 +159,33 @@ def as_number(name: str, value: object) -> float:
         return float(typing.cast(float, value))
     except (TypeError, ValueError):
         raise TypeError(f"{name} is {value!r}; expected a number") from None
+
+
+def as_whole(name: str, value: object, least: int | None = None) -> int:
+    """A whole number, not below `least`."""
+    try:
+        number = operator.index(typing.cast(int, value))
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; expected a whole number") from None
+    if least is not None and not least <= number < 2**63:
+        raise ValueError(f"{name} is {number}; expected {least} or more" + (", below 2**63" if number > 0 else ""))
+    return number
+
+
+def threads_of(threads: object) -> int:
+    """How many threads; 0: all."""
+    number = 0 if threads is None else as_whole("threads", threads)
+    if number < 0:
+        raise ValueError(f"threads is {number}; expected 0 (all) or more")
+    return min(number, 2**31 - 1)  # more than the machine has are as many
+
+
+def or_none(check: typing.Callable[..., typing.Any], name: str, value: object, *more: int) -> typing.Any:
+    return None if value is None else check(name, value, *more)
+
+
+def as_numbers(name: str, value: object, expected: str = "a list of numbers") -> list[float]:
+    return [as_number(f"{name}[{i}]", one) for i, one in enumerate(as_list(name, value, expected))]
 
 
 def as_text(name: str, value: object) -> str:
@@ -171,21 +205,37 @@ def as_list(name: str, value: object, expected: str) -> list:
 def _per_axis(value, ndim: int, name: str, default: float) -> list[float]:
     if value is None:
         return [default] * ndim
-    if np.ndim(value) == 0:
-        return [float(value)] * ndim
-    result = [float(v) for v in value]
+    if isinstance(value, str) or np.ndim(value) == 0:
+        return [as_number(name, value)] * ndim
+    result = as_numbers(name, value)
     if len(result) != ndim:
         raise ValueError(f"{name} has {len(result)} numbers; expected one for each of {ndim} axes")
     return result
 
 
-def _axis(coordinates) -> UniformAxis | list[float]:
-    """Uniform if that is exact to the last bit; else all coordinates."""
+def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
+    """Uniform if that is exact to the last bit; else all coordinates. `axis` is what errors call it."""
     if isinstance(coordinates, UniformAxis):
         return coordinates
-    values = np.asarray(coordinates, dtype=np.float64)
+    try:
+        values = np.asarray(coordinates, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"the coordinates of {axis} are {coordinates!r}; expected numbers, ascending or "
+                        "descending") from None
     if values.ndim != 1:
-        raise ValueError(f"the coordinates of an axis have {values.ndim} dimensions; expected 1")
+        raise ValueError(f"the coordinates of {axis} have {values.ndim} dimensions; expected 1")
+    if len(values) != size:
+        raise ValueError(f"{axis} has {size} samples and {len(values)} coordinates; expected as many")
+    if not np.isfinite(values).all():
+        wrong = int(np.argmin(np.isfinite(values)))
+        raise ValueError(f"coordinate {wrong} of {axis} is {values[wrong]}; expected a finite number")
+    rises = np.diff(values) > 0
+    falls = np.diff(values) < 0
+    if not (rises.all() or falls.all()):
+        descends = falls[0]
+        wrong = int(np.argmin(falls if descends else rises))
+        raise ValueError(f"coordinates {wrong} and {wrong + 1} of {axis} are {values[wrong]:g} and {values[wrong + 1]:g}; "
+                         f"expected them strictly ascending or strictly descending")
     if len(values) > 1 and np.isfinite(values).all():
         for step in (values[1] - values[0], (values[-1] - values[0]) / (len(values) - 1)):
             if step != 0 and np.array_equal(values[0] + np.arange(len(values)) * step, values):
@@ -196,7 +246,10 @@ def _axis(coordinates) -> UniformAxis | list[float]:
 def _affine(affine, ndim: int) -> np.ndarray | None:
     if affine is None:
         return None
-    matrix = np.asarray(affine, dtype=np.float64)
+    try:
+        matrix = np.asarray(affine, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"affine is {affine!r}; expected {ndim} x {ndim + 1} or {ndim + 1} x {ndim + 1} numbers") from None
     if matrix.shape not in ((ndim, ndim + 1), (ndim + 1, ndim + 1)):
         raise ValueError(f"affine has the shape {matrix.shape}; expected {(ndim, ndim + 1)} or {(ndim + 1, ndim + 1)}")
     if len(matrix) > ndim and not np.array_equal(matrix[ndim], [0.0] * ndim + [1.0]):
@@ -213,9 +266,10 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None]:
         values, unit = None, ""
         if dim in data.coords:
             values = data.coords[dim].values
-            unit = str(data.coords[dim].attrs.get("units", ""))
+            unit = _dates.unit_with_calendar(str(data.coords[dim].attrs.get("units", "")),
+                                             str(data.coords[dim].attrs.get("calendar", "")))
             if values.dtype.kind == "M":
-                values, unit = time_as_numbers(values)
+                values, unit = _dates.dates_as_numbers(values, str(dim))
                 time_axis = number if time_axis is None else time_axis
             elif values.dtype.kind == "m":
                 values, unit = values / np.timedelta64(1, "D"), "days"
@@ -248,12 +302,22 @@ def _values(array: np.ndarray) -> np.ndarray:
     return array
 
 
-def _in_order(mask, dims: Sequence):
-    """An xarray with its dimensions in the order of the image's."""
-    if set(mask.dims) != set(dims):
+def _in_order(mask, data):
+    """An xarray's mask with its dimensions, and what lies along them, in the order of those of `data`."""
+    if set(mask.dims) != set(data.dims):
         raise ValueError(f"mask has the dimensions {', '.join(map(str, mask.dims))}; expected those of the array, "
-                         f"{', '.join(map(str, dims))}")
-    return mask.transpose(*dims)
+                         f"{', '.join(map(str, data.dims))}")
+    for dim in data.dims:
+        if dim not in mask.coords or dim not in data.coords or mask.sizes[dim] != data.sizes[dim]:
+            continue
+        own, expected = mask.coords[dim].values, data.coords[dim].values
+        if np.array_equal(own, expected):
+            continue
+        if len(np.unique(own)) < len(own) or not np.array_equal(np.sort(own), np.sort(expected)):
+            raise ValueError(f"mask has other coordinates along '{dim}' than the array, {own[0]} to {own[-1]}; expected "
+                             f"those of the array, {expected[0]} to {expected[-1]}, in any order")
+        mask = mask.sel({dim: expected})
+    return mask.transpose(*data.dims)
 
 
 def _masked(array: np.ndarray, mask) -> np.ndarray:
@@ -277,13 +341,13 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
     names: Sequence[str] | None = None
     units: Sequence[str] | None = None
     known: Sequence | None = None
-    dims: Sequence | None = None
+    labelled = None
     if hasattr(data, "__tegl_image__"):
         known, names, units, own_affine, own_axis, data = data.__tegl_image__()
         affine = own_affine if affine is None else affine
         time_axis = own_axis if time_axis is None else time_axis
     elif is_xarray(data):
-        dims = data.dims
+        labelled = data
         known, names, units, found_axis = _from_xarray(data)
         if time_axis is None:
             if found_axis not in (None, 0, data.ndim - 1):
@@ -303,24 +367,31 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         raise ValueError(f"the array has {ndim} axes; expected 2 to 5")
     array = _values(array)
     if mask is not None:
-        array = _masked(array, mask if dims is None or not is_xarray(mask) else _in_order(mask, dims))
+        array = _masked(array, mask if labelled is None or not is_xarray(mask) else _in_order(mask, labelled))
     if coords is None:
         coords = known if spacing is None and origin is None else None
-    elif len(coords) != ndim:
+    elif len(coords := as_list("coords", coords, "the coordinates of each axis, or None for one")) != ndim:
         raise ValueError(f"coords has {len(coords)} entries; expected one for each of {ndim} axes")
     spacings, origins = _per_axis(spacing, ndim, "spacing", 1.0), _per_axis(origin, ndim, "origin", 0.0)
     if coords is not None and (spacing is not None or origin is not None):
         raise ValueError("coords with spacing or origin; expected the one or the other")
-    for axis in range(ndim if coords is not None else 0):
-        given = coords[axis]
-        if given is not None and not isinstance(given, UniformAxis) and len(given) != array.shape[axis]:
-            raise ValueError(f"axis {axis} has {array.shape[axis]} samples and {len(given)} coordinates; expected as many")
-    axes = [UniformAxis(origins[a], spacings[a]) if coords is None or coords[a] is None else _axis(coords[a])
-            for a in range(ndim)]
-    names = _labels(axis_names if axis_names is not None else names, ndim, "axis_names")
-    units = _labels(axis_units if axis_units is not None else units, ndim, "axis_units")
+    names = labels_of("axis_names", axis_names if axis_names is not None else names, ndim)
+    units = labels_of("axis_units", axis_units if axis_units is not None else units, ndim)
+    if axis_names is not None:
+        require_different("axis_names", names)
+    axes = []
+    for axis, size in enumerate(array.shape):
+        called = f"axis {axis}" + (f" ('{names[axis]}')" if names[axis] else "")
+        if size == 0:
+            raise ValueError(f"{called} has 0 samples; expected at least 1")
+        given = UniformAxis(origins[axis], spacings[axis]) if coords is None or coords[axis] is None else coords[axis]
+        if isinstance(given, UniformAxis) and not (np.isfinite(given).all() and given.step != 0):
+            raise ValueError(f"{called} has the origin {given.origin:g} and the spacing {given.step:g}; expected finite "
+                             "numbers, and a spacing other than 0")
+        axes.append(_axis(given, called, size))
     is_reversed = turn_around(0 if time_axis is None else time_axis, ndim)
     matrix = _affine(affine, ndim)
+    reach = _reach(axes, array.shape, matrix)
     if not is_reversed:
         image = _tegl.Image(array, axes, None if matrix is None else matrix.tolist(), list(names), list(units))
     else:
@@ -328,31 +399,66 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             matrix = np.column_stack([matrix[::-1, ndim - 1::-1], matrix[::-1, ndim]])
         image = _tegl.Image(array.T, axes[::-1], None if matrix is None else matrix.tolist(), list(names)[::-1],
                             list(units)[::-1])
-    return Prepared(image, is_reversed, names, units)
+    return Prepared(image, is_reversed, names, units, reach)
 
 
-def _labels(labels, ndim: int, name: str) -> tuple[str, ...]:
+def real(name: str, values: object) -> np.ndarray:
+    """An array of real numbers."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"{name} are of type {array.dtype}; expected real numbers")
+    return array
+
+
+def labels_of(name: str, labels: object, ndim: int) -> tuple[str, ...]:
+    """Names or units of axes; without any, empty ones."""
     if labels is None:
         return ("",) * ndim
-    if len(labels) != ndim:
-        raise ValueError(f"{name} has {len(labels)} entries; expected one for each of {ndim} axes")
-    return tuple(str(label) for label in labels)
+    listed = list(labels) if isinstance(labels, str) else as_list(name, labels, f"a list of text, one for each of {ndim} axes")
+    if len(listed) != ndim:
+        raise ValueError(f"{name} has {len(listed)} entries; expected one for each of {ndim} axes")
+    return tuple(str(label) for label in listed)
 
 
-def is_double(dtype) -> bool:
-    """Whether coordinates are to be of double precision."""
-    kind = np.dtype(dtype)
+def require_different(name: str, labels: Sequence[str]) -> None:
+    twice = [label for label in labels if label and list(labels).count(label) > 1]
+    if twice:
+        raise ValueError(f"{name} has '{twice[0]}' more than once; expected different names")
+
+
+def _reach(axes: Sequence[UniformAxis | list[float]], sizes: Sequence[int], affine: np.ndarray | None) -> list[float]:
+    """How far from 0 coordinates in the world are, at most, by axis."""
+    with np.errstate(over="ignore"):
+        reach = np.array([np.abs(axis.origin + np.array([0.0, size - 1]) * axis.step).max()
+                          if isinstance(axis, UniformAxis) else np.abs([axis[0], axis[-1]]).max()
+                          for axis, size in zip(axes, sizes)])
+        if affine is not None:
+            reach = np.abs(affine[:, :-1]) @ reach + np.abs(affine[:, -1])
+    return [float(one) for one in reach]
+
+
+def is_double(dtype, prepared: Prepared) -> bool:
+    """Whether coordinates are to be of double precision. Those of the array have to fit into what they are."""
+    try:
+        kind = np.dtype(dtype)
+    except TypeError:
+        raise TypeError(f"dtype is {dtype!r}; expected float32 or float64") from None
     if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise ValueError(f"dtype is {kind}; expected float32 or float64")
+    least, most = np.finfo(kind).tiny, np.finfo(kind).max
+    for axis, reach in enumerate(prepared.reach):
+        if reach != 0 and not least <= reach <= most:
+            raise ValueError(f"coordinates along axis {axis} reach {reach:g}; expected {least:.3g} to {most:.3g}, as {kind} "
+                             "holds" + (", or dtype=numpy.float64" if kind == np.dtype(np.float32) else ""))
     return kind == np.dtype(np.float64)
 
 
 def extract_options(*, triangulation="compact", ambiguity="low", direction="descent", close=False, epsilon=0.0,
-                    normals=False, gradient="differences", threads=0) -> dict:
+                    normals=False, gradient="differences", threads=0, **unknown) -> dict:
     """What `_tegl.extract` takes."""
-    if threads is None:
-        threads = 0
-    if threads < 0:
-        raise ValueError(f"threads is {threads}; expected 0 (all) or more")
-    return {"triangulation": triangulation, "ambiguity": ambiguity, "direction": direction, "close": bool(close),
-            "epsilon": float(epsilon), "normals": bool(normals), "gradient": gradient, "threads": int(threads)}
+    if unknown:
+        known = [name for name in inspect.signature(extract_options).parameters if name != "unknown"]
+        raise TypeError(f"no argument is named '{next(iter(unknown))}'; expected one of {', '.join(known)}")
+    return {"triangulation": as_text("triangulation", triangulation), "ambiguity": as_text("ambiguity", ambiguity),
+            "direction": as_text("direction", direction), "close": bool(close), "epsilon": as_number("epsilon", epsilon),
+            "normals": bool(normals), "gradient": as_text("gradient", gradient), "threads": threads_of(threads)}

@@ -52,7 +52,7 @@ class Contour:
                  vertex_attributes: Mapping[str, typing.Any] | None = None,
                  simplex_attributes: Mapping[str, typing.Any] | None = None, time_axis: int = 0) -> None:
         """A contour from arrays (any mesh of simplices), which are copied. Attributes: name -> numbers, a row each."""
-        vertices = np.asarray(vertices)
+        vertices = _arguments.real("vertices", vertices)
         if vertices.ndim != 2 or not 2 <= vertices.shape[1] <= 5:
             raise ValueError(f"vertices have the shape {vertices.shape}; expected (#V, N) with N = 2 to 5")
         if vertices.dtype != np.float64:
@@ -65,20 +65,33 @@ class Contour:
             raise ValueError(f"simplices have vertex numbers {simplices.min()} to {simplices.max()}; expected 0 to "
                              f"{len(vertices) - 1}")
         ndim = vertices.shape[1]
+        if simplices.size and (simplices.ndim != 2 or simplices.shape[1] != ndim):
+            raise ValueError(f"simplices have the shape {simplices.shape}; expected (#S, {ndim}), as vertices have {ndim} "
+                             "coordinates")
+        if normals is not None:
+            normals = _arguments.real("normals", normals)
+            if normals.shape != vertices.shape:
+                raise ValueError(f"normals have the shape {normals.shape}; expected {vertices.shape}, that of vertices")
         self._is_reversed = _arguments.turn_around(time_axis, ndim)
         turn = slice(None, None, -1) if self._is_reversed else slice(None)
 
-        def labels(given: Sequence[str] | None) -> list[str]:
-            return list(given if given is not None else [""] * ndim)[turn]
+        names = _arguments.labels_of("axis_names", axis_names, ndim)
+        units = _arguments.labels_of("axis_units", axis_units, ndim)
+        _arguments.require_different("axis_names", names)
 
-        def attributes(given: Mapping[str, typing.Any] | None) -> list[tuple[str, str, np.ndarray]]:
-            return [(name, "", np.asarray(values, dtype=np.float64)) for name, values in (given or {}).items()]
+        def attributes(of: str, given: Mapping[str, typing.Any] | None) -> list[tuple[str, str, np.ndarray]]:
+            if given is not None and not isinstance(given, Mapping):
+                raise TypeError(f"{of} is {given!r}; expected a dict of names and numbers")
+            return [(_arguments.as_text(f"a name of {of}", name), "",
+                     _arguments.real(f"{of}[{name!r}]", values).astype(np.float64))
+                    for name, values in (given or {}).items()]
 
         self._grid = None
         self._core = _tegl.Contour.from_arrays(
-            vertices[:, turn], simplices.reshape(-1, ndim)[:, turn] if simplices.size == 0 else simplices[:, turn],
-            None if normals is None else np.asarray(normals)[:, turn], labels(axis_names), labels(axis_units),
-            direction, isovalue, attributes(vertex_attributes), attributes(simplex_attributes))
+            vertices[:, turn], simplices.reshape(-1, ndim)[:, turn], None if normals is None else normals[:, turn],
+            list(names[turn]), list(units[turn]), _arguments.as_text("direction", direction),
+            _arguments.or_none(_arguments.as_number, "isovalue", isovalue),
+            attributes("vertex_attributes", vertex_attributes), attributes("simplex_attributes", simplex_attributes))
 
     @classmethod
     def _of(cls, core: _tegl.Contour, is_reversed: bool, grid: _tegl.Grid | None = None) -> Contour:
@@ -162,10 +175,11 @@ class Contour:
             return [(name, unit, np.array(values)) for name, (values, unit) in of.items()]
 
         core = self._core
-        return _restored, (np.array(core.vertices), np.array(core.simplices),
+        own = {name: value for name, value in self.__dict__.items() if name not in ("_core", "_is_reversed", "_grid")}
+        return _restored, (type(self), np.array(core.vertices), np.array(core.simplices),
                            None if core.normals is None else np.array(core.normals), core.axis_names, core.axis_units,
                            core.direction, core.isovalue, attributes(core.vertex_attributes),
-                           attributes(core.simplex_attributes), self._is_reversed)
+                           attributes(core.simplex_attributes), self._is_reversed), own or None
 
     def __repr__(self) -> str:
         what = {2: "segments", 3: "triangles", 4: "tetrahedra", 5: "4-simplices"}[self.ndim]
@@ -195,8 +209,7 @@ class Contour:
               progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
         """The cut by a hyperplane: see `tegl.slice`."""
         from . import _operations
-        return _operations.slice(self, at=at, axis=axis, normal=normal, offset=offset, threads=threads,
-                                 progress=progress, **coordinate)
+        return _operations._cut(self, at, axis, normal, offset, threads, progress, coordinate)
 
     def components(self, *, threads: int = 0, progress: Progress | None = None) -> Components:
         """The connected pieces: see `tegl.components`."""
@@ -250,7 +263,10 @@ class Contour:
         if prepared.names != self.axis_names and sorted(prepared.names) == sorted(self.axis_names):
             raise ValueError(f"the array has the axes {', '.join(prepared.names)}; expected the contour's order, "
                              f"{', '.join(self.axis_names)}")
-        _tegl.sample(self._core, prepared.image, name, unit, threads, progress)
+        if not _arguments.as_text("name", name):
+            raise ValueError("name is ''; expected one, for the attribute")
+        _tegl.sample(self._core, prepared.image, name, _arguments.as_text("unit", unit), _arguments.threads_of(threads),
+                     progress)
         return self.vertex_attributes[name]
 
     @_arguments.documents("write_mesh")
@@ -292,9 +308,9 @@ class Contour:
         return _export.to_pyvista(self)
 
 
-def _restored(*arrays) -> Contour:
+def _restored(of: type[Contour], *arrays) -> Contour:
     """What was pickled, or copied: of the grid of its image it knows nothing more."""
-    return Contour._of(_tegl.Contour.from_arrays(*arrays[:-1]), arrays[-1])
+    return of._of(_tegl.Contour.from_arrays(*arrays[:-1]), arrays[-1])
 
 
 @_arguments.documents("read_mesh")

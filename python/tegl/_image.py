@@ -67,10 +67,11 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     options = _arguments.extract_options(triangulation=triangulation, ambiguity=ambiguity, direction=direction,
                                          close=close, epsilon=epsilon, normals=normals, gradient=gradient,
                                          threads=threads)
-    is_double = _arguments.is_double(dtype)
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
-    core = _tegl.extract(prepared.image, float(level), is_double, options, progress)
+    is_double = _arguments.is_double(dtype, prepared)
+    with prepared.terms():
+        core = _tegl.extract(prepared.image, _arguments.as_number("level", level), is_double, options, progress)
     return Contour._of(core, prepared.is_reversed, prepared.image.grid)
 
 

@@ -40,7 +40,9 @@ class Index:
         self._prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine,
                                             mask=mask, axis_names=axis_names, axis_units=axis_units,
                                             time_axis=time_axis)
-        self._core = _tegl.build_index(self._prepared.image, method, threads, progress)
+        with self._prepared.terms():
+            self._core = _tegl.build_index(self._prepared.image, _arguments.as_text("method", method),
+                                           _arguments.threads_of(threads), progress)
 
     @classmethod
     @_arguments.documents("read_active_tiles")
@@ -49,7 +51,9 @@ class Index:
         """Reads an index that `save`, or `tegl index`, wrote of this array."""
         self = cls.__new__(cls)
         self._prepared = _arguments.prepare(array, **grid)
-        self._core = _tegl.load_index(os.fspath(path), self._prepared.image, threads, progress)
+        name = os.fspath(path)
+        with self._prepared.terms(about=name):
+            self._core = _tegl.load_index(name, self._prepared.image, _arguments.threads_of(threads), progress)
         return self
 
     @_arguments.documents("write_active_tiles")
@@ -74,14 +78,15 @@ class Index:
     def contour(self, level: float, *, dtype=np.float32, progress: Progress | None = None,
                 **options: typing.Any) -> Contour:
         """What `tegl.contour` of the array gives, byte by byte. Options as there: triangulation, normals, ..."""
-        core = self._core.contour(float(level), _arguments.is_double(dtype), _arguments.extract_options(**options),
-                                  progress)
+        is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)
+        with self._prepared.terms():
+            core = self._core.contour(_arguments.as_number("level", level), is_double, chosen, progress)
         return Contour._of(core, self._prepared.is_reversed, self._prepared.image.grid)
 
     def active_tiles(self, level: float) -> np.ndarray:
         """The lowest corners of the tiles that the contour passes: #T x N indices, in the order of the array's axes."""
         sizes = [size - 1 for size in self._prepared.image.array.shape]
-        found = self._core.find(float(level))
+        found = self._core.find(_arguments.as_number("level", level))
         corners = np.column_stack(np.unravel_index(found, sizes, order="F")) if len(found) else \
             np.empty((0, len(sizes)), dtype=np.intp)
         return corners[:, ::-1] if self._prepared.is_reversed else corners
@@ -104,9 +109,11 @@ class Index:
 
         It is found from the point, without the index. With `return_report`: (contour, PickReport).
         """
-        core, report = _tegl.extract_component(
-            self._prepared.image, float(level), self._prepared.turned([float(number) for number in point]),
-            _arguments.is_double(dtype), _arguments.extract_options(**options), progress)
+        numbers = _arguments.as_numbers("point", point, "its coordinates along the array's axes")
+        is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)
+        with self._prepared.terms():
+            core, report = _tegl.extract_component(self._prepared.image, _arguments.as_number("level", level),
+                                                   self._prepared.turned(numbers), is_double, chosen, progress)
         result = Contour._of(core, self._prepared.is_reversed, self._prepared.image.grid)
         report["tile"] = tuple(self._prepared.turned(report["tile"]))
         return (result, PickReport(**report)) if return_report else result

@@ -33,7 +33,8 @@ def slice(contour_or_array: Contour, level: None = None, *, at: Labelled, axis: 
 
 @typing.overload
 def slice(contour_or_array: Contour, level: None = None, *, at: None = None, axis: None = None, normal: None = None,
-          offset: None = None, threads: int = 0, progress: Progress | None = None, **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
+          offset: None = None, threads: int = 0, progress: Progress | None = None,
+          **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
 
 
 @typing.overload
@@ -69,12 +70,15 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
     and may be given as numpy.datetime64. Of 3D and 4D contours.
     """
     if isinstance(contour_or_array, Contour):
+        if level is not None and "level" in contour_or_array.axis_names:  # an axis of pressures
+            more["level"], level = level, None
         if level is not None:
             raise ValueError(f"level is {level} and the first argument a contour, which has its level; expected at=")
         return _cut(contour_or_array, at, axis, normal, offset, threads, progress, more)
     if level is None:
         raise ValueError("a cut of an array needs a level; expected tegl.slice(array, level, at=...)")
-    return _cut_image(contour_or_array, float(level), at, axis, normal, offset, threads, progress, more)
+    return _cut_image(contour_or_array, _arguments.as_number("level", level), at, axis, normal, offset, threads, progress,
+                      more)
 
 
 def _named_axis(names: Sequence[str], ndim: int, time_axis: int, at, axis, more: dict) -> tuple[int, typing.Any]:
@@ -97,11 +101,12 @@ def _cut(contour: Contour, at, axis, normal, offset, threads, progress, more) ->
     if normal is not None:
         if at is not None or axis is not None or offset is None or more:
             raise ValueError("normal goes with offset alone; expected normal= and offset=, or at=")
-        direction = [float(number) for number in normal]
-        places = offset
+        direction = _arguments.as_numbers("normal", normal, "a number for each axis")
+        places: typing.Any = _arguments.as_numbers("offset", offset) if _is_list(offset) else \
+            _arguments.as_number("offset", offset)
     else:
         if offset is not None:
-            raise ValueError("offset without normal; expected both, or at=")
+            raise ValueError(_offset_alone(contour.axis_names))
         number, places = _named_axis(contour.axis_names, ndim, contour.time_axis, at, axis, more)
         if more:
             raise ValueError(f"no axis is named '{next(iter(more))}'; the contour's are "
@@ -112,9 +117,13 @@ def _cut(contour: Contour, at, axis, normal, offset, threads, progress, more) ->
             _arguments.number_on_axis(places, unit)
     several = _is_list(places)
     cuts = _tegl.slice_stack(contour._core, contour._listed(direction),
-                             [float(place) for place in places] if several else [float(places)], threads, progress)
+                             list(places) if several else [places], _arguments.threads_of(threads), progress)
     found = [Contour._of(cut, contour._is_reversed) for cut in cuts]
     return found if several else found[0]
+
+
+def _offset_alone(names: Sequence[str]) -> str:
+    return "offset without normal; expected both, or at=" + (", with axis='offset'" if "offset" in names else "")
 
 
 def _is_list(value) -> bool:
@@ -130,18 +139,20 @@ def _cut_image(array, level, at, axis, normal, offset, threads, progress, more) 
         whole = contour(array, level, threads=threads, progress=_arguments.part_of(progress, 0.0, 0.5), **more)
         return _cut(whole, at, axis, normal, offset, threads, _arguments.part_of(progress, 0.5, 1.0), {})
     if offset is not None:
-        raise ValueError("offset without normal; expected both, or at=")
+        raise ValueError(_offset_alone(()))
     prepared = _arguments.prepare(array, **{name: more.pop(name) for name in _GRID if name in more})
-    is_double = _arguments.is_double(more.pop("dtype", np.float32))
+    is_double = _arguments.is_double(more.pop("dtype", np.float32), prepared)
     time_axis = 0 if prepared.is_reversed else prepared.ndim - 1
     number, places = _named_axis(prepared.names, prepared.ndim, time_axis, at, axis, more)
     options = _arguments.extract_options(threads=threads, **more)
-    wanted = list(places) if _is_list(places) else [places]
-    cuts = [Contour._of(_tegl.slice_image(prepared.image, level, prepared.library_axis(number),
-                                          _arguments.number_on_axis(place, prepared.units[number]), is_double, options,
-                                          _arguments.part_of(progress, i / len(wanted), (i + 1) / len(wanted))),
-                        prepared.is_reversed)
-            for i, place in enumerate(wanted)]
+    unit = prepared.units[number]
+    wanted = [_arguments.number_on_axis(place, unit) for place in (places if _is_list(places) else [places])]
+    with prepared.terms():
+        cuts = [Contour._of(_tegl.slice_image(prepared.image, level, prepared.library_axis(number), place, is_double,
+                                              options,
+                                              _arguments.part_of(progress, i / len(wanted), (i + 1) / len(wanted))),
+                            prepared.is_reversed)
+                for i, place in enumerate(wanted)]
     return cuts if _is_list(places) else cuts[0]
 
 
@@ -217,11 +228,10 @@ def measure(contour: Contour, *, at=None, threads: int = 0,
     core = _arguments.core_of(contour)
     if at is not None:
         unit = contour.axis_units[contour.time_axis]
-        listed = at if isinstance(at, (list, tuple)) else np.atleast_1d(np.asarray(at))
-        places = [_arguments.number_on_axis(place, unit) for place in listed]
-        size, content = _tegl.measure_cuts(core, places, threads, progress)
+        places = [_arguments.number_on_axis(place, unit) for place in (at if _is_list(at) else [at])]
+        size, content = _tegl.measure_cuts(core, places, _arguments.threads_of(threads), progress)
         return CutMeasures(np.array(places), np.array(size), np.array(content))
-    found = _tegl.measure(core, threads, progress)
+    found = _tegl.measure(core, _arguments.threads_of(threads), progress)
     for name in ("centroid", "lowest", "highest"):
         found[name] = np.array(contour._listed(found[name]))
     return Measures(**found)
@@ -283,8 +293,10 @@ class Components(Sequence[Component]):
     @_arguments.documents("select_components")
     def select(self, keep, *, progress: Progress | None = None) -> Contour:
         """The contour of some: a truth value for each component, or the labels of those to keep."""
-        chosen = np.asarray(keep)
+        chosen = np.atleast_1d(np.asarray(keep))
         if chosen.dtype != bool:
+            if chosen.size and chosen.dtype.kind not in "iu":
+                raise TypeError(f"keep is {keep!r}; expected a truth value for each component, or labels")
             labels, chosen = chosen.astype(np.int64).ravel(), np.zeros(len(self), dtype=bool)
             if labels.size and not (0 <= labels.min() and labels.max() < len(self)):
                 raise ValueError(f"labels are {labels.min()} to {labels.max()}; expected 0 to {len(self) - 1}")
@@ -294,8 +306,7 @@ class Components(Sequence[Component]):
 
     def largest(self, count: int = 1, *, progress: Progress | None = None) -> Contour:
         """The contour of the largest ones by size."""
-        if count < 0:
-            raise ValueError(f"count is {count}; expected 0 or more")
+        count = _arguments.as_whole("count", count, 0)
         order = sorted(range(len(self)), key=lambda label: (-self._found[label].size, label))
         return self.select(np.array(order[:count], dtype=np.int64), progress=progress)
 
@@ -303,7 +314,7 @@ class Components(Sequence[Component]):
 @_arguments.documents("label_components", "components", "Component")
 def components(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> Components:
     """The connected components: labels, what each is, contours of some."""
-    core = _arguments.core_of(contour)
+    core, threads = _arguments.core_of(contour), _arguments.threads_of(threads)
     labels = _tegl.label_components(core, threads, _arguments.part_of(progress, 0.0, 0.3))
     found = []
     for one in _tegl.components(core, labels, threads, _arguments.part_of(progress, 0.3, 1.0)):
@@ -374,7 +385,8 @@ class Elements:
     def save(self, path: str | os.PathLike, *, axes: str = "time_first", components: str = "covariant",
              header: bool = False, progress: Progress | None = None) -> None:
         """Writes .dat or .txt in Cornelius's columns, or .h5."""
-        _tegl.write_elements(self._core, os.fspath(path), axes, components, header, progress)
+        _tegl.write_elements(self._core, os.fspath(path), _arguments.as_text("axes", axes),
+                             _arguments.as_text("components", components), bool(header), progress)
 
 
 @_arguments.documents("elements", "elements_by_cell", "Elements")
@@ -384,9 +396,10 @@ def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
 
     `by_cell` is for contours straight from `tegl.contour`, or some of their components, whose grid is known.
     """
+    core = _arguments.core_of(contour)
     if by_cell and contour._grid is None:
         raise ValueError("by_cell of a contour whose grid is not known; expected one that tegl.contour made")
-    return Elements(_tegl.elements(_arguments.core_of(contour), contour._grid if by_cell else None, threads, progress),
+    return Elements(_tegl.elements(core, contour._grid if by_cell else None, _arguments.threads_of(threads), progress),
                     contour._is_reversed)
 
 
@@ -431,15 +444,25 @@ def simplify(contour: Contour, *, ratio: float | None = None, count: int | None 
     method: "quadric", "facets", "vertices" or "fast"; border: "fixed" or "within"; scale: a number for each axis of the
     array by which its lengths count, or "auto". With `return_stats`: (contour, SimplifyStats).
     """
+    core = _arguments.core_of(contour)
+    if isinstance(scale, str) and scale != "auto":
+        raise ValueError(f"scale is '{scale}'; expected 'auto' or a number for each axis")
+    factors: list[float] | None = None
     if isinstance(scale, str):
-        if scale != "auto":
-            raise ValueError(f"scale is '{scale}'; expected 'auto' or a number for each axis")
-        factors: list[float] | None = _tegl.automatic_scale(_arguments.core_of(contour))
-    else:
-        factors = None if scale is None else contour._listed(float(factor) for factor in scale)
-    options = {"method": method, "border": border, "ratio": ratio, "count": count, "max_error": max_error,
-               "max_curvature": max_curvature, "scale": factors, "measure": measure,
-               "allow_nonmanifold": allow_nonmanifold, "threads": threads}
-    core, stats = _tegl.simplify(_arguments.core_of(contour), options, progress)
-    result = Contour._of(core, contour._is_reversed)
+        factors = _tegl.automatic_scale(core)
+    elif scale is not None:
+        given = _arguments.as_numbers("scale", scale, "'auto' or a number for each axis")
+        for axis, factor in enumerate(given):
+            if not 0 < factor < np.inf:
+                raise ValueError(f"the scale of axis {axis} is {factor:g}; expected a finite number above 0")
+        factors = contour._listed(given)
+    number, either = _arguments.as_number, _arguments.or_none
+    options = {"method": _arguments.as_text("method", method), "border": _arguments.as_text("border", border),
+               "ratio": either(number, "ratio", ratio), "count": either(_arguments.as_whole, "count", count, 0),
+               "max_error": either(number, "max_error", max_error),
+               "max_curvature": either(number, "max_curvature", max_curvature), "scale": factors,
+               "measure": bool(measure), "allow_nonmanifold": bool(allow_nonmanifold),
+               "threads": _arguments.threads_of(threads)}
+    simplified, stats = _tegl.simplify(core, options, progress)
+    result = Contour._of(simplified, contour._is_reversed)
     return (result, SimplifyStats(**stats)) if return_stats else result

@@ -54,9 +54,10 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     # the other way.
     if gradient_direction == "ascent":
         faces = faces[:, ::-1]
-    scale = step * np.asarray(spacing, dtype=np.float64)
-    if not np.array_equal(scale, (1, 1, 1)):
-        verts = verts * scale
+    if step != 1:
+        verts = verts * verts.dtype.type(step)
+    if not np.array_equal(spacing, (1, 1, 1)):
+        verts = verts * np.asarray(spacing, dtype=np.float64)
     if allow_degenerate:
         return verts, faces, normals, values
     return _without_degenerate(verts, faces, normals, values)

@@ -153,7 +153,7 @@ class TrackGraph:
     @_arguments.documents("write_track")
     def save(self, path: str | os.PathLike, *, title: str = "") -> None:
         """Writes .json, .dot (graphviz) or a picture, .svg."""
-        _tegl.write_track(self._core, os.fspath(path), title)
+        _tegl.write_track(self._core, os.fspath(path), _arguments.as_text("title", title))
 
 
 @_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
@@ -169,9 +169,14 @@ def track(contour: Contour, *, min_lifetime: float = 0.0, times=None, first: flo
     if times is None:
         places: list[float] = []
     elif isinstance(times, (int, np.integer)):
+        count = _arguments.as_whole("times", times, 0)
         along = contour.vertices[:, contour.time_axis]
-        places = _tegl.even_times(float(along.min()), float(along.max()), int(times)) if len(along) else []
+        places = _tegl.even_times(float(along.min()), float(along.max()), count) if len(along) else []
     else:
-        places = [_arguments.number_on_axis(time, unit) for time in times]
-    found = _tegl.track(core, min_lifetime, places, first, last, handles, label_simplices, threads, progress)
+        places = [_arguments.number_on_axis(time, unit)
+                  for time in _arguments.as_list("times", times, "a list of times, or a whole number of even ones")]
+    found = _tegl.track(core, _arguments.as_number("min_lifetime", min_lifetime), places,
+                        None if first is None else _arguments.number_on_axis(first, unit),
+                        None if last is None else _arguments.number_on_axis(last, unit), bool(handles),
+                        bool(label_simplices), _arguments.threads_of(threads), progress)
     return TrackGraph(found, contour._is_reversed, unit)

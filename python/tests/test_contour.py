@@ -240,7 +240,7 @@ def test_a_contour_says_what_it_is():
     (dict(dtype=np.int32), ValueError, "dtype is int32; expected float32 or float64"),
     (dict(threads=-1), ValueError, "threads is -1"),
     (dict(spacing=(1, 2)), ValueError, "spacing has 2 numbers; expected one for each of 3 axes"),
-    (dict(spacing=(1, 0, 1)), ValueError, "step"),
+    (dict(spacing=(1, 0, 1)), ValueError, "axis 1 has the origin 0 and the spacing 0"),
     (dict(coords=[None, None]), ValueError, "coords has 2 entries; expected one for each of 3 axes"),
     (dict(coords=[None, [1, 2], None]), ValueError, "axis 1 has 11 samples and 2 coordinates"),
     (dict(coords=[None, None, np.zeros(11)]), ValueError, "strictly ascending"),
@@ -276,7 +276,7 @@ def test_a_contour_may_be_made_of_arrays():
         tegl.Contour(np.zeros((3, 2)), [[0, 3]])
     with pytest.raises(ValueError, match="attribute 'a' has 2 rows"):
         tegl.Contour(np.zeros((3, 2)), [[0, 1]], vertex_attributes={"a": [1, 2]})
-    with pytest.raises(ValueError, match="rows of 2 numbers"):
+    with pytest.raises(ValueError, match=r"simplices have the shape \(1, 3\); expected \(#S, 2\)"):
         tegl.Contour(np.zeros((3, 2)), [[0, 1, 2]])
 
 

@@ -232,3 +232,15 @@ def test_spacing_and_euler_characteristic_are_scikit_images():
         assert len(np.unique(faces)) - len(edges) + len(faces) == 0  # a torus
     assert mine[0].dtype == theirs[0].dtype
     assert area(*mine[:2]) == pytest.approx(area(*theirs[:2]), rel=1e-3)
+
+
+@pytest.mark.parametrize("step, spacing, expected", [(1, (1, 1, 1), np.float32), (2, (1, 1, 1), np.float32),
+                                                     (1, (1, 2, 1), np.float64), (2, (1, 2, 1), np.float64)])
+def test_vertices_are_of_the_type_that_scikit_images_are(step, spacing, expected):
+    volume = noise((12, 13, 14), 3)
+    verts = tegl.marching_cubes(volume, 0.1, step_size=step, spacing=spacing)[0]
+    assert verts.dtype == expected
+    if of_skimage is not None:
+        assert of_skimage(volume, 0.1, step_size=step, spacing=spacing)[0].dtype == expected
+    coarse = tegl.contour(volume[::step, ::step, ::step], 0.1, ambiguity="saddle", spacing=np.multiply(step, spacing))
+    assert np.allclose(np.sort(verts, axis=0), np.sort(coarse.vertices, axis=0), atol=1e-4)

@@ -372,6 +372,9 @@ def test_dates_in_any_form_are_the_same_place():
         contour.slice(np.timedelta64(1, "D"))
     with pytest.raises(ValueError, match="is a date"):
         contour.slice(x=noon)
+    with pytest.raises(ValueError, match="NaT"):
+        contour.slice(pandas.NaT)
+    assert len(contour.track(first="2020-01-02", last=times[4]).segments) > 0
 
 
 def test_dates_of_other_calendars_are_refused():

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -175,13 +177,26 @@ AxisDirection direction_of(const NcFile& file, const NcVariable& coordinate) {
   return std::ranges::find(kPressures, unit) != kPressures.end() ? AxisDirection::down : AxisDirection::unknown;
 }
 
+/// Whether "days since 1-1-1" counts from before 1582-10-15, until when the standard calendar is the Julian one.
+bool starts_before_the_reform(const std::string& unit) {
+  int year = 0;
+  int month = 1;
+  int day = 1;
+  const std::size_t start = unit.find(" since ");
+  if (start == std::string::npos || std::sscanf(unit.c_str() + start + 7, "%d-%d-%d", &year, &month, &day) < 1)
+    return true;
+  return std::tuple(year, month, day) < std::tuple(1582, 10, 15);
+}
+
 /// With the calendar, where time is counted in one that is not everybody's (CF conventions, section 4.4.1): nobody may
-/// take "days since 2000-01-01 (noleap)" for a date.
+/// take "days since 2000-01-01 (noleap)" for a date, nor "days since 0001-01-01 (proleptic_gregorian)" for a Julian
+/// one.
 std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
   const std::string unit = file.text(coordinate, "units");
   const std::string calendar = file.text(coordinate, "calendar");
   const std::string known = lower(calendar);
-  const bool is_common = known.empty() || known == "standard" || known == "gregorian" || known == "proleptic_gregorian";
+  const bool is_common = known.empty() || known == "standard" || known == "gregorian" ||
+                         (known == "proleptic_gregorian" && !starts_before_the_reform(unit));
   return is_common || unit.find(" since ") == std::string::npos ? unit : fmt::format("{} ({})", unit, calendar);
 }
 

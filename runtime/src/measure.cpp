@@ -152,7 +152,10 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
   detail::require_vertices(contour);
   detail::require_finite(contour);
   Measures<N> result;
-  if (contour.simplices.empty()) return result;
+  if (contour.simplices.empty()) {
+    result.content = 0.0;  // it has no border
+    return result;
+  }
   const std::span<const Index> rows = detail::rows_of(contour);
   detail::FaceCounts faces;
   {

@@ -249,13 +249,13 @@ TEST(NetCdf, SaysWhichAxesPointDown) {
 
 TEST(NetCdf, OtherCalendarsAreSaidInTheUnit) {
   TempDir dir;
-  const auto unit_under = [&](const std::string& calendar) {
+  const auto unit_under = [&](const std::string& calendar, const std::string& units = "days since 2000-01-01") {
     {
       NcWriter file(dir / "a.nc");
       const int t = file.dimension("time", 3);
       const int x = file.dimension("x", 2);
       const int tv = file.variable("time", NC_FLOAT, {t});
-      file.text(tv, "units", "days since 2000-01-01");
+      file.text(tv, "units", units);
       if (!calendar.empty()) file.text(tv, "calendar", calendar);
       const int v = file.variable("v", NC_INT, {t, x});
       file.end();
@@ -268,6 +268,12 @@ TEST(NetCdf, OtherCalendarsAreSaidInTheUnit) {
     EXPECT_EQ(unit_under(common), "days since 2000-01-01") << common;
   EXPECT_EQ(unit_under("noleap"), "days since 2000-01-01 (noleap)");
   EXPECT_EQ(unit_under("360_day"), "days since 2000-01-01 (360_day)");
+  // Before 1582-10-15 the standard calendar is the Julian one.
+  for (const char* early : {"days since 0001-01-01", "hours since 1-1-1 00:00:0.0", "days since 1582-10-14"}) {
+    EXPECT_EQ(unit_under("proleptic_gregorian", early), std::string(early) + " (proleptic_gregorian)");
+    EXPECT_EQ(unit_under("standard", early), early);
+  }
+  EXPECT_EQ(unit_under("proleptic_gregorian", "days since 1582-10-15"), "days since 1582-10-15");
 }
 
 TEST(NetCdf, SeveralVariablesMustBeChosenFrom) {
