@@ -32,8 +32,13 @@ def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("mypy")
 
 
-def test_package_users_and_examples_are_sound(cache):
-    assert mypy(cache, PACKAGE, USER, SOURCE / "examples/python") == ""
+def test_package_users_examples_and_docs_are_sound(cache, tmp_path):
+    page = (SOURCE / "docs/python.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    assert len(blocks) > 5
+    code = re.sub(r":(\d+)j", r":\1", "\n".join(blocks))  # mypy knows no slices with complex steps, as numpy.ogrid has
+    (tmp_path / "page.py").write_text(code)
+    assert mypy(cache, PACKAGE, USER, SOURCE / "examples/python", tmp_path / "page.py") == ""
 
 
 def test_wrong_code_is_found(cache, tmp_path):
