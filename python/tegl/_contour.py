@@ -17,8 +17,8 @@ if typing.TYPE_CHECKING:
     from ._track import TrackGraph
 
 Progress = Callable[[float], object]
-#: A coordinate: a number, or on an axis with dates a date, in any of Python's forms.
-Place = typing.Union[float, str, datetime.date, np.generic]
+#: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
+Place = typing.Union[float, str, datetime.date, datetime.timedelta, np.generic]
 #: Several of them.
 Places = typing.Union["list[typing.Any]", "tuple[typing.Any, ...]", "np.ndarray[typing.Any, typing.Any]"]
 

@@ -66,8 +66,9 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
         tegl.slice(contour, normal=(0, 1, 1, 0), offset=9)   # any hyperplane <normal, x> = offset
         tegl.slice(array, 20.0, at=7.3)                      # straight from an array: only the layers beside it are read
 
-    The last form takes the arguments of `tegl.contour` too. Times of an xarray with dates are days since its first one,
-    and may be given as numpy.datetime64. Of 3D and 4D contours.
+    The last form takes the arguments of `tegl.contour` too. An axis whose name is that of an argument (level, offset) is
+    cut by at= and axis=. Places may be dates, of any kind or as text, where the axis's unit says since when it counts, and
+    durations where it counts hours, days, ... Of 3D and 4D contours.
     """
     if isinstance(contour_or_array, Contour):
         if level is not None and "level" in contour_or_array.axis_names:  # an axis of pressures
