@@ -123,9 +123,10 @@ TEST(Measure, IsTheSameForAnyNumberOfThreads) {
 TEST(Measure, OfNothingIsZero) {
   const Measures<4> found = tegl::measure(Contour<4, float>{});
   EXPECT_EQ(found.size, 0.0);
-  EXPECT_FALSE(found.content.has_value());
+  EXPECT_EQ(found.content, 0.0);
   const std::vector<double> at = {1.0};
   EXPECT_EQ(measure_cuts(Contour<4, float>{}, at)[0].size, 0.0);
+  EXPECT_EQ(measure_cuts(Contour<4, float>{}, at)[0].content, 0.0);
 }
 
 // ---- cuts ----
