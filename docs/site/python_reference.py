@@ -28,8 +28,14 @@ def public_names(package: pathlib.Path) -> list[tuple[str, ast.AST]]:
         file = package / f"{module}.py"
         if file.is_file():
             tree = trees.setdefault(module, ast.parse(file.read_text(encoding="utf-8")))
-            found += [(name, node) for node in tree.body if getattr(node, "name", None) == own_name]
+            found += [(name, node) for node in tree.body
+                      if getattr(node, "name", None) == own_name and not is_overload(node)]
     return found
+
+
+def is_overload(node: ast.AST) -> bool:
+    """What type checkers alone read, before the definition itself."""
+    return any(ast.unparse(decorator).endswith("overload") for decorator in getattr(node, "decorator_list", []))
 
 
 def signature(name: str, node: ast.FunctionDef) -> str:
@@ -101,7 +107,7 @@ class Reference:
             shown = "\n".join(ast.unparse(member) for member in fields)
             self.text.append(f"<pre class='fragment'>{html.escape(shown)}</pre>")
         for member in node.body:
-            if isinstance(member, ast.FunctionDef) and not member.name.startswith("_"):
+            if isinstance(member, ast.FunctionDef) and not member.name.startswith("_") and not is_overload(member):
                 is_property = any(ast.unparse(decorator).endswith("property") for decorator in member.decorator_list)
                 full = f"{name}.{member.name}"
                 returns = f": {ast.unparse(member.returns)}" if member.returns else ""

@@ -233,7 +233,7 @@ class Contour:
     def simplify(self, *, return_stats: typing.Literal[True],
                  **options: typing.Any) -> tuple[Contour, SimplifyStats]: ...
 
-    def simplify(self, **options) -> typing.Any:
+    def simplify(self, **options) -> Contour | tuple[Contour, SimplifyStats]:
         """Fewer simplices, the same manifold: see `tegl.simplify`."""
         from . import _operations
         return _operations.simplify(self, **options)
