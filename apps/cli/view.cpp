@@ -5,9 +5,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -67,6 +70,11 @@ class ViewCommand final : public ContourInputCommand {
                     "the axis that points down, by its name or letter, or none; by default what a netCDF file says, "
                     "else those with 'depth' in their name")
         ->type_name("AXIS");
+    app()
+        .add_option("--world", world_,
+                    "what of a patient x, y and z grow towards, such as RAS (right, anterior, superior) or LPS, or none; "
+                    "by default what the image's file says; saved contours say nothing")
+        ->type_name("LETTERS");
     app().footer(kExamples);
   }
 
@@ -138,6 +146,7 @@ class ViewCommand final : public ContourInputCommand {
     }
     input.image.reset();
     const Json down = axes_down(input, info);
+    const std::string world = world_of(input, info);
     Shown& here = shown.emplace_back();
     here.dim = input.space_dim();
     here.input_text = input_text(input);
@@ -150,6 +159,7 @@ class ViewCommand final : public ContourInputCommand {
     };
     Json layer = std::visit([&](auto& contour) { return add(contour); }, input.contour);
     layer["unit"] = info.value_unit;
+    layer["world"] = world.empty() ? Json(nullptr) : Json(world);
     for (std::size_t a = 0; a < down.size(); ++a) layer["axes"][a]["down"] = down[a];
     return layer;
   }
@@ -174,6 +184,32 @@ class ViewCommand final : public ContourInputCommand {
         down.push_back(has_depth(labels[a]) ? Json(true) : Json(nullptr));
     }
     return down;
+  }
+
+  /// Whether it is one letter each of right or left, anterior or posterior, superior or inferior, in this order.
+  [[nodiscard]] static bool is_world(std::string_view letters) {
+    constexpr std::array<std::string_view, 3> kSides = {"RL", "AP", "SI"};
+    if (letters.size() != kSides.size()) return false;
+    for (std::size_t a = 0; a < kSides.size(); ++a)
+      if (kSides[a].find(letters[a]) == std::string_view::npos) return false;
+    return true;
+  }
+
+  /// The patient's world that a contour in space lies in; empty where nothing says one. Throws InvalidArgument if
+  /// --world is none.
+  [[nodiscard]] std::string world_of(const ContourInput& input, const ImageInfo& info) const {
+    if (world_) {
+      std::string letters = *world_;
+      for (char& c : letters) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      if (letters == "NONE") return "";
+      if (is_world(letters)) return letters;
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--world {}; expected R or L, A or P, S or I, as in RAS or LPS, or none", *world_));
+    }
+    // Of axes without a unit in common one is not of space, such as the time of a slice.
+    const bool in_space = input.space_dim() >= 3 && input.axis_unit(0) == input.axis_unit(1) &&
+                          input.axis_unit(0) == input.axis_unit(2);
+    return in_space && is_world(info.world_frame) ? info.world_frame : "";
   }
 
   /// Whether a name says that it is of depths.
@@ -242,6 +278,7 @@ class ViewCommand final : public ContourInputCommand {
   std::string title_;
   bool one_image_ = false;
   std::optional<std::string> down_;
+  std::optional<std::string> world_;
   std::uint64_t limit_ = kDefaultLimit;
   std::size_t tracks_ = 60;
 };

@@ -5,6 +5,7 @@ import array
 import itertools
 import math
 import random
+import struct
 import time
 
 from selenium import webdriver
@@ -66,11 +67,28 @@ class Browser:
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
 
 
-def write_nrrd(path, sizes, value):
-    """An image of floats, axis 0 fastest; `value` of the index."""
+def write_nrrd(path, sizes, value, more=""):
+    """An image of floats, axis 0 fastest; `value` of the index; `more`: lines of the header."""
     values = array.array("f", (value(*reversed(index)) for index in itertools.product(*map(range, reversed(sizes)))))
-    header = f"NRRD0004\ntype: float\ndimension: {len(sizes)}\nsizes: {' '.join(map(str, sizes))}\n"
+    header = f"NRRD0004\ntype: float\ndimension: {len(sizes)}\nsizes: {' '.join(map(str, sizes))}\n{more}"
     path.write_bytes((header + "encoding: raw\nendian: little\n\n").encode() + values.tobytes())
+
+
+def write_scan(path, size=12):
+    """A ball off the middle as NIfTI, in mm from the patient's left to the right, back to front, feet to head."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, size, size, size, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 16, 32)  # float
+    struct.pack_into("<8f", header, 76, 1, 2, 2, 2, 1, 1, 1, 1)
+    struct.pack_into("<f", header, 108, 352)
+    header[123] = 2  # mm
+    struct.pack_into("<2h", header, 252, 0, 1)
+    for row in range(3):
+        struct.pack_into("<4f", header, 280 + 16 * row, *(2.0 * (row == column) for column in range(3)), -11.0)
+    header[344:348] = b"n+1\0"
+    values = (4 - math.dist((x, y, z), (4, 5, 6)) for z, y, x in itertools.product(range(size), repeat=3))
+    path.write_bytes(bytes(header) + array.array("f", values).tobytes())
 
 
 def write_balls(path, size=16, steps=7, is_backwards=False):

@@ -18,7 +18,7 @@ import unittest
 import numpy as np
 from PIL import Image
 
-from browser import SOFTWARE, Browser, write_balls, write_noise, write_nrrd
+from browser import SOFTWARE, Browser, write_balls, write_noise, write_nrrd, write_scan
 
 TEGL, CHROMIUM, CHROMEDRIVER, OCEAN = sys.argv[1:5]
 
@@ -37,6 +37,44 @@ def count_of_cut(contour, t, folder):
 def pixels(png):
     """Rows of pixels of three numbers, as integers that can be subtracted."""
     return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+
+
+# Labels that are seen: their texts, and which of them (and the legend) overlap, or the outline of the box.
+LABELS = """
+const { stage } = tegl.app;
+stage.camera.updateMatrixWorld();
+stage.placeLabels();
+const frame = stage.canvas.getBoundingClientRect();
+const labels = [...document.querySelectorAll('.axis-label')].filter((label) => label.style.visibility !== 'hidden');
+const box = (element) => { const b = element.getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]; };
+const boxes = [...labels, document.getElementById('legend')].map(box).filter((b) => b[2] > b[0]);
+const wrong = [];
+boxes.forEach((a, i) => boxes.slice(0, i).forEach((b, j) => {
+  if (Math.min(a[2], b[2]) > Math.max(a[0], b[0]) && Math.min(a[3], b[3]) > Math.max(a[1], b[1]))
+    wrong.push(`${labels[j].textContent} / ${labels[i]?.textContent ?? 'legend'}`);
+}));
+const half = [-0.5, 0.5];
+const corners = half.flatMap((x) => half.flatMap((y) => half.map((z) => stage.onScreen([x, y, z]))))
+  .map(({ x, y }) => [x + frame.left, y + frame.top]);
+for (const [i, label] of labels.entries()) {
+  const b = boxes[i];
+  const rectangle = [[b[0], b[1]], [b[2], b[1]], [b[2], b[3]], [b[0], b[3]]];
+  // Apart if there is a direction in which they are: across a side of one of them.
+  const directions = [[1, 0], [0, 1]];
+  corners.forEach((p, k) => corners.slice(0, k).forEach((q) => directions.push([p[1] - q[1], q[0] - p[0]])));
+  const isApart = directions.some(([x, y]) => {
+    const length = Math.hypot(x, y);
+    if (length < 1e-6) return false;
+    const range = (points) => { const at = points.map((p) => (p[0] * x + p[1] * y) / length); return [Math.min(...at), Math.max(...at)]; };
+    const [one, other] = [range(rectangle), range(corners)];
+    return one[1] < other[0] + 0.7 || other[1] < one[0] + 0.7;
+  });
+  if (!isApart) wrong.push(`${label.textContent} / box`);
+  if (b[0] < frame.left - 0.5 || b[2] > frame.right + 0.5 || b[1] < frame.top - 0.5 || b[3] > frame.bottom + 0.5)
+    wrong.push(`${label.textContent} / border`);
+}
+return { texts: labels.map((label) => label.textContent), wrong };
+"""
 
 
 class Viewer(unittest.TestCase):
@@ -345,6 +383,165 @@ class Viewer(unittest.TestCase):
         small = browser.run("""return [...document.querySelectorAll('header button, footer button')].filter((button) =>
             button.offsetWidth > 0 && Math.min(button.offsetWidth, button.offsetHeight) < 34).length""")
         self.assertEqual(small, 0)
+
+    def view(self, name, *arguments):
+        tegl("view", *arguments, "-o", self.folder / f"{name}.html", "-q")
+        return self.open(f"{name}.html")
+
+    def test_small_pages_are_mostly_picture(self):
+        tegl("view", OCEAN, "--iso", 27, "--tracks", 30, "-o", self.folder / "small.html", "-q")
+        for size, least in (((844, 390), 0.75), ((667, 375), 0.75), ((320, 568), 0.6)):
+            self.browser.size(*size)
+            browser = self.open("small.html")
+            share = lambda: browser.run("""const { offsetWidth, offsetHeight } = document.getElementById('stage');
+                return offsetWidth * offsetHeight / (innerWidth * innerHeight)""")
+            self.assertGreater(share(), least, size)
+            self.assertEqual(browser.run("return [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"),
+                             list(size))
+            self.assertFalse(browser.element("#panel").is_displayed())
+            for id in ("track", "axis2", "time"):
+                browser.run("tegl.colorBy(arguments[0])", id)
+                covered = browser.run("""const of = (id) => { const box = document.getElementById(id).getBoundingClientRect();
+                    return box.width * box.height; };
+                    return of('legend') / of('stage')""")
+                self.assertGreater(covered, 0)
+                self.assertLess(covered, 0.09, (size, id))
+            out = browser.run("""return [...document.querySelectorAll('header *, footer *, #legend')].filter((element) => {
+                const box = element.getBoundingClientRect();
+                return box.width > 0 && !element.closest('#graph, option') &&
+                  (box.left < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5);
+            }).map((element) => element.outerHTML.slice(0, 80))""")
+            self.assertEqual(out, [], size)
+            # The panel lies over the picture when asked for, and the graph is there.
+            before = share()
+            browser.element("#more").click()
+            self.assertTrue(browser.element("#panel").is_displayed())
+            self.assertEqual(share(), before)
+            if size[0] > size[1]:
+                self.assertFalse(browser.element("#graph").is_displayed())
+                browser.element("#tracks").click()
+            browser.until("document.querySelector('#graph .event')?.getBoundingClientRect().width > 0")
+        # Turned, a page does not hide its picture either.
+        self.browser.size(1280, 800)
+        browser = self.open("small.html")
+        self.assertTrue(browser.element("#panel").is_displayed())
+        self.browser.size(844, 390)
+        browser.until("document.getElementById('app').classList.contains('no-panel')")
+
+    def test_labels_overlap_neither_each_other_nor_the_box_nor_the_legend(self):
+        write_scan(self.folder / "scan.nii")
+        write_nrrd(self.folder / "flat.nrrd", (12, 9), lambda x, y: 4 - ((x - 5.5)**2 + (y - 4)**2)**0.5)
+        pages = {"balls": ("balls.vtkhdf", 9), "ocean27": (OCEAN, 9), "scan": ("scan.nii", 9), "flat": ("flat.nrrd", 6)}
+        for name, (file, most) in pages.items():
+            if name != "balls":
+                tegl("view", self.folder / file, "--iso", 27 if file == OCEAN else 0, "-o", self.folder / f"{name}.html", "-q")
+            for size in ((1280, 800), (844, 390), (320, 568)):
+                self.browser.size(*size)
+                browser = self.open(f"{name}.html")
+                browser.run("tegl.colorBy(tegl.colorings()[1])")
+                time.sleep(0.1)  # until the legend has its place
+                first = browser.run(LABELS)
+                self.assertEqual(first["wrong"], [], (name, size))
+                self.assertGreaterEqual(len(first["texts"]), most if size[0] > 1000 else most - 2, (size, first))
+                seen = 0
+                for turn in range(24):
+                    browser.run("tegl.app.stage.turn(...arguments[0]); if (arguments[1] === 12) tegl.app.stage.zoom(0.6)",
+                                [3 + turn % 4, 2 if turn % 8 < 4 else -2, False], turn)
+                    found = browser.run(LABELS)
+                    self.assertEqual(found["wrong"], [], (name, size, turn))
+                    seen += len(found["texts"])
+                self.assertGreater(seen, 4 if name == "flat" else 60, (name, size))  # what is moved out of sight has no labels
+
+    def test_both_ends_of_an_axis_have_as_many_digits(self):
+        for name, file, iso in (("balls", None, None), ("digits27", OCEAN, 27)):
+            if file:
+                tegl("view", file, "--iso", iso, "-o", self.folder / f"{name}.html", "-q")
+            browser = self.open(f"{name}.html")
+            texts = browser.run("""const all = (selector) => [...document.querySelectorAll(selector)].map((e) => e.textContent);
+                const pairs = all('.clip .range').map((text) => text.split(' … '));
+                const [low, high] = [all('.axis-label.lowest'), all('.axis-label.highest')];
+                low.forEach((text, a) => pairs.push([text, high[a]]));
+                for (const id of ['axis0', 'axis1', 'axis2', 'time']) {
+                  tegl.colorBy(id);
+                  pairs.push(all('#legend .ends span'));
+                }
+                return pairs""")
+            self.assertEqual(len(texts), 10)
+            for pair in texts:
+                self.assertEqual(len({len(text.partition(".")[2]) for text in pair}), 1, pair)
+
+    def test_the_sides_of_a_patient_are_shown_where_they_are_known(self):
+        write_scan(self.folder / "ras.nii")
+        ends = lambda browser: browser.run("return [...document.querySelectorAll('.axis-label b')].map((b) => b.textContent).join('')")
+        side = "return tegl.app.stage.camera.position.y"
+        browser = self.view("ras", self.folder / "ras.nii", "--iso", 0)
+        self.assertEqual(ends(browser), "LRPAIS")  # x, y, z: the lowest end, the highest
+        self.assertIn("R right, L left", browser.element("#world").text)
+        self.assertGreater(browser.run(side), 0)  # from the front
+        # Right is where x is highest: seen from the front, at the left.
+        tegl_draw = "tegl.draw(); const at = (end) => tegl.app.stage.onScreen([end, 0, 0]).x; return at(0.5) < at(-0.5)"
+        self.assertTrue(browser.run(tegl_draw))
+        # A saved contour does not know, unless it is told.
+        tegl("contour", self.folder / "ras.nii", "--iso", 0, "-o", self.folder / "saved.ply", "-q")
+        browser = self.view("saved", self.folder / "saved.ply")
+        self.assertEqual(ends(browser), "")
+        self.assertIn("is not known", browser.element("#world").text)
+        browser = self.view("told", self.folder / "saved.ply", "--world", "lps")
+        self.assertEqual(ends(browser), "RLAPIS")
+        self.assertLess(browser.run(side), 0)
+        # Worlds that differ are not mixed silently.
+        write_nrrd(self.folder / "lps.nrrd", (8, 8, 8), lambda x, y, z: 3 - ((x - 4)**2 + (y - 4)**2 + (z - 4)**2)**0.5,
+                   'space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace units: "mm" "mm" "mm"\n')
+        self.assertEqual(ends(self.view("lps", self.folder / "lps.nrrd", "--iso", 0)), "RLAPIS")
+        browser = self.view("mixed", self.folder / "ras.nii", self.folder / "lps.nrrd", "--iso", 0)
+        self.assertEqual(ends(browser), "")
+        self.assertIn("different worlds, RAS and LPS", browser.element("#notice").text)
+        # Nor has the ocean sides of a patient.
+        self.assertEqual(ends(self.open()) + browser.element("#world").text, "")
+
+    def test_the_count_says_that_it_is_of_all_when_clipped(self):
+        browser = self.open()
+        browser.run("tegl.time = 1; tegl.count()")
+        count = browser.element("#count")
+        self.assertNotIn("clipping", count.text)
+        browser.run("tegl.clip(0, 0.5, 1)")
+        self.assertRegex(count.text, r"^[\d\u202f]+ triangles before clipping, from ")
+        browser.run("tegl.time = 1.5; tegl.count()")
+        self.assertIn(" triangles before clipping, ", count.text)
+        browser.element("#unclip").click()
+        self.assertNotIn("clipping", count.text)
+
+    def test_what_scripts_ask_for_is_looked_at_and_leaves_the_page_unharmed(self):
+        wrong = {"tegl.colorBy('nope')": "tegl.colorBy: 'nope'; expected one of 'plain', 'component', 'track', 'axis0'",
+                 "tegl.colorBy()": "tegl.colorBy: undefined; expected one of",
+                 "tegl.time = NaN": "tegl.time: NaN; expected a number, from ",
+                 "tegl.time = '3'": "tegl.time: '3'; expected a number",
+                 "tegl.time = null": "tegl.time: null; expected a number",
+                 "tegl.clip(7, 0, 1)": "tegl.clip: 7; expected an axis, 0 to 2 (x, y, z)",
+                 "tegl.clip('x', 0, 1)": "tegl.clip: 'x'; expected an axis",
+                 "tegl.clip(0, 10, -10)": "tegl.clip: [10,-10]; expected two shares of the axis from 0 to 1",
+                 "tegl.clip(0, 0.8, 0.2)": "tegl.clip: [0.8,0.2]; expected two shares",
+                 "tegl.clip(0)": "tegl.clip: [undefined,undefined]; expected two shares",
+                 "tegl.theme('blue')": "tegl.theme: 'blue'; expected 'light', 'dark'",
+                 "tegl.play(1)": "tegl.play: 1; expected true or false"}
+        browser = self.open()
+        browser.run("tegl.time = 2; tegl.theme('light'); tegl.colorBy('track')")
+        state = """tegl.draw();
+            return [tegl.time, tegl.count(), tegl.app.isPlaying, document.documentElement.dataset.theme,
+                tegl.app.current.source.id, document.getElementById('clips').innerText]"""
+        before, picture = browser.run(state), self.picture()
+        for call, text in wrong.items():
+            said = browser.run(f"try {{ {call} }} catch (error) {{ return [error instanceof Error, error.message] }}")
+            self.assertTrue(said and said[0] and said[1].startswith(text), (call, said))
+            self.assertEqual(browser.run(state), before, call)
+        self.assertEqual(self.different(picture, self.picture()), 0)
+        browser.run("tegl.play(); tegl.play(false); tegl.theme('dark'); tegl.time = 1e9")
+        self.assertEqual(browser.run("return tegl.time === tegl.range[1]"), True)
+        # Nor has a page without time one to set.
+        tegl("slice", self.folder / "balls.vtkhdf", "--at", "t=1", "-o", self.folder / "still.ply", "-q")
+        browser = self.view("still", self.folder / "still.ply")
+        for call in ("tegl.time = 1", "tegl.play(true)"):
+            self.assertIn("expected a page with a contour in 4D", browser.run(f"try {{ {call} }} catch (error) {{ return error.message }}"))
 
     def test_the_screenshot_is_a_png_of_the_canvas(self):
         browser = self.open()

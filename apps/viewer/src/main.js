@@ -5,6 +5,7 @@
 import { ofPart } from './colors.js';
 import { unpack } from './data.js';
 import { Layer } from './layer.js';
+import { interfaceOf } from './interface.js';
 import { Panel } from './panel.js';
 import { savePicture } from './picture.js';
 import { Stage } from './stage.js';
@@ -17,9 +18,12 @@ const REST = 120; // milliseconds without a change of time, after which the exac
 
 const KEYS = [['space', 'play, pause'], ['← →', 'a little earlier, later (with shift: ten times that)'],
   ['home, end', 'first, last time'], [', .', 'event before, next event'], ['[ ]', 'slower, faster'], ['l', 'loop'],
-  ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'view from the start'],
+  ['g', 'tracks, where the page is low'], ['c', 'next colouring'], ['d', 'light, dark'], ['m', 'panel'], ['r', 'view from the start'],
   ['tab to the picture, then ← → ↑ ↓', 'turn it (with shift: move it)'], ['+ −', 'nearer, farther'], ['s', 'save a picture'],
   ['?', 'this list']];
+
+/** Where the panel lies over the picture, as page.css has it. */
+const SMALL = matchMedia('(max-width: 720px), (max-height: 440px)');
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
@@ -57,7 +61,7 @@ class App {
     if (this.inTime.length > 0) this.setTime(this.first + (this.last - this.first) * 0.5);
     else this.count();
     this.listen();
-    this.togglePanel(innerWidth > 720);
+    this.togglePanel(!SMALL.matches);
     this.before = performance.now();
     requestAnimationFrame((now) => this.frame(now));
   }
@@ -72,6 +76,10 @@ class App {
       `${layer.file.replace(/^.*\//, '')}: too large to show all. Shown ` +
       `${layer.components === 1 ? 'is the largest' : `are the ${grouped(layer.components)} largest`} of ` +
       `${grouped(layer.of_components)} components, ${grouped(layer.simplices)} of ${grouped(layer.of_simplices)} simplices.`);
+    const { worlds } = this.stage;
+    if (worlds.length > 1)
+      left.push(`The files are in different worlds, ${worlds.join(' and ')}: they do not lie beside each other as they did ` +
+        'in the patient, and no sides are shown.');
     if (left.length === 0) return;
     $('notice').textContent = left.join(' ');
     const close = document.createElement('button');
@@ -212,6 +220,11 @@ class App {
     $('more').setAttribute('aria-expanded', isShown);
   }
 
+  /** The graph of a low page. */
+  toggleTracks() {
+    $('tracks').setAttribute('aria-expanded', $('app').classList.toggle('tracks'));
+  }
+
   toggleLoop() {
     this.loops = !this.loops;
     $('loop').setAttribute('aria-pressed', this.loops);
@@ -241,10 +254,12 @@ class App {
     on('more', () => this.togglePanel());
     on('play', () => this.play(!this.isPlaying));
     on('loop', () => this.toggleLoop());
+    on('tracks', () => this.toggleTracks());
     on('before', () => this.nextEvent(-1));
     on('after', () => this.nextEvent(1));
     $('speed').addEventListener('change', () => this.changeSpeed(0));
-    $('canvas').addEventListener('pointerdown', () => innerWidth <= 720 && this.togglePanel(false));
+    $('canvas').addEventListener('pointerdown', () => SMALL.matches && this.togglePanel(false));
+    SMALL.addEventListener('change', () => this.togglePanel(!SMALL.matches));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', ({ matches }) =>
       this.setTheme(matches ? 'dark' : 'light'));
     for (const [key, what] of KEYS)
@@ -265,7 +280,8 @@ class App {
     const ofTime = { ' ': () => this.play(!this.isPlaying), ArrowLeft: () => this.setTime(this.t - step),
       ArrowRight: () => this.setTime(this.t + step), Home: () => this.setTime(this.first),
       End: () => this.setTime(this.last), ',': () => this.nextEvent(-1), '.': () => this.nextEvent(1),
-      '[': () => this.changeSpeed(-1), ']': () => this.changeSpeed(1), l: () => this.toggleLoop() };
+      '[': () => this.changeSpeed(-1), ']': () => this.changeSpeed(1), l: () => this.toggleLoop(),
+      g: () => this.toggleTracks() };
     const always = { d: () => this.toggleTheme(), s: () => this.picture(), r: () => this.stage.reset(),
       '+': () => this.stage.zoom(1 / 1.15), '=': () => this.stage.zoom(1 / 1.15), '-': () => this.stage.zoom(1.15),
       c: () => this.nextColor(), m: () => this.togglePanel(), '?': () => $('keys').showModal() };
@@ -277,30 +293,6 @@ class App {
     event.preventDefault();
     action();
   }
-}
-
-/** What scripts (and tests) may do with the page: window.tegl. */
-function interfaceOf(app) {
-  return {
-    get time() { return app.t; },
-    set time(t) { app.setTime(t); },
-    get range() { return [app.first, app.last]; },
-    /** Simplices shown: for 4D contours the triangles of tegl slice at this time. */
-    count: () => app.count(),
-    play: (isPlaying) => app.play(isPlaying),
-    colorBy: (id) => app.colorBy(id),
-    colorings: () => app.current.sources().map(({ id }) => id),
-    clip: (axis, from, to) => app.panel.setClip(axis, from, to),
-    theme: (theme) => app.setTheme(theme),
-    picture: () => app.picture(),
-    /** Draws now; gives how many tetrahedra were drawn, in how many ranges. */
-    draw: () => {
-      app.stage.render();
-      return app.inTime.map((layer) => ({ tetrahedra: layer.drawn, ranges: layer.ranges }));
-    },
-    get frames() { return app.stage.frames; },
-    app,
-  };
 }
 
 window.teglStarted = true; // the page has come as far as this, whole

@@ -2,7 +2,7 @@
 //
 // The panel at the side: which contours are shown, their colours and legend, clipping.
 import { css, ofPart, ofShare } from './colors.js';
-import { grouped, number } from './time.js';
+import { ends, grouped } from './time.js';
 
 const $ = (id) => document.getElementById(id);
 const COUNTED = { 2: 'segments', 3: 'triangles', 4: 'tetrahedra' };
@@ -19,6 +19,7 @@ export class Panel {
     this.app = app;
     this.fillLayers();
     this.fillClips();
+    this.showWorld();
     $('color').addEventListener('change', () => app.colorBy($('color').value));
     $('smooth').addEventListener('change', () => app.setSmooth($('smooth').checked));
     $('box').addEventListener('change', () => {
@@ -95,9 +96,9 @@ export class Panel {
     bar.style.background = `linear-gradient(to right, ${stops.join(', ')})`;
     this.mark = id === 'time' ? bar.appendChild(element('i')) : null;
     const span = highest - lowest || 1;
-    const middle = number((lowest + highest) / 2, span);
-    legend.append(bar, element('div', { className: 'ends' }, element('span', { textContent: number(lowest, span) }),
-      element('span', { textContent: middle }), element('span', { textContent: number(highest, span) })));
+    const write = ends(lowest, highest);
+    legend.append(bar, element('div', { className: 'ends' }, ...[lowest, (lowest + highest) / 2, highest].map((value) =>
+      element('span', { textContent: write(value) }))));
     this.markSpan = [lowest, span];
     this.setTime(this.app.t);
   }
@@ -114,7 +115,7 @@ export class Panel {
     const shown = layers.filter((layer) => layer.isVisible);
     const dim = this.app.stage.isFlat ? 2 : 3;
     const drawn = shown.filter((layer) => layer.dim === 4);
-    let text = `${isExact ? '' : '≈ '}${grouped(count)} ${COUNTED[dim]}`;
+    let text = `${isExact ? '' : '≈ '}${grouped(count)} ${COUNTED[dim]}${this.isClipped() ? ' before clipping' : ''}`;
     if (drawn.length > 0) {
       const sum = (of) => drawn.reduce((total, layer) => total + of(layer), 0);
       text += `, from ${grouped(sum((layer) => layer.drawn))} of ${grouped(sum((layer) => layer.description.simplices))} tetrahedra`;
@@ -122,6 +123,17 @@ export class Panel {
     $('count').textContent = text;
     $('count').dataset.count = count;
     $('count').dataset.exact = isExact;
+    this.counted = [count, isExact];
+  }
+
+  /** What the letters at the ends of the axes mean, or that nothing says where a patient's sides are. */
+  showWorld() {
+    const { stage } = this.app;
+    const isScan = !stage.isFlat && stage.axes.every(({ unit }) => unit.trim().toLowerCase() === 'mm');
+    $('world').textContent = stage.world
+      ? `Sides of the patient, as the file says (${stage.world}): R right, L left; A front, P back; S head, I feet.`
+      : stage.worlds.length > 1 ? `Sides of the patient: the files differ (${stage.worlds.join(', ')}).`
+      : isScan ? 'Where left and right are is not known: no file says it (saved contours never do; tegl view --world RAS).' : '';
   }
 
   fillClips() {
@@ -146,17 +158,22 @@ export class Panel {
     this.clip();
   }
 
+  isClipped() {
+    return this.clips.some(({ from, to }) => Number(from.value) > 0 || Number(to.value) < 1);
+  }
+
   clip() {
     const { stage } = this.app;
     const at = (a, input) => stage.lower[a] + Number(input.value) * stage.extents[a];
     const lower = this.clips.map(({ a, from }) => at(a, from));
     const upper = this.clips.map(({ a, to }) => at(a, to));
     this.clips.forEach(({ a, range }) => {
-      const span = stage.extents[a] / 10 || 1;
-      range.textContent = `${number(lower[a], span)} … ${number(upper[a], span)}`;
+      const write = ends(stage.lower[a], stage.upper[a], stage.extents[a] / 10);
+      range.textContent = `${write(lower[a])} … ${write(upper[a])}`;
     });
-    $('unclip').hidden = this.clips.every(({ from, to }) => Number(from.value) === 0 && Number(to.value) === 1);
+    $('unclip').hidden = !this.isClipped();
     stage.setClip(lower, upper);
+    if (this.counted) this.showCount(...this.counted);
   }
 
   setClip(a, from, to) {

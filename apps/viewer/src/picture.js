@@ -2,7 +2,7 @@
 //
 // The screenshot: what the canvas shows, with title, time and legend written on it, as a PNG.
 import { css, ofPart, ofShare } from './colors.js';
-import { number } from './time.js';
+import { ends } from './time.js';
 
 const FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif';
 
@@ -29,10 +29,30 @@ function drawLegend(context, source, height, ratio, text, soft) {
   context.fillStyle = gradient;
   context.fillRect(left, y, width, 9 * ratio);
   context.fillStyle = soft;
-  const span = source.highest - source.lowest || 1;
-  context.fillText(number(source.lowest, span), left, y + 23 * ratio);
-  const last = number(source.highest, span);
+  const write = ends(source.lowest, source.highest);
+  context.fillText(write(source.lowest), left, y + 23 * ratio);
+  const last = write(source.highest);
   context.fillText(last, left + width - context.measureText(last).width, y + 23 * ratio);
+}
+
+/** The labels of the axes where they stand, with a rim of the ground. */
+function drawLabels(context, labels, ratio, ground, text) {
+  context.font = `${11 * ratio}px ${FONT}`;
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.lineJoin = 'round';
+  context.lineWidth = 4 * ratio;
+  context.strokeStyle = ground;
+  context.fillStyle = text;
+  for (const { element, place } of labels.all.flat()) {
+    if (!place) continue;
+    context.save();
+    context.translate(place.x * ratio, place.y * ratio);
+    if (place.isUpright) context.rotate(-Math.PI / 2);
+    context.strokeText(element.innerText, 0, 0);
+    context.fillText(element.innerText, 0, 0);
+    context.restore();
+  }
 }
 
 /** The picture as a Blob. */
@@ -47,16 +67,7 @@ export function takePicture({ stage, current, description, timeline, format, t }
   context.drawImage(source, 0, 0);
   const style = getComputedStyle(document.documentElement);
   const [text, soft] = ['--text', '--soft'].map((name) => style.getPropertyValue(name).trim());
-  context.fillStyle = soft;
-  context.font = `${11 * ratio}px ${FONT}`;
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  const frame = stage.labels.getBoundingClientRect();
-  for (const label of stage.axisLabels.flat()) {
-    const box = label.getBoundingClientRect();
-    if (box.width > 0)
-      context.fillText(label.textContent, (box.left + box.width / 2 - frame.left) * ratio, (box.top + box.height / 2 - frame.top) * ratio);
-  }
+  drawLabels(context, stage.axisLabels, ratio, style.getPropertyValue('--ground').trim(), text);
   context.textAlign = 'left';
   context.textBaseline = 'alphabetic';
   context.fillStyle = text;

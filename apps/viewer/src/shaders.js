@@ -2,7 +2,7 @@
 //
 // The shaders. There is one vertex shader for contours in 2D, 3D and 4D (DIM). All they have lies in textures, and the
 // vertex's number says which corner of what is drawn it is; so of a 4D contour any range of tetrahedra can be drawn,
-// each as the up to two triangles that the time cuts out of it.
+// each as the up to two triangles that the time cuts out of it: four points for each, by an index.
 
 /** Texels in a row of each texture. */
 export const ROW = 2048;
@@ -26,8 +26,9 @@ uniform sampler2D uSegments;
 uniform sampler2D uAfter;
 uniform float uTime;
 #if DIM == 4
-uniform usampler2D uKeys;
+uniform usampler2D uKeys;  // of the corners of each tetrahedron
 uniform uint uThreshold;
+uniform int uBase;
 uniform uint uCases[16];
 #endif
 #if DIM == 2
@@ -39,8 +40,8 @@ out vec3 vNormal;
 out vec3 vPlace;
 out float vValue;
 
-ivec2 texel(int i) { return ivec2(i % ${ROW}, i / ${ROW}); }
-ivec2 texel(uint i) { return texel(int(i)); }
+ivec2 texel(uint i) { return ivec2(i % ${ROW}u, i / ${ROW}u); }
+ivec2 texel(int i) { return texel(uint(i)); }
 
 // The part that a simplex is in now: it appears in a segment of the graph, and goes on with what that becomes.
 float part(int simplex) {
@@ -76,19 +77,20 @@ void finish(vec3 place, vec3 normal, uint low, uint high, float share, int simpl
 
 void main() {
 #if DIM == 4
-  int simplex = gl_VertexID / 6;
-  int corner = gl_VertexID - 6 * simplex;
-  uvec4 v = texelFetch(uSimplices, texel(simplex), 0);
-  uint high = 0u;
-  for (int k = 0; k < 4; ++k) high |= texelFetch(uKeys, texel(v[k]), 0).r >= uThreshold ? 1u << k : 0u;
-  uint found = uCases[high];
-  if (corner >= int(found >> 24)) {
+  // Four points of a polygon for each tetrahedron, which the index makes two triangles of.
+  int simplex = uBase + (gl_VertexID >> 2);
+  int corner = gl_VertexID & 3;
+  uvec4 isHigh = uvec4(greaterThanEqual(texelFetch(uKeys, texel(simplex), 0), uvec4(uThreshold)));
+  uint found = uCases[isHigh.x | isHigh.y << 1 | isHigh.z << 2 | isHigh.w << 3];
+  int count = int(found >> 24);
+  if (count == 0) {
     vView = vNormal = vPlace = vec3(0.0);
     vValue = 0.0;
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // beyond what is seen, all corners of the triangle alike
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // beyond what is seen, as all points of this one
     return;
   }
-  uint edge = found >> uint(4 * corner);
+  uvec4 v = texelFetch(uSimplices, texel(simplex), 0);
+  uint edge = found >> uint(4 * min(corner, count - 1));  // of a triangle the last point twice
   uint low = v[edge & 3u];
   uint up = v[(edge >> 2) & 3u];
   vec4 a = texelFetch(uPlaces, texel(low), 0);

@@ -5,7 +5,7 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 import { colorTexels } from './colors.js';
-import { number } from './time.js';
+import { AxisLabels } from './labels.js';
 
 const GROUNDS = { light: 0xf6f7f9, dark: 0x11151c };
 const EDGES = { light: 0x8a94a6, dark: 0x5b6678 };
@@ -61,6 +61,7 @@ export class Stage {
     this.addBox();
     this.arrange();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.keepClear([...canvas.parentElement.querySelectorAll('#legend, #notice')]);
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => this.redraw());
   }
@@ -75,6 +76,10 @@ export class Stage {
     this.upper = axes.map((_, a) => Math.max(...this.layers.map((layer) => layer.description.axes[a].highest)));
     this.center = axes.map((_, a) => (this.lower[a] + this.upper[a]) / 2);
     this.extents = axes.map((_, a) => this.upper[a] - this.lower[a]);
+    // What is towards the right, the front and the head of a patient, if these are coordinates of one.
+    const worlds = new Set(this.layers.map(({ description }) => description.world).filter(Boolean));
+    this.worlds = [...worlds];
+    this.world = worlds.size === 1 && !this.isFlat ? this.worlds[0] : null;
   }
 
   addBox() {
@@ -82,15 +87,7 @@ export class Stage {
     this.boxMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
     this.box = new THREE.LineSegments(edges, this.boxMaterial);
     this.scene.add(this.box);
-    this.axisLabels = this.axes.map((axis, a) =>
-      ['lowest', 'name', 'highest'].map((kind) => {
-        const label = document.createElement('span');
-        label.className = `axis-label ${kind}`;
-        label.textContent = kind === 'name' ? axis.name + (axis.unit ? ` (${axis.unit})` : '')
-          : number(kind === 'lowest' ? this.lower[a] : this.upper[a], this.extents[a] / 4 || 1);
-        this.labels.append(label);
-        return label;
-      }));
+    this.axisLabels = new AxisLabels(this.labels, this);
     this.markerElement = document.createElement('div');
     this.markerElement.className = 'marker';
     this.markerElement.hidden = true;
@@ -110,6 +107,8 @@ export class Stage {
   reset() {
     const flat = !this.isFlat && this.sides[2] < 0.5 * Math.max(this.sides[0], this.sides[1]);
     const direction = this.isFlat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.55, -1.5, flat ? 1.15 : 0.75);
+    // Patients are looked at from the front.
+    if (this.world?.[1] === 'A') direction.multiply(new THREE.Vector3(-1, -1, 1));
     // What is left of the last movement is not to go on.
     this.controls.enableDamping = false;
     this.controls.update();
@@ -162,7 +161,8 @@ export class Stage {
     const [right, up, back] = [0, 1, 2].map((k) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrix, k));
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
-    const room = [Math.max(0.5, 1 - 110 / width), Math.max(0.5, 1 - 90 / height)];
+    const needed = this.axisLabels.room(width, height);
+    const room = [1 - (2 * needed.x) / width, 1 - (2 * needed.y) / height];
     let distance = 1e-3;
     for (const x of [-0.5, 0.5])
       for (const y of [-0.5, 0.5])
@@ -180,6 +180,7 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
+    this.axisLabels.measure();
     const before = this.camera.aspect;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -191,6 +192,19 @@ export class Stage {
     if (!this.wasReset || Math.abs(before - this.camera.aspect) > 0.3) this.reset();
     this.wasReset = true;
     this.redraw();
+  }
+
+  /** Labels do not stand under these elements, wherever they are. */
+  keepClear(elements) {
+    const look = () => {
+      const { left, top } = this.canvas.getBoundingClientRect();
+      this.axisLabels.obstacles = elements.map((element) => element.getBoundingClientRect()).filter(({ width }) => width > 0)
+        .map((box) => ({ x: box.x - left + box.width / 2, y: box.y - top + box.height / 2, halfWidth: box.width / 2,
+          halfHeight: box.height / 2 }));
+      this.redraw();
+    };
+    const observer = new ResizeObserver(look);
+    for (const element of [...elements, this.canvas]) observer.observe(element);
   }
 
   setTheme(theme) {
@@ -242,40 +256,31 @@ export class Stage {
     return { x: ((point.x + 1) / 2) * clientWidth, y: ((1 - point.y) / 2) * clientHeight, z: point.z };
   }
 
-  /** Labels of an axis stand along the edge that is farthest out on the screen: below, of upright ones to the left. */
-  placeLabels() {
-    const middle = this.onScreen([0, 0, 0]);
-    this.axes.forEach((_, a) => {
-      const others = [0, 1, 2].filter((b) => b !== a);
-      const edges = [-0.5, 0.5].flatMap((i) => (this.isFlat ? [i] : [-0.5, 0.5]).map((j) => {
-        const at = (along) => {
+  /** The edges of the box's outline along an axis, as seen: of their two faces one alone is towards the eye. */
+  outline(a) {
+    const others = [0, 1, 2].filter((b) => b !== a);
+    const faces = (b, side) => side * this.camera.position.getComponent(b) > (this.sides[b] ?? 0) / 2;
+    const edges = [];
+    for (const i of [-1, 1])
+      for (const j of this.isFlat ? [0] : [-1, 1]) {
+        if (!this.isFlat && faces(others[0], i) === faces(others[1], j)) continue;
+        const [from, to] = [-1, 1].map((end) => {
           const share = [0, 0, 0];
-          share[a] = along * Math.sign(this.scale[a]);
-          share[others[0]] = i;
-          share[others[1]] = this.isFlat ? 0 : j;
+          share[a] = (end * Math.sign(this.scale[a])) / 2;
+          share[others[0]] = i / 2;
+          share[others[1]] = j / 2;
           return this.onScreen(share);
-        };
-        return { from: at(-0.46), middle: at(0), to: at(0.46) };
-      }));
-      const isUpright = a === 2 || (this.isFlat && a === 1);
-      const best = edges.reduce((one, other) =>
-        (isUpright ? other.middle.x < one.middle.x : other.middle.y > one.middle.y + 0.5) ? other : one);
-      const out = { x: best.middle.x - middle.x, y: best.middle.y - middle.y };
-      const length = Math.hypot(out.x, out.y) || 1;
-      const show = (label, at, distance) => {
-        const isIn = at.z < 1 && this.box.visible;
-        label.style.display = isIn ? '' : 'none';
-        if (!isIn) return;
-        const half = label.textContent.length * 3.3 + 3;
-        const x = Math.min(this.canvas.clientWidth - half, Math.max(half, at.x + (out.x / length) * distance));
-        const y = at.y + (out.y / length) * distance;
-        label.style.transform = `translate(-50%, -50%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-      };
-      const [lowest, name, highest] = this.axisLabels[a];
-      show(lowest, best.from, 14);
-      show(name, best.middle, isUpright ? 46 : 24);
-      show(highest, best.to, 14);
-    });
+        });
+        if (from.z < 1 && to.z < 1) edges.push({ from, to });
+      }
+    return edges;
+  }
+
+  placeLabels() {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (this.box.visible)
+      this.axisLabels.place(this.axes.map((_, a) => this.outline(a)), this.onScreen([0, 0, 0]), clientWidth, clientHeight);
+    else this.axisLabels.hide();
     if (!this.marker) return;
     const at = this.onScreen(this.marker.map((x, a) =>
       ((x - this.center[a]) / (this.extents[a] || 1)) * Math.sign(this.scale[a])));

@@ -6,13 +6,24 @@ const MONTHS = ['January', 'February', 'March', 'April', 'May', 'June', 'July', 
   'November', 'December'];
 const SECONDS = { s: 1, sec: 1, second: 1, min: 60, minute: 60, h: 3600, hr: 3600, hour: 3600, d: 86400, day: 86400 };
 
-/** As many digits as are needed to tell values within `span` apart. */
-export function number(value, span = Math.abs(value)) {
+/** As many digits as are needed to tell values within `span` apart; without a span as many as the value needs. `most`:
+ *  the largest of those that it stands beside, which are to look alike. */
+export function number(value, span, most = Math.abs(value)) {
   if (!Number.isFinite(value)) return '–';
-  const digits = span > 0 ? Math.min(12, Math.max(0, 2 - Math.floor(Math.log10(span)))) : 2;
-  if (Math.abs(value) >= 1e7 || (value !== 0 && Math.abs(value) < 1e-5)) return value.toExponential(3);
-  const text = value.toFixed(digits);
-  return (digits > 0 && span === Math.abs(value) ? text.replace(/\.?0+$/, '') : text).replace('-', '−');
+  const size = span ?? Math.abs(value);
+  const digits = size > 0 ? 2 - Math.floor(Math.log10(size)) : 2;
+  if (most >= 1e7 || digits > 7) {
+    const before = most > 0 ? Math.floor(Math.log10(most)) : 0;
+    return value.toExponential(Math.min(15, Math.max(3, digits + before))).replace(/-/g, '−');
+  }
+  const text = value.toFixed(Math.max(0, digits));
+  return (digits > 0 && span === undefined ? text.replace(/\.?0+$/, '') : text).replace(/^-(0(\.0+)?)$/, '$1').replace('-', '−');
+}
+
+/** How values from `lowest` to `highest` are written, those at both ends with as many digits. */
+export function ends(lowest, highest, span = highest - lowest) {
+  const most = Math.max(Math.abs(lowest), Math.abs(highest));
+  return (value) => number(value, span || 1, most);
 }
 
 export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
@@ -42,7 +53,7 @@ export class TimeFormat {
   constructor(axis, first, last) {
     this.name = axis.name;
     this.unit = axis.unit;
-    this.span = last - first;
+    this.write = ends(first, last, (last - first) / 10);
     this.isMonth = /^months?$/i.test(axis.unit.trim()) && first >= 0.5 && last < 12.5;
     const from = dateOf(first, axis.unit);
     const to = dateOf(last, axis.unit);
@@ -50,7 +61,7 @@ export class TimeFormat {
   }
 
   value(t) {
-    return number(t, this.span / 10 || 1);
+    return this.write(t);
   }
 
   /** "7.30 month". */

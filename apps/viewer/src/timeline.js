@@ -2,7 +2,7 @@
 //
 // What is below the picture: the slider, and the graph of the parts with its events.
 import { css, ofPart } from './colors.js';
-import { number, ticks } from './time.js';
+import { ends, number, ticks } from './time.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const INSET = 9; // half of the slider's thumb
@@ -93,13 +93,14 @@ export class Timeline {
   drawTicks(scale, svg, height) {
     const values = ticks(this.first, this.last, Math.max(2, Math.floor(this.width / 90)));
     const step = values.length > 1 ? values[1] - values[0] : 1;
+    const write = ends(values[0], values.at(-1), step * 20);
     for (const t of values) {
       const x = this.x(t);
       make('line', { class: 'tick', x1: x, x2: x, y1: 0, y2: height }, svg);
       make('line', { class: 'tick', x1: x, x2: x, y1: 15, y2: AXIS }, scale);
       const label = make('text', { class: 'tick-label', x, y: 12,
         'text-anchor': x < 24 ? 'start' : x > this.width - 24 ? 'end' : 'middle' }, scale);
-      label.textContent = number(t, step * 20);
+      label.textContent = write(t);
     }
   }
 
