@@ -11,11 +11,11 @@ drifts, as two million tetrahedra in 2, 3 and 24 steps. In two steps nearly all 
 Without options Chromium draws as it would for a user; on a server with a graphics card and no screen try
 --use-angle=vulkan --enable-features=Vulkan --ignore-gpu-blocklist; --use-angle=swiftshader
 --enable-unsafe-swiftshader draws by the processor. Each frame is at another time, and is waited for until it is
-drawn, so the limit of the screen does not count. The pages take turns, three times: each time up to 60 frames, or as
-many as 7 seconds take. Prints what draws, and for each page JSON of what a frame takes: milliseconds (median, of the
-best turn) for the script, and for all until the picture is there; how many tetrahedra are drawn, in how many calls, by
-how many runs of the vertex shader where no point is made twice; and what share of the tetrahedra is cut. `than_first`:
-how many times as fast as the same image's page by the first program.
+drawn, so the limit of the screen does not count; the camera is as far away in all. The pages take turns, three times:
+each time up to 40 frames, or as many as 5 seconds take. Prints what draws, and for each page JSON of what a frame takes:
+milliseconds (median, of the best turn) for the script, for all until the picture is there, and for the points alone,
+without what is between them; how many tetrahedra are drawn, in how many calls, and what share of them is cut.
+`than_first`: how many times as fast as the same image's page by the first program, the frame and the points.
 """
 
 import json
@@ -34,37 +34,43 @@ from browser import Browser  # noqa: E402
 IMAGES = [(2, 100, 6), (3, 72, 6), (24, 32, 3)]  # steps, samples along each axis, periods
 
 MEASURE = """
-const gl = tegl.app.stage.renderer.getContext();
+const { stage, inTime } = tegl.app;
+const gl = stage.renderer.getContext();
 const pixel = new Uint8Array(4);
 const [first, last] = tegl.range;
-const script = [], whole = [], drawn = [], calls = [], share = [];
-const until = performance.now() + 7000;
-for (let i = -1; i < 60 && (i < 3 || performance.now() < until); ++i) {
-  const start = performance.now();
-  tegl.time = first + (last - first) * (((i + 2) * 0.6180339887) % 1);  // spread, however many there are
-  const layers = tegl.draw();
-  const issued = performance.now();
-  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-  const end = performance.now();
-  if (i < 0) continue;
-  script.push(issued - start);
-  whole.push(end - start);
-  drawn.push(layers.reduce((sum, layer) => sum + layer.tetrahedra, 0));
-  calls.push(tegl.app.stage.renderer.info.render.calls);
-}
-const { cuts, level } = tegl.app.inTime[0];
-let cut = 0, looked = 0;
-for (const [from, to] of cuts.touched(level))
-  for (let s = from; s < to; ++s, ++looked) {
-    let high = 0;
-    for (let k = 0; k < 4; ++k) high += cuts.keys[cuts.simplices[4 * s + k]] >= level.threshold;
-    cut += high > 0 && high < 4;
+stage.camera.position.setLength(6);
+stage.controls.update();
+function frames(most) {
+  const script = [], whole = [];
+  const until = performance.now() + 5000;
+  for (let i = -1; i < most && (i < 1 || performance.now() < until); ++i) {
+    const start = performance.now();
+    tegl.time = first + (last - first) * (((i + 2) * 0.6180339887) % 1);  // spread, however many there are
+    tegl.draw();
+    const issued = performance.now();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    if (i < 0) continue;
+    script.push(issued - start);
+    whole.push(performance.now() - start);
   }
-const middle = (list) => +[...list].sort((a, b) => a - b)[Math.floor(0.5 * (list.length - 1))].toFixed(2);
-const corners = tegl.app.inTime[0].geometry.index ? 4 : 6;
-return { frames: whole.length, tetrahedra: tegl.app.inTime.reduce((sum, layer) => sum + layer.description.simplices, 0),
-  drawn_tetrahedra: middle(drawn), cut_of_drawn: +(cut / looked).toFixed(3), draw_calls: middle(calls),
-  vertex_runs: corners * middle(drawn), script_ms: middle(script), frame_ms: middle(whole) };
+  const middle = (list) => +[...list].sort((a, b) => a - b)[Math.floor(0.5 * (list.length - 1))].toFixed(2);
+  return { frames: whole.length, script_ms: middle(script), frame_ms: middle(whole) };
+}
+const result = frames(40);
+gl.enable(gl.RASTERIZER_DISCARD);
+result.points_ms = frames(40).frame_ms;
+gl.disable(gl.RASTERIZER_DISCARD);
+let cut = 0, looked = 0;
+for (const { cuts, level } of inTime)
+  for (const [from, to] of cuts.touched(level))
+    for (let s = from; s < to; ++s, ++looked) {
+      let high = 0;
+      for (let k = 0; k < 4; ++k) high += cuts.keys[cuts.simplices[4 * s + k]] >= level.threshold;
+      cut += high > 0 && high < 4;
+    }
+return { ...result, tetrahedra: inTime.reduce((sum, layer) => sum + layer.description.simplices, 0),
+  drawn_tetrahedra: looked, cut_share: +(cut / looked).toFixed(3), triangles: inTime.reduce((sum, layer) => sum + layer.quickCount(), 0),
+  draw_calls: stage.renderer.info.render.calls };
 """
 RENDERER = """
 const gl = tegl.app.stage.renderer.getContext();
@@ -126,8 +132,10 @@ def main():
         first = {}
         for i, (image, page) in enumerate(pages):
             best = min((turn[i] for turn in turns), key=lambda result: result["frame_ms"])
-            best["script_ms"] = min(turn[i]["script_ms"] for turn in turns)
-            best["than_first"] = round(first.setdefault(image, best["frame_ms"]) / best["frame_ms"], 2)
+            for key in ("script_ms", "points_ms"):
+                best[key] = min(turn[i][key] for turn in turns)
+            before = first.setdefault(image, best)
+            best["than_first"] = [round(before[key] / best[key], 2) for key in ("frame_ms", "points_ms")]
             print(json.dumps({"page": image, **best}))
 
 

@@ -71,9 +71,10 @@ class ViewCommand final : public ContourInputCommand {
                     "else those with 'depth' in their name")
         ->type_name("AXIS");
     app()
-        .add_option("--world", world_,
-                    "what of a patient x, y and z grow towards, such as RAS (right, anterior, superior) or LPS, or none; "
-                    "by default what the image's file says; saved contours say nothing")
+        .add_option(
+            "--world", world_,
+            "what of a patient x, y and z grow towards, such as RAS (right, anterior, superior) or LPS, or none; "
+            "by default what the image's file says; saved contours say nothing")
         ->type_name("LETTERS");
     app().footer(kExamples);
   }
@@ -207,8 +208,8 @@ class ViewCommand final : public ContourInputCommand {
                   fmt::format("--world {}; expected R or L, A or P, S or I, as in RAS or LPS, or none", *world_));
     }
     // Of axes without a unit in common one is not of space, such as the time of a slice.
-    const bool in_space = input.space_dim() >= 3 && input.axis_unit(0) == input.axis_unit(1) &&
-                          input.axis_unit(0) == input.axis_unit(2);
+    const bool in_space =
+        input.space_dim() >= 3 && input.axis_unit(0) == input.axis_unit(1) && input.axis_unit(0) == input.axis_unit(2);
     return in_space && is_world(info.world_frame) ? info.world_frame : "";
   }
 

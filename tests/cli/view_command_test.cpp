@@ -163,6 +163,39 @@ TEST_F(View, AxesPointWhereTheFileOrTheOptionSays) {
   EXPECT_THAT(files(), Not(testing::Contains("wrong.html")));
 }
 
+TEST_F(View, WorldsAreThoseOfTheFileOrTheOption) {
+  const auto world = [&](const std::string& input, std::vector<std::string> options) {
+    options.insert(options.begin(), {"view", input, "-o", path("page.html"), "-q"});
+    if (input.ends_with(".nrrd")) options.insert(options.end(), {"--iso", "0"});
+    const RunResult run = run_tegl(options);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return scene(path("page.html"))["layers"][0]["world"];
+  };
+  const auto write = [&](const std::string& name, const std::string& space) {
+    std::ofstream file(path(name));
+    file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 3 3 3\nencoding: ascii\n" << space << "\n";
+    for (int i = 0; i < 27; ++i) file << (i == 13 ? 1 : -1) << ' ';
+    return path(name);
+  };
+  const std::string placed = "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace units: \"mm\" \"mm\" \"mm\"\n";
+  const std::string known = write("known.nrrd", "space: left-posterior-superior\n" + placed);
+  const std::string unknown = write("unknown.nrrd", "space dimension: 3\n" + placed);
+  EXPECT_EQ(world(known, {}), "LPS");
+  EXPECT_EQ(world(known, {"--world", "none"}), nullptr);
+  EXPECT_EQ(world(unknown, {}), nullptr);
+  EXPECT_EQ(world(unknown, {"--world", "ras"}), "RAS");
+  // Saved contours do not say.
+  ASSERT_EQ(run_tegl({"contour", known, "--iso", "0", "-o", path("known.ply"), "-q"}).exit, 0);
+  EXPECT_EQ(world(path("known.ply"), {}), nullptr);
+  EXPECT_EQ(world(path("known.ply"), {"--world", "LPI"}), "LPI");
+  for (const std::string wrong : {"SAR", "RA", "RAX", ""}) {
+    const RunResult run = run_tegl({"view", known, "--iso", "0", "-o", path("wrong.html"), "--world", wrong});
+    EXPECT_EQ(run.exit, 2) << wrong;
+    EXPECT_THAT(run.err, HasSubstr("expected R or L, A or P, S or I, as in RAS or LPS, or none"));
+  }
+  EXPECT_THAT(files(), Not(testing::Contains("wrong.html")));
+}
+
 TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {
   const auto view = [&](const std::string& input, const std::string& output) {
     return run_tegl({"view", input, "--iso", "0", "-o", output});

@@ -31,10 +31,11 @@ const POLYGONS = Array.from({ length: 16 }, (_, high) => {
   return pairs.map(([above, below]) => [order[below], order[above]]);
 });
 
-/** The same for the shader: 4 bits for each point (its corner below, then above), and from bit 24 on their number. */
+/** The same as triangles, for the shader: 4 bits for each corner (below, then above), and the number of corners. */
 export const CASES = Uint32Array.from(POLYGONS, (polygon) => {
-  let code = polygon.length << 24;
-  polygon.forEach(([below, above], i) => (code |= (below | (above << 2)) << (4 * i)));
+  const corners = polygon.length === 4 ? [0, 1, 2, 0, 2, 3] : polygon.length === 3 ? [0, 1, 2] : [];
+  let code = corners.length << 24;
+  corners.forEach((corner, i) => (code |= (polygon[corner][0] | (polygon[corner][1] << 2)) << (4 * i)));
   return code >>> 0;
 });
 

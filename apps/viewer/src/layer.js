@@ -10,15 +10,6 @@ import { FRAGMENT, ROW, VERTEX } from './shaders.js';
 
 const NONE = 0xffffffff;
 const CORNERS = { 2: 6, 3: 3, 4: 6 }; // of what is drawn for a simplex
-/** Tetrahedra that one call draws. Their points are the same numbers again in each: the index is that of one piece. */
-const PIECE = 1 << 16;
-
-/** Two triangles of four points each, so often. */
-function indexOfPiece() {
-  const index = new Uint32Array(6 * PIECE);
-  for (let i = 0; i < PIECE; ++i) index.set([4 * i, 4 * i + 1, 4 * i + 2, 4 * i, 4 * i + 2, 4 * i + 3], 6 * i);
-  return new THREE.BufferAttribute(index, 1);
-}
 
 /** A texture with an item in each texel; `values`: rows x width, of a type that the format says. */
 function texture(values, width, format, type, internalFormat) {
@@ -100,7 +91,7 @@ export class Layer {
       texture(widened(normals, 3, Int8Array), 4, THREE.RGBAFormat, THREE.ByteType, 'RGBA8_SNORM');
     if (this.dim === 4)
       Object.assign(uniforms, { uKeys: { value: wholes(this.keysOfCorners(), 4) }, uThreshold: { value: 0 },
-        uCases: { value: CASES }, uBase: { value: 0 } });
+        uCases: { value: CASES } });
     if (this.dim === 2) Object.assign(uniforms, { uViewport: { value: new THREE.Vector2(1, 1) }, uWidth: { value: 2 } });
     this.uniforms = uniforms;
     this.material = new THREE.RawShaderMaterial({ glslVersion: THREE.GLSL3, defines: { DIM: this.dim }, uniforms,
@@ -109,7 +100,6 @@ export class Layer {
     this.geometry.boundingSphere = new THREE.Sphere(new THREE.Vector3(), Infinity);
     this.mesh = new THREE.Mesh(this.geometry, [this.material]);
     this.mesh.frustumCulled = false;
-    if (this.dim === 4) this.drawInPieces();
     this.drawn = 0;
     if (this.dim !== 4) this.draw([[0, description.simplices]]);
     // Faces of the cut that no tetrahedron below has: as triangles of their own, at times of vertices alone.
@@ -157,27 +147,14 @@ export class Layer {
     return Uint32Array.from(simplices, (v) => keys[v]);
   }
 
-  drawInPieces() {
-    this.geometry.setIndex(indexOfPiece());
-    this.mesh.onBeforeRender = (renderer, scene, camera, geometry, material, group) => {
-      this.uniforms.uBase.value = group.base;
-      this.material.uniformsNeedUpdate = true;
-    };
-  }
-
   draw(ranges) {
     const corners = CORNERS[this.dim];
-    const piece = this.dim === 4 ? PIECE : Infinity;
-    const groups = [];
+    this.geometry.clearGroups();
     this.drawn = 0;
     for (const [from, to] of ranges) {
-      for (let base = from; base < to; base += piece) {
-        const count = corners * Math.min(piece, to - base);
-        groups.push({ start: this.dim === 4 ? 0 : corners * base, count, materialIndex: 0, base });
-      }
+      this.geometry.addGroup(corners * from, corners * (to - from), 0);
       this.drawn += to - from;
     }
-    this.geometry.groups = groups;
     this.ranges = ranges.length;
   }
 

@@ -2,7 +2,7 @@
 //
 // The shaders. There is one vertex shader for contours in 2D, 3D and 4D (DIM). All they have lies in textures, and the
 // vertex's number says which corner of what is drawn it is; so of a 4D contour any range of tetrahedra can be drawn,
-// each as the up to two triangles that the time cuts out of it: four points for each, by an index.
+// each as the up to two triangles that the time cuts out of it.
 
 /** Texels in a row of each texture. */
 export const ROW = 2048;
@@ -28,7 +28,6 @@ uniform float uTime;
 #if DIM == 4
 uniform usampler2D uKeys;  // of the corners of each tetrahedron
 uniform uint uThreshold;
-uniform int uBase;
 uniform uint uCases[16];
 #endif
 #if DIM == 2
@@ -77,20 +76,20 @@ void finish(vec3 place, vec3 normal, uint low, uint high, float share, int simpl
 
 void main() {
 #if DIM == 4
-  // Four points of a polygon for each tetrahedron, which the index makes two triangles of.
-  int simplex = uBase + (gl_VertexID >> 2);
-  int corner = gl_VertexID & 3;
+  int simplex = gl_VertexID / 6;
+  int corner = gl_VertexID - 6 * simplex;
   uvec4 isHigh = uvec4(greaterThanEqual(texelFetch(uKeys, texel(simplex), 0), uvec4(uThreshold)));
   uint found = uCases[isHigh.x | isHigh.y << 1 | isHigh.z << 2 | isHigh.w << 3];
-  int count = int(found >> 24);
-  if (count == 0) {
+  // Most are cut in one triangle: nothing more is looked up for the other, whose three corners are put beyond what is
+  // seen.
+  if (corner >= int(found >> 24)) {
     vView = vNormal = vPlace = vec3(0.0);
     vValue = 0.0;
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // beyond what is seen, as all points of this one
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     return;
   }
   uvec4 v = texelFetch(uSimplices, texel(simplex), 0);
-  uint edge = found >> uint(4 * min(corner, count - 1));  // of a triangle the last point twice
+  uint edge = found >> uint(4 * corner);
   uint low = v[edge & 3u];
   uint up = v[(edge >> 2) & 3u];
   vec4 a = texelFetch(uPlaces, texel(low), 0);
