@@ -15,7 +15,7 @@ drawn, so the limit of the screen does not count; the camera is as far away in a
 each time up to 40 frames, or as many as 5 seconds take. Prints what draws, and for each page JSON of what a frame takes:
 milliseconds (median, of the best turn) for the script, for all until the picture is there, and for the points alone,
 without what is between them; how many tetrahedra are drawn, in how many calls, and what share of them is cut.
-`than_first`: how many times as fast as the same image's page by the first program, the frame and the points.
+`than_first`: how many times as fast as the first page (of the same image), the frame and the points.
 """
 
 import json
@@ -121,7 +121,7 @@ def main():
     size = [int(argument) for argument in sys.argv[1:] if argument.isdigit()] or [1280, 800]
     with tempfile.TemporaryDirectory() as name, Browser(shutil.which("chromium"), shutil.which("chromedriver"),
                                                         gpu=options) as browser:
-        pages = [(argument, pathlib.Path(argument)) for argument in sys.argv[1:] if argument.endswith(".html")]
+        pages = [("given", pathlib.Path(argument)) for argument in sys.argv[1:] if argument.endswith(".html")]
         pages += made_pages(programs, pathlib.Path(name))
         if not pages:
             sys.exit(__doc__)
@@ -136,7 +136,7 @@ def main():
                 best[key] = min(turn[i][key] for turn in turns)
             before = first.setdefault(image, best)
             best["than_first"] = [round(before[key] / best[key], 2) for key in ("frame_ms", "points_ms")]
-            print(json.dumps({"page": image, **best}))
+            print(json.dumps({"image": image, "page": page.name, **best}))
 
 
 if __name__ == "__main__":

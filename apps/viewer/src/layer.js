@@ -90,7 +90,7 @@ export class Layer {
     uniforms.uNormals.value =
       texture(widened(normals, 3, Int8Array), 4, THREE.RGBAFormat, THREE.ByteType, 'RGBA8_SNORM');
     if (this.dim === 4)
-      Object.assign(uniforms, { uKeys: { value: wholes(this.keysOfCorners(), 4) }, uThreshold: { value: 0 },
+      Object.assign(uniforms, { uKeys: { value: wholes(this.cuts.keys, 1) }, uThreshold: { value: 0 },
         uCases: { value: CASES } });
     if (this.dim === 2) Object.assign(uniforms, { uViewport: { value: new THREE.Vector2(1, 1) }, uWidth: { value: 2 } });
     this.uniforms = uniforms;
@@ -139,12 +139,6 @@ export class Layer {
     this.faceUniforms.uSimplices.value = wholes(Uint32Array.from(faces.flat()), 4);
     old.dispose();
     this.faceGeometry.addGroup(0, 3 * faces.length, 0);
-  }
-
-  /** Beside each tetrahedron, not to be looked for at its vertices: what says whether it is cut. */
-  keysOfCorners() {
-    const { keys, simplices } = this.cuts;
-    return Uint32Array.from(simplices, (v) => keys[v]);
   }
 
   draw(ranges) {

@@ -64,6 +64,7 @@ export class Panel {
     $('color').replaceChildren(...layer.sources().map(({ id, name }) =>
       element('option', { value: id, textContent: name, selected: layer.source?.id === id })));
     this.showLegend(layer);
+    this.app.stage.lookAround();
   }
 
   showLegend(layer) {

@@ -26,7 +26,7 @@ uniform sampler2D uSegments;
 uniform sampler2D uAfter;
 uniform float uTime;
 #if DIM == 4
-uniform usampler2D uKeys;  // of the corners of each tetrahedron
+uniform usampler2D uKeys;
 uniform uint uThreshold;
 uniform uint uCases[16];
 #endif
@@ -39,8 +39,8 @@ out vec3 vNormal;
 out vec3 vPlace;
 out float vValue;
 
-ivec2 texel(uint i) { return ivec2(i % ${ROW}u, i / ${ROW}u); }
-ivec2 texel(int i) { return texel(uint(i)); }
+ivec2 texel(int i) { return ivec2(i % ${ROW}, i / ${ROW}); }
+ivec2 texel(uint i) { return texel(int(i)); }
 
 // The part that a simplex is in now: it appears in a segment of the graph, and goes on with what that becomes.
 float part(int simplex) {
@@ -78,17 +78,16 @@ void main() {
 #if DIM == 4
   int simplex = gl_VertexID / 6;
   int corner = gl_VertexID - 6 * simplex;
-  uvec4 isHigh = uvec4(greaterThanEqual(texelFetch(uKeys, texel(simplex), 0), uvec4(uThreshold)));
-  uint found = uCases[isHigh.x | isHigh.y << 1 | isHigh.z << 2 | isHigh.w << 3];
-  // Most are cut in one triangle: nothing more is looked up for the other, whose three corners are put beyond what is
-  // seen.
+  uvec4 v = texelFetch(uSimplices, texel(simplex), 0);
+  uint high = 0u;
+  for (int k = 0; k < 4; ++k) high |= texelFetch(uKeys, texel(v[k]), 0).r >= uThreshold ? 1u << k : 0u;
+  uint found = uCases[high];
   if (corner >= int(found >> 24)) {
     vView = vNormal = vPlace = vec3(0.0);
     vValue = 0.0;
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // beyond what is seen, all corners of the triangle alike
     return;
   }
-  uvec4 v = texelFetch(uSimplices, texel(simplex), 0);
   uint edge = found >> uint(4 * corner);
   uint low = v[edge & 3u];
   uint up = v[(edge >> 2) & 3u];

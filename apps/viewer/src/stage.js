@@ -196,15 +196,18 @@ export class Stage {
 
   /** Labels do not stand under these elements, wherever they are. */
   keepClear(elements) {
-    const look = () => {
-      const { left, top } = this.canvas.getBoundingClientRect();
-      this.axisLabels.obstacles = elements.map((element) => element.getBoundingClientRect()).filter(({ width }) => width > 0)
-        .map((box) => ({ x: box.x - left + box.width / 2, y: box.y - top + box.height / 2, halfWidth: box.width / 2,
-          halfHeight: box.height / 2 }));
-      this.redraw();
-    };
-    const observer = new ResizeObserver(look);
+    this.obstacles = elements;
+    const observer = new ResizeObserver(() => this.lookAround());
     for (const element of [...elements, this.canvas]) observer.observe(element);
+  }
+
+  /** Where there is no place for labels: to be called when that has changed. */
+  lookAround() {
+    const { left, top } = this.canvas.getBoundingClientRect();
+    const boxes = this.obstacles.map((element) => element.getBoundingClientRect()).filter(({ width }) => width > 0);
+    this.axisLabels.obstacles = boxes.map(({ x, y, width, height }) => ({ x: x - left + width / 2, y: y - top + height / 2,
+      halfWidth: width / 2, halfHeight: height / 2 }));
+    this.redraw();
   }
 
   setTheme(theme) {
