@@ -8,7 +8,7 @@ import { ends } from './time.js';
 const OPPOSITE = { R: 'L', L: 'R', A: 'P', P: 'A', S: 'I', I: 'S' };
 const KINDS = ['lowest', 'highest', 'name'];
 /** Where on its edge (0 ... 1) a label may stand, the best place first; and how far away from it, in pixels. */
-const PLACES = { lowest: [0.03, 0.1, 0.18, 0.26, -0.05], highest: [0.97, 0.9, 0.82, 0.74, 1.05],
+const PLACES = { lowest: [0.03, 0.08, 0.13, -0.05], highest: [0.97, 0.92, 0.87, 1.05],
   name: [0.5, 0.42, 0.58, 0.34, 0.66, 0.27, 0.73] };
 const DISTANCES = { lowest: [5, 17, 30], highest: [5, 17, 30], name: [5, 14, 24, 36, 50] };
 /** What it costs to leave a label out. */

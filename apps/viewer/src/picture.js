@@ -8,22 +8,27 @@ const FONT = 'system-ui, "Segoe UI", Roboto, "Liberation Sans", sans-serif';
 
 function drawLegend(context, source, height, ratio, text, soft) {
   const left = 16 * ratio;
-  let y = height - 44 * ratio;
+  // As wide as the legend of the page, which the labels keep clear of.
+  const perRow = Math.max(2, Math.floor((document.getElementById('legend').offsetWidth - 4) / 30));
+  const parts = source.kind === 'parts' ? Math.min(8, source.count) : 0;
+  let y = height - (44 + 15 * Math.max(0, Math.ceil(parts / perRow) - 1)) * ratio;
   context.fillStyle = text;
   context.font = `600 ${12 * ratio}px ${FONT}`;
   context.fillText(source.name + (source.unit ? ` (${source.unit})` : ''), left, y);
   y += 8 * ratio;
   context.font = `${12 * ratio}px ${FONT}`;
   if (source.kind === 'parts') {
-    for (let i = 0; i < Math.min(8, source.count); ++i) {
+    for (let i = 0; i < parts; ++i) {
+      const x = left + 30 * (i % perRow) * ratio;
+      const top = y + 15 * Math.floor(i / perRow) * ratio;
       context.fillStyle = css(ofPart(i));
-      context.fillRect(left + 30 * i * ratio, y, 10 * ratio, 10 * ratio);
+      context.fillRect(x, top, 10 * ratio, 10 * ratio);
       context.fillStyle = soft;
-      context.fillText(String(i + 1), left + (30 * i + 14) * ratio, y + 9.5 * ratio);
+      context.fillText(String(i + 1), x + 14 * ratio, top + 9.5 * ratio);
     }
     return;
   }
-  const width = 200 * ratio;
+  const width = Math.min(200, document.getElementById('legend').offsetWidth - 16) * ratio;
   const gradient = context.createLinearGradient(left, 0, left + width, 0);
   for (let i = 0; i <= 10; ++i) gradient.addColorStop(i / 10, css(ofShare(i / 10)));
   context.fillStyle = gradient;

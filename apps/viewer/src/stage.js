@@ -162,6 +162,11 @@ export class Stage {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     const tangent = Math.tan((this.camera.fov * Math.PI) / 360);
     const needed = this.axisLabels.room(width, height);
+    // A plane fills all: where it would reach the legend, it stays above it.
+    for (const { x, halfWidth, halfHeight } of this.isFlat ? this.axisLabels.obstacles : []) {
+      const left = (width - (this.sides[0] / this.sides[1]) * (height - 2 * needed.y)) / 2 - needed.x;
+      if (left < x + halfWidth) needed.y = Math.max(needed.y, Math.min(2 * halfHeight + 18, 0.22 * height));
+    }
     const room = [1 - (2 * needed.x) / width, 1 - (2 * needed.y) / height];
     let distance = 1e-3;
     for (const x of [-0.5, 0.5])
@@ -189,6 +194,7 @@ export class Stage {
         layer.uniforms.uViewport.value.set(width, height);
         layer.uniforms.uWidth.value = 2.5;
       }
+    this.lookAround();
     if (!this.wasReset || Math.abs(before - this.camera.aspect) > 0.3) this.reset();
     this.wasReset = true;
     this.redraw();
