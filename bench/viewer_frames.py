@@ -31,6 +31,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests/viewer"))
 from browser import Browser  # noqa: E402
 
+TURNS = 3  # each page so often, in turn
 IMAGES = [(2, 100, 6), (3, 72, 6), (24, 32, 3)]  # steps, samples along each axis, periods
 
 MEASURE = """
@@ -127,7 +128,7 @@ def main():
             sys.exit(__doc__)
         browser.size(*size)
         browser.driver.set_script_timeout(240)
-        turns = [[measure(browser, page) for _, page in pages] for _ in range(3)]
+        turns = [[measure(browser, page) for _, page in pages] for _ in range(TURNS)]
         print(json.dumps(browser.run(RENDERER)))
         first = {}
         for i, (image, page) in enumerate(pages):
