@@ -36,6 +36,38 @@ std::pair<std::string, std::string_view> halves(std::string_view option, const s
   return {argument.substr(0, equals), std::string_view(argument).substr(equals + 1)};
 }
 
+/// `count` numbers from `first` to `last`. Those that are meant to have few digits, such as 0.3 or 5, have them: a last
+/// bit more or less would be another side of the samples that equal the isovalue.
+std::vector<double> even_numbers(double first, double last, std::size_t count) {
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(first), std::abs(last));
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    // Halves of the step, as it may be beyond the largest number.
+    const double along = static_cast<double>(i) / static_cast<double>(count - 1);
+    const double value = first + 2 * (along * (last / 2 - first / 2));
+    const double meant = std::abs(value) <= rounding ? 0.0 : *parse_number(fmt::format("{:.12g}", value));
+    numbers.push_back(std::abs(meant - value) <= rounding ? meant : value);
+  }
+  numbers.push_back(last);
+  return numbers;
+}
+
+/// Evenly spaced numbers as number() spells them, or with as many digits more as it takes to be off by a thousandth of
+/// the step at most: files are named after them.
+std::vector<SpelledNumber> spell_apart(const std::vector<double>& range) {
+  const double most = std::abs(range[1] - range[0]) / 1000;
+  const auto is_near = [&](const SpelledNumber& spelled) {
+    return std::abs(*parse_number(spelled.text) - spelled.value) <= most;
+  };
+  std::vector<SpelledNumber> result;
+  for (const double value : range) result.push_back({value, number(value)});
+  for (int digits = 7; digits <= std::numeric_limits<double>::max_digits10; ++digits) {
+    if (std::all_of(result.begin(), result.end(), is_near)) break;
+    for (SpelledNumber& spelled : result) spelled.text = fmt::format("{:.{}g}", spelled.value, digits);
+  }
+  return result;
+}
+
 /// "1,2.5" and "FIRST:LAST:COUNT": each number, and how it is spelled.
 std::vector<SpelledNumber> numbers_of(const std::string& option, std::string_view values) {
   std::vector<SpelledNumber> result;
@@ -51,13 +83,9 @@ std::vector<SpelledNumber> numbers_of(const std::string& option, std::string_vie
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("{} has '{}'; expected FIRST:LAST:COUNT with a COUNT of 2 to {}, as in 0:10:21", option,
                               text, kMost));
-    const double first = parse_finite(option, ends[0]);
-    const double last = parse_finite(option, ends[1]);
-    for (double i = 0; i < count; ++i) {
-      // Exact at both ends.
-      const double value = first * ((count - 1 - i) / (count - 1)) + last * (i / (count - 1));
-      result.push_back({value, number(value)});
-    }
+    const std::vector<double> range =
+        even_numbers(parse_finite(option, ends[0]), parse_finite(option, ends[1]), static_cast<std::size_t>(count));
+    for (SpelledNumber& spelled : spell_apart(range)) result.push_back(std::move(spelled));
   }
   return result;
 }

@@ -9,6 +9,10 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "cuts.hpp"
 #include "exit_codes.hpp"
@@ -93,10 +97,36 @@ TEST(Cuts, ARangeHasItsEndsAndCount) {
   const std::vector<Cut> cuts = parse_cuts({"t=0.1:0.7:4,5"});
   ASSERT_EQ(cuts.size(), 5u);
   EXPECT_EQ(cuts[0].value, 0.1);
-  EXPECT_NEAR(cuts[1].value, 0.3, 1e-15);
+  EXPECT_EQ(cuts[1].value, 0.3) << "and not its neighbour";
   EXPECT_EQ(cuts[3].value, 0.7);
   EXPECT_EQ(cuts[3].text, "0.7");
   EXPECT_EQ(cuts[4].value, 5.0);
+}
+
+TEST(Cuts, ARangeHasTheNumbersThatAreMeant) {
+  EXPECT_THAT(parse_numbers("--iso", "1:6:6"), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(parse_numbers("--iso", "-0.1:0.2:4"), ElementsAre(-0.1, 0, 0.1, 0.2));
+  EXPECT_THAT(parse_numbers("--iso", "101325:101325.4:5"), ElementsAre(101325, 101325.1, 101325.2, 101325.3, 101325.4));
+  EXPECT_THAT(parse_numbers("--iso", "0:1:4"), ElementsAre(0, 1.0 / 3, 2.0 / 3, 1));
+  EXPECT_THAT(parse_numbers("--iso", "6:1:3"), ElementsAre(6, 3.5, 1));
+  EXPECT_THAT(parse_numbers("--iso", "-1.5e308:1.5e308:3"), ElementsAre(-1.5e308, 0, 1.5e308));
+  const std::vector<double> whole = parse_numbers("--iso", "-1000:1000:2001");
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(whole[i], static_cast<double>(i) - 1000);
+  const std::vector<double> tenths = parse_numbers("--iso", "0:100:1001");
+  for (std::size_t i = 0; i < tenths.size(); ++i)
+    EXPECT_EQ(tenths[i], std::stod(std::to_string(i / 10) + "." + std::to_string(i % 10)));
+}
+
+TEST(Cuts, ARangeIsSpelledApart) {
+  const auto texts = [](std::string_view range) {
+    std::vector<std::string> all;
+    for (const SpelledNumber& number : parse_spelled_numbers("--iso", range)) all.push_back(number.text);
+    return all;
+  };
+  EXPECT_THAT(texts("101325:101325.4:3"), ElementsAre("101325", "101325.2", "101325.4"));
+  EXPECT_THAT(texts("0:1:4"), ElementsAre("0", "0.333333", "0.666667", "1"));
+  const auto fine = texts("1000000:1000000.001:4");
+  EXPECT_EQ(std::set(fine.begin(), fine.end()).size(), 4U) << fine[1] << " " << fine[2];
 }
 
 TEST(Cuts, HaveAnOutputEach) {
