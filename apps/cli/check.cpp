@@ -38,11 +38,13 @@ class CheckCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     require_inputs();
+    ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
-    const Mesh mesh = read_finite_mesh(file());
+    const Mesh mesh = read_finite_mesh(file(), bar.stage("read"));
     const double read_seconds = watch.lap();
-    const MeshReport report = check_mesh(mesh);
+    const MeshReport report = check_mesh(mesh, bar.stage("check"));
     const double check_seconds = watch.lap();
+    bar.clear();
     const std::string missed = missed_requirement(report);
     if (json()) {
       Json json;

@@ -174,11 +174,9 @@ void fail_without_contour(double isovalue) {
 }
 
 void check_result(ContourResult& result, ProgressBar& bar) {
-  const Progress progress = bar.stage("check");
   Stopwatch watch;
-  result.report = check_mesh(result.mesh);
+  result.report = check_mesh(result.mesh, bar.stage("check"));
   result.seconds.check = watch.lap();
-  progress(1);
 }
 
 void write_result(ContourResult& result, ProgressBar& bar) {

@@ -134,7 +134,9 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
   return text;
 }
 
-MeshReport check_mesh(const Mesh& mesh) { return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates); }
+MeshReport check_mesh(const Mesh& mesh, const Progress& progress) {
+  return check(mesh.dim, mesh.simplices, mesh.space_dim, mesh.coordinates, progress);
+}
 
 void StageSeconds::add(const ExtractStats& stats) {
   read += stats.read_seconds;

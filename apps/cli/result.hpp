@@ -76,7 +76,7 @@ std::string check_text(const Console& console, const MeshSize& size, const std::
 std::string counted_simplices(int dim, std::uint64_t count);
 
 /// Checks a mesh (tegl/check.hpp).
-MeshReport check_mesh(const Mesh& mesh);
+MeshReport check_mesh(const Mesh& mesh, const Progress& progress);
 
 /// A hyperplane's coordinates, as `frame_of` has them.
 struct CutFrame {
