@@ -116,6 +116,10 @@ class ComponentsCommand final : public ContourInputCommand {
       require_output_keeps(output_, normals(), false);
     }
     if (!csv_.empty()) require_text_output(csv_, files());
+    std::vector<std::string> outputs;
+    for (const std::string& output : {output_, csv_})
+      if (!output.empty()) outputs.push_back(output);
+    require_different_outputs(outputs);
     if (split_.empty()) return;
     if (split_.find(kLabel) == std::string::npos)
       throw Error(ErrorCode::InvalidArgument,
@@ -150,11 +154,11 @@ class ComponentsCommand final : public ContourInputCommand {
     WrittenFiles written;
     if (!output_.empty()) {
       add_component_attribute(contour, labels);
-      const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen), input);
+      const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen, bar.stage("select")), input);
       const Progress progress = bar.stage("write");
       written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress); });
     }
-    if (!split_.empty()) write_split(contour, input, labels, found, bar.stage("split"), written);
+    if (!split_.empty()) write_split(contour, input, labels, found, bar, written);
     if (!csv_.empty())
       written.write(csv_, [&](const auto& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
     written.keep();
@@ -185,14 +189,15 @@ class ComponentsCommand final : public ContourInputCommand {
 
   template <int N>
   void write_split(const Contour<N, double>& contour, const ContourInput& input, const ComponentLabels& labels,
-                   const Found& found, const Progress& progress, WrittenFiles& written) const {
+                   const Found& found, ProgressBar& bar, WrittenFiles& written) const {
     constexpr std::size_t kMostFiles = 10000;
     const auto count = static_cast<std::size_t>(std::count(found.chosen.begin(), found.chosen.end(), true));
     if (count > kMostFiles)
       throw Error(ErrorCode::InvalidArgument, fmt::format("--split would write {} files; expected at most {} (choose "
                                                           "components with --select or --largest)",
                                                           count, kMostFiles));
-    const std::vector<Contour<N, double>> parts = split_components(contour, labels);
+    const std::vector<Contour<N, double>> parts = split_components(contour, labels, bar.stage("split"));
+    const Progress progress = bar.stage("write");
     std::size_t done = 0;
     for (std::size_t label = 0; label < parts.size(); ++label) {
       if (!found.chosen[label]) continue;

@@ -120,6 +120,7 @@ class ContourCommand final : public Command {
     require_one_file_of_several(isovalues.size());
     const std::vector<std::string> outputs =
         one_file_ ? std::vector(isovalues.size(), output_) : isovalue_outputs(output_, isovalues);
+    if (!one_file_) require_different_outputs(outputs);
     if (facets_) return run_facets(streams, isovalues, outputs, options);
     for (const std::string& output : outputs) {
       require_output(output, files());

@@ -21,6 +21,16 @@ namespace fs = std::filesystem;
   throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", output.string(), why));
 }
 
+/// Notes a target by its place. Throws InvalidArgument if another one is there.
+void require_new(std::map<fs::path, fs::path>& targets, const fs::path& place, const fs::path& target) {
+  const auto [other, is_new] = targets.emplace(place, target);
+  if (is_new) return;
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("{} {}; expected a file for each result", target.string(),
+                          other->second == target ? "would be written twice"
+                                                  : fmt::format("is the same file as {}", other->second.string())));
+}
+
 }  // namespace
 
 void require_input(const fs::path& path, Folders folders) {
@@ -91,6 +101,11 @@ void require_output_keeps(const fs::path& output, std::string_view normals, bool
                            normals == "flat" ? "" : ", .obj, .gltf or .glb", normals));
 }
 
+void require_different_outputs(const std::vector<std::string>& outputs) {
+  std::map<fs::path, fs::path> targets;
+  for (const std::string& output : outputs) require_new(targets, place_of(output), output);
+}
+
 std::uint64_t write_file(const fs::path& output, const std::function<void()>& write) {
   try {
     write();
@@ -106,27 +121,10 @@ std::uint64_t write_file(const fs::path& output, const std::function<void()>& wr
   return error ? 0 : size;
 }
 
-WrittenFiles::~WrittenFiles() {
-  std::error_code ignored;
-  for (const Staged& staged : staged_) fs::remove(staged.file, ignored);
-}
-
 fs::path WrittenFiles::stage(const fs::path& target) {
-  std::error_code error;
-  const fs::file_status status = fs::status(target, error);
-  if (fs::exists(status) && !fs::is_regular_file(status)) fail(target, "is no file; expected the name of one");
-  if (fs::exists(status) && access(target.c_str(), W_OK) != 0)
-    fail(target, fmt::format("cannot be overwritten: {}", std::strerror(errno)));
-  // Links are written through, as those of single files are.
-  fs::path place = fs::is_symlink(target, error) ? fs::weakly_canonical(target, error) : target;
-  if (error) place = target;
-  fs::path file;
-  do {
-    file =
-        place.parent_path() / fmt::format(".{}-{}.{}", static_cast<long>(getpid()), next_++, place.filename().string());
-  } while (fs::exists(fs::symlink_status(file, error)));
-  staged_.push_back({target, place, file});
-  return file;
+  const PendingPath& added = staged_.emplace_back(target);
+  require_new(targets_, added.place(), target);
+  return added.path();
 }
 
 void WrittenFiles::with_target_names(const std::function<void()>& work) const {
@@ -134,10 +132,10 @@ void WrittenFiles::with_target_names(const std::function<void()>& work) const {
     work();
   } catch (const Error& error) {
     std::string message = error.what();
-    for (const Staged& staged : staged_) {
-      const std::string name = staged.file.string();
+    for (const PendingPath& staged : staged_) {
+      const std::string name = staged.path().string();
       for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name))
-        message.replace(at, name.size(), staged.target.string());
+        message.replace(at, name.size(), staged.target().string());
     }
     throw Error(error.code(), message);
   }
@@ -151,10 +149,11 @@ std::uint64_t WrittenFiles::write(const fs::path& target, const std::function<vo
 }
 
 void WrittenFiles::keep() {
-  for (const Staged& staged : staged_) {
-    std::error_code error;
-    fs::rename(staged.file, staged.place, error);
-    if (error) fail(staged.target, fmt::format("cannot be put in place: {}", error.message()));
+  try {
+    for (PendingPath& staged : staged_) staged.commit_reversibly();
+  } catch (const Error&) {
+    for (PendingPath& staged : staged_) staged.roll_back();
+    throw;
   }
   staged_.clear();
 }

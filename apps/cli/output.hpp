@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <list>
+#include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "tegl/io.hpp"
+#include "tegl/pending_path.hpp"
 
 namespace tegl::cli {
 
@@ -38,6 +40,9 @@ void require_output_keeps(const std::filesystem::path& output, std::string_view 
 /// Throws WriteFailed unless `output` can be expected to be written as a text file, of any extension.
 void require_text_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
+/// Throws InvalidArgument if two outputs are one file, by whatever names.
+void require_different_outputs(const std::vector<std::string>& outputs);
+
 /// Calls `write`, which writes the file, and returns its size in bytes. Errors: WriteFailed, whatever is wrong;
 /// Cancelled.
 std::uint64_t write_file(const std::filesystem::path& output, const std::function<void()>& write);
@@ -46,14 +51,8 @@ std::uint64_t write_file(const std::filesystem::path& output, const std::functio
 /// then whatever was there stays.
 class WrittenFiles {
  public:
-  WrittenFiles() = default;
-  /// Removes what was not kept.
-  ~WrittenFiles();
-  WrittenFiles(const WrittenFiles&) = delete;
-  WrittenFiles& operator=(const WrittenFiles&) = delete;
-
   /// The name to write a target under, with the same extension. Errors: WriteFailed, if what is there is no file or
-  /// cannot be overwritten.
+  /// cannot be overwritten; InvalidArgument, if another target is the same file.
   std::filesystem::path stage(const std::filesystem::path& target);
   /// Calls `write` with the name to write the target under, and returns the file's size in bytes. Errors: WriteFailed,
   /// whatever is wrong, naming the target; Cancelled.
@@ -61,17 +60,12 @@ class WrittenFiles {
                       const std::function<void(const std::filesystem::path&)>& write);
   /// Calls `work`; its errors name the targets in place of the names that these are written under.
   void with_target_names(const std::function<void()>& work) const;
-  /// Puts all files in place. Errors: WriteFailed.
+  /// Puts all files in place. Errors: WriteFailed; then what was there before is there again.
   void keep();
 
  private:
-  struct Staged {
-    std::filesystem::path target;  ///< as the user named it
-    std::filesystem::path place;   ///< behind symbolic links
-    std::filesystem::path file;    ///< what is written
-  };
-  std::vector<Staged> staged_;
-  unsigned next_ = 0;
+  std::list<PendingPath> staged_;
+  std::map<std::filesystem::path, std::filesystem::path> targets_;  ///< by place
 };
 
 }  // namespace tegl::cli

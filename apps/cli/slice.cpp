@@ -224,6 +224,7 @@ class SliceCommand final : public Command {
       require_output(output, files());
       require_output_keeps(output, options_.normals(), attributes_.wanted());
     }
+    require_different_outputs(outputs_);
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
@@ -339,9 +340,8 @@ class SliceCommand final : public Command {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
     refuse_image_options(files(), given, images(), "--at, --plane, --scale, --threads and --output alone");
-    const Progress reading = bar.stage("read");
     Stopwatch watch;
-    const Mesh mesh = read_saved_contour(file());
+    const Mesh mesh = read_saved_contour(file(), bar.stage("read"));
     require_cuts(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
     factors_ = parse_scale(scale_, space);
@@ -351,7 +351,6 @@ class SliceCommand final : public Command {
       result.seconds.read = read_seconds;
       result.isovalue = mesh.isovalue;
     }
-    reading(1);
     if (mesh.space_dim == 4)
       cut_contour_of(to_contour<4>(mesh), factors_, options_, results, bar);
     else

@@ -156,8 +156,6 @@ class TrackCommand final : public ContourInputCommand {
     if (largest_ && samples_ == 0)
       throw Error(ErrorCode::InvalidArgument, "--largest needs samples to measure by; expected --samples above 0");
     for (const std::string& output : outputs_) {
-      if (std::count(outputs_.begin(), outputs_.end(), output) > 1)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("--output {} is given twice", output));
       if (is_track_file(output))
         require_text_output(output, files());
       else if (find_mesh_file_format(output) != nullptr)
@@ -168,7 +166,8 @@ class TrackCommand final : public ContourInputCommand {
                                 output, kContourFiles));
     }
     if (!csv_.empty())
-      for (const char* const table : kTables) require_text_output(csv_ + table, files());
+      for (const Csv& table : kTables) require_text_output(csv_ + table.ending, files());
+    require_different_outputs(written_files());
   }
 
   /// The contour is written for the track of each simplex.
@@ -221,7 +220,9 @@ class TrackCommand final : public ContourInputCommand {
       else
         std::visit(write_labelled, input.contour);
     }
-    if (!csv_.empty()) write_track_csv(graph, csv_);
+    if (!csv_.empty())
+      for (const Csv& table : kTables)
+        written.write(csv_ + table.ending, [&](const auto& file) { write_text(table.text(graph), file); });
     written.keep();
   }
 
@@ -235,7 +236,7 @@ class TrackCommand final : public ContourInputCommand {
   [[nodiscard]] std::vector<std::string> written_files() const {
     std::vector<std::string> files = outputs_;
     if (!csv_.empty())
-      for (const char* const table : kTables) files.push_back(csv_ + table);
+      for (const Csv& table : kTables) files.push_back(csv_ + table.ending);
     return files;
   }
 
@@ -306,7 +307,12 @@ class TrackCommand final : public ContourInputCommand {
     return text;
   }
 
-  static constexpr std::array kTables{"-events.csv", "-segments.csv", "-samples.csv"};
+  struct Csv {
+    const char* ending;
+    std::string (*text)(const TrackGraph&);
+  };
+  static constexpr std::array kTables{Csv{"-events.csv", &track_events_csv}, Csv{"-segments.csv", &track_segments_csv},
+                                      Csv{"-samples.csv", &track_samples_csv}};
 
   std::vector<std::string> outputs_;
   std::string csv_;

@@ -4,47 +4,72 @@
 #include "output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <system_error>
 
 #include "common.hpp"
 #include "tegl/io.hpp"
 
-namespace tegl::io_detail {
+namespace tegl {
 
 namespace fs = std::filesystem;
 
 namespace {
 
 [[noreturn]] void write_failed(const fs::path& path, const char* step, int reason) {
-  fail(ErrorCode::WriteFailed, path, "cannot be {} ({})", step, std::strerror(reason));
+  io_detail::fail(ErrorCode::WriteFailed, path, "cannot be {} ({})", step, std::strerror(reason));
 }
 
-/// Links are followed, so that they are written through and not replaced.
-fs::path behind_links(const fs::path& path) {
-  std::error_code error;
-  fs::path resolved = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
-  return error ? path : resolved;
+/// Exchanges what two names lead to. False where the file system cannot.
+bool exchange(const fs::path& a, const fs::path& b) noexcept {
+#ifdef RENAME_EXCHANGE
+  return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+#else
+  return false;
+#endif
 }
 
 }  // namespace
 
-PendingPath::PendingPath(const fs::path& target) : named_(target), target_(behind_links(target)) {
+fs::path place_of(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as the kernel has it
   std::error_code error;
-  const fs::file_status status = fs::status(target_, error);
+  fs::path place = path;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(place, error); ++links) {
+    const fs::path to = fs::read_symlink(place, error);
+    if (error) break;
+    place = place.parent_path() / to;  // `to` itself if it is absolute
+  }
+  // Canonical names of whole paths stop at links that lead to no file; those of folders do not.
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  const fs::path known = fs::canonical(folder, error);
+  return error ? place : known / place.filename();
+}
+
+PendingPath::PendingPath(const fs::path& target) : named_(target), place_(place_of(target)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(place_, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    fail(ErrorCode::WriteFailed, named_, "is {}; expected the name of a file",
-         fs::is_directory(status) ? "a directory" : "not a regular file");
-  if (fs::exists(status) && access(target_.c_str(), W_OK) != 0) write_failed(named_, "overwritten", errno);
+    io_detail::fail(ErrorCode::WriteFailed, named_, "is {}; expected the name of a file",
+                    fs::is_directory(status) ? "a directory" : "not a regular file");
+  if (fs::is_symlink(place_, error)) write_failed(named_, "overwritten", ELOOP);
+  if (fs::exists(status) && access(place_.c_str(), W_OK) != 0) write_failed(named_, "overwritten", errno);
+  // One's own file is to be written, whoever may write to another's that it takes the place of.
+  const auto mode = fs::exists(status) ? static_cast<mode_t>(status.permissions() & fs::perms::all) | 0600U : 0666U;
   constexpr int kAttempts = 1000;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    pending_ = target_.parent_path() /
-               fmt::format(".{}.{}-{}.part", target_.filename().string(), static_cast<long>(getpid()), attempt);
-    const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    // With the target's extension, by which formats are chosen.
+    pending_ = place_.parent_path() /
+               fmt::format(".{}-{}.{}", static_cast<long>(getpid()), attempt, place_.filename().string());
+    const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
     if (file >= 0) {
+      // The umask has its say on new files alone.
+      if (fs::exists(status)) static_cast<void>(fchmod(file, mode));
       close(file);
       return;
     }
@@ -55,15 +80,41 @@ PendingPath::PendingPath(const fs::path& target) : named_(target), target_(behin
 
 PendingPath::~PendingPath() {
   std::error_code ignored;
-  if (!done_) fs::remove(pending_, ignored);
+  if (state_ == State::pending || state_ == State::exchanged) fs::remove(pending_, ignored);
 }
 
 void PendingPath::commit() {
   std::error_code error;
-  fs::rename(pending_, target_, error);
+  fs::rename(pending_, place_, error);
   if (error) write_failed(named_, "put in place", error.value());
-  done_ = true;
+  state_ = State::replaced;
 }
+
+void PendingPath::commit_reversibly() {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(place_, error);
+  const bool is_new = !fs::exists(status);
+  if (fs::is_regular_file(status) && exchange(pending_, place_)) {
+    state_ = State::exchanged;
+    return;
+  }
+  commit();
+  if (is_new) state_ = State::placed;
+}
+
+void PendingPath::roll_back() noexcept {
+  std::error_code ignored;
+  if (state_ == State::exchanged && exchange(pending_, place_)) state_ = State::pending;
+  if (state_ != State::placed) return;
+  fs::remove(place_, ignored);
+  state_ = State::replaced;
+}
+
+}  // namespace tegl
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
 
 OutputFile::OutputFile(const fs::path& target) : pending_(target), buffer_(std::size_t{1} << 20) {
   file_.reset(std::fopen(pending_.path().c_str(), "wb"));

@@ -60,7 +60,7 @@ TEST_F(Track, CountsThatAreNoneAreNamed) {
   }
   const RunResult twice = run_tegl({"track", image(), "--iso", "0", "-o", path("g.svg"), "-o", path("g.svg")});
   EXPECT_EQ(twice.exit, 2);
-  EXPECT_THAT(twice.err, HasSubstr("is given twice"));
+  EXPECT_THAT(twice.err, HasSubstr("would be written twice"));
 }
 
 TEST_F(Track, WritesGraphsPicturesTablesAndTheContour) {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Files that appear whole or not at all: written under another name beside the target, and renamed at the end.
+#pragma once
+
+#include <filesystem>
+
+namespace tegl {
+
+/// Where a file of this name lies: absolute, and behind symbolic links, also those that lead to no file yet. Two names
+/// of one file have one place. A name in a folder that does not exist stays as it is.
+std::filesystem::path place_of(const std::filesystem::path& path);
+
+/// A name beside a target, with its extension: claimed on construction by an empty file, removed on destruction unless
+/// committed. Symbolic links are followed, also those that lead to no file yet: what they lead to is written, and they
+/// stay. A target that is there keeps its permissions, which the new file has from the beginning.
+/// Errors of all members: WriteFailed, naming the target and the reason.
+class PendingPath {
+ public:
+  explicit PendingPath(const std::filesystem::path& target);
+  ~PendingPath();
+  PendingPath(const PendingPath&) = delete;
+  PendingPath& operator=(const PendingPath&) = delete;
+
+  /// Where to write; the file exists and is empty.
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return pending_; }
+  /// The target as the user named it, for messages.
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return named_; }
+  /// place_of() the target.
+  [[nodiscard]] const std::filesystem::path& place() const noexcept { return place_; }
+  /// Moves the file, written and closed, to its place.
+  void commit();
+  /// As commit(), but what was there is kept until destruction, so that roll_back() can restore it. File systems that
+  /// cannot exchange two files lose what was there, as with commit().
+  void commit_reversibly();
+  /// After commit_reversibly(): what was there before, a file or nothing, is there again. No errors: what cannot be
+  /// undone stays.
+  void roll_back() noexcept;
+
+ private:
+  enum class State { pending, placed, exchanged, replaced };
+  std::filesystem::path named_;
+  std::filesystem::path place_;
+  std::filesystem::path pending_;
+  State state_ = State::pending;
+};
+
+}  // namespace tegl
