@@ -47,6 +47,10 @@ class Command {
   /// What is worked on: FILE, or all that are one image.
   [[nodiscard]] InputFiles inputs() const { return {worked_on_}; }
   [[nodiscard]] bool json() const { return json_; }
+  /// What there is to say of the images that were read, unless silence is asked for.
+  [[nodiscard]] std::vector<std::string> remarks() const {
+    return quiet_ ? std::vector<std::string>() : images_.remarks();
+  }
 
  protected:
   [[nodiscard]] CLI::App& app() { return *app_; }

@@ -139,13 +139,13 @@ ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const
   for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
   options.progress = progress;
-  return with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); });
+  return remembered(with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); }));
 }
 
 OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
   const SeriesOptions options = series_options(files);
-  return with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); });
+  return remembered(with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); }));
 }
 
 std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {

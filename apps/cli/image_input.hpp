@@ -34,18 +34,27 @@ class ImageOptions {
   [[nodiscard]] const std::string& variable() const { return series_.empty() ? variable_ : series_; }
   /// The option that chooses among what these files hold.
   [[nodiscard]] static std::string choosing_option(const std::vector<std::string>& files);
+  /// What the readers said of the files read so far: what they left out, what is uneven.
+  [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
   /// The names of those that are given.
   [[nodiscard]] std::vector<std::string> given() const;
 
  private:
   [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
+  /// Keeps the remarks on what was read.
+  template <class Result>
+  Result remembered(Result result) const {
+    remarks_.insert(remarks_.end(), result.info.remarks.begin(), result.info.remarks.end());
+    return result;
+  }
 
   std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;
+  mutable std::vector<std::string> remarks_;
 };
 
 }  // namespace tegl::cli

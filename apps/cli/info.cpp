@@ -132,6 +132,7 @@ Json to_json(const Description& description, const InputFiles& input) {
   json["variables"] = info.variables;
   json["value_name"] = info.value_name;
   json["value_unit"] = info.value_unit;
+  json["remarks"] = info.remarks;
   json["stored_type"] = info.stored_type;
   json["value_type"] = description.value_type;
   json["image_dim"] = description.axes.size();

@@ -60,7 +60,9 @@ ExitCode run(Command& command, const Streams& streams) {
   };
   try {
     const tegl::cli::InterruptHandler handler;
-    return command.run(streams);
+    const ExitCode exit = command.run(streams);
+    for (const std::string& remark : command.remarks()) streams.err.write(fmt::format("tegl: {}\n", remark));
+    return exit;
   } catch (const tegl::Error& error) {
     return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command.inputs()));
   } catch (const std::bad_alloc&) {

@@ -104,6 +104,8 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
     options.progress = tell;
     return read_with_hint(files, options);
   });
+  for (const std::string& remark : read.info.remarks)
+    if (PyErr_WarnEx(PyExc_UserWarning, remark.c_str(), 2) != 0) throw py::error_already_set();
   py::dict result;
   std::visit([&](auto& images) { std::visit([&](auto& image) { put_image(result, image); }, images); }, read.image);
   put(result, "format", read.info.format);

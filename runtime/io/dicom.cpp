@@ -46,10 +46,11 @@ struct Volume {
 /// Whether macOS put a file there, beside the one whose name follows.
 bool is_of_finder(const fs::path& path) { return path.filename().string().starts_with("._"); }
 
-/// The files below a folder, by name; those of a DICOMDIR; or the file itself.
-std::vector<fs::path> candidates(const fs::path& path) {
+/// The files below a folder, by name; those of a DICOMDIR; or the file itself, which may be empty among others.
+std::vector<fs::path> candidates(const fs::path& path, bool among_others) {
   if (!fs::is_directory(path)) {
-    require_readable_file(path);
+    std::error_code error;
+    if (!among_others || !fs::is_empty(path, error)) require_readable_file(path);
     return lower_name(path) == "dicomdir" ? read_dicomdir(path) : std::vector{path};
   }
   std::vector<fs::path> files;
@@ -66,14 +67,40 @@ std::vector<fs::path> candidates(const fs::path& path) {
   return files;
 }
 
+/// What was found: the files that hold images, series by series in the order of their numbers, and what to say of
+/// others.
+struct Found {
+  std::vector<std::vector<DicomFile>> series;
+  std::vector<std::string> remarks;
+};
+
 /// Series of colours and the like (screenshots beside a scan) are left out, unless there are no others.
-void leave_out_unsupported(std::vector<std::vector<DicomFile>>& all) {
+void leave_out_unsupported(Found& found) {
   const auto is_unsupported = [](const std::vector<DicomFile>& series) {
     return std::all_of(series.begin(), series.end(), [](const DicomFile& file) {
       return file.fault && file.fault->code() == ErrorCode::UnsupportedData;
     });
   };
-  if (!std::all_of(all.begin(), all.end(), is_unsupported)) std::erase_if(all, is_unsupported);
+  if (std::all_of(found.series.begin(), found.series.end(), is_unsupported)) return;
+  for (const auto& files : found.series)
+    if (is_unsupported(files))
+      found.remarks.push_back(fmt::format("left out{}: {}",
+                                          files.size() == 1 ? "" : fmt::format(", a series of {} files", files.size()),
+                                          files.front().fault->what()));
+  std::erase_if(found.series, is_unsupported);
+}
+
+/// The header of a file in a folder or among others; none if it holds no image. What is no DICOM goes to `strangers`.
+std::optional<DicomFile> read_header_among_others(const fs::path& path, std::vector<fs::path>& strangers) {
+  if (begins_as_dicom(path)) return read_dicom_header(path);
+  std::optional<DicomFile> header;
+  try {
+    header = read_dicom_header(path);  // DCMTK knows kinds of old whose first bytes say nothing
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::MalformedFile) throw;
+  }
+  if (!header) strangers.push_back(path);
+  return header;
 }
 
 /// The series, without a file whose values cannot be read. Throws what is wrong with the first one.
@@ -83,22 +110,28 @@ std::vector<DicomFile> sound(std::vector<DicomFile>&& series) {
   return std::move(series);
 }
 
-/// The files that hold images, series by series in the order of their numbers.
-std::vector<std::vector<DicomFile>> read_all_series(std::span<const fs::path> paths, const Progress& progress) {
+Found read_all_series(std::span<const fs::path> paths, const Progress& progress) {
   std::map<std::string, std::vector<DicomFile>> by_uid;
+  std::vector<fs::path> strangers;
+  const bool among_others = paths.size() > 1 || fs::is_directory(paths.front());
   for (const fs::path& path : paths)
-    for (const fs::path& file : candidates(path)) {
+    for (const fs::path& file : candidates(path, among_others)) {
       tick(progress, 0.0, file);
-      if (auto header = read_dicom_header(file)) by_uid[header->series].push_back(std::move(*header));
+      auto header = among_others ? read_header_among_others(file, strangers) : read_dicom_header(file);
+      if (header) by_uid[header->series].push_back(std::move(*header));
     }
-  std::vector<std::vector<DicomFile>> all;
-  for (auto& [uid, files] : by_uid) all.push_back(std::move(files));
-  if (all.empty())
+  Found found;
+  for (auto& [uid, files] : by_uid) found.series.push_back(std::move(files));
+  if (found.series.empty())
     fail(ErrorCode::UnsupportedData, paths.front(), "holds no image in DICOM; expected at least one file with pixels");
-  leave_out_unsupported(all);
-  std::stable_sort(all.begin(), all.end(),
+  if (!strangers.empty())
+    found.remarks.push_back(
+        fmt::format("left out: {}{}: no DICOM, whatever the name", strangers.front().string(),
+                    strangers.size() == 1 ? "" : fmt::format(" and {} more", strangers.size() - 1)));
+  leave_out_unsupported(found);
+  std::stable_sort(found.series.begin(), found.series.end(),
                    [](const auto& a, const auto& b) { return a.front().series_number < b.front().series_number; });
-  return all;
+  return found;
 }
 
 std::size_t frames_of(const std::vector<DicomFile>& files) {
@@ -246,30 +279,76 @@ void sort_planes(Volume& volume) {
        volume.path(volume.planes[0]).string(), volume.times);
 }
 
-/// The step from place to place. Throws unless it is the same everywhere.
-Eigen::Vector3d step_of(const Volume& volume) {
-  const auto at = [&](std::size_t p) { return *volume.frame(volume.planes[p]).position; };
-  const std::size_t n = volume.places;
-  if (n == 1) return normal_of(volume.files.front().frames.front());
-  const Eigen::Vector3d step = (at(n - 1) - at(0)) / static_cast<double>(n - 1);
+/// Where the places lie: on a line, in steps from the first.
+struct Stack {
+  Eigen::Vector3d step;       ///< the mean one from place to place
+  std::vector<double> steps;  ///< of this length, from the first place to each; 0, 1, 2 ... where they lie evenly
+  bool even = true;
+};
+
+/// Throws where a distance is so much larger than a neighbour that slices seem to be missing. A distance that others
+/// beside it share is one that was meant: some protocols change it on the way.
+void require_none_missing(const Volume& volume, const Stack& stack) {
+  constexpr double kLarger = 1.5;
+  constexpr double kSame = 0.1;
+  constexpr std::size_t kMeant = 3;  // so many alike, one after the other
+  const auto& u = stack.steps;
+  const double length = stack.step.norm();
   std::vector<double> gaps;
-  for (std::size_t p = 1; p < n; ++p) gaps.push_back((at(p) - at(p - 1)).norm());
-  std::vector<double> sorted = gaps;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2 - (n == 2 ? 1 : 0)),
-                   sorted.end());
-  const double usual = sorted[n / 2 - (n == 2 ? 1 : 0)];
+  for (std::size_t p = 1; p < u.size(); ++p) gaps.push_back((u[p] - u[p - 1]) * length);
+  for (std::size_t g = 0; g < gaps.size(); ++g) {
+    double beside = gaps[g];
+    if (g > 0) beside = std::min(beside, gaps[g - 1]);
+    if (g + 1 < gaps.size()) beside = std::min(beside, gaps[g + 1]);
+    if (gaps[g] <= kLarger * beside) continue;
+    const auto alike = [&](std::size_t other) { return std::abs(gaps[other] - gaps[g]) <= kSame * gaps[g]; };
+    std::size_t first = g;
+    std::size_t last = g;
+    while (first > 0 && alike(first - 1)) --first;
+    while (last + 1 < gaps.size() && alike(last + 1)) ++last;
+    if (last - first + 1 >= kMeant) continue;
+    fail(
+        ErrorCode::UnsupportedData, volume.path(volume.planes[g + 1]),
+        "lies {:.6g} mm from {}, and the next ones {:.6g} mm apart (slices seem to be missing); expected distances of "
+        "at most {} times their neighbours', or {} alike in a row; the files of either side can be named by themselves",
+        gaps[g], volume.path(volume.planes[g]).string(), beside, kLarger, kMeant);
+  }
+}
+
+/// The line through the places. Throws unless all planes lie on it, at all times, and none seems to be missing.
+Stack stack_of(const Volume& volume) {
+  const std::size_t n = volume.places;
+  const Eigen::Vector3d normal = normal_of(volume.files.front().frames.front());
+  const auto at = [&](std::size_t plane) { return *volume.frame(volume.planes[plane]).position; };
+  if (n == 1) return {normal, {0}};
+  Stack stack{(at(n - 1) - at(0)) / static_cast<double>(n - 1), {}};
   constexpr double kTolerance = 0.02;  // of a step: positions are rounded, some to hundredths of a millimetre
-  for (std::size_t p = 1; p < n; ++p)
-    if (std::abs(gaps[p - 1] - usual) > kTolerance * usual)
-      fail(ErrorCode::UnsupportedData, volume.path(volume.planes[p]),
-           "lies {:.6g} mm from {}, and {:.6g} mm are between most slices; expected even distances{}", gaps[p - 1],
-           volume.path(volume.planes[p - 1]).string(), usual,
-           gaps[p - 1] > 1.5 * usual ? " (slices seem to be missing)" : "");
-  for (std::size_t p = 0; p < n; ++p)
-    if ((at(p) - at(0) - static_cast<double>(p) * step).norm() > 10 * kTolerance * step.norm())
-      fail(ErrorCode::UnsupportedData, volume.path(volume.planes[p]),
-           "lies beside the line through the other slices; expected slices stacked along a line");
-  return step;
+  for (std::size_t p = 0; p < n; ++p) {
+    stack.steps.push_back(normal.dot(at(p) - at(0)) / normal.dot(stack.step));
+    stack.even = stack.even && std::abs(stack.steps[p] - static_cast<double>(p)) <= kTolerance;
+  }
+  require_none_missing(volume, stack);
+  for (std::size_t i = 0; i < volume.planes.size(); ++i) {
+    const Eigen::Vector3d beside = at(i) - at(0) - stack.steps[i % n] * stack.step;
+    if (beside.norm() > 10 * kTolerance * stack.step.norm())
+      fail(ErrorCode::UnsupportedData, volume.path(volume.planes[i]),
+           "lies {:.6g} mm beside the line through the other slices; expected slices stacked along a straight line, at "
+           "distances of any kind: other grids have no place in an image here",
+           beside.norm());
+  }
+  return stack;
+}
+
+/// What to say of slices that lie unevenly.
+std::string uneven_text(const Stack& stack) {
+  double least = stack.steps[1] - stack.steps[0];
+  double most = least;
+  for (std::size_t p = 1; p < stack.steps.size(); ++p) {
+    least = std::min(least, stack.steps[p] - stack.steps[p - 1]);
+    most = std::max(most, stack.steps[p] - stack.steps[p - 1]);
+  }
+  return fmt::format("the slices lie at uneven distances, {:.6g} to {:.6g} mm, and are taken where they lie",
+                     least * stack.step.norm(), most * stack.step.norm());
 }
 
 /// The grid of the planes in space: x, y, and z where there are several.
@@ -282,13 +361,22 @@ RawImage spatial_grid(const Volume& volume) {
   affine(0, 0) = spacing[0];
   affine(1, 1) = spacing[1];
   RawImage image;
+  Stack stack;
   if (is_placed(volume)) {
+    stack = stack_of(volume);
     affine.leftCols(2) = *frame.directions * spacing.asDiagonal();
-    affine.col(2) = step_of(volume);
+    affine.col(2) = stack.step;
     offset = *frame.position;
     image.info.world_frame = "LPS";
   }
   image.grid = affine_grid({first.columns, first.rows, volume.places}, affine, offset, first.path);
+  if (!stack.even) {
+    Axis& along = image.grid.axes[2];
+    std::vector<double> coordinates;
+    for (const double steps : stack.steps) coordinates.push_back(along.origin() + steps * along.step());
+    along = Axis::rectilinear(std::move(coordinates));
+    image.info.remarks.push_back(uneven_text(stack));
+  }
   for (Axis& axis : image.grid.axes) axis.unit = frame.spacing ? "mm" : "";
   if (!is_placed(volume)) image.grid.axes[2].unit.clear();
   name_axes(image.grid);
@@ -421,10 +509,13 @@ bool is_dicom(const fs::path& path) {
 }
 
 RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series, const Progress& progress) {
-  Volume volume = arrange(choose(read_all_series(paths, progress), series, paths.front()));
+  Found found = read_all_series(paths, progress);
+  Volume volume = arrange(choose(std::move(found.series), series, paths.front()));
   RawImage spatial = spatial_grid(volume);
   RawLayers result;
   result.info = info_of(volume);
+  result.info.remarks = std::move(found.remarks);
+  result.info.remarks.insert(result.info.remarks.end(), spatial.info.remarks.begin(), spatial.info.remarks.end());
   result.info.world_frame = spatial.info.world_frame;
   const bool moves = volume.times > 1;
   const std::size_t per_layer = moves ? volume.places : 1;
@@ -449,7 +540,7 @@ RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series,
 
 std::vector<ImageVariable> list_dicom(const fs::path& path) {
   std::vector<ImageVariable> result;
-  for (const auto& files : read_all_series(std::span(&path, 1), {})) {
+  for (const auto& files : read_all_series(std::span(&path, 1), {}).series) {
     const DicomFile& first = files.front();
     result.push_back({first.series, {first.columns, first.rows}, first.value_unit, first.description});
     if (const std::size_t frames = frames_of(files); frames > 1) result.back().sizes.push_back(frames);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Headers and values of single DICOM files, by DCMTK, which decompresses what it knows: JPEG, JPEG-LS, RLE, deflate.
-// (GDCM knows JPEG 2000 as well, but as Debian builds it a file that is cut short ends the whole program.)
+// JPEG 2000 is OpenJPEG's. (GDCM knows both, but as Debian builds it a file that is cut short ends the whole program.)
 //
 // Based on: NEMA PS3.3 (DICOM Information Object Definitions), C.7.6.2 (image plane), C.7.6.16 (functional groups of
 // enhanced multi-frame images), C.11.1 (modality LUT).
@@ -19,12 +19,15 @@
 
 #include <dcmtk/dcmdata/dctk.h>
 
+#include <dcmtk/dcmdata/dccodec.h>
 #include <dcmtk/dcmdata/dcrledrg.h>
 #include <dcmtk/dcmjpeg/djdecode.h>
 #include <dcmtk/dcmjpls/djdecode.h>
 #include <dcmtk/oflog/oflog.h>
 
 #include "common.hpp"
+#include "dicom_frames.hpp"
+#include "jpeg2000.hpp"
 #include "raw_image.hpp"
 
 namespace tegl::io_detail {
@@ -230,6 +233,40 @@ void load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
          status.bad() ? status.text() : "it holds nothing");
 }
 
+bool is_jpeg2000(E_TransferSyntax syntax) { return syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000; }
+
+/// The name of a transfer syntax that came after this DCMTK.
+std::string_view name_of_later_syntax(std::string_view uid) {
+  struct Name {
+    std::string_view uid;  ///< or how it begins
+    std::string_view name;
+  };
+  constexpr std::array<Name, 6> kNames = {{{"1.2.840.10008.1.2.4.20", "High-Throughput JPEG 2000 (HTJ2K)"},
+                                           {"1.2.840.10008.1.2.4.11", "JPEG XL"},
+                                           {"1.2.840.10008.1.2.4.10", "MPEG video"},
+                                           {"1.2.840.10008.1.2.7.", "SMPTE ST 2110 video"},
+                                           {"1.2.840.10008.1.2.8.", "Deflated Image Frame"},
+                                           {"", "a transfer syntax without a name here"}}};
+  return std::find_if(kNames.begin(), kNames.end(), [&](const Name& name) { return uid.starts_with(name.uid); })->name;
+}
+
+/// Throws unless pixels can be decompressed if they are stored as the file says.
+void require_decodable(DcmFileFormat& format, const fs::path& path) {
+  const E_TransferSyntax stored_as = format.getDataset()->getOriginalXfer();
+  const DcmXfer syntax(stored_as);
+  const std::string told = text_of(*format.getMetaInfo(), DCM_TransferSyntaxUID);
+  const bool known = told.empty() || DcmXfer(told.c_str()).getXfer() != EXS_Unknown;  // or DCMTK takes it for plain
+  const bool elsewhere = stored_as == EXS_JPIPReferenced || stored_as == EXS_JPIPReferencedDeflate;
+  const bool decodable = !syntax.isEncapsulated() ||
+                         DcmCodecList::canChangeCoding(stored_as, EXS_LittleEndianExplicit) ||
+                         (is_jpeg2000(stored_as) && has_jpeg2000());
+  if (known && !elsewhere && decodable) return;
+  fail(ErrorCode::UnsupportedFormat, path,
+       "pixels stored as {} ({}), which is not read; expected uncompressed ones, JPEG, JPEG-LS, RLE or JPEG 2000{}",
+       known ? syntax.getXferName() : name_of_later_syntax(told), known ? syntax.getXferID() : told,
+       has_jpeg2000() ? "" : " (that in builds with OpenJPEG, libopenjp2-7-dev)");
+}
+
 /// Throws if a file is too short for the values that its header promises, before these get memory. (How long compressed
 /// ones are shows as they are decompressed.)
 void require_bytes(const DicomFile& file, E_TransferSyntax stored_as) {
@@ -270,6 +307,14 @@ bool is_dicom_file(const fs::path& path) {
   }
 }
 
+bool begins_as_dicom(const fs::path& path) {
+  constexpr std::size_t kPreamble = 128;
+  const auto bytes = read_bytes(path, 0, kPreamble + 4);
+  if (bytes.size() == kPreamble + 4 && std::memcmp(bytes.data() + kPreamble, "DICM", 4) == 0) return true;
+  // Without a preamble: the tag of the first element, of group 2 or 8, in little endian.
+  return bytes.size() >= 4 && (bytes[0] == 2 || bytes[0] == 8) && bytes[1] == 0 && bytes[3] == 0;
+}
+
 std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   DcmFileFormat format;
   load(format, path, kSmallElement);
@@ -291,6 +336,7 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
       fail(ErrorCode::MalformedFile, path, "{} x {} samples; expected at least one", file.columns, file.rows);
     read_type(data, file);
     read_frames(data, file);
+    require_decodable(format, path);
     require_bytes(file, format.getDataset()->getOriginalXfer());
   } catch (const Error& error) {
     file.fault = error;
@@ -303,11 +349,11 @@ ValueArray read_dicom_values(const DicomFile& file) {
   load(format, file.path, DCM_MaxReadLength);
   DcmDataset& data = *format.getDataset();
   const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
+  if (is_jpeg2000(data.getOriginalXfer())) return read_jpeg2000_frames(data, file);
   const DcmXfer syntax(data.getOriginalXfer());
   if (data.chooseRepresentation(EXS_LittleEndianExplicit, nullptr).bad() ||
       !data.canWriteXfer(EXS_LittleEndianExplicit, data.getOriginalXfer()))
-    fail(ErrorCode::UnsupportedFormat, file.path,
-         "pixels that cannot be decompressed ({}); expected them uncompressed, or as JPEG, JPEG-LS or RLE",
+    fail(ErrorCode::MalformedFile, file.path, "pixels that cannot be decompressed; expected sound ones as {}",
          syntax.getXferName());
   ValueArray values = array_of_type(file.type);
   std::visit(

@@ -51,6 +51,10 @@ struct DicomFile {
 /// Whether a file looks like DICOM by its first bytes or its extension.
 bool is_dicom_file(const std::filesystem::path& path);
 
+/// Whether a file begins as DICOM does, with "DICM" behind a preamble or with an element of its first groups: then it
+/// is damaged if it cannot be read. Errors: FileNotFound for one that cannot be opened.
+bool begins_as_dicom(const std::filesystem::path& path);
+
 /// The header of a file; none if it holds no image (a report, a directory of files). Errors: MalformedFile. What
 /// is wrong with its values is in `fault`: MalformedFile; UnsupportedData for colours and other values that are not one
 /// number per sample.

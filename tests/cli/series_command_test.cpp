@@ -41,13 +41,13 @@ std::string element(unsigned group, unsigned number, const std::string& type, st
 
 std::string short_value(unsigned value) { return {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)}; }
 
-/// A slice of `size` x `size` samples at z, 1 in the middle and 0 at its border.
+/// A slice of `size` x `size` samples at z: `inside` and more in the middle, 0 at its border; or 0 everywhere.
 std::string dicom_bytes(double z, unsigned size, const std::string& series = "1.2.3", unsigned frames = 1,
-                        unsigned told_size = 0) {
+                        unsigned told_size = 0, unsigned inside = 100) {
   std::string pixels;
   for (unsigned y = 0; y < size; ++y)
     for (unsigned x = 0; x < size; ++x)
-      pixels += short_value(x > 0 && y > 0 && x + 1 < size && y + 1 < size ? 100 + x + 7 * y : 0);
+      pixels += short_value(inside > 0 && x > 0 && y > 0 && x + 1 < size && y + 1 < size ? inside + x + 7 * y : 0);
   const std::string told = short_value(told_size == 0 ? size : told_size);
   return std::string(128, '\0') + "DICM" + element(2, 0, "UL", std::string("\x1c\0\0\0", 4)) +
          element(2, 0x10, "UI", "1.2.840.10008.1.2.1") + element(8, 0x60, "CS", "MR") +
@@ -147,6 +147,49 @@ TEST_F(SeriesCommand, LeavesAsideColoursAndFilesOfTheFinder) {
   if (!reads_dicom(path("scan/a0.dcm"))) GTEST_SKIP() << "built without DICOM";
   EXPECT_EQ(run({"info", path("scan")})["axes"][2]["size"], 4);
   expect_refused(4, {"info", screenshot}, {"b.dcm", "PALETTE"});
+}
+
+TEST_F(SeriesCommand, SaysWhatItLeavesOutOfAFolder) {
+  std::filesystem::create_directory(path("scan"));
+  for (int k = 0; k < 4; ++k) write("scan/a" + std::to_string(k) + ".dcm", dicom_bytes(k, 6));
+  const std::string notes = write("scan/notes.dcm", "Dear colleague, these are the slices.");
+  if (!reads_dicom(path("scan/a0.dcm"))) GTEST_SKIP() << "built without DICOM";
+  const RunResult info = run_tegl({"info", path("scan"), "--json"});
+  EXPECT_EQ(info.json()["axes"][2]["size"], 4);
+  EXPECT_THAT(info.json()["remarks"][0], HasSubstr("notes.dcm"));
+  EXPECT_THAT(info.err, HasSubstr("tegl: left out: " + notes));
+  const std::vector<std::string> contour = {"contour", path("scan"), "--iso", "50", "-o", path("out.ply")};
+  EXPECT_THAT(run_tegl(contour).err, HasSubstr(notes));
+  std::vector<std::string> streamed = contour;
+  streamed.back() = path("out.vtkhdf");
+  streamed.emplace_back("--stream");
+  EXPECT_THAT(run_tegl(streamed).err, HasSubstr(notes));
+  std::vector<std::string> quiet = contour;
+  quiet.emplace_back("--quiet");
+  EXPECT_EQ(run_tegl(quiet).err, "");
+  expect_refused(4, {"info", notes}, {"notes.dcm"});
+}
+
+// Where slices in the middle of a thing are far apart, it is the same thing.
+TEST_F(SeriesCommand, PutsUnevenSlicesOfDicomWhereTheyLie) {
+  const auto scan = [&](const std::string& name, const std::vector<double>& places) {
+    std::filesystem::create_directory(path(name));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const bool empty = k == 0 || k + 1 == places.size();  // the contour is closed
+      write(name + "/a" + std::to_string(k) + ".dcm", dicom_bytes(places[k], 6, "1.2.3", 1, 0, empty ? 0 : 100));
+    }
+    return path(name);
+  };
+  const std::string even = scan("even", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
+  const std::string uneven = scan("uneven", {0, 1, 3, 5, 7, 9, 10});
+  if (!reads_dicom(even + "/a0.dcm")) GTEST_SKIP() << "built without DICOM";
+  EXPECT_THAT(run_tegl({"info", uneven}).err, HasSubstr("uneven distances, 1 to 2 mm"));
+  EXPECT_EQ(run_tegl({"info", even}).err, "");
+  const double expected = run({"measure", even, "--iso", "50"})["content"];
+  EXPECT_GT(expected, 100);
+  EXPECT_NEAR(run({"measure", uneven, "--iso", "50"})["content"], expected, 1e-6 * expected);
+  std::filesystem::remove(uneven + "/a3.dcm");
+  expect_refused(4, {"measure", uneven, "--iso", "50"}, {"a4.dcm: lies 4 mm from", "missing"});
 }
 
 TEST_F(SeriesCommand, RefusesDicomHeadersThatPromiseMoreThanTheFileHas) {

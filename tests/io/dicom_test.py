@@ -87,14 +87,15 @@ class Writer:
         return self.folder / name
 
     def volume(self, planes=5, dtype=np.int16, iop=(1, 0, 0, 0, 1, 0), step=2.5, skip=(), low=-1000, high=2000,
-               shape=(4, 6), shear=(0, 0, 0), **tags):
+               shape=(4, 6), shear=(0, 0, 0), along=None, **tags):
         row, column = np.array(iop[:3]), np.array(iop[3:])
         normal = np.cross(row, column)
-        order = [k for k in range(planes) if k not in skip]
+        along = along or [k * step for k in range(planes)]  # where each plane lies
+        order = [k for k in range(len(along)) if k not in skip]
         self.random.shuffle(order)
         for k in order:
             values = self.numbers.integers(low, high, size=shape).astype(dtype)
-            position = np.array([10, -20, 30]) + k * (step * normal + np.array(shear))
+            position = np.array([10, -20, 30]) + along[k] * (normal + np.array(shear) / step)
             own = {tag: value(k) if callable(value) else value for tag, value in tags.items()}
             self.plane(values, position, iop, InstanceNumber=self.random.randrange(1000), **own)
 
@@ -216,8 +217,97 @@ class Dicom(unittest.TestCase):
         self.assert_volume(self.assert_both_ways())
 
     def test_a_missing_slice_is_told_of(self):
-        Writer(self.folder).volume(planes=7, skip=(3,))
-        self.assert_refused("UnsupportedData", "lies 5 mm from", "2.5 mm", "missing", str(self.folder))
+        for number, skip in enumerate([(3,), (1,), (5,), (3, 4), (2, 4), (3, 5, 6), (4, 9, 10, 11)]):
+            with self.subTest(skip):
+                folder = self.folder / str(number)
+                folder.mkdir()
+                Writer(folder).volume(planes=14, skip=skip, iop=OBLIQUE if number % 2 else (1, 0, 0, 0, 1, 0))
+                self.assert_refused("UnsupportedData", "mm from", "2.5 mm apart", "missing", str(folder), paths=[folder])
+
+    def test_slices_at_uneven_distances_are_taken_where_they_lie(self):
+        cases = {"protocol": [0, 5, 10, 15, 20, 30, 40, 50, 60], "drifting": [0, 1, 2.1, 3.3, 4.6, 6, 7.5, 9.1],
+                 "random": [0, 1.2, 2.1, 3.3, 4.2, 5.3, 6.3, 7.4], "hardly": [0, 1, 2, 3, 4.05, 5.05, 6.05, 7.05]}
+        for name, along in cases.items():
+            for number, (iop, shear) in enumerate([((1, 0, 0, 0, 1, 0), (0, 0, 0)), ((1, 0, 0, 0, -1, 0), (0, 0, 0)),
+                                                   (OBLIQUE, (0, 0, 0)), (OBLIQUE, (0.2, 0.9, 0))]):
+                with self.subTest(name, iop=iop, shear=shear):
+                    folder = self.folder / f"{name}{number}"
+                    folder.mkdir()
+                    Writer(folder, seed=number).volume(along=along, iop=iop, shear=shear)
+                    image = self.assert_both_ways(folder)
+                    self.assert_volume(image, files=files_of(folder))
+                    at = np.array(image["axes"][2]["at"])
+                    stretch = np.linalg.norm(np.cross(iop[:3], iop[3:]) + np.array(shear) / 2.5)
+                    np.testing.assert_allclose(np.abs(at - at[0]), np.array(along) * stretch, atol=1e-4)
+                    self.assertEqual(len(image["remarks"]), 1)
+                    self.assertIn("uneven distances", image["remarks"][0])
+
+    def test_places_that_are_even_but_for_their_last_digits_are_even(self):
+        Writer(self.folder).volume(along=[0, 1.01, 1.99, 3, 4.01])
+        image = self.assert_both_ways()
+        np.testing.assert_allclose(np.diff(image["axes"][2]["at"]), 1.0025, rtol=1e-9)
+        self.assertEqual(image["remarks"], [])
+
+    def test_slices_beside_a_straight_line_are_refused(self):
+        writer = Writer(self.folder)
+        for k in range(5):
+            writer.plane(np.zeros((4, 5), dtype=np.uint8), (0.3 * k * k, 0, 2 * k))
+        self.assert_refused("UnsupportedData", "beside the line", "straight line")
+        for path in files_of(self.folder):
+            path.unlink()
+        for t in range(2):  # on a line each, but not on the same one
+            for k in range(4):
+                writer.plane(np.zeros((4, 5), dtype=np.uint8), (3 * t, 0, 2 * k), TriggerTime=30 * t)
+        self.assert_refused("UnsupportedData", "lies 3 mm beside the line")
+
+    def test_what_is_no_dicom_is_left_out_of_a_folder_and_said(self):
+        Writer(self.folder).volume()
+        plain = self.assert_both_ways()
+        self.assertEqual(plain.pop("remarks"), [])
+        scan = files_of(self.folder)
+        strangers = {"notes.dcm": b"Dear colleague,\nthese are the slices that we spoke of.\n" * 20, "empty.dcm": b"",
+                     "zeros.dcm": bytes(1000), "page.dcm": b"<html><body>404 Not Found</body></html>",
+                     "noise.dcm": np.random.default_rng(1).bytes(5000), "picture.dcm": b"\x89PNG\r\n\x1a\n" + bytes(300)}
+        for name, content in strangers.items():
+            path = self.folder / name
+            path.write_bytes(content)
+            with self.subTest(name):
+                for paths in ([self.folder], [*scan, path]):
+                    image = self.assert_both_ways(*paths)
+                    self.assertEqual(len(image["remarks"]), 1)
+                    self.assertIn(f"left out: {path}", image.pop("remarks")[0])
+                    self.assertEqual(image, plain)
+                for how in ("whole", "layers"):  # by itself it is an error
+                    self.assertIn(dump(path, how=how).get("error"), ("MalformedFile", "UnsupportedData"))
+            path.unlink()
+        for name, content in strangers.items():
+            (self.folder / name).write_bytes(content)
+        self.assertIn("empty.dcm and 5 more", self.assert_both_ways()["remarks"][0])
+        for path in scan:
+            path.unlink()
+        self.assert_refused("UnsupportedData", "no image in DICOM")
+
+    def test_damaged_dicom_is_never_left_out(self):
+        Writer(self.folder).volume(planes=6)
+        last = max(files_of(self.folder), key=lambda path: pydicom.dcmread(path).ImagePositionPatient[2])
+        whole = last.read_bytes()
+        for content in (whole[:-20], whole[:300], whole[132:-20], whole[132:180]):  # without its preamble, too
+            last.write_bytes(content)
+            self.assert_refused("MalformedFile", last.name)
+
+    def test_series_of_colours_are_left_out_and_said(self):
+        Writer(self.folder).volume(planes=3)
+        for number in range(2):
+            path = self.folder / f"z{number}.dcm"
+            data = header(path)
+            data.SeriesInstanceUID = "1.2.9"
+            put_pixels(data, np.zeros((4, 5), dtype=np.uint8))
+            data.SamplesPerPixel, data.PhotometricInterpretation, data.PlanarConfiguration = 3, "RGB", 0
+            data.PixelData = bytes(60)
+            data.save_as(path, write_like_original=False)
+        image = self.assert_both_ways()
+        self.assertIn("left out, a series of 2 files", image["remarks"][0])
+        self.assertIn("RGB", image["remarks"][0])
 
     def test_several_series_are_listed_and_chosen(self):
         Writer(self.folder, seed=1, number=7, description="bones", uid="1.2.3.7").volume(planes=4)
@@ -344,15 +434,6 @@ class Dicom(unittest.TestCase):
             self.assertEqual(image["values"], list(range(60)))
             self.assertEqual(image["axes"][2]["unit"], unit)
             self.assertAlmostEqual(image["axes"][2]["at"][2], 2 * step)
-
-    def test_compressed_pixels(self):
-        Writer(self.folder).volume(dtype=np.uint16, low=0)
-        plain = dump(self.folder)
-        for path in files_of(self.folder):
-            data = pydicom.dcmread(path)
-            data.compress(pydicom.uid.RLELossless)
-            data.save_as(path, write_like_original=False)
-        self.assertEqual(self.assert_both_ways(), plain)
 
     def test_a_dicomdir_lists_the_files(self):
         Writer(self.folder).volume(planes=3)

@@ -44,6 +44,7 @@ json whole(std::span<const std::filesystem::path> files, const tegl::SeriesOptio
     result["values"] = image.values;
     result["type"] = type_of(T{});
     result["frame"] = read.info.world_frame;
+    result["remarks"] = read.info.remarks;
     result["value_unit"] = read.info.value_unit;
     return result;
   };
@@ -63,6 +64,7 @@ json layers(std::span<const std::filesystem::path> files, const tegl::SeriesOpti
     }
     result["type"] = type_of(T{});
     result["frame"] = opened.info.world_frame;
+    result["remarks"] = opened.info.remarks;
     result["value_unit"] = opened.info.value_unit;
     return result;
   };

@@ -46,6 +46,7 @@ struct ImageInfo {
   std::string world_frame;                     ///< such as "RAS", "LPS", "" where there is none
   std::string stored_type;                     ///< value type in the file, before any conversion
   std::vector<AxisDirection> axis_directions;  ///< netCDF: of each axis of the image; else empty
+  std::vector<std::string> remarks;            ///< DICOM: what was left out, slices at uneven distances; else empty
 };
 
 /// An image, and what its file says of it.
@@ -63,7 +64,8 @@ struct ReadImageOptions {
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
 /// (.mha, .mhd; one data file) and netCDF (.nc, .cdf, .nc4; also gzipped as a whole). A file of another extension is
 /// recognised by its first bytes. With DCMTK also DICOM: a file, a DICOMDIR, or a folder with all below it, whose
-/// slices are sorted by place, and by time where several lie at one place.
+/// slices are sorted by place, and by time where several lie at one place. What is no DICOM there, or has colours, is
+/// left out, and slices at uneven distances make a rectilinear axis: ImageInfo::remarks says so.
 ///
 /// Axes: the one that runs fastest in the file is axis 0, time is last. Trailing axes of one sample are dropped
 /// (netCDF: wherever they are); what is left must be 2, 3 or 4 axes. Units as the file states them. Orientations that
