@@ -132,7 +132,8 @@ class Decoder {
     const opj_image_comp_t& grey = image.comps[0];
     const std::size_t width = image.x1 - image.x0;
     const std::size_t height = image.y1 - image.y0;
-    constexpr OPJ_UINT32 kMost = 31;
+    // OpenJPEG works in 32 bits, some of which wavelets and its encoder take: beyond, its own streams come back wrong.
+    constexpr OPJ_UINT32 kMost = 24;
     if (width != columns || height != rows || grey.dx != 1 || grey.dy != 1 || (grey.w != 0 && grey.w != columns) ||
         (grey.h != 0 && grey.h != rows))
       throw Error(

@@ -14,7 +14,7 @@ namespace tegl::io_detail {
 /// A decoded image of one component.
 struct Jpeg2000Image {
   std::vector<std::int32_t> values;  ///< row by row
-  int precision = 0;                 ///< bits of each value, 1 to 31
+  int precision = 0;                 ///< bits of each value, 1 to 24
 };
 
 /// Whether this build has OpenJPEG.
@@ -24,7 +24,7 @@ bool has_jpeg2000() noexcept;
 bool begins_jpeg2000(std::span<const unsigned char> bytes) noexcept;
 
 /// The samples of a code stream, bare or in a JP2 file. `label` begins the messages: the file and the frame. Errors:
-/// MalformedFile (damaged, cut short, or of another size), UnsupportedData (several components), UnsupportedFormat
+/// MalformedFile (damaged, cut short, or of another size), UnsupportedData (several components, more than 24 bits), UnsupportedFormat
 /// (a build without OpenJPEG).
 Jpeg2000Image decode_jpeg2000(std::span<const unsigned char> bytes, std::size_t columns, std::size_t rows,
                               const std::string& label);
