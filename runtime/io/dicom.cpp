@@ -72,6 +72,7 @@ std::vector<fs::path> candidates(const fs::path& path, bool among_others) {
 struct Found {
   std::vector<std::vector<DicomFile>> series;
   std::vector<std::string> remarks;
+  std::vector<Error> damaged;  ///< files that do not even say of which series they are
 };
 
 /// Series of colours and the like (screenshots beside a scan) are left out, unless there are no others.
@@ -90,16 +91,19 @@ void leave_out_unsupported(Found& found) {
   std::erase_if(found.series, is_unsupported);
 }
 
-/// The header of a file in a folder or among others; none if it holds no image. What is no DICOM goes to `strangers`.
-std::optional<DicomFile> read_header_among_others(const fs::path& path, std::vector<fs::path>& strangers) {
-  if (begins_as_dicom(path)) return read_dicom_header(path);
+/// The header of a file in a folder or among others; none if it holds no image. What is no DICOM goes to `strangers`,
+/// what is damaged to `damaged`.
+std::optional<DicomFile> read_header_among_others(const fs::path& path, std::vector<fs::path>& strangers,
+                                                  std::vector<Error>& damaged) {
+  const bool is_stranger = !begins_as_dicom(path);
   std::optional<DicomFile> header;
   try {
     header = read_dicom_header(path);  // DCMTK knows kinds of old whose first bytes say nothing
   } catch (const Error& error) {
     if (error.code() != ErrorCode::MalformedFile) throw;
+    if (!is_stranger) damaged.push_back(error);
   }
-  if (!header) strangers.push_back(path);
+  if (!header && is_stranger) strangers.push_back(path);
   return header;
 }
 
@@ -112,16 +116,17 @@ std::vector<DicomFile> sound(std::vector<DicomFile>&& series) {
 
 Found read_all_series(std::span<const fs::path> paths, const Progress& progress) {
   std::map<std::string, std::vector<DicomFile>> by_uid;
+  Found found;
   std::vector<fs::path> strangers;
   const bool among_others = paths.size() > 1 || fs::is_directory(paths.front());
   for (const fs::path& path : paths)
     for (const fs::path& file : candidates(path, among_others)) {
       tick(progress, 0.0, file);
-      auto header = among_others ? read_header_among_others(file, strangers) : read_dicom_header(file);
+      auto header = among_others ? read_header_among_others(file, strangers, found.damaged) : read_dicom_header(file);
       if (header) by_uid[header->series].push_back(std::move(*header));
     }
-  Found found;
   for (auto& [uid, files] : by_uid) found.series.push_back(std::move(files));
+  if (found.series.empty() && !found.damaged.empty()) throw found.damaged.front();
   if (found.series.empty())
     fail(ErrorCode::UnsupportedData, paths.front(), "holds no image in DICOM; expected at least one file with pixels");
   if (!strangers.empty())
@@ -246,6 +251,16 @@ bool sort_by_time(Volume& volume, const TimeKey& key) {
   return true;
 }
 
+/// The count that occurs most often; the larger one of two.
+std::size_t usual_of(const std::vector<std::size_t>& counts) {
+  std::map<std::size_t, std::size_t> times;
+  for (const std::size_t count : counts) ++times[count];
+  auto usual = times.begin();
+  for (auto next = times.begin(); next != times.end(); ++next)
+    if (next->second >= usual->second) usual = next;
+  return usual->first;
+}
+
 /// Sorts the planes by place and time. Throws unless there are as many times at each place, and something says which is
 /// which.
 void sort_planes(Volume& volume) {
@@ -261,14 +276,14 @@ void sort_planes(Volume& volume) {
     ++counts.back();
   }
   volume.places = counts.size();
-  volume.times = *std::max_element(counts.begin(), counts.end());
+  volume.times = usual_of(counts);
   for (std::size_t p = 0, first = 0; p < counts.size(); first += counts[p++])
     if (counts[p] != volume.times)
-      fail(ErrorCode::UnsupportedData, volume.path(volume.planes[first]),
-           "lies at a place with {} slices, {} mm along the normal; expected {}, as at others (some are missing, or "
-           "twice "
-           "there)",
-           counts[p], volume.planes[first].along, volume.times);
+      fail(ErrorCode::UnsupportedData, volume.path(volume.planes[first + counts[p] - 1]),
+           "is one of {} at its place, {} mm along the normal; expected {} there, as at most others{} (some are {})",
+           counts[p], volume.planes[first].along, volume.times,
+           counts[p] == 1 ? "" : fmt::format(": see also {}", volume.path(volume.planes[first]).string()),
+           counts[p] > volume.times ? "twice there" : "missing");
   if (volume.times == 1) return;
   for (const TimeKey& key : kTimeKeys)
     if (sort_by_time(volume, key)) return;
@@ -510,6 +525,9 @@ bool is_dicom(const fs::path& path) {
 
 RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series, const Progress& progress) {
   Found found = read_all_series(paths, progress);
+  if (series.empty() && found.series.size() == 1 && !found.damaged.empty()) throw found.damaged.front();
+  for (const Error& error : found.damaged)  // of that series or of another: a gap within it would be found
+    found.remarks.push_back(fmt::format("left out: {}; it does not say of which series it is", error.what()));
   Volume volume = arrange(choose(std::move(found.series), series, paths.front()));
   RawImage spatial = spatial_grid(volume);
   RawLayers result;

@@ -38,11 +38,12 @@ namespace {
 
 using Tag = DcmTagKey;
 
-/// DCMTK tells of what it finds odd, and knows no codec unless told. Both are of the whole process.
+/// DCMTK tells of what it finds odd, and knows no codec unless told. All this is of the whole process.
 void prepare_dcmtk() {
   static std::once_flag once;
   std::call_once(once, [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    dcmEnableUnknownVRConversion.set(OFTrue);  // some archives forget the types of what they do not know, as of doses
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
     DcmRLEDecoderRegistration::registerCodecs();
@@ -224,13 +225,18 @@ void read_type(DcmItem& data, DicomFile& file) {
 
 constexpr Uint32 kSmallElement = 4096;  // larger ones stay in the file until they are asked for
 
-/// Reads a file, with its large elements or without.
-void load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
+/// Reads a file, with its large elements or without; what is wrong with it, if anything is: then what came before that
+/// may have been read.
+std::optional<Error> try_to_load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
   prepare_dcmtk();
   const OFCondition status = file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, largest, ERM_autoDetect);
-  if (status.bad() || file.getDataset() == nullptr || file.getDataset()->card() == 0)
-    fail(ErrorCode::MalformedFile, path, "no DICOM file that can be read ({})",
-         status.bad() ? status.text() : "it holds nothing");
+  if (status.good() && file.getDataset() != nullptr && file.getDataset()->card() > 0) return {};
+  return Error(ErrorCode::MalformedFile, fmt::format("{}: no DICOM file that can be read ({})", path.string(),
+                                                     status.bad() ? status.text() : "it holds nothing"));
+}
+
+void load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
+  if (const auto fault = try_to_load(file, path, largest)) throw *fault;
 }
 
 bool is_jpeg2000(E_TransferSyntax syntax) { return syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000; }
@@ -317,9 +323,11 @@ bool begins_as_dicom(const fs::path& path) {
 
 std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   DcmFileFormat format;
-  load(format, path, kSmallElement);
+  const auto damage = try_to_load(format, path, kSmallElement);
+  if (damage && (format.getDataset() == nullptr || !format.getDataset()->tagExists(DCM_SeriesInstanceUID)))
+    throw *damage;
   DcmItem& data = *format.getDataset();
-  if (!data.tagExists(DCM_Rows) || !data.tagExists(DCM_BitsAllocated)) return {};
+  if (!damage && (!data.tagExists(DCM_Rows) || !data.tagExists(DCM_BitsAllocated))) return {};
   DicomFile file;
   file.path = path;
   file.series = text_of(data, DCM_SeriesInstanceUID);
@@ -332,6 +340,8 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   file.rows = static_cast<std::size_t>(number_of(data, DCM_Rows).value_or(0));
   file.columns = static_cast<std::size_t>(number_of(data, DCM_Columns).value_or(0));
   try {
+    file.frames.resize(1);  // at least
+    if (damage) throw *damage;
     if (file.rows == 0 || file.columns == 0)
       fail(ErrorCode::MalformedFile, path, "{} x {} samples; expected at least one", file.columns, file.rows);
     read_type(data, file);

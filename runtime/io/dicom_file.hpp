@@ -55,13 +55,13 @@ bool is_dicom_file(const std::filesystem::path& path);
 /// is damaged if it cannot be read. Errors: FileNotFound for one that cannot be opened.
 bool begins_as_dicom(const std::filesystem::path& path);
 
-/// The header of a file; none if it holds no image (a report, a directory of files). Errors: MalformedFile. What
-/// is wrong with its values is in `fault`: MalformedFile; UnsupportedData for colours and other values that are not one
-/// number per sample.
+/// The header of a file; none if it holds no image (a report, a directory of files). Errors: MalformedFile, if not even
+/// its series can be read. What else is wrong is in `fault`: MalformedFile; UnsupportedFormat for pixels that cannot be
+/// decompressed; UnsupportedData for colours and other values that are not one number per sample.
 std::optional<DicomFile> read_dicom_header(const std::filesystem::path& path);
 
-/// The stored values of all frames, decompressed. Errors: MalformedFile; UnsupportedFormat for a
-/// compression that DCMTK does not know (JPEG 2000).
+/// The stored values of all frames, decompressed. Errors: MalformedFile, UnsupportedData (JPEG 2000 of several
+/// components).
 ValueArray read_dicom_values(const DicomFile& file);
 
 /// The files that a DICOMDIR lists.

@@ -24,8 +24,8 @@ bool has_jpeg2000() noexcept;
 bool begins_jpeg2000(std::span<const unsigned char> bytes) noexcept;
 
 /// The samples of a code stream, bare or in a JP2 file. `label` begins the messages: the file and the frame. Errors:
-/// MalformedFile (damaged, cut short, or of another size), UnsupportedData (several components, more than 24 bits), UnsupportedFormat
-/// (a build without OpenJPEG).
+/// MalformedFile (damaged, cut short, or of another size), UnsupportedData (several components, more than 24 bits),
+/// UnsupportedFormat (a build without OpenJPEG).
 Jpeg2000Image decode_jpeg2000(std::span<const unsigned char> bytes, std::size_t columns, std::size_t rows,
                               const std::string& label);
 

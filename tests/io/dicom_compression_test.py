@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 DUMP = sys.argv.pop(1)
 for tool in ("gdcmconv", "opj_compress", "opj_decompress"):
@@ -129,6 +130,28 @@ class Compression(unittest.TestCase):
                     path.with_suffix(".new").rename(path)
                     self.assertTrue(pydicom.dcmread(path).file_meta.TransferSyntaxUID.is_compressed)
                 self.assert_same(folder, plain)
+
+    def test_files_of_scanners_that_pydicom_comes_with(self):
+        found = pathlib.Path(pydicom.__file__).parent / "data" / "test_files"
+        if not (found / "MR_small.dcm").exists():
+            self.skipTest("pydicom without its test files")
+        plain = dump(found / "MR_small.dcm")
+        self.assertEqual([len(axis["at"]) for axis in plain["axes"]], [64, 64])
+        for name in ("jp2klossless", "jpeg_ls_lossless", "RLE", "bigendian", "implicit", "expb", "padded"):
+            self.assertEqual(dump(found / f"MR_small_{name}.dcm"), plain, name)
+        self.assertEqual(dump(found / "rtdose_rle.dcm")["type"], "float64")  # the type of its scaling is "unknown"
+        np.testing.assert_allclose(dump(found / "rtdose_rle.dcm")["values"],
+                                   pydicom.dcmread(found / "rtdose_rle.dcm").pixel_array.ravel() * 1e-6, rtol=1e-9)
+        for name in ("693_J2KI", "J2K_pixelrep_mismatch", "JPEG2000", "image_dfl"):
+            data = pydicom.dcmread(found / f"{name}.dcm")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of bits and signs that are not those of the header
+                try:
+                    stored = data.pixel_array.astype(float)
+                except (ImportError, NotImplementedError, RuntimeError):
+                    continue  # no Pillow, or one without JPEG 2000
+            expected = stored * float(data.get("RescaleSlope", 1)) + float(data.get("RescaleIntercept", 0))
+            np.testing.assert_array_equal(dump(found / f"{name}.dcm")["values"], expected.ravel())
 
     def test_other_orders_of_bytes_deflated_and_rle_by_pydicom(self):
         for kind, syntax in itertools.product(KINDS, [DeflatedExplicitVRLittleEndian, ExplicitVRBigEndian,

@@ -9,6 +9,7 @@ in the files by place and time, as pydicom has them. Exit status 77 where there 
 import json
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -295,6 +296,26 @@ class Dicom(unittest.TestCase):
             last.write_bytes(content)
             self.assert_refused("MalformedFile", last.name)
 
+    def test_damage_is_of_its_series_alone(self):
+        Writer(self.folder, seed=1, number=1, description="A", uid="1.2.3.1").volume(planes=5)
+        whole = dump(self.folder)
+        (self.folder / "b").mkdir()
+        Writer(self.folder / "b", seed=2, number=2, description="B", uid="1.2.3.2").volume(planes=4)
+        path = sorted(files_of(self.folder / "b"))[1]
+        content = path.read_bytes()
+        path.write_bytes(content[:-20])  # its header is there
+        self.assertEqual(self.assert_both_ways(series="A"), whole)
+        self.assert_refused("MalformedFile", path.name, series="B")
+        self.assert_refused("VariableNotFound", "2 DICOM series", "'B', 4 slices")
+        path.write_bytes(content[:300])  # nothing says which series it is of
+        image = self.assert_both_ways(series="A")
+        self.assertIn(path.name, image["remarks"][0])
+        self.assertEqual(image["values"], whole["values"])
+        for other in files_of(self.folder / "b"):
+            if other != path:
+                other.unlink()
+        self.assert_refused("MalformedFile", path.name)  # it may be of the only one
+
     def test_series_of_colours_are_left_out_and_said(self):
         Writer(self.folder).volume(planes=3)
         for number in range(2):
@@ -358,7 +379,18 @@ class Dicom(unittest.TestCase):
                 writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k))
         self.assert_refused("UnsupportedData", "2 slices at one place", "Trigger Time")
         writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, 1))
-        self.assert_refused("UnsupportedData", "a place with 2 slices", "expected 3")
+        self.assert_refused("UnsupportedData", "one of 3 at its place", "expected 2", "twice")
+
+    def test_a_copy_of_a_slice_is_named_and_a_moment_that_lacks_one(self):
+        writer = Writer(self.folder)
+        for k in range(9):
+            writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k), name=f"D{k}.dcm", TriggerTime=0)
+        shutil.copy(self.folder / "D3.dcm", self.folder / "D3 copy.dcm")
+        self.assert_refused("UnsupportedData", "one of 2 at its place, 3 mm", "expected 1", "D3.dcm", "D3 copy.dcm")
+        (self.folder / "D3 copy.dcm").unlink()
+        for k in (0, 1, 2, 3, 4, 6, 7, 8):
+            writer.plane(np.zeros((4, 5), dtype=np.uint8), (0, 0, k), name=f"E{k}.dcm", TriggerTime=30)
+        self.assert_refused("UnsupportedData", "D5.dcm: is one of 1 at its place, 5 mm", "expected 2", "missing")
 
     def test_planes_that_do_not_fit_are_refused(self):
         def refused(parts, **tags):
