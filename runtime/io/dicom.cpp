@@ -301,33 +301,43 @@ struct Stack {
   bool even = true;
 };
 
-/// Throws where a distance is so much larger than a neighbour that slices seem to be missing. A distance that others
-/// beside it share is one that was meant: some protocols change it on the way.
-void require_none_missing(const Volume& volume, const Stack& stack) {
-  constexpr double kLarger = 1.5;
+constexpr double kLarger = 1.5;    // than the distance beside it: slices may be missing
+constexpr std::size_t kMeant = 3;  // so many alike, one after the other, are no accident
+
+/// The smaller of the distances on either side of one, and itself.
+double least_around(const std::vector<double>& gaps, std::size_t g) {
+  double least = gaps[g];
+  if (g > 0) least = std::min(least, gaps[g - 1]);
+  if (g + 1 < gaps.size()) least = std::min(least, gaps[g + 1]);
+  return least;
+}
+
+/// Whether a distance is one of several alike: some protocols change it on the way.
+bool is_meant(const std::vector<double>& gaps, std::size_t g) {
   constexpr double kSame = 0.1;
-  constexpr std::size_t kMeant = 3;  // so many alike, one after the other
-  const auto& u = stack.steps;
-  const double length = stack.step.norm();
+  const auto alike = [&](std::size_t other) { return std::abs(gaps[other] - gaps[g]) <= kSame * gaps[g]; };
+  std::size_t first = g;
+  std::size_t last = g;
+  while (first > 0 && alike(first - 1)) --first;
+  while (last + 1 < gaps.size() && alike(last + 1)) ++last;
+  return last - first + 1 >= kMeant;
+}
+
+/// Throws where a distance is so much larger than a neighbour that slices seem to be missing, naming the largest.
+void require_none_missing(const Volume& volume, const Stack& stack) {
   std::vector<double> gaps;
-  for (std::size_t p = 1; p < u.size(); ++p) gaps.push_back((u[p] - u[p - 1]) * length);
-  for (std::size_t g = 0; g < gaps.size(); ++g) {
-    double beside = gaps[g];
-    if (g > 0) beside = std::min(beside, gaps[g - 1]);
-    if (g + 1 < gaps.size()) beside = std::min(beside, gaps[g + 1]);
-    if (gaps[g] <= kLarger * beside) continue;
-    const auto alike = [&](std::size_t other) { return std::abs(gaps[other] - gaps[g]) <= kSame * gaps[g]; };
-    std::size_t first = g;
-    std::size_t last = g;
-    while (first > 0 && alike(first - 1)) --first;
-    while (last + 1 < gaps.size() && alike(last + 1)) ++last;
-    if (last - first + 1 >= kMeant) continue;
-    fail(
-        ErrorCode::UnsupportedData, volume.path(volume.planes[g + 1]),
-        "lies {:.6g} mm from {}, and the next ones {:.6g} mm apart (slices seem to be missing); expected distances of "
-        "at most {} times their neighbours', or {} alike in a row; the files of either side can be named by themselves",
-        gaps[g], volume.path(volume.planes[g]).string(), beside, kLarger, kMeant);
-  }
+  for (std::size_t p = 1; p < stack.steps.size(); ++p)
+    gaps.push_back((stack.steps[p] - stack.steps[p - 1]) * stack.step.norm());
+  std::optional<std::size_t> worst;
+  for (std::size_t g = 0; g < gaps.size(); ++g)
+    if (gaps[g] > kLarger * least_around(gaps, g) && !is_meant(gaps, g) && (!worst || gaps[g] > gaps[*worst]))
+      worst = g;
+  if (!worst) return;
+  fail(
+      ErrorCode::UnsupportedData, volume.path(volume.planes[*worst + 1]),
+      "lies {:.6g} mm from {}, and the next ones {:.6g} mm apart (slices seem to be missing); expected distances of at "
+      "most {} times their neighbours', or {} alike in a row; the files of either side can be named by themselves",
+      gaps[*worst], volume.path(volume.planes[*worst]).string(), least_around(gaps, *worst), kLarger, kMeant);
 }
 
 /// The line through the places. Throws unless all planes lie on it, at all times, and none seems to be missing.
