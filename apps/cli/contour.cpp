@@ -369,13 +369,7 @@ class ContourCommand final : public Command {
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
-    // Each has a thread, a few layers and an open file.
-    constexpr std::size_t kMostStreamed = 64;
-    if (results.size() > kMostStreamed)
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("--iso has {} numbers to be streamed in one pass; expected at most {}: more in several runs",
-                      results.size(), kMostStreamed));
+    require_open_files(results.size());
     for (const ContourResult& result : results) require_output_grows(result.output);
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,

@@ -2,7 +2,9 @@
 #include "streaming.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -53,6 +55,23 @@ void stream_typed(LayerReader<T, N>& layers, const ExtractOptions& options, std:
 }
 
 }  // namespace
+
+void require_open_files(std::size_t contours) {
+  constexpr rlim_t kOthers = 32;  // standard streams, inputs, what libraries have open
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  const rlim_t needed = contours + kOthers;
+  if (needed <= limit.rlim_cur) return;
+  const rlim_t own = limit.rlim_cur;
+  limit.rlim_cur = std::min(needed, limit.rlim_max);
+  if (needed <= limit.rlim_max && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  const rlim_t most = std::max(own, limit.rlim_max);
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("--iso has {} numbers to be streamed in one pass, each into a file that is open all along, and "
+                  "the system allows {} open files (ulimit -n); expected at most {}: more in several runs",
+                  contours, most, most > kOthers ? most - kOthers : 1));
+}
 
 void stream_contours(OpenLayersResult& input, const ExtractOptions& options, bool single_precision,
                      std::vector<ContourResult>& results) {

@@ -17,7 +17,8 @@ Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const Extrac
   if constexpr (N <= 4)
     if (detail::is_better_turned(image)) {
       detail::TurnedLayers<T, N> layers(image, options.threads);
-      detail::LayerSource<T, N> source(layers, isovalue, options.epsilon);
+      detail::LayerRing<T, N> ring(layers);
+      detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
       return detail::extract_any<N, Real>(source, image.grid(), options, stats);
     }
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);

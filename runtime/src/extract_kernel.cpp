@@ -74,11 +74,12 @@ std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::siz
 }
 
 template <int N, class Real>
-class Extraction {
+class Extraction final : public SteppedExtraction<N, Real> {
  public:
   Extraction(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables, const ExtractOptions& options,
              const ExtractPlan& plan, ContourOutput<N, Real>& output)
-      : source_(source),
+      : SteppedExtraction<N, Real>(grid),
+        source_(source),
         output_(output),
         reporter_(options.progress, grid.axes[N - 1].size() - 1),
         inverted_(options.ambiguity == Ambiguity::high),
@@ -120,51 +121,65 @@ class Extraction {
     source.keep(layers_.size() + std::max<std::size_t>(options.normals ? 1 : 0, 2 * reach_));
   }
 
-  void run(ExtractStats& stats) {
+  bool prepare_batch() override {
     const std::size_t slabs = shape_.layers() - 1;
-    expect_output();
-    Stopwatch watch;
-    for (std::size_t first = 0; first < slabs; first += batch_) {
-      const std::size_t end = std::min(slabs, first + batch_);
-      const bool classified = ahead_ && first != 0;
-      reporter_.begin_batch(first, end, kPasses - (classified ? 1 : 0));
-      reporter_.tell(static_cast<double>(first));
-      if (!classified) {
-        prepare(end);
-        watch.add_to(stats.read_seconds);
-        classify(first, end);
-        watch.add_to(stats.classify_seconds);
-      }
-      stats.active_tiles += count(first, end);
-      watch.add_to(stats.find_seconds);
-      part_.done = static_cast<double>(end) / static_cast<double>(slabs);
-      const auto room = output_.open(part_);
-      if (ahead_ && end < slabs) {
-        const double share = generate_ahead(first, end, std::min(slabs, end + batch_), room);
-        watch.share_between(stats.classify_seconds, share, stats.generate_seconds);
-      } else {
-        generate(first, end, room);
-        watch.add_to(stats.generate_seconds);
-      }
-      gather_border(first, end);
-      watch.add_to(stats.close_seconds);
-      if (estimator_) estimator_->rethrow();
-      output_.close(part_, pinches_);
-      watch.add_to(stats.generate_seconds);
+    if (next_ == 0) expect_output();
+    if (next_ == slabs) {
+      reporter_.tell(static_cast<double>(slabs));
+      return false;
     }
+    first_ = next_;
+    next_ = std::min(slabs, first_ + batch_);
+    reporter_.begin_batch(first_, next_, kPasses - (is_classified() ? 1 : 0));
+    reporter_.tell(static_cast<double>(first_));
+    if (is_classified()) return true;
+    Stopwatch watch;
+    prepare(next_);
+    watch.add_to(stats_.read_seconds);
+    return true;
+  }
+
+  void extract_batch() override {
+    const std::size_t slabs = shape_.layers() - 1;
+    const std::size_t first = first_, end = next_;
+    Stopwatch watch;
+    if (!is_classified()) {
+      classify(first, end);
+      watch.add_to(stats_.classify_seconds);
+    }
+    stats_.active_tiles += count(first, end);
+    watch.add_to(stats_.find_seconds);
+    part_.done = static_cast<double>(end) / static_cast<double>(slabs);
+    const auto room = output_.open(part_);
+    if (ahead_ && end < slabs) {
+      const double share = generate_ahead(first, end, std::min(slabs, end + batch_), room);
+      watch.share_between(stats_.classify_seconds, share, stats_.generate_seconds);
+    } else {
+      generate(first, end, room);
+      watch.add_to(stats_.generate_seconds);
+    }
+    gather_border(first, end);
+    watch.add_to(stats_.close_seconds);
+    if (estimator_) estimator_->rethrow();
+    output_.close(part_, pinches_);
+    watch.add_to(stats_.generate_seconds);
+    if (end < slabs) return;
     output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
-    watch.add_to(stats.close_seconds);
-    reporter_.tell(static_cast<double>(slabs));
+    watch.add_to(stats_.close_seconds);
   }
 
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
+  using SteppedExtraction<N, Real>::stats_;
 
   /// What a thread keeps.
   struct Scratch {
     CountScratch counting;
     EdgeWriter<N, Real> edges;
   };
+
+  /// Whether the batch at hand was classified with the one before.
+  [[nodiscard]] bool is_classified() const noexcept { return ahead_ && first_ != 0; }
 
   Layer<N>& layer(std::size_t k) noexcept { return layers_[k % layers_.size()]; }
   Slab<N>& slab(std::size_t k) noexcept { return slabs_[k % slabs_.size()]; }
@@ -482,6 +497,8 @@ class Extraction {
   std::size_t batch_;             ///< slabs at a time
   std::vector<Layer<N>> layers_;  ///< by k modulo their number
   std::vector<Slab<N>> slabs_;
+  std::size_t first_ = 0;          ///< slab of the batch at hand
+  std::size_t next_ = 0;           ///< first slab behind it
   std::size_t classified_ = 0;     ///< layers
   std::size_t wanted_ = 0;         ///< layers, to be classified next
   std::size_t prepared_ = 0;       ///< layers
@@ -586,11 +603,18 @@ class MemoryOutput final : public ContourOutput<N, Real> {
 template <int N, class Real>
 ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
                         const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output) {
-  ExtractStats stats;
-  stats.tiles = 1;
-  for (const Axis& axis : grid.axes) stats.tiles *= axis.size() - 1;
-  if (stats.tiles != 0) Extraction<N, Real>(source, grid, tables, options, plan, output).run(stats);
-  return stats;
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
+  Extraction<N, Real> extraction(source, grid, tables, options, plan, output);
+  extraction.run();
+  return extraction.stats();
+}
+
+template <int N, class Real>
+std::unique_ptr<SteppedExtraction<N, Real>> make_extraction(SampleSource<N>& source, const Grid<N>& grid,
+                                                            const TableSet<N>& tables, const ExtractOptions& options,
+                                                            const ExtractPlan& plan, ContourOutput<N, Real>& output) {
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return nullptr;
+  return std::make_unique<Extraction<N, Real>>(source, grid, tables, options, plan, output);
 }
 
 template <int N, class Real>
@@ -611,6 +635,9 @@ Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, co
 #define TEGL_INSTANTIATE(N, Real)                                                                                \
   template ExtractStats extract_to<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,                \
                                             const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
+  template std::unique_ptr<SteppedExtraction<N, Real>> make_extraction<N, Real>(                                 \
+      SampleSource<N>&, const Grid<N>&, const TableSet<N>&, const ExtractOptions&, const ExtractPlan&,           \
+      ContourOutput<N, Real>&);                                                                                  \
   template Contour<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,        \
                                                     const ExtractOptions&, ExtractStats*, const ExtractPlan&);
 TEGL_INSTANTIATE(2, float)

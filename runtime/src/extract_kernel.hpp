@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <Eigen/LU>
@@ -104,6 +105,43 @@ struct ExtractPlan {
   PartOfImage part{};                        ///< for estimators: what the grid is a part of
   bool keeps_tiles = true;  ///< false: lists of active tiles are made twice, whatever memory there is for them
 };
+
+/// An extraction that goes on batch by batch, when it is told to: so several go through the same layers side by side.
+template <int N, class Real>
+class SteppedExtraction {
+ public:
+  virtual ~SteppedExtraction() = default;
+  SteppedExtraction(const SteppedExtraction&) = delete;
+  SteppedExtraction& operator=(const SteppedExtraction&) = delete;
+
+  /// Makes the samples of the next batch ready, and tells the progress; false: all batches are done. By the thread that
+  /// made the extraction.
+  [[nodiscard]] virtual bool prepare_batch() = 0;
+  /// Puts the contour of this batch into the output; with the last one, all that comes in the end. By any thread.
+  virtual void extract_batch() = 0;
+
+  /// One batch after the other.
+  void run() {
+    while (prepare_batch()) extract_batch();
+  }
+  [[nodiscard]] const ExtractStats& stats() const noexcept { return stats_; }
+  static std::uint64_t tiles_of(const Grid<N>& grid) noexcept {
+    std::uint64_t tiles = 1;
+    for (const Axis& axis : grid.axes) tiles *= axis.size() - 1;
+    return tiles;
+  }
+
+ protected:
+  explicit SteppedExtraction(const Grid<N>& grid) { stats_.tiles = tiles_of(grid); }
+  ExtractStats stats_;
+};
+
+/// The extraction of `source` over `grid` into `output`, to be run; null for an image without tiles. All arguments must
+/// outlive it.
+template <int N, class Real>
+std::unique_ptr<SteppedExtraction<N, Real>> make_extraction(SampleSource<N>& source, const Grid<N>& grid,
+                                                            const TableSet<N>& tables, const ExtractOptions& options,
+                                                            const ExtractPlan& plan, ContourOutput<N, Real>& output);
 
 /// The contour of `source` over `grid`, put into `output`. An image without tiles leaves it alone.
 template <int N, class Real>

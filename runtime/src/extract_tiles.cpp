@@ -60,11 +60,12 @@ class TilePinches final : public PinchList {
 };
 
 template <int N, class Real>
-class TileExtraction {
+class TileExtraction final : public SteppedExtraction<N, Real> {
  public:
   TileExtraction(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
                  ContourOutput<N, Real>& output, std::size_t tile_bytes, const ExtractPlan& plan)
-      : source_(source),
+      : SteppedExtraction<N, Real>(grid),
+        source_(source),
         options_(options),
         output_(output),
         max_vertices_(plan.max_vertices),
@@ -84,36 +85,45 @@ class TileExtraction {
       estimator_.emplace(source, grid.sizes(), options, plan.part);
       choices_.emplace(cube_, *estimator_);
     }
+    // Of two slabs and what is around them: gradients look one layer further, an estimator as far as it says.
+    if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
+    source.keep(2 + reach_ + std::max<std::size_t>(2, reach_));
   }
 
-  void run(ExtractStats& stats) {
+  bool prepare_batch() override {
     const std::size_t slabs = shape_.layers() - 1;
-    // Of two slabs and what is around them: gradients look one layer further, an estimator as far as it says.
-    const std::size_t reach =
-        options_.ambiguity == Ambiguity::custom ? std::min(options_.estimator.reach, shape_.layers()) : 0;
-    source_.keep(2 + reach + std::max<std::size_t>(2, reach));
-    std::size_t prepared = 0;
-    Stopwatch watch;
-    for (std::size_t k = 0; k <= slabs; ++k) {
-      reporter_.begin_batch(k == 0 ? 0 : k - 1, k, passes());
-      reporter_.tell(k == 0 ? 0.0 : static_cast<double>(k - 1));
-      for (; prepared < std::min(k + 2 + reach, shape_.layers()); ++prepared) source_.prepare(prepared);
-      watch.add_to(stats.read_seconds);
-      if (k == 0) classify(0);
-      if (k < slabs) classify(k + 1);
-      watch.add_to(stats.classify_seconds);
-      if (k < slabs) find_cells(k, stats);
-      number_vertices(k);
-      watch.add_to(stats.find_seconds);
-      if (k > 0) write(k - 1);
-      watch.add_to(stats.generate_seconds);
+    if (next_ > slabs) {
+      reporter_.tell(static_cast<double>(slabs));
+      return false;
     }
-    output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, pinches_);
-    reporter_.tell(static_cast<double>(slabs));
+    const std::size_t k = next_++;
+    reporter_.begin_batch(k == 0 ? 0 : k - 1, k, passes());
+    reporter_.tell(k == 0 ? 0.0 : static_cast<double>(k - 1));
+    Stopwatch watch;
+    for (; prepared_ < std::min(k + 2 + reach_, shape_.layers()); ++prepared_) source_.prepare(prepared_);
+    watch.add_to(stats_.read_seconds);
+    return true;
+  }
+
+  /// Looks at layer k and slab k, and writes the slab before.
+  void extract_batch() override {
+    const std::size_t slabs = shape_.layers() - 1;
+    const std::size_t k = next_ - 1;
+    Stopwatch watch;
+    if (k == 0) classify(0);
+    if (k < slabs) classify(k + 1);
+    watch.add_to(stats_.classify_seconds);
+    if (k < slabs) find_cells(k, stats_);
+    number_vertices(k);
+    watch.add_to(stats_.find_seconds);
+    if (k > 0) write(k - 1);
+    if (k == slabs) output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, pinches_);
+    watch.add_to(stats_.generate_seconds);
   }
 
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
+  using SteppedExtraction<N, Real>::stats_;
   struct Nothing {};                             ///< that threads keep
   static constexpr std::size_t kMostWork = 256;  ///< cells or tiles between two questions whether to go on
   /// Over a slab: build the next one's tiles, perhaps twice, and twice those whose own choice turns out to matter;
@@ -557,6 +567,9 @@ class TileExtraction {
   BuiltTiles built_;
   std::array<TileLayer, 3> layers_;  ///< by k modulo their number
   std::array<TileSlab, 2> slabs_;
+  std::size_t next_ = 0;      ///< layer behind the one at hand
+  std::size_t prepared_ = 0;  ///< layers
+  std::size_t reach_ = 0;     ///< layers beyond those at work that an estimator looks at
   std::vector<std::vector<Cell>> by_row_;
   std::optional<FaceEstimator<N>> estimator_;  ///< where the data decide
   std::optional<TileChoices<N>> choices_;
@@ -604,11 +617,19 @@ class BuiltContour final : public ContourOutput<N, Real> {
 template <int N, class Real>
 ExtractStats extract_tiles_to(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
                               const ExtractPlan& plan, ContourOutput<N, Real>& output, std::size_t tile_bytes) {
-  ExtractStats stats;
-  stats.tiles = 1;
-  for (const Axis& axis : grid.axes) stats.tiles *= axis.size() - 1;
-  if (stats.tiles != 0) TileExtraction<N, Real>(source, grid, options, output, tile_bytes, plan).run(stats);
-  return stats;
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
+  TileExtraction<N, Real> extraction(source, grid, options, output, tile_bytes, plan);
+  extraction.run();
+  return extraction.stats();
+}
+
+template <int N, class Real>
+std::unique_ptr<SteppedExtraction<N, Real>> make_tiles_extraction(SampleSource<N>& source, const Grid<N>& grid,
+                                                                  const ExtractOptions& options,
+                                                                  const ExtractPlan& plan,
+                                                                  ContourOutput<N, Real>& output) {
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return nullptr;
+  return std::make_unique<TileExtraction<N, Real>>(source, grid, options, output, kBuiltTileBytes, plan);
 }
 
 template <int N, class Real>
@@ -631,6 +652,8 @@ ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const Ex
 #define TEGL_INSTANTIATE(N, Real)                                                                            \
   template ExtractStats extract_tiles_to<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&,   \
                                                   const ExtractPlan&, ContourOutput<N, Real>&, std::size_t); \
+  template std::unique_ptr<SteppedExtraction<N, Real>> make_tiles_extraction<N, Real>(                       \
+      SampleSource<N>&, const Grid<N>&, const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
   template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&,       \
                                               Contour<N, Real>*, ExtractStats*, std::size_t, const ExtractPlan&);
 TEGL_INSTANTIATE(2, double)

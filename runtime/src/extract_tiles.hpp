@@ -22,6 +22,13 @@ ExtractStats extract_tiles_to(SampleSource<N>& source, const Grid<N>& grid, cons
                               const ExtractPlan& plan, ContourOutput<N, Real>& output,
                               std::size_t tile_bytes = kBuiltTileBytes);
 
+/// The same, to be run; null for an image without tiles.
+template <int N, class Real>
+std::unique_ptr<SteppedExtraction<N, Real>> make_tiles_extraction(SampleSource<N>& source, const Grid<N>& grid,
+                                                                  const ExtractOptions& options,
+                                                                  const ExtractPlan& plan,
+                                                                  ContourOutput<N, Real>& output);
+
 /// The same in memory. `contour` null: its size alone, as far as no value is missing. `stats` may be null.
 template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
@@ -42,6 +49,18 @@ requires(N <= 4) ExtractStats
   if constexpr (N == 4)
     if (is_tile_by_tile<N>(options)) return extract_tiles_to<N, Real>(source, grid, options, plan, output);
   return extract_to<N, Real>(source, grid, generated_tables<N>(options), options, plan, output);
+}
+
+/// The same, to be run; null for an image without tiles.
+template <int N, class Real>
+requires(N <= 4) std::unique_ptr<SteppedExtraction<N, Real>> make_any_extraction(SampleSource<N>& source,
+                                                                                 const Grid<N>& grid,
+                                                                                 const ExtractOptions& options,
+                                                                                 const ExtractPlan& plan,
+                                                                                 ContourOutput<N, Real>& output) {
+  if constexpr (N == 4)
+    if (is_tile_by_tile<N>(options)) return make_tiles_extraction<N, Real>(source, grid, options, plan, output);
+  return make_extraction<N, Real>(source, grid, generated_tables<N>(options), options, plan, output);
 }
 
 /// The same in memory, in any dimension. `stats` may be null.

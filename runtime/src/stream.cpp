@@ -59,7 +59,8 @@ template <class Real, Value T, int N>
 StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
                               ContourSink<N, Real>& sink, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
-  detail::LayerSource<T, N> source(layers, isovalue, options.epsilon);
+  detail::LayerRing<T, N> ring(layers);
+  detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
   detail::StreamOutput<N, Real> output(sink, options.normals);
   const ExtractStats done =
       detail::extract_any_to<N, Real>(source, layers.grid(), options, detail::streaming_plan(layers.grid()), output);

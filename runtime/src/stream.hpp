@@ -25,25 +25,46 @@ ExtractPlan streaming_plan(const Grid<N>& grid) {
           .batch = std::max<std::size_t>(1, kLeastSamples / std::max<std::size_t>(1, layer))};
 }
 
-/// The layers of a reader that the extraction works on, in a ring.
+/// The layers of a reader that are worked on, in a ring: by one extraction, or by several alike, all at the same batch.
 template <Value T, int N>
-class LayerSource final : public RowSource<T, N> {
+class LayerRing {
  public:
-  LayerSource(LayerReader<T, N>& reader, double isovalue, double epsilon)
-      : RowSource<T, N>(strides_of(reader.grid()), reader.grid().axes[0].size(), isovalue, epsilon), reader_(reader) {
+  explicit LayerRing(LayerReader<T, N>& reader) : reader_(reader) {
     for (int a = 0; a < N - 1; ++a) layer_size_ *= reader.grid().axes[a].size();
   }
 
-  void keep(std::size_t layers) override { ring_.resize(layers); }
-
-  void prepare(std::size_t k) override {
+  [[nodiscard]] const Grid<N>& grid() const noexcept { return reader_.grid(); }
+  /// Before the first layer comes.
+  void keep(std::size_t layers) { ring_.resize(std::max(ring_.size(), layers)); }
+  /// Reads layer k, the next one, if no other extraction had it read.
+  void prepare(std::size_t k) {
+    if (k < read_) return;
     Buffer<T>& layer = ring_[k % ring_.size()];
     layer.resize(layer_size_);
     reader_.read(k, layer.data());
+    read_ = k + 1;
   }
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept { return ring_[k % ring_.size()].data(); }
 
  private:
-  [[nodiscard]] const T* layer(std::size_t k) const noexcept override { return ring_[k % ring_.size()].data(); }
+  LayerReader<T, N>& reader_;
+  std::size_t layer_size_ = 1;
+  std::size_t read_ = 0;  ///< layers
+  std::vector<Buffer<T>> ring_;
+};
+
+/// These layers with an isovalue.
+template <Value T, int N>
+class LayerSource final : public RowSource<T, N> {
+ public:
+  LayerSource(LayerRing<T, N>& ring, double isovalue, double epsilon)
+      : RowSource<T, N>(strides_of(ring.grid()), ring.grid().axes[0].size(), isovalue, epsilon), ring_(ring) {}
+
+  void keep(std::size_t layers) override { ring_.keep(layers); }
+  void prepare(std::size_t k) override { ring_.prepare(k); }
+
+ private:
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept override { return ring_.layer(k); }
   static typename RowSource<T, N>::Strides strides_of(const Grid<N>& grid) {
     typename RowSource<T, N>::Strides strides{};
     std::ptrdiff_t stride = 1;
@@ -54,9 +75,7 @@ class LayerSource final : public RowSource<T, N> {
     return strides;
   }
 
-  LayerReader<T, N>& reader_;
-  std::size_t layer_size_ = 1;
-  std::vector<Buffer<T>> ring_;
+  LayerRing<T, N>& ring_;
 };
 
 /// Hands parts on to a sink, and keeps what may have to be taken apart in the end.

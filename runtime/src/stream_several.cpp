@@ -1,98 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several streamed extractions that go through the same layers side by side: the caller's thread reads, and waits with
-// each layer until all others have their copy of the one before.
+// Several streamed extractions that go through the same layers side by side, a batch of slabs at a time: the caller's
+// thread reads what the next batch needs, once; then each contour's part of it is a task of its own.
 #include "tegl/stream_several.hpp"
 
 #include <algorithm>
-#include <condition_variable>
+#include <atomic>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "extract_tiles.hpp"
+#include "stream.hpp"
 #include "workers.hpp"
 
 namespace tegl {
 
 namespace {
-
-/// One layer at a time, from the extraction that reads to all others.
-template <Value T, int N>
-class SharedLayers {
- public:
-  SharedLayers(LayerReader<T, N>& source, std::size_t takers) : source_(source), takers_(takers) {
-    std::size_t size = 1;
-    for (int a = 0; a < N - 1; ++a) size *= source.grid().axes[a].size();
-    layer_.resize(size);
-  }
-
-  [[nodiscard]] const Grid<N>& grid() const noexcept { return source_.grid(); }
-  /// Held by whoever calls the reader or a sink.
-  [[nodiscard]] std::mutex& calls() noexcept { return calls_; }
-
-  /// Reads layer k, once all have taken the one before. By the caller's thread.
-  void read(std::size_t k, T* to) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return taken_ == takers_ || k == 0 || failed_; });
-    require_no_failure();
-    lock.unlock();
-    {
-      const std::scoped_lock calling(calls_);
-      source_.read(k, to);
-    }
-    lock.lock();
-    std::copy_n(to, layer_.size(), layer_.begin());
-    there_ = k + 1;
-    taken_ = 0;
-    changed_.notify_all();
-  }
-
-  /// Copies layer k as soon as it is there.
-  void take(std::size_t k, T* to) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return there_ == k + 1 || failed_; });
-    require_no_failure();
-    std::copy(layer_.begin(), layer_.end(), to);
-    ++taken_;
-    if (taken_ == takers_) changed_.notify_all();
-  }
-
-  /// Ends all: none waits for another that will not come.
-  void fail() {
-    const std::scoped_lock lock(mutex_);
-    failed_ = true;
-    changed_.notify_all();
-  }
-
- private:
-  void require_no_failure() const {
-    if (failed_) throw Error(ErrorCode::Cancelled, "cancelled, as another contour failed");
-  }
-
-  LayerReader<T, N>& source_;
-  std::size_t takers_;
-  std::vector<T> layer_;
-  std::size_t there_ = 0;  ///< layers that were read
-  std::size_t taken_ = 0;  ///< how many have the last one
-  bool failed_ = false;
-  std::mutex mutex_;
-  std::mutex calls_;
-  std::condition_variable changed_;
-};
-
-/// The layers as one of the extractions sees them.
-template <Value T, int N>
-class LayersOfOne final : public LayerReader<T, N> {
- public:
-  LayersOfOne(SharedLayers<T, N>& shared, bool reads) : shared_(shared), reads_(reads) {}
-  [[nodiscard]] const Grid<N>& grid() const noexcept override { return shared_.grid(); }
-  void read(std::size_t k, T* to) override { reads_ ? shared_.read(k, to) : shared_.take(k, to); }
-
- private:
-  SharedLayers<T, N>& shared_;
-  bool reads_;
-};
 
 /// A sink that is called while nothing else is.
 template <int N, class Real>
@@ -123,56 +49,113 @@ class SinkInTurn final : public ContourSink<N, Real> {
   std::mutex& calls_;
 };
 
-/// The error of the first contour that failed by itself, if any did.
-void throw_first(const std::vector<std::exception_ptr>& errors) {
-  std::exception_ptr cancelled;
-  for (const std::exception_ptr& error : errors) {
-    if (!error) continue;
-    try {
-      std::rethrow_exception(error);
-    } catch (const Error& one) {
-      if (one.code() != ErrorCode::Cancelled) throw;
-      if (!cancelled) cancelled = error;
+/// One of the extractions, with what it refers to.
+template <Value T, int N, class Real>
+struct OneOfSeveral {
+  OneOfSeveral(detail::LayerRing<T, N>& ring, const StreamedContour<N, Real>& contour, ExtractOptions its_options,
+               std::mutex& calls)
+      : options(std::move(its_options)),
+        source(ring, contour.isovalue, options.epsilon),
+        sink(*contour.sink, calls),
+        output(sink, options.normals),
+        extraction(detail::make_any_extraction<N, Real>(source, ring.grid(), options,
+                                                        detail::streaming_plan(ring.grid()), output)) {}
+
+  ExtractOptions options;
+  detail::LayerSource<T, N> source;
+  SinkInTurn<N, Real> sink;
+  detail::StreamOutput<N, Real> output;
+  std::unique_ptr<detail::SteppedExtraction<N, Real>> extraction;  ///< null: the image has no tiles
+  std::exception_ptr error;
+};
+
+/// All of them, at the same batch.
+template <Value T, int N, class Real>
+class SideBySide {
+ public:
+  SideBySide(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours, const ExtractOptions& options)
+      : progress_(options.progress),
+        ring_(layers),
+        threads_(options.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.threads),
+        at_once_(std::min(threads_, static_cast<unsigned>(std::min<std::size_t>(contours.size(), ~0U)))),
+        workers_(at_once_, [] { return Nothing{}; }) {
+    for (const auto& contour : contours) {
+      ExtractOptions own = options;
+      own.threads = threads_ / at_once_;
+      if (progress_) own.progress = [this](double share) { return tell(share); };
+      all_.push_back(std::make_unique<One>(ring_, contour, std::move(own), calls_));
     }
   }
-  if (cancelled) std::rethrow_exception(cancelled);
-}
+
+  void run() {
+    while (prepare()) {
+      workers_.for_range(all_.size(), 1, [&](std::size_t from, std::size_t to, Nothing&) {
+        for (std::size_t i = from; i < to && !cancelled_; ++i) extract_batch(*all_[i]);
+      });
+      for (const auto& one : all_)
+        if (one->error) std::rethrow_exception(one->error);
+    }
+  }
+
+  [[nodiscard]] const detail::StreamOutput<N, Real>& output(std::size_t i) const { return all_[i]->output; }
+  [[nodiscard]] ExtractStats stats(std::size_t i) const {
+    return all_[i]->extraction ? all_[i]->extraction->stats() : ExtractStats{};
+  }
+
+ private:
+  using One = OneOfSeveral<T, N, Real>;
+  struct Nothing {};  ///< that threads keep
+
+  /// What the next batch needs; false: there is none.
+  bool prepare() {
+    bool any = false;
+    for (const auto& one : all_) any = (one->extraction && one->extraction->prepare_batch()) || any;
+    return any;
+  }
+
+  void extract_batch(One& one) noexcept {
+    try {
+      one.extraction->extract_batch();
+    } catch (...) {
+      one.error = std::current_exception();
+    }
+  }
+
+  /// Of the caller's thread: how far the one is that is farthest.
+  bool tell(double share) {
+    told_ = std::max(told_, share);
+    const bool goes_on = progress_(told_);
+    if (!goes_on) cancelled_ = true;
+    return goes_on;
+  }
+
+  const Progress& progress_;
+  detail::LayerRing<T, N> ring_;
+  std::mutex calls_;
+  unsigned threads_;
+  unsigned at_once_;
+  detail::Workers<Nothing> workers_;
+  std::vector<std::unique_ptr<One>> all_;
+  double told_ = 0;
+  std::atomic<bool> cancelled_ = false;  ///< what is not begun need not be
+};
 
 }  // namespace
 
 template <class Real, Value T, int N>
 void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
                               const ExtractOptions& options) {
-  for (const auto& contour : contours)
+  for (const auto& contour : contours) {
     if (contour.sink == nullptr) throw Error(ErrorCode::InvalidArgument, "a contour without a sink; expected one each");
-  if (contours.empty()) return;
-  SharedLayers<T, N> shared(layers, contours.size() - 1);
-  std::vector<std::exception_ptr> errors(contours.size());
-  const unsigned all = options.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.threads;
-  const auto run = [&](std::size_t i) {
-    ExtractOptions own = options;
-    own.threads = std::max(1U, all / static_cast<unsigned>(contours.size()));
-    if (i > 0) own.progress = nullptr;  // all are at the same layer
-    LayersOfOne<T, N> reader(shared, i == 0);
-    try {
-      SinkInTurn<N, Real> sink(*contours[i].sink, shared.calls());
-      contours[i].size = extract_streamed<Real>(reader, contours[i].isovalue, own, sink, &contours[i].stats);
-    } catch (...) {
-      errors[i] = std::current_exception();
-      shared.fail();
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    try {
-      for (std::size_t i = 1; i < contours.size(); ++i) threads.emplace_back(run, i);
-    } catch (...) {
-      shared.fail();
-      throw;
-    }
-    run(0);
+    detail::check_arguments(contour.isovalue, options);
   }
-  throw_first(errors);
+  if (contours.empty()) return;
+  SideBySide<T, N, Real> all(layers, contours, options);
+  all.run();
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    contours[i].size = all.output(i).size();
+    contours[i].stats = all.stats(i);
+  }
 }
 
 #define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                      \

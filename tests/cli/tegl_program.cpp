@@ -64,7 +64,7 @@ nlohmann::json RunResult::json() const {
   return document;
 }
 
-RunResult run_tegl(const std::vector<std::string>& arguments) {
+RunResult run_tegl(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
   std::array<int, 2> out{};
   std::array<int, 2> err{};
   RunResult result;
@@ -75,6 +75,7 @@ RunResult run_tegl(const std::vector<std::string>& arguments) {
     dup2(out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
     for (const int end : {null, out[0], out[1], err[0], err[1]}) close(end);
+    if (prepare) prepare();
   });
   close(out[1]);
   close(err[1]);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -22,8 +23,8 @@ struct RunResult {
   [[nodiscard]] nlohmann::json json() const;
 };
 
-/// Runs `tegl` with these arguments, without a terminal.
-RunResult run_tegl(const std::vector<std::string>& arguments);
+/// Runs `tegl` with these arguments, without a terminal. `prepare` is called in its process before.
+RunResult run_tegl(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
 
 /// Whether the machine gives pseudo-terminals, which run_tegl_on_terminal needs.
 bool has_terminals();

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <filesystem>
+#include <iterator>
 #include <random>
 #include <thread>
 #include <vector>
@@ -159,6 +161,67 @@ TEST_F(StreamSeveral, CanBeCancelled) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Cancelled);
   }
+}
+
+TEST_F(StreamSeveral, IsTheSameForAnyNumberOfThreads) {
+  for (const unsigned threads : {1U, 2U, 3U, 16U}) {
+    ExtractOptions options;
+    options.threads = threads;
+    auto several = contours({5, 2, 8, 6, 3});
+    auto source = layers();
+    extract_streamed_several<double>(source, std::span(several), options);
+    for (std::size_t i = 0; i < several.size(); ++i) {
+      const auto& here = *sinks_[sinks_.size() - several.size() + i];
+      EXPECT_EQ(here.vertices, sinks_[i]->vertices);
+      EXPECT_EQ(here.simplices, sinks_[i]->simplices);
+    }
+  }
+}
+
+TEST_F(StreamSeveral, TakesNoMoreThreadsForMoreContours) {
+  const auto count_threads = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  if (!std::filesystem::exists("/proc/self/task")) GTEST_SKIP() << "the system does not list threads";
+  const auto before = count_threads();
+  std::ptrdiff_t most = 0;
+  ExtractOptions options;
+  options.threads = 2;
+  options.progress = [&](double) {
+    most = std::max(most, count_threads());
+    return true;
+  };
+  std::vector<double> isovalues;
+  for (int i = 0; i < 100; ++i) isovalues.push_back(0.1 * i);
+  auto several = contours(isovalues);
+  auto source = layers();
+  extract_streamed_several<double>(source, std::span(several), options);
+  EXPECT_THAT(reads_, testing::Each(1));
+  EXPECT_LE(most, before + 2);
+}
+
+TEST_F(StreamSeveral, TellsAProgressThatDoesNotFall) {
+  double last = 0;
+  ExtractOptions options;
+  options.progress = [&](double share) {
+    EXPECT_EQ(std::this_thread::get_id(), thread_);
+    EXPECT_GE(share, last);
+    last = share;
+    return true;
+  };
+  auto several = contours({5, 2, 8});
+  auto source = layers();
+  extract_streamed_several<double>(source, std::span(several), options);
+  EXPECT_EQ(last, 1);
+}
+
+TEST_F(StreamSeveral, OfAnImageWithoutTilesIsEmpty) {
+  auto several = contours({5, 2});
+  Layers flat(Grid<3>::unit({4, 4, 1}), [](std::size_t, float* to) { std::fill_n(to, 16, 5.0F); });
+  extract_streamed_several<double>(flat, std::span(several), {});
+  EXPECT_EQ(several[1].size.simplices, 0U);
+  EXPECT_EQ(several[1].stats.tiles, 0U);
 }
 
 TEST_F(StreamSeveral, RefusesAContourWithoutASink) {

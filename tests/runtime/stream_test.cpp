@@ -94,7 +94,8 @@ std::size_t expect_streamed(const OwnedImage<T, N>& image, const ExtractOptions&
   for (const std::size_t batch : {1, 2, 3, 100}) {
     SCOPED_TRACE(testing::Message() << "slabs at a time: " << batch);
     ImageLayers<T, N> layers(image);
-    detail::LayerSource<T, N> source(layers, noise_isovalue<T>(), options.epsilon);
+    detail::LayerRing<T, N> ring(layers);
+    detail::LayerSource<T, N> source(ring, noise_isovalue<T>(), options.epsilon);
     Collector<N, Real> collector;
     detail::StreamOutput<N, Real> output(collector, options.normals);
     const detail::ExtractPlan plan{

@@ -19,11 +19,11 @@ struct StreamedContour {
 };
 
 /// What extract_streamed gives for each isovalue, each with the same vertices, normals and simplices in the same order;
-/// the layers are read once. Each contour is made by threads of its own, which share those of `options` out evenly. The
-/// reader is called by the thread of the caller; sinks by others as well, but never two of them, nor
-/// one and the reader, at the same time. Memory: that of extract_streamed for each isovalue. Errors: those of
-/// extract_streamed, of the first contour that had any; InvalidArgument for a sink that is null. The contours of the
-/// others are then unfinished.
+/// the layers are read once. All contours are at the same layers, each a task of its own for the threads of `options`,
+/// which are no more however many contours there are. The reader is called by the thread of the caller; sinks by others
+/// as well, but never two of them, nor one and the reader, at the same time. Memory: the layers of extract_streamed
+/// once, and the rest of it for each isovalue. Errors: those of extract_streamed, of the first contour that had any;
+/// InvalidArgument for a sink that is null. The contours of the others are then unfinished.
 template <class Real = float, Value T, int N>
 void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
                               const ExtractOptions& options);
