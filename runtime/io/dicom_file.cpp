@@ -50,10 +50,46 @@ void prepare_dcmtk() {
   });
 }
 
+/// How many bytes a character of UTF-8 has that begins here; 0 where none does.
+std::size_t utf8_length(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
+  // Neither longer than need be, nor halves of pairs, nor beyond the last character.
+  const auto second = length > 1 ? static_cast<unsigned char>(text[1]) : 0;
+  const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                     (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
+  return wrong ? 0 : length;
+}
+
+/// The text as UTF-8: DCMTK has converted what says which characters it has; other bytes are taken as Latin-1.
+std::string as_utf8(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length > 0) {
+      result += text.substr(0, length);
+    } else {
+      const auto byte = static_cast<unsigned char>(text[0]);
+      result += static_cast<char>(0xc0 | byte >> 6);
+      result += static_cast<char>(0x80 | (byte & 0x3f));
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
 std::string text_of(DcmItem& data, const Tag& tag) {
   OFString text;
   if (data.findAndGetOFStringArray(tag, text).bad()) return {};
-  return std::string(trim(std::string_view(text.c_str(), text.size())));
+  return as_utf8(trim(std::string_view(text.c_str(), text.size())));
 }
 
 /// Numbers written as text with backslashes between them; empty if one is none.
@@ -328,6 +364,7 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
     throw *damage;
   DcmItem& data = *format.getDataset();
   if (!damage && (!data.tagExists(DCM_Rows) || !data.tagExists(DCM_BitsAllocated))) return {};
+  format.getDataset()->convertToUTF8();  // as far as it says what it is in, and that is known
   DicomFile file;
   file.path = path;
   file.series = text_of(data, DCM_SeriesInstanceUID);

@@ -340,6 +340,19 @@ class Dicom(unittest.TestCase):
             self.assertEqual(len(self.assert_both_ways(series=series)["axes"][2]["at"]), planes)
         self.assert_refused("VariableNotFound", "no DICOM series '9'", "lungs", series="9")
 
+    def test_descriptions_are_utf_8_whatever_they_were(self):
+        cases = {"latin": ("ISO_IR 100", "Schädel"), "greek": ("ISO_IR 126", "κρανίο"), "utf": ("ISO_IR 192", "頭蓋骨")}
+        for number, (name, (characters, text)) in enumerate(cases.items()):
+            Writer(self.folder, seed=number, number=number, description=text, uid=f"1.2.{number}").volume(
+                planes=2 + number, SpecificCharacterSet=characters)
+        wrong = Writer(self.folder, seed=9, number=9, description="Schädel", uid="1.2.9")
+        for path in (wrong.plane(np.zeros((4, 6), dtype=np.uint8), (0, 0, k), SpecificCharacterSet="ISO_IR 100") for k in range(9)):
+            path.write_bytes(path.read_bytes().replace(b"ISO_IR 100", b"ISO_IR 192"))  # which it is not
+        for number, (_, text) in enumerate(list(cases.values())[1:]):
+            self.assertEqual(len(self.assert_both_ways(series=text)["axes"][2]["at"]), 3 + number)
+        self.assert_refused("VariableNotFound", "several DICOM series", "'Schädel', 2 slices", "'Schädel', 9 slices",
+                            series="Schädel")
+
     def test_times_are_the_fourth_axis(self):
         cases = {
             "trigger": (lambda k, t: {"TriggerTime": 40.0 * t * t}, [0, 40, 160], "ms"),
