@@ -397,6 +397,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
   DcmDataset& data = *format.getDataset();
   const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
   if (is_jpeg2000(data.getOriginalXfer())) return read_jpeg2000_frames(data, file);
+  if (data.getOriginalXfer() == EXS_RLELossless) require_whole_rle(data, file);
   const DcmXfer syntax(data.getOriginalXfer());
   if (data.chooseRepresentation(EXS_LittleEndianExplicit, nullptr).bad() ||
       !data.canWriteXfer(EXS_LittleEndianExplicit, data.getOriginalXfer()))

@@ -2,7 +2,7 @@
 //
 // Encapsulated pixels: which fragments are whose frame's, and what the samples of its code stream are as stored values.
 //
-// Based on: NEMA PS3.5, A.4 (encapsulated transfer syntaxes, offset tables) and 8.2.4 (JPEG 2000).
+// Based on: NEMA PS3.5, A.4 (encapsulated transfer syntaxes, offset tables), 8.2.4 (JPEG 2000), annex G (RLE).
 #include "dicom_frames.hpp"
 
 #include <algorithm>
@@ -112,7 +112,55 @@ void append(const Jpeg2000Image& image, const DicomFile& file, std::vector<T>& v
   });
 }
 
+/// How many bytes a segment of run lengths becomes, at least up to `enough` if it has as many.
+std::size_t unpacked_size(Bytes segment, std::size_t enough) {
+  constexpr std::size_t kNothing = 128;
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < segment.size() && size < enough;) {
+    const std::size_t code = segment[i++];
+    if (code < kNothing) {
+      size += std::min(code + 1, segment.size() - i);
+      i += std::min(code + 1, segment.size() - i);
+    } else if (code > kNothing && i < segment.size()) {
+      size += 2 * kNothing + 1 - code;
+      ++i;
+    }
+  }
+  return size;
+}
+
+/// Throws unless each segment of a frame (the highest bytes of all samples, then the next ones) is whole.
+void require_whole_segments(Bytes frame, const DicomFile& file, std::size_t number) {
+  constexpr std::size_t kHeader = 64;
+  const auto word = [&](std::size_t i) {
+    return std::size_t{frame[4 * i]} | std::size_t{frame[4 * i + 1]} << 8 | std::size_t{frame[4 * i + 2]} << 16 |
+           std::size_t{frame[4 * i + 3]} << 24;
+  };
+  const std::size_t count = frame.size() < kHeader ? 0 : word(0);
+  if (count < 1 || count >= kHeader / 4)
+    fail(ErrorCode::MalformedFile, file.path, "frame {}: {} bytes with {} segments in RLE; expected 1 to 15", number,
+         frame.size(), count);
+  const std::size_t pixels = file.columns * file.rows;
+  for (std::size_t s = 0; s < count; ++s) {
+    const std::size_t begin = word(1 + s);
+    const std::size_t end = s + 1 < count ? word(2 + s) : frame.size();
+    const bool inside = begin >= kHeader && begin <= end && end <= frame.size();
+    const std::size_t size = inside ? unpacked_size(frame.subspan(begin, end - begin), pixels) : 0;
+    if (size < pixels)
+      fail(ErrorCode::MalformedFile, file.path, "frame {}: {} bytes in segment {} of RLE; expected {}", number, size,
+           s + 1, pixels);
+  }
+}
+
 }  // namespace
+
+void require_whole_rle(DcmDataset& data, const DicomFile& file) {
+  const Fragments fragments = fragments_of(data, file);
+  if (fragments.parts.size() != file.frames.size())
+    fail(ErrorCode::MalformedFile, file.path, "{} fragments in RLE; expected one for each of {} frames",
+         fragments.parts.size(), file.frames.size());
+  for (std::size_t f = 0; f < fragments.parts.size(); ++f) require_whole_segments(fragments.parts[f], file, f + 1);
+}
 
 ValueArray read_jpeg2000_frames(DcmDataset& data, const DicomFile& file) {
   const Fragments fragments = fragments_of(data, file);

@@ -24,12 +24,12 @@ for tool in ("gdcmconv", "opj_compress", "opj_decompress"):
 sys.argv.insert(1, DUMP)  # for the other file, which takes it
 from dicom_test import Writer, dump, files_of, header, np, pydicom, put_pixels  # noqa: E402
 
-from pydicom.encaps import encapsulate  # noqa: E402
+from pydicom.encaps import encapsulate, generate_pixel_data_frame  # noqa: E402
 from pydicom.uid import (DeflatedExplicitVRLittleEndian, ExplicitVRBigEndian, ImplicitVRLittleEndian,  # noqa: E402
                          JPEG2000, JPEG2000Lossless, RLELossless)
 
-KINDS = {"uint8": (np.uint8, None, 0, 255), "uint16": (np.uint16, None, 0, 65535), "int16": (np.int16, None, -32768, 32767),
-         "uint12": (np.uint16, 12, 0, 4095), "int12": (np.int16, 12, -2048, 2047)}
+KINDS = {"uint8": (np.uint8, None, 0, 255), "uint16": (np.uint16, None, 0, 65535),
+         "int16": (np.int16, None, -32768, 32767), "uint12": (np.uint16, 12, 0, 4095), "int12": (np.int16, 12, -2048, 2047)}
 SHAPE = (21, 34)
 
 
@@ -60,7 +60,7 @@ def code_stream(folder, values, *options, signed=False, bits=None):
 
 
 def wide_code_stream(folder, values, bits):
-    """The same of more than 16 bits, which OpenJPEG's program takes as PGX: cut off if they are signed, so as bits here."""
+    """The same of more than 16 bits, which OpenJPEG's program takes as PGX; it cuts signed ones off: here as bits."""
     rows, columns = values.shape
     path = folder / "plane.pgx"
     as_bits = values.astype(np.int64) & ((1 << bits) - 1)
@@ -303,6 +303,20 @@ class Compression(unittest.TestCase):
         path = self.write("jpeg.dcm", [b"\xff\xd8\xff\xe0" + bytes(100)], values[0], JPEG2000Lossless)
         self.assert_error(path, "MalformedFile", "no JPEG 2000", "ff 4f ff 51")
 
+    def test_compressed_pixels_that_are_cut_short_are_never_an_image(self):
+        folder, _ = self.scan("sound", "uint12", planes=1)
+        for compression in ("--j2k", "--jpegls", "--jpeg", "--rle"):
+            path = self.folder / "cut.dcm"
+            run("gdcmconv", compression, files_of(folder)[0], path)
+            data = pydicom.dcmread(path)
+            whole = next(generate_pixel_data_frame(data.PixelData))
+            for share in (0.02, 0.1, 0.3, 0.5, 0.6, 0.75, 0.9, 0.97):
+                with self.subTest(compression=compression, share=share):
+                    data.PixelData = encapsulate([even(whole[:int(share * len(whole))])])
+                    data["PixelData"].is_undefined_length = True
+                    data.save_as(path, write_like_original=False)
+                    self.assertEqual(dump(path).get("error"), "MalformedFile")
+
     def test_mutated_files_are_read_or_refused(self):
         """An image of the right size, or an error that names the file: never a crash, never a word on the terminal."""
         folder, _ = self.scan("sound", "uint12", planes=1)
@@ -330,14 +344,16 @@ class Compression(unittest.TestCase):
 
     def test_what_cannot_be_decompressed_is_refused_by_its_name(self):
         values, streams = self.frames(1)
-        names = {"1.2.840.10008.1.2.4.92": "JPEG 2000", "1.2.840.10008.1.2.4.100": "MPEG2", "1.2.840.10008.1.2.4.102": "MPEG-4",
+        names = {"1.2.840.10008.1.2.4.92": "JPEG 2000", "1.2.840.10008.1.2.4.100": "MPEG2",
+                 "1.2.840.10008.1.2.4.102": "MPEG-4",
                  "1.2.840.10008.1.2.4.107": "HEVC", "1.2.840.10008.1.2.4.94": "JPIP", "1.2.840.10008.1.2.4.201": "HTJ2K",
                  "1.2.840.10008.1.2.4.203": "HTJ2K", "1.2.840.10008.1.2.4.110": "JPEG XL", "1.2.3.4.5": "1.2.3.4.5"}
         for uid, name in names.items():
             with self.subTest(uid):
                 path = self.write("other.dcm", [streams[0]], values[0], pydicom.uid.UID("1.2.840.10008.1.2.4.100"))
                 old, new = (f"1.2.840.10008.1.2.4.100 {uid}".encode().split())
-                path.write_bytes(path.read_bytes().replace(old + b"\0", new.ljust(len(old) + 1, b"\0")))  # pydicom knows few
+                # pydicom knows few of them
+                path.write_bytes(path.read_bytes().replace(old + b"\0", new.ljust(len(old) + 1, b"\0")))
                 self.assert_error(path, "UnsupportedFormat", "other.dcm", name, uid)
 
 

@@ -268,7 +268,8 @@ class Dicom(unittest.TestCase):
         scan = files_of(self.folder)
         strangers = {"notes.dcm": b"Dear colleague,\nthese are the slices that we spoke of.\n" * 20, "empty.dcm": b"",
                      "zeros.dcm": bytes(1000), "page.dcm": b"<html><body>404 Not Found</body></html>",
-                     "noise.dcm": np.random.default_rng(1).bytes(5000), "picture.dcm": b"\x89PNG\r\n\x1a\n" + bytes(300)}
+                     "noise.dcm": np.random.default_rng(1).bytes(5000),
+                     "picture.dcm": b"\x89PNG\r\n\x1a\n" + bytes(300)}
         for name, content in strangers.items():
             path = self.folder / name
             path.write_bytes(content)
@@ -346,7 +347,8 @@ class Dicom(unittest.TestCase):
             Writer(self.folder, seed=number, number=number, description=text, uid=f"1.2.{number}").volume(
                 planes=2 + number, SpecificCharacterSet=characters)
         wrong = Writer(self.folder, seed=9, number=9, description="Schädel", uid="1.2.9")
-        for path in (wrong.plane(np.zeros((4, 6), dtype=np.uint8), (0, 0, k), SpecificCharacterSet="ISO_IR 100") for k in range(9)):
+        for k in range(9):
+            path = wrong.plane(np.zeros((4, 6), dtype=np.uint8), (0, 0, k), SpecificCharacterSet="ISO_IR 100")
             path.write_bytes(path.read_bytes().replace(b"ISO_IR 100", b"ISO_IR 192"))  # which it is not
         for number, (_, text) in enumerate(list(cases.values())[1:]):
             self.assertEqual(len(self.assert_both_ways(series=text)["axes"][2]["at"]), 3 + number)
