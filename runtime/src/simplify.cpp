@@ -46,11 +46,15 @@ constexpr unsigned kMostTries = 10;
 constexpr double kErrorOfTolerance = 3.0;
 constexpr double kNextError = 1.5;
 constexpr double kNarrow = 1.25;
+/// So many steps down to a quarter, before it is tried whether next to no tolerance will do.
+constexpr unsigned kMostSteps = 2;
 /// How far the progress of one round is when it is ready to begin, and when there is less.
 constexpr double kReady = 0.2;
 constexpr double kShrunk = 0.97;
 /// Of the size of the contour: what rounding may add to an error.
 constexpr double kRounding = 1e-12;
+/// Of the size of the contour: an error as good as none. Sums of squared distances are no more exact than this squared.
+constexpr double kNothing = 1e-8;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -268,33 +272,46 @@ class Simplifier {
     Round best = one_round(uniform_tolerance(fast ? most : kInfinity), part_of_rest(0.25), count_);
     measure(best, part_of_rest(1.0 / 3.0));
     if (best.end != SimplifyEnd::count || fast) return best;
-    double low = least_tolerance(own_error(best));
-    double allowed = kErrorOfTolerance * low;
+    double low = least_tolerance(best);
+    double factor = kErrorOfTolerance;
     bool found = false, failed = false;
-    for (unsigned tried = 0; tried < kMostTries && own_error(best) > kNarrow * low; ++tried) {
-      if (!(allowed < own_error(best))) allowed = std::sqrt(low * own_error(best));
-      if (!(allowed <= most)) break;
-      const bool reached = comes_within(allowed, best, true);
-      found = found || reached;
-      failed = failed || !reached;
-      if (!reached) low = allowed;
-      if (!found)
-        allowed = kNextError * low;
-      else
-        allowed = failed ? std::sqrt(low * own_error(best)) : own_error(best) / kNarrow;
+    for (unsigned tried = 0; tried < kMostTries && low < most && own_error(best) > kNarrow * low; ++tried) {
+      const double middle = std::sqrt(low * own_error(best));
+      double allowed = middle;
+      if (!found) allowed = std::min(factor * low, middle);
+      if (found && !failed) allowed = own_error(best) / kNarrow;
+      allowed = std::min(allowed, most);
+      if (comes_within(allowed, best, true)) {
+        found = true;
+        continue;
+      }
+      low = allowed;
+      // Up slowly at first: mostly, the least is not far.
+      factor = failed ? factor * factor : kNextError;
+      failed = true;
     }
     return best;
   }
 
-  /// The least for all vertices by which the count is reached, or somewhat less, below `high`; nothing is measured.
-  double least_tolerance(double high) {
-    double low = 0.0;
-    for (unsigned tried = 0; tried < kMostTries && high > kNextError * low; ++tried) {
-      const double middle = low > 0.0 ? std::sqrt(low * high) : 0.25 * high;
-      const Round round = one_round(uniform_tolerance(middle), part_of_rest(0.05), count_);
-      (round.end == SimplifyEnd::count ? high : low) = middle;
+  /// The least for all vertices by which the count is reached, or somewhat less, below the error of `best`; above 0,
+  /// as flat parts alone may reach it with next to none. `best` becomes what is reached by it, if that is nearer.
+  double least_tolerance(Round& best) {
+    const double least = kNothing * size_;
+    double low = 0.0, high = own_error(best);
+    std::optional<Round> reached;
+    for (unsigned tried = 0; tried < kMostTries && high > kNextError * std::max(low, least); ++tried) {
+      double middle = low > 0.0 ? std::sqrt(low * high) : 0.25 * high;
+      if (low == 0.0 && (tried >= kMostSteps || middle < least)) middle = least;
+      Round round = one_round(uniform_tolerance(middle), part_of_rest(0.05), count_);
+      const bool is_enough = round.end == SimplifyEnd::count;
+      (is_enough ? high : low) = middle;
+      if (is_enough) reached = std::move(round);
     }
-    return low;
+    if (reached) {
+      measure(*reached, part_of_rest(0.05));
+      if (error(*reached) < error(best)) best = std::move(*reached);
+    }
+    return std::max(low, least);
   }
 
   static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }

@@ -16,7 +16,7 @@
 namespace tegl::test {
 
 /// The methods that keep the manifold.
-constexpr std::array kMethods = {SimplifyMethod::quadric, SimplifyMethod::facets, SimplifyMethod::vertices};
+inline constexpr std::array kMethods = {SimplifyMethod::quadric, SimplifyMethod::facets, SimplifyMethod::vertices};
 
 inline std::string name(SimplifyMethod method) {
   constexpr std::array kNames = {"quadric", "facets", "vertices", "fast"};

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours with flat parts, which may go for nothing: caps in the border of the image, planes. By a count, the error is
+// then what the rest makes of it, and not that of one round, which takes from everywhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <variant>
+#include <vector>
+
+#include "fields.hpp"
+#include "simplified.hpp"
+#include "tegl/deviation.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/io.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl::test {
+namespace {
+
+constexpr double kHardlyMore = 1.5;
+
+template <int N>
+Grid<N> unit_grid(std::size_t samples) {
+  std::array<std::size_t, N> sizes;
+  sizes.fill(samples);
+  return Grid<N>::unit(sizes);
+}
+
+/// Flat but for a bump of one tile's width.
+Contour<3, double> plane_with_a_bump() {
+  const auto image = sample_field<float, 3>(unit_grid<3>(30), [](const Point<3>& x) {
+    const double square = (x[0] - 15) * (x[0] - 15) + (x[1] - 15) * (x[1] - 15);
+    return x[2] - 10.37 + 3 * std::exp(-square / 2);
+  });
+  return extract<double>(image.view(), 0.0);
+}
+
+/// Waves, cut off at the border of the image, and closed there.
+template <int N>
+Contour<N, double> waves_with_caps(std::size_t samples) {
+  const auto image = sample_field<float, N>(unit_grid<N>(samples), [](const Point<N>& x) {
+    double sum = 0.0;
+    for (int a = 0; a < N; ++a) sum += std::sin(x[a] * (0.5 + 0.1 * a) + a);
+    return sum;
+  });
+  ExtractOptions extraction;
+  extraction.close = true;
+  return extract<double>(image.view(), 0.3, extraction);
+}
+
+/// In the middle of July, closed.
+Contour<3, double> warm_water() {
+  const auto input = read_image(std::filesystem::path(TEGL_SOURCE_DIR) / "examples/data/ocean_temperature.nc");
+  ExtractOptions extraction;
+  extraction.close = true;
+  Contour<3, double> result;
+  std::visit(
+      [&](const auto& owned) {
+        auto part = owned.view();
+        for (int a = 0; a < 2; ++a) part = part.part(a, part.size(a) / 3, part.size(a) / 10);
+        result = slice_image_across<double>(part, 20.0, 3, 7.3, extraction);
+      },
+      std::get<AnyImageN<4>>(input.image));
+  return result;
+}
+
+template <int N>
+SimplifyStats simplified(const Contour<N, double>& contour, const SimplifyOptions<N>& options) {
+  SimplifyStats stats;
+  const auto result = simplify(contour, options, &stats);
+  expect_same_topology(check(contour), check(result));
+  EXPECT_EQ(stats.end, options.max_error ? SimplifyEnd::error : SimplifyEnd::count);
+  EXPECT_LE(stats.rounds, 40u);
+  return stats;
+}
+
+/// For each of these largest errors, ascending: a count as large as what it leaves, or larger, is reached with hardly
+/// more error; and fewer have the larger one.
+template <int N>
+void expect_hardly_more_error_by_count(const Contour<N, double>& contour, const std::vector<double>& errors,
+                                       const SimplifyOptions<N>& with = {}) {
+  for (const double most : errors) {
+    SCOPED_TRACE(most);
+    SimplifyOptions<N> options = with;
+    options.max_error = most;
+    const SimplifyStats by_error = simplified(contour, options);
+    ASSERT_LT(by_error.simplices_after, contour.simplices.size());
+    options.max_error.reset();
+    double last = 0.0;
+    for (const double more : {0.6, 0.0}) {
+      const auto rest = static_cast<double>(contour.simplices.size() - by_error.simplices_after);
+      options.count = by_error.simplices_after + static_cast<std::uint64_t>(more * rest);
+      SCOPED_TRACE(*options.count);
+      const SimplifyStats by_count = simplified(contour, options);
+      EXPECT_LE(by_count.simplices_after, *options.count);
+      EXPECT_LT(*by_count.error(), kHardlyMore * *by_error.error());
+      EXPECT_LE(last, kHardlyMore * *by_count.error());
+      last = *by_count.error();
+    }
+  }
+}
+
+TEST(SimplifyFlat, PlaneWithABumpKeepsTheBump) {
+  const auto contour = plane_with_a_bump();
+  SimplifyOptions<3> options;
+  options.max_error = 1e-5;
+  const SimplifyStats by_error = simplified(contour, options);
+  ASSERT_LT(by_error.simplices_after, 450u);
+  options.max_error.reset();
+  for (const std::uint64_t count : {1500, 1000, 500}) {
+    SCOPED_TRACE(count);
+    options.count = count;
+    const SimplifyStats stats = simplified(contour, options);
+    EXPECT_EQ(stats.simplices_after, count);
+    EXPECT_LE(*stats.error(), *by_error.error());
+    EXPECT_LE(stats.rounds, 10u);
+  }
+  expect_hardly_more_error_by_count(contour, {1e-5, 1e-3, 0.03});
+}
+
+/// A largest error beside the count that does not matter changes nothing; one that does is kept.
+TEST(SimplifyFlat, PlaneWithABumpKeepsTheBumpByTwoGoals) {
+  const auto contour = plane_with_a_bump();
+  SimplifyOptions<3> options;
+  options.count = 1000;
+  SimplifyStats alone, both;
+  const auto by_count = simplify(contour, options, &alone);
+  options.max_error = 0.1;
+  EXPECT_EQ(simplify(contour, options, &both).vertices, by_count.vertices);
+  EXPECT_EQ(both.error(), alone.error());
+  options.max_error = 1e-5;
+  simplify(contour, options, &both);
+  EXPECT_EQ(both.simplices_after, 1000u);
+  EXPECT_LE(*both.error(), 1e-5);
+}
+
+TEST(SimplifyFlat, CapsGoFirstIn2D) { expect_hardly_more_error_by_count(waves_with_caps<2>(40), {1e-3, 0.02}); }
+TEST(SimplifyFlat, CapsGoFirstIn3D) { expect_hardly_more_error_by_count(waves_with_caps<3>(12), {1e-3, 0.02}); }
+TEST(SimplifyFlat, CapsGoFirstIn4D) { expect_hardly_more_error_by_count(waves_with_caps<4>(4), {0.02}); }
+
+/// What is flat altogether has no error at all.
+TEST(SimplifyFlat, PlanesHaveNoError) {
+  const auto image = sample_field<float, 3>(unit_grid<3>(9), [](const Point<3>& x) { return x[2] - 3.5; });
+  const auto contour = extract<double>(image.view(), 0.0);
+  SimplifyOptions<3> options;
+  for (const double ratio : {0.9, 0.5}) {
+    options.ratio = ratio;
+    const SimplifyStats stats = simplified(contour, options);
+    EXPECT_LE(*stats.error(), 1e-12);
+    EXPECT_LE(stats.rounds, 5u);
+  }
+}
+
+TEST(SimplifyFlat, WarmWaterWithCapsIsNearerTheMoreIsLeft) {
+  const auto contour = warm_water();
+  ASSERT_GT(contour.simplices.size(), 2000u);
+  SimplifyOptions<3> options;
+  options.scale = automatic_scale(contour);
+  expect_hardly_more_error_by_count(contour, {0.02, 0.05}, options);
+  // What is flat alone is more than half of it.
+  options.max_error = 1e-4;
+  ASSERT_LT(simplified(contour, options).simplices_after, contour.simplices.size() / 2);
+  options.max_error.reset();
+  for (const double ratio : {0.8, 0.5}) {
+    options.ratio = ratio;
+    EXPECT_LE(*simplified(contour, options).error(), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
