@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <Eigen/LU>
@@ -39,6 +40,16 @@ class GridLocator {
   /// False for points outside of the grid (by more than kSlack), or that are not finite. Axes of one sample have share
   /// 0, and a step of that sample's axis as their extent on either side.
   bool find(const std::array<double, N>& world, CellPlace<N>& place) const noexcept {
+    return find(world, place, kSlack);
+  }
+  /// The place in the grid that is nearest along each axis, for points however far outside, too. False for points that
+  /// are not finite.
+  bool find_nearest(const std::array<double, N>& world, CellPlace<N>& place) const noexcept {
+    return find(world, place, std::numeric_limits<double>::infinity());
+  }
+
+ private:
+  bool find(const std::array<double, N>& world, CellPlace<N>& place, double slack) const noexcept {
     std::array<double, N> point = world;
     if (mapped_)
       for (int a = 0; a < N; ++a) {
@@ -46,22 +57,21 @@ class GridLocator {
         for (int b = 0; b < N; ++b) point[a] += inverse_(a, b) * (world[b] - offset_(b));
       }
     for (int a = 0; a < N; ++a)
-      if (!find_along(a, point[a], place.base[a], place.share[a])) return false;
+      if (!find_along(a, point[a], slack, place.base[a], place.share[a])) return false;
     return true;
   }
 
- private:
-  bool find_along(int a, double x, std::size_t& base, double& share) const noexcept {
+  bool find_along(int a, double x, double slack, std::size_t& base, double& share) const noexcept {
     const Axis& axis = axes_[a];
     const std::size_t last = axis.size() - 1;
     base = 0;
     share = 0.0;
     if (!std::isfinite(x)) return false;
-    if (last == 0) return std::abs(x - axis[0]) <= kSlack * std::abs(axis.step());
+    if (last == 0) return std::abs(x - axis[0]) <= slack * std::abs(axis.step());
     base = axis.is_uniform() ? uniform_base(axis, x, last) : uneven_base(a, x, last);
     const double here = axis[base];
     share = (x - here) / (axis[base + 1] - here);
-    if (!(share >= -kSlack && share <= 1.0 + kSlack)) return false;
+    if (!(share >= -slack && share <= 1.0 + slack)) return false;
     share = std::clamp(share, 0.0, 1.0);
     return true;
   }

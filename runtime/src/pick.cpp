@@ -116,19 +116,21 @@ class NearestTile {
   double square_ = 0;
 };
 
-/// The label of the component with the vertex nearest to a point.
+/// The label of the component with the vertex nearest to a point, of those that are allowed; none if none is. Vertices
+/// that rounding has put outside of the grid count as on its border.
 template <int N, class Real>
 Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
                         const detail::GridLocator<N>& locator, const std::type_identity_t<std::array<double, N>>& at,
                         const std::vector<bool>& allowed, const Progress& progress) {
-  Index nearest = 0;
+  const auto first = std::find(allowed.begin(), allowed.end(), true);
+  Index nearest = first == allowed.end() ? kNoComponent : static_cast<Index>(first - allowed.begin());
   double least = std::numeric_limits<double>::infinity();
   const auto look_at = [&](std::size_t v) {
     if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) return;
     std::array<double, N> world;
     for (int a = 0; a < N; ++a) world[a] = static_cast<double>(contour.vertices[v][a]);
     detail::CellPlace<N> place;
-    if (!locator.find(world, place)) return;
+    if (!locator.find_nearest(world, place)) return;
     const auto here = in_steps(place);
     double square = 0;
     for (int a = 0; a < N; ++a) square += (here[a] - at[a]) * (here[a] - at[a]);
@@ -193,9 +195,9 @@ Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::Gri
   const std::vector<bool> allowed = choose(labels, part_of(progress, kLabelled, 0.5 * (kLabelled + kChosen)));
   components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
   std::vector<bool> keep(labels.count);
-  if (labels.count != 0)
-    keep[nearest_component(contour, labels, locator, at, allowed,
-                           part_of(progress, 0.5 * (kLabelled + kChosen), kChosen))] = true;
+  const Index nearest =
+      nearest_component(contour, labels, locator, at, allowed, part_of(progress, 0.5 * (kLabelled + kChosen), kChosen));
+  if (nearest != kNoComponent) keep[nearest] = true;
   return select_components(contour, labels, keep, part_of(progress, kChosen, 1.0));
 }
 

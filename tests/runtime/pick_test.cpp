@@ -101,7 +101,8 @@ void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions
     ASSERT_GE(report.components, 1u);
     for (std::size_t k = 0; k < parts.size(); ++k) {
       if (std::find(tiles[k].begin(), tiles[k].end(), report.tile) == tiles[k].end()) continue;
-      ASSERT_LE(squared_distance<N>(picked, at), squared_distance<N>(parts[k], at)) << "pick " << i << ", component " << k;
+      ASSERT_LE(squared_distance<N>(picked, at), squared_distance<N>(parts[k], at))
+          << "pick " << i << ", component " << k;
     }
     expect_oriented_manifold(picked);
   }
@@ -188,6 +189,29 @@ TEST(Pick, WhereSamplesEqualTheIsovalueIsAComponentOfTheWhole) {
 }
 
 TEST(Pick, In5dIsAComponentOfTheWhole) { expect_picks(noise<float, 5>({5, 4, 3, 4, 3}, 11), 0.995, {}, 3); }
+
+/// Coordinates of single precision far from 0: vertices in the border come to lie outside of the grid, by more than
+/// what rounding is allowed elsewhere.
+TEST(Pick, OfVerticesThatRoundingPutsOutsideOfTheGridIsTheNearest) {
+  constexpr std::size_t kSize = 12;
+  Grid<3> grid;
+  for (Axis& axis : grid.axes) axis = Axis::uniform(kSize, 500000.02, 0.1);
+  OwnedImage<float, 3> image{grid, std::vector<float>(kSize * kSize * kSize, 0.0f)};
+  const auto at = [](std::size_t i, std::size_t j, std::size_t k) { return i + kSize * (j + kSize * k); };
+  for (std::size_t i = 0; i < 27; ++i) image.values[at(3 + i % 3, 3 + i / 3 % 3, 3 + i / 9)] = 1.0f;
+  image.values[at(11, 11, 11)] = 1.0f;
+  ExtractOptions options;
+  options.close = true;
+  const auto expect_corner = [&](const auto& picked) {
+    EXPECT_EQ(picked.vertices.size(), 4u);
+    for (const auto& vertex : picked.vertices)
+      for (const auto x : vertex) EXPECT_GT(x, 500001.0);
+  };
+  expect_corner(extract_component<double>(image.view(), 0.5, {500001.08, 500001.08, 500001.08}, options));
+  PickReport<3> report;
+  expect_corner(extract_component<float>(image.view(), 0.5, {500001.08, 500001.08, 500001.08}, options, &report));
+  EXPECT_EQ(report.components, 1u);
+}
 
 TEST(Pick, OfTwoBallsIsTheNearer) {
   const Ball<3> small{{-2.0, 0.0, 0.0}, 0.8};
