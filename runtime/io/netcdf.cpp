@@ -236,10 +236,12 @@ AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t
 
 /// Where the variable lies along a dimension of one sample, times first. Whatever is wrong with its coordinate is none
 /// of the image's business.
-void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::vector<Axis>& singles) {
+void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension,
+                std::vector<SingleAxis>& singles) {
   try {
     AxisOfFile single = read_axis(file, variable, dimension);
-    singles.insert(single.is_time ? singles.begin() : singles.end(), std::move(single.axis));
+    singles.insert(single.is_time ? singles.begin() : singles.end(),
+                   SingleAxis{std::move(single.axis), single.direction});
   } catch (const Error&) {
     return;
   }

@@ -254,9 +254,10 @@ RawGrid make_grid(const Header& header, const fs::path& path) {
   if (n == 4) grid.axes[3].unit = header.time_unit;
   name_axes(grid);
   if (n == 3 && std::isfinite(header.toffset)) {  // an image of one time
-    grid.single.push_back(Axis::uniform(1, header.toffset));
-    grid.single.back().name = "t";
-    grid.single.back().unit = header.time_unit;
+    Axis time = Axis::uniform(1, header.toffset);
+    time.name = "t";
+    time.unit = header.time_unit;
+    grid.single.push_back({std::move(time)});
   }
   return grid;
 }

@@ -121,7 +121,7 @@ void drop_trailing_axes(RawImage& image) {
       Axis world = Axis::uniform(1, grid.linear(left, left) * single[0] + grid.offset(left));
       world.name = std::move(single.name);
       world.unit = std::move(single.unit);
-      grid.single.push_back(std::move(world));
+      grid.single.push_back({std::move(world)});
       grid.linear = grid.linear.topLeftCorner(left, left).eval();
       grid.offset = grid.offset.head(left).eval();
     } else {

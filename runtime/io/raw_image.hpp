@@ -16,13 +16,19 @@
 
 namespace tegl::io_detail {
 
+/// An axis of one sample that an image was left without, and where it points to.
+struct SingleAxis {
+  Axis axis;
+  AxisDirection direction = AxisDirection::unknown;
+};
+
 /// The coordinate function of n axes: as Grid<N>, of dynamic size.
 struct RawGrid {
   std::vector<Axis> axes;  ///< axis 0 runs fastest
   Eigen::MatrixXd linear;  ///< n x n
   Eigen::VectorXd offset;  ///< n
   /// Axes of one sample that were left out: where the image lies along them, the likeliest time first.
-  std::vector<Axis> single;
+  std::vector<SingleAxis> single;
 };
 
 struct RawImage {

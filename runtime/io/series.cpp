@@ -107,22 +107,25 @@ void require_same(const Member& member, const Member& first) {
   require_same_grid(member, first);
 }
 
-/// Where the files lie along the first of the axes that they leave out and differ along; empty if there is none.
-std::vector<double> own_coordinates(const std::vector<Member>& members, Axis& axis) {
-  const std::vector<Axis>& singles = members.front().grid.single;
+/// Where the files lie along the first of the axes that they leave out and differ along; empty if there is none. The
+/// axis points to where all files say that it does.
+std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAxis& found) {
+  const std::vector<SingleAxis>& singles = members.front().grid.single;
   for (std::size_t s = 0; s < singles.size(); ++s) {
     std::vector<double> coordinates;
     for (const Member& member : members) {
       if (member.grid.single.size() != singles.size()) return {};
-      coordinates.push_back(member.grid.single[s][0]);
+      coordinates.push_back(member.grid.single[s].axis[0]);
     }
     if (std::all_of(coordinates.begin(), coordinates.end(), [&](double c) { return c == coordinates[0]; })) continue;
     for (const Member& member : members)
-      if (member.grid.single[s].unit != singles[s].unit)
+      if (member.grid.single[s].axis.unit != singles[s].axis.unit)
         fail(ErrorCode::UnsupportedData, member.path,
-             "lies along '{}' in '{}'; expected '{}', as {}, or coordinates that are given", singles[s].name,
-             member.grid.single[s].unit, singles[s].unit, members.front().path.string());
-    axis = singles[s];
+             "lies along '{}' in '{}'; expected '{}', as {}, or coordinates that are given", singles[s].axis.name,
+             member.grid.single[s].axis.unit, singles[s].axis.unit, members.front().path.string());
+    found = singles[s];
+    for (const Member& member : members)
+      if (member.grid.single[s].direction != found.direction) found.direction = AxisDirection::unknown;
     return coordinates;
   }
   return {};
@@ -152,8 +155,8 @@ void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder
 }
 
 /// The new axis. Says where each member lies, and sorts them by that if it is asked for.
-Axis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
-  Axis found;
+SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
+  SingleAxis found;
   const bool by_coordinate = options.order == SeriesOrder::coordinate;
   Says says = options.coordinates.empty() ? Says::step : Says::caller;
   if (says == Says::step) {
@@ -172,9 +175,9 @@ Axis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
   std::vector<double> coordinates;
   for (const Member& member : members) coordinates.push_back(member.at);
   Axis axis = axis_of(coordinates);
-  axis.name = found.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.name;
-  axis.unit = options.unit.empty() ? found.unit : options.unit;
-  return axis;
+  axis.name = found.axis.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.axis.name;
+  axis.unit = options.unit.empty() ? found.axis.unit : options.unit;
+  return {std::move(axis), found.direction};
 }
 
 void require_sound(std::span<const fs::path> files, const SeriesOptions& options) {
@@ -233,12 +236,12 @@ struct OrderedLayers {
 /// The series as layers, a file each.
 OrderedLayers open_members(std::span<const fs::path> files, const SeriesOptions& options) {
   std::vector<Member> members = read_headers(files, options);
-  Axis last = make_axis(members, options);
+  auto [last, direction] = make_axis(members, options);
   RawLayers result;
   const RawGrid& first = members.front().grid;
   result.grid = with_last_axis(first, std::move(last));
   result.info = members.front().info;
-  if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(AxisDirection::unknown);
+  if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
   std::vector<fs::path> paths;
   for (const Member& member : members) paths.push_back(member.path);
   const auto sizes = sizes_of(first);

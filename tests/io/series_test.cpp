@@ -204,6 +204,41 @@ TEST_F(Series, OfNetcdfLiesAtItsTimes) {
   expect_layers_of(read.image, open_series(files_).layers);
 }
 
+/// What the files say of an axis of one sample each is so of the axis that they make, where all of them say it.
+TEST_F(Series, OfNetcdfHasTheDirectionThatAllFilesGiveItsNewAxis) {
+  struct Case {
+    std::vector<std::string> positive;
+    std::string unit;
+    AxisDirection direction;
+  };
+  const std::vector<Case> cases = {
+      {{"down", "Down", "down"}, "m", AxisDirection::down}, {{"up", "up", "up"}, "m", AxisDirection::up},
+      {{"", "", ""}, "hPa", AxisDirection::down},           {{"", "", ""}, "m", AxisDirection::unknown},
+      {{"down", "", "down"}, "m", AxisDirection::unknown},  {{"", "down", "down"}, "m", AxisDirection::unknown},
+      {{"down", "up", "down"}, "m", AxisDirection::unknown}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.positive[0] + ", " + one.positive[1] + ", " + one.unit);
+    files_.clear();
+    for (std::size_t k = 0; k < 3; ++k) {
+      files_.push_back(dir_ / ("level_" + std::to_string(k) + ".nc"));
+      NcWriter file(files_.back());
+      const std::vector<int> dims = {file.dimension("lev", 1), file.dimension("lat", 3), file.dimension("lon", 4)};
+      const int level = file.variable("lev", NC_DOUBLE, {dims[0]});
+      const int value = file.variable("temperature", NC_FLOAT, dims);
+      file.text(level, "units", one.unit);
+      if (!one.positive[k].empty()) file.text(level, "positive", one.positive[k]);
+      file.end();
+      file.values(level, std::vector<double>{100.0 - 10.0 * static_cast<double>(k)});
+      file.values(value, std::vector<double>(12, 1.0));
+    }
+    const std::vector<AxisDirection> expected = {AxisDirection::unknown, AxisDirection::unknown, one.direction};
+    EXPECT_EQ(read_series(files_).info.axis_directions, expected);
+    SeriesOptions given;  // places that are given are not those that the files speak of
+    given.step = 2.5;
+    EXPECT_EQ(read_series(files_, given).info.axis_directions.back(), AxisDirection::unknown);
+  }
+}
+
 TEST_F(Series, OfRawValuesIsReadByTheLayoutOfOneFile) {
   for (int k = 0; k < 3; ++k) {
     std::vector<float> values(24);
