@@ -286,9 +286,10 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
     const CutAxis& axis = space.axes[static_cast<std::size_t>(*cut.across)];
     const double level = cut.level.value_or(cut.value);
     if (level >= axis.first && level <= axis.last) continue;
+    const auto texts = numbers_apart({axis.first, axis.last, level});
     throw Error(ErrorCode::EmptyResult,
                 fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {}", axis.name, cut.text,
-                            space.of, number(axis.first), axis.name, number(axis.last)));
+                            space.of, texts[0], axis.name, texts[1]));
   }
   return cuts;
 }

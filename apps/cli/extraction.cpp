@@ -157,15 +157,18 @@ void require_contour(const ReadImageResult& input, double isovalue) {
     throw Error(ErrorCode::EmptyResult, "all samples are missing; a contour needs values on both sides of it");
   }
   if (isovalue > range.min && isovalue <= range.max) return;
-  if (range.min == range.max)
-    throw Error(ErrorCode::EmptyResult,
-                fmt::format("all values are {}; a contour needs values on both sides of the isovalue {}",
-                            number(range.min), number(isovalue)));
+  if (range.min == range.max) {
+    const auto texts = numbers_apart({range.min, isovalue});
+    throw Error(
+        ErrorCode::EmptyResult,
+        fmt::format("all values are {}; a contour needs values on both sides of the isovalue {}", texts[0], texts[1]));
+  }
   const std::string unit = input.info.value_unit.empty() ? "" : " " + input.info.value_unit;
-  throw Error(ErrorCode::EmptyResult, fmt::format("the isovalue {} lies outside of the values, which are {} .. {}{}; "
-                                                  "expected {} < isovalue <= {}",
-                                                  number(isovalue), number(range.min), number(range.max), unit,
-                                                  number(range.min), number(range.max)));
+  const auto texts = numbers_apart({isovalue, range.min, range.max});
+  throw Error(ErrorCode::EmptyResult,
+              fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
+                          "expected {1} < isovalue <= {2}",
+                          texts[0], texts[1], texts[2], unit));
 }
 
 void fail_without_contour(double isovalue) {

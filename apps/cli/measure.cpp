@@ -131,9 +131,10 @@ class MeasureCommand final : public ContourInputCommand {
   static void require_within(const Cut& cut, double first, double last, const std::string& axis) {
     const auto value = static_cast<float>(cut.value);
     if (value >= static_cast<float>(first) && value <= static_cast<float>(last)) return;
+    const auto texts = numbers_apart({first, last, cut.value});
     throw Error(ErrorCode::EmptyResult,
                 fmt::format("the cut at {} = {} lies outside of the contour; expected {} <= {} <= {}", cut.axis,
-                            cut.text, number(first), axis.empty() ? cut.axis : axis, number(last)));
+                            cut.text, texts[0], axis.empty() ? cut.axis : axis, texts[1]));
   }
 
   static std::vector<std::string> units(const ContourInput& input, int count) {

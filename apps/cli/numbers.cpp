@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "tegl/error.hpp"
 
@@ -49,6 +50,25 @@ std::string number(double value) {
   std::string exact = fmt::format("{}", value);
   constexpr std::size_t kShort = 10;
   return exact.size() <= kShort ? exact : fmt::format("{:.6g}", value);
+}
+
+std::vector<std::string> numbers_apart(const std::vector<double>& values) {
+  constexpr int kShort = 6;
+  constexpr int kExact = std::numeric_limits<double>::max_digits10;
+  const auto look_different = [&](const std::vector<std::string>& texts) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (values[i] != values[j] && texts[i] == texts[j]) return false;
+    return true;
+  };
+  std::vector<std::string> texts(values.size());
+  std::transform(values.begin(), values.end(), texts.begin(), number);
+  for (int digits = kShort + 1; digits <= kExact && !look_different(texts); ++digits)
+    std::transform(values.begin(), values.end(), texts.begin(), [&](double value) {
+      return std::min(fmt::format("{}", value), fmt::format("{:.{}g}", value, digits),
+                      [](const std::string& a, const std::string& b) { return a.size() < b.size(); });
+    });
+  return texts;
 }
 
 std::string grouped(std::uint64_t count) {

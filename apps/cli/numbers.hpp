@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace tegl::cli {
 
@@ -22,6 +23,10 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000
 
 /// A number for people: exact where that is short, else six significant digits.
 std::string number(double value);
+
+/// Numbers that stand beside each other in a message, each as `number` says it, or with as many significant digits more
+/// as all need to look different where they are.
+std::vector<std::string> numbers_apart(const std::vector<double>& values);
 
 /// A count in groups of three digits: "1 234 567".
 std::string grouped(std::uint64_t count);

@@ -74,6 +74,18 @@ TEST(Numbers, AreShownShort) {
   EXPECT_EQ(byte_size(999999), "1.0 MB");
 }
 
+TEST(Numbers, BesideOthersLookDifferentWhereTheyAre) {
+  EXPECT_THAT(numbers_apart({20, 0.5, static_cast<double>(20.1f)}), ElementsAre("20", "0.5", "20.1"));
+  const auto floats = std::vector<double>{101325, 101324, static_cast<double>(101324.6f)};
+  EXPECT_THAT(numbers_apart(floats), ElementsAre("101325", "101324", "101324.6"));
+  EXPECT_THAT(numbers_apart({static_cast<double>(101324.6f), static_cast<double>(101324.9f)}),
+              ElementsAre("101324.6", "101324.9"));
+  const double next = std::nextafter(0.1, 1.0);
+  EXPECT_THAT(numbers_apart({0.1, next}), ElementsAre("0.1", "0.10000000000000002"));
+  EXPECT_THAT(numbers_apart({1.0 / 3.0, 1.0 / 3.0}), ElementsAre("0.333333", "0.333333"));
+  EXPECT_THAT(numbers_apart({}), ElementsAre());
+}
+
 TEST(Cuts, AreReadFromSeveralValuesAndLists) {
   const std::vector<Cut> cuts = parse_cuts({"t=7.3", "TIME=1,2.50"});
   ASSERT_EQ(cuts.size(), 3u);
