@@ -55,15 +55,18 @@ std::string number(double value) {
 std::vector<std::string> numbers_apart(const std::vector<double>& values) {
   constexpr int kShort = 6;
   constexpr int kExact = std::numeric_limits<double>::max_digits10;
-  const auto look_different = [&](const std::vector<std::string>& texts) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double a : values)
+    for (const double b : values)
+      if (a != b) least = std::min(least, std::abs(a - b));
+  const auto tell_apart = [&](const std::vector<std::string>& texts) {
     for (std::size_t i = 0; i < values.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (values[i] != values[j] && texts[i] == texts[j]) return false;
+      if (std::abs(parse_number(texts[i]).value_or(values[i]) - values[i]) > 0.1 * least) return false;
     return true;
   };
   std::vector<std::string> texts(values.size());
   std::transform(values.begin(), values.end(), texts.begin(), number);
-  for (int digits = kShort + 1; digits <= kExact && !look_different(texts); ++digits)
+  for (int digits = kShort + 1; digits <= kExact && !tell_apart(texts); ++digits)
     std::transform(values.begin(), values.end(), texts.begin(), [&](double value) {
       return std::min(fmt::format("{}", value), fmt::format("{:.{}g}", value, digits),
                       [](const std::string& a, const std::string& b) { return a.size() < b.size(); });

@@ -25,7 +25,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000
 std::string number(double value);
 
 /// Numbers that stand beside each other in a message, each as `number` says it, or with as many significant digits more
-/// as all need to look different where they are.
+/// as all need to be off by less than a tenth of how far they are apart.
 std::vector<std::string> numbers_apart(const std::vector<double>& values);
 
 /// A count in groups of three digits: "1 234 567".

@@ -80,6 +80,10 @@ TEST(Numbers, BesideOthersLookDifferentWhereTheyAre) {
   EXPECT_THAT(numbers_apart(floats), ElementsAre("101325", "101324", "101324.6"));
   EXPECT_THAT(numbers_apart({static_cast<double>(101324.6f), static_cast<double>(101324.9f)}),
               ElementsAre("101324.6", "101324.9"));
+  EXPECT_THAT(numbers_apart({101325.55, static_cast<double>(101323.9f), 101325.5}),
+              ElementsAre("101325.55", "101323.9", "101325.5"));
+  EXPECT_THAT(numbers_apart({90000, static_cast<double>(101323.9f), 101325.5}),
+              ElementsAre("90000", "101324", "101325.5"));
   const double next = std::nextafter(0.1, 1.0);
   EXPECT_THAT(numbers_apart({0.1, next}), ElementsAre("0.1", "0.10000000000000002"));
   EXPECT_THAT(numbers_apart({1.0 / 3.0, 1.0 / 3.0}), ElementsAre("0.333333", "0.333333"));
