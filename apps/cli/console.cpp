@@ -26,6 +26,7 @@ std::string_view environment(const char* name) {
 Console::Console(std::FILE* stream)
     : stream_(stream),
       terminal_(isatty(fileno(stream)) == 1),
+      moves_(terminal_ && !environment("TERM").empty() && environment("TERM") != "dumb"),
       colours_(terminal_ && environment("NO_COLOR").empty() && environment("TERM") != "dumb") {}
 
 int Console::width() const {
@@ -34,6 +35,12 @@ int Console::width() const {
   constexpr double kMost = 1000;
   const auto columns = parse_number(environment("COLUMNS"));
   return columns && *columns >= 1 && *columns <= kMost ? static_cast<int>(*columns) : 80;
+}
+
+int Console::height() const {
+  constexpr int kUsual = 24;
+  winsize size{};
+  return terminal_ && ioctl(fileno(stream_), TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : kUsual;
 }
 
 void Console::write(std::string_view text) const {

@@ -17,8 +17,12 @@ class Console {
   explicit Console(std::FILE* stream);
 
   [[nodiscard]] bool is_terminal() const noexcept { return terminal_; }
+  /// Whether it is a terminal where what was written can be written over.
+  [[nodiscard]] bool moves_its_cursor() const noexcept { return moves_; }
   /// Columns of the terminal now; elsewhere $COLUMNS, or 80.
   [[nodiscard]] int width() const;
+  /// Lines of the terminal now; 24 elsewhere.
+  [[nodiscard]] int height() const;
 
   /// The text in bold, or in red, if the stream shows colours; else unchanged.
   [[nodiscard]] std::string bold(std::string_view text) const { return styled("1", text); }
@@ -33,6 +37,7 @@ class Console {
 
   std::FILE* stream_;
   bool terminal_;
+  bool moves_;
   bool colours_;
 };
 

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -63,12 +64,6 @@ bool knows_unicode() {
     return text.find("UTF-8") != std::string::npos || text.find("utf8") != std::string::npos;
   }
   return false;
-}
-
-/// Whether frames can be drawn over each other.
-bool moves_its_cursor() {
-  const char* const terminal = std::getenv("TERM");
-  return terminal != nullptr && *terminal != '\0' && std::string_view(terminal) != "dumb";
 }
 
 bool shows_colours(const Console& console) { return console.bold("x") != "x"; }
@@ -213,7 +208,8 @@ class DemoCommand final : public Command {
     const Contour<4, double> contour = extract<double>(image->view(), kIsovalue, options);
     const double seconds = watch.lap();
     bar.clear();
-    const bool animated = streams.out.is_terminal() && !json() && !quiet() && !no_animation_ && moves_its_cursor();
+    const bool animated = !json() && !quiet() && !no_animation_ && streams.out.moves_its_cursor() &&
+                          map_width(streams.out, true).has_value();
     if (animated) play(streams.out, *image, contour);
     if (json())
       streams.out.write(dump(document(data, *image, contour, seconds)));
@@ -223,11 +219,20 @@ class DemoCommand final : public Command {
   }
 
  private:
-  /// The world as wide as the terminal, at most a pixel for each sample of longitude.
-  [[nodiscard]] static Map draw_world(const Console& console, const OwnedImage<float, 4>& image,
-                                      const Contour<3, double>& cut) {
-    const int width = std::clamp(console.width() - 1, 20, 100);
-    Map map = empty_map(image, width, std::max(8, width / 4 * 2));  // an even number
+  static constexpr int kLeastWidth = 16;  ///< of a map; it is a quarter as many lines high
+  static constexpr int kMostWidth = 100;  ///< a pixel for each sample of longitude
+
+  /// How wide a map there is room for on a console; none: too little. On a terminal no line may be full, and what is
+  /// played must fit into the window, with a line for the time and one for the cursor.
+  [[nodiscard]] static std::optional<int> map_width(const Console& console, bool played) {
+    int width = std::min(kMostWidth, console.width() - 1);
+    if (!console.is_terminal()) return std::max(width, kLeastWidth);
+    if (played) width = std::min(width, 4 * (console.height() - 2));
+    return width < kLeastWidth ? std::nullopt : std::optional(width);
+  }
+
+  [[nodiscard]] static Map draw_world(int width, const OwnedImage<float, 4>& image, const Contour<3, double>& cut) {
+    Map map = empty_map(image, width, width / 4 * 2);  // an even number
     const Axis& longitude = image.grid.axes[0];
     const Axis& latitude = image.grid.axes[1];
     const auto pixel = [&](const std::array<double, 3>& vertex) {
@@ -257,12 +262,15 @@ class DemoCommand final : public Command {
     for (std::size_t i = 0; i < frames_; ++i) {
       InterruptHandler::throw_if_requested();
       const auto shown = std::chrono::steady_clock::now();
+      const auto width = map_width(console, true);  // windows change
+      if (!width) return;
       const double share = static_cast<double>(i) / static_cast<double>(frames_ - 1);
       const double t = time[0] + share * (time[time.size() - 1] - time[0]);
-      const Map map = draw_world(console, image, slice(contour, t));
+      const Map map = draw_world(*width, image, slice(contour, t));
+      const auto columns = static_cast<std::size_t>(console.width() - 1);
       const std::string back = lines == 0 ? "" : fmt::format("\x1b[{}A", lines);
       console.write(fmt::format("{}\r{}\x1b[K{}\n", back, in_colour ? coloured(map) : plain_lines(map),
-                                fmt::format("t = {:5.2f}  {}", t, month_text(t))));
+                                fmt::format("t = {:5.2f}  {}", t, month_text(t)).substr(0, columns)));
       lines = map.height / 2 + 1;
       std::this_thread::sleep_until(shown + std::chrono::milliseconds(80));
     }
@@ -303,8 +311,12 @@ class DemoCommand final : public Command {
                                           const OwnedImage<float, 4>& image, const Contour<4, double>& contour,
                                           double seconds, bool with_map) {
     std::string text;
-    if (with_map) {
-      const Map map = draw_world(console, image, slice(contour, kTimes[2]));
+    const auto width = map_width(console, false);
+    if (with_map && !width) {
+      text += fmt::format("The window is too narrow for the map: {} columns; expected at least {}\n\n", console.width(),
+                          kLeastWidth + 1);
+    } else if (with_map) {
+      const Map map = draw_world(*width, image, slice(contour, kTimes[2]));
       text += shows_colours(console) && knows_unicode() ? coloured(map) : plain(map);
       text += fmt::format("How deep the water is 20 degrees warm or more, at t = {} ({})\n\n", kTimes[2],
                           month_text(kTimes[2]));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "cuts.hpp"
 #include "numbers.hpp"
@@ -73,7 +74,10 @@ void ImageOptions::add_to(CLI::App& app) {
       app.add_option("--time-step", time_step_,
                      "of several FILEs: they lie at 0, this, twice this ..., in the order of --sort")
           ->type_name("NUMBER"),
-      app.add_option("--time-unit", time_unit_, "of several FILEs: the unit of the new axis")->type_name("UNIT"),
+      app.add_option(
+             "--time-unit", time_unit_,
+             "of several FILEs: the unit of the new axis; times of headers in another unit of time are converted")
+          ->type_name("UNIT"),
       app.add_option("--sort", sort_,
                      "of several FILEs: by the numbers in their names, by their times (--times, which go with them, "
                      "or those in their headers), or as given")
@@ -82,10 +86,9 @@ void ImageOptions::add_to(CLI::App& app) {
   options_[1]->excludes(options_[0]);
   raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
                     ->type_name("XxYxZ[xT]");
-  CLI::Option* const type =
-      app.add_option("--raw-type", raw_type_, "their type: uint8, int8, uint16, int16, int32, float or double")
-          ->type_name("TYPE")
-          ->needs(raw_option_);
+  CLI::Option* const type = app.add_option("--raw-type", raw_type_, "their type")
+                                ->check(CLI::IsMember({"uint8", "int8", "uint16", "int16", "int32", "float", "double"}))
+                                ->needs(raw_option_);
   raw_option_->needs(type);
   options_.push_back(raw_option_);
   options_.push_back(type);
@@ -106,14 +109,21 @@ std::vector<std::string> ImageOptions::given() const {
 }
 
 std::string ImageOptions::choosing_option(const std::vector<std::string>& files) {
-  const std::filesystem::path first = files.front();
-  const bool dicom = std::filesystem::is_directory(first) ||
-                     equal_ignoring_case(first.filename().string(), "DICOMDIR") ||
-                     equal_ignoring_case(first.extension().string(), ".dcm");
-  return dicom ? "--series" : "--var";
+  const std::vector<std::filesystem::path> first = {files.front()};
+  return std::filesystem::is_directory(first[0]) || are_dicom_files(first) ? "--series" : "--var";
+}
+
+void ImageOptions::require_fitting_choice(const std::vector<std::string>& files) const {
+  if (raw() || variable().empty()) return;
+  const std::string given = series_.empty() ? "--var" : "--series";
+  const std::string expected = choosing_option(files);
+  if (given == expected) return;
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{} {} with {}, which is {}DICOM; expected {}", given, variable(),
+                                                      files.front(), expected == "--series" ? "" : "no ", expected));
 }
 
 SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files) const {
+  require_fitting_choice(files);
   if (raw() && !variable().empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} {} with --raw; expected no variable: raw values have no name",

@@ -41,6 +41,8 @@ class ImageOptions {
   [[nodiscard]] std::vector<std::string> given() const;
 
  private:
+  /// --var is not for DICOM, nor --series for anything else.
+  void require_fitting_choice(const std::vector<std::string>& files) const;
   [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
   /// Keeps the remarks on what was read.
   template <class Result>

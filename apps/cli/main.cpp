@@ -138,16 +138,22 @@ std::string_view after_normals(int argc, char** argv) {
 
 /// What `tegl --man` and `tegl --completion SHELL` write; nothing for other command lines.
 std::optional<ExitCode> write_reference(const CLI::App& program, int argc, char** argv, const Streams& streams) {
-  const std::string_view option = argc > 1 ? argv[1] : "";
-  if (option != "--man" && option != "--completion") return std::nullopt;
-  const int expected = option == "--man" ? 2 : 3;
+  std::vector<std::string_view> words(argv + std::min(1, argc), argv + argc);
+  constexpr std::string_view kJoined = "--completion=";
+  if (!words.empty() && words[0].starts_with(kJoined)) {
+    words.insert(words.begin() + 1, words[0].substr(kJoined.size()));
+    words[0] = kJoined.substr(0, kJoined.size() - 1);
+  }
+  if (words.empty() || (words[0] != "--man" && words[0] != "--completion")) return std::nullopt;
+  const bool man = words[0] == "--man";
   try {
-    if (argc != expected)
+    if (!man && words.size() < 2)
+      throw tegl::Error(tegl::ErrorCode::InvalidArgument, "--completion needs a shell; expected bash, zsh or fish");
+    if (words.size() > (man ? 1 : 2))
       throw tegl::Error(tegl::ErrorCode::InvalidArgument,
-                        option == "--man" ? "--man with other arguments; expected none"
-                                          : "--completion needs a shell; expected bash, zsh or fish");
-    streams.out.write(option == "--man" ? tegl::cli::man_page(program, TEGL_VERSION, TEGL_MANUAL_DATE)
-                                        : tegl::cli::completion_script(program, argv[2]));
+                        fmt::format("{} with '{}'; expected nothing behind it", words[0], words[man ? 1 : 2]));
+    streams.out.write(man ? tegl::cli::man_page(program, TEGL_VERSION, TEGL_MANUAL_DATE)
+                          : tegl::cli::completion_script(program, words[1]));
     return ExitCode::Ok;
   } catch (const tegl::Error& error) {
     return report(streams, false, tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), error.what());

@@ -84,13 +84,68 @@ std::string verbatim(const std::string& text) {
   return replaced(result, "\n\n", "\n.sp\n") + "\n.fi\n";
 }
 
+/// Lines that a page 80 columns wide has room for: commands go on behind a backslash, their comments and other lines
+/// below, indented.
+std::string wrapped(std::string line) {
+  constexpr std::size_t kWidth = 71;  // beside the page's indentation and margin
+  const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+  const bool is_command = std::string_view(line).substr(indent).starts_with("tegl ");
+  std::string comment;
+  if (const std::size_t gap = line.find("  ", indent); is_command && line.size() > kWidth && gap < line.size()) {
+    comment = "\n      " + line.substr(std::min(line.find_first_not_of(' ', gap), line.size()));
+    line.resize(gap);
+  }
+  std::string text;
+  while (line.size() > kWidth) {
+    std::size_t at = indent;  // of the last blank that is not within quotes, of a command before an option
+    std::size_t before_option = indent;
+    bool quoted = false;
+    for (std::size_t i = indent; i < kWidth - 2; ++i) {
+      quoted = quoted != (is_command && line[i] == '\'');
+      if (line[i] != ' ' || quoted) continue;
+      at = i;
+      if (line[i + 1] == '-') before_option = i;
+    }
+    if (is_command && before_option > kWidth / 2) at = before_option;
+    if (at == indent) break;
+    text += line.substr(0, at) + (is_command ? " \\\n" : "\n");
+    line = std::string(indent + 4, ' ') + line.substr(at + 1);
+  }
+  return text + line + comment;
+}
+
+/// A command's examples as they are typed; and what is said of them as a paragraph.
+std::string man_examples(const std::string& footer) {
+  std::string text;
+  std::string block;
+  const auto end_block = [&] {
+    if (!block.empty()) text += verbatim(block);
+    block.clear();
+  };
+  for (std::size_t at = 0; at < footer.size();) {
+    const std::size_t end = std::min(footer.find('\n', at), footer.size());
+    const std::string line = footer.substr(at, end - at);
+    at = end + 1;
+    if (line.starts_with("  ")) {
+      block += wrapped(line) + "\n";
+      continue;
+    }
+    const bool is_new = !block.empty();
+    end_block();
+    if (line.empty()) continue;
+    text += (is_new ? ".PP\n" : "") + roff(line) + "\n";
+  }
+  end_block();
+  return text;
+}
+
 std::string man_option(const CLI::Option& option) {
   std::vector<std::string> names = names_of(option);
   for (std::string& name : names) name = "\\fB" + roff(name) + "\\fR";
   std::string text = fmt::format(".TP\n{}", fmt::join(names, ", "));
   const std::vector<std::string> words = words_of(option);
   if (!words.empty())
-    text += fmt::format(" {}", roff(fmt::format("{}", fmt::join(words, "|"))));
+    text += " " + replaced(roff(fmt::format("{}", fmt::join(words, "|"))), "|", "|\\:");  // lines may break there
   else if (takes_value(option))
     text += fmt::format(" \\fI{}\\fR", roff(option.get_type_name()));
   text += "\n" + roff(option.get_description());
@@ -117,9 +172,9 @@ std::string man_page(const CLI::App& program, const std::string& version, const 
       if (option->get_positional())
         text += fmt::format(".TP\n\\fI{}\\fR\n{}\n", roff(option->get_name(true)), roff(option->get_description()));
     for (const CLI::Option* option : options_of(*command)) text += man_option(*option);
-    text += ".PP\n" + verbatim(command->get_footer());
+    text += ".PP\n" + man_examples(command->get_footer());
   }
-  text += ".SH EXIT STATUS\n" + verbatim(exit_code_help());
+  text += ".SH EXIT STATUS\n" + man_examples(exit_code_help());
   text +=
       ".SH ENVIRONMENT\n.TP\n\\fBNO_COLOR\\fR\nIf set and not empty, there are no colours; nor where \\fBTERM\\fR is "
       "dumb, or the output is no terminal.\n.TP\n\\fBCOLUMNS\\fR\nThe width of reports where the output is no "
@@ -160,31 +215,43 @@ std::string bash_script(const CLI::App& program) {
       words.insert(words.end(), own.begin(), own.end());
       if (const auto allowed = words_of(*option); !allowed.empty())
         for (const std::string& name : own)
-          values += fmt::format("    {}:{}) mapfile -t COMPREPLY < <(compgen -W \"{}\" -- \"$cur\"); return ;;\n",
-                                command->get_name(), name, fmt::join(allowed, " "));
+          values += fmt::format("    {}:{}) words='{}' ;;\n", command->get_name(), name, fmt::join(allowed, " "));
     }
-    options += fmt::format("      {}) mapfile -t COMPREPLY < <(compgen -W \"{}\" -- \"$cur\") ;;\n",
-                           command->get_name(), fmt::join(words, " "));
+    options += fmt::format("      {}) words='{}' ;;\n", command->get_name(), fmt::join(words, " "));
   }
+  // "--name=value" is three words where '=' breaks them, as it does unless the user says otherwise.
   return fmt::format(
       "# bash completion of tegl, made by 'tegl --completion bash'\n"
       "_tegl() {{\n"
       "  local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command=${{COMP_WORDS[1]}}\n"
+      "  local before='' words=''\n"
       "  COMPREPLY=()\n"
-      "  if ((COMP_CWORD == 1)); then\n"
-      "    mapfile -t COMPREPLY < <(compgen -W \"{} --help --version --man --completion\" -- \"$cur\")\n"
+      "  if ((COMP_CWORD == 1)) && [[ $cur != *=* ]]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W '{} --help --version --man --completion' -- \"$cur\")\n"
       "    return\n"
       "  fi\n"
+      "  if [[ $cur == '=' ]]; then\n"
+      "    cur=''\n"
+      "  elif [[ $prev == '=' ]] && ((COMP_CWORD > 2)); then\n"
+      "    prev=${{COMP_WORDS[COMP_CWORD-2]}}\n"
+      "  elif [[ $cur == --*=* ]]; then\n"
+      "    prev=${{cur%%=*}} before=${{cur%%=*}}= cur=${{cur#*=}}\n"
+      "  fi\n"
+      "  [[ $command == --completion=* ]] && command=--completion\n"
       "  case $command:$prev in\n"
-      "    --completion:--completion) mapfile -t COMPREPLY < <(compgen -W \"bash zsh fish\" -- \"$cur\"); return ;;\n"
+      "    --completion:--completion) words='bash zsh fish' ;;\n"
       "{}"
       "  esac\n"
-      "  if [[ $cur == -* ]]; then\n"
+      "  if [[ -z $words && -z $before && $cur == -* ]]; then\n"
       "    case $command in\n{}    esac\n"
-      "    return\n"
       "  fi\n"
-      "  compopt -o filenames 2>/dev/null\n"
-      "  mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
+      "  if [[ -n $words ]]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$cur\")\n"
+      "  else\n"
+      "    compopt -o filenames 2>/dev/null\n"
+      "    mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
+      "  fi\n"
+      "  if [[ -n $before ]]; then COMPREPLY=(\"${{COMPREPLY[@]/#/$before}}\"); fi\n"
       "}}\n"
       "complete -F _tegl tegl\n",
       all, values, options);
@@ -202,12 +269,15 @@ std::string zsh_script(const CLI::App& program) {
     cases += fmt::format("    {})\n      _arguments -s \\\n", command->get_name());
     for (const CLI::Option* option : options_of(*command))
       for (const std::string& name : names_of(*option)) {
-        std::string spec = fmt::format("*{}[{}]", name, escaped(brief(option->get_description())));
+        // "--name=" takes its value behind it or as the next word.
+        std::string spec = fmt::format("*{}{}[{}]", name, takes_value(*option) && name.starts_with("--") ? "=" : "",
+                                       escaped(brief(option->get_description())));
+        const char* const colon = option->get_items_expected_min() == 0 ? "::" : ":";
         const auto words = words_of(*option);
         if (!words.empty())
-          spec += fmt::format(":value:({})", fmt::join(words, " "));
+          spec += fmt::format("{}value:({})", colon, fmt::join(words, " "));
         else if (takes_value(*option))
-          spec += fmt::format(":{}:_files", escaped(option->get_type_name()));
+          spec += fmt::format("{}{}:_files", colon, escaped(option->get_type_name()));
         cases += "        " + single_quoted(spec) + " \\\n";
       }
     cases += "        '*:file:_files'\n      ;;\n";

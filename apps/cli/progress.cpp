@@ -69,11 +69,25 @@ void ProgressBar::draw(double fraction) {
   if (now - last_ < kInterval) return;
   last_ = now;
   visible_ = true;
-  fraction = std::clamp(fraction, 0.0, 1.0);
-  const auto cells = static_cast<std::size_t>(std::clamp(console_->width() - 24, 4, 60));
-  const auto full = static_cast<std::size_t>(fraction * static_cast<double>(cells));
-  console_->write(fmt::format("\r\x1b[K{:<10} [{}{}] {:3.0f} %", name_, std::string(full, '#'),
-                              std::string(cells - full, '.'), 100 * fraction));
+  console_->write("\r\x1b[K" + text(std::clamp(fraction, 0.0, 1.0)));
+}
+
+std::string ProgressBar::text(double fraction) const {
+  constexpr int kMostCells = 60;
+  const std::string share = fmt::format("{:3.0f} %", 100 * fraction);
+  const std::string name = fmt::format("{:<10}", name_);
+  // A line that is full goes on in the next one, where it stays.
+  const int room = console_->width() - 1;
+  const int cells = std::min(kMostCells, room - static_cast<int>(name.size() + share.size()) - 4);
+  if (cells >= 4) {
+    const auto full = static_cast<std::size_t>(fraction * cells);
+    return fmt::format("{} [{}{}] {}", name, std::string(full, '#'),
+                       std::string(static_cast<std::size_t>(cells) - full, '.'), share);
+  }
+  const std::string both = fmt::format("{} {}", name_, share);
+  for (const std::string& shorter : {both, share})
+    if (static_cast<int>(shorter.size()) <= room) return shorter;
+  return "";
 }
 
 void ProgressBar::clear() {

@@ -27,10 +27,11 @@ class InterruptHandler {
   static void throw_if_requested();
 };
 
-/// A bar on a terminal, one stage of the work after the other; draws nothing elsewhere.
+/// A bar on a terminal, one stage of the work after the other; draws nothing elsewhere, nor where a terminal cannot
+/// write over it. In narrow windows it is a number, or nothing.
 class ProgressBar {
  public:
-  ProgressBar(const Console& console, bool wanted) : console_(&console), draw_(wanted && console.is_terminal()) {}
+  ProgressBar(const Console& console, bool wanted) : console_(&console), draw_(wanted && console.moves_its_cursor()) {}
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -45,6 +46,7 @@ class ProgressBar {
 
  private:
   void draw(double fraction);
+  [[nodiscard]] std::string text(double fraction) const;
 
   const Console* console_;
   bool draw_;

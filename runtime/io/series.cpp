@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "common.hpp"
@@ -154,6 +157,45 @@ void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder
   }
 }
 
+/// How many seconds a unit of time has, by its name; none for others. (Months and years differ in length.)
+std::optional<double> seconds_of(std::string_view name) {
+  struct Unit {
+    double seconds;
+    std::initializer_list<std::string_view> names;
+  };
+  static const Unit kUnits[] = {{1e-3, {"ms", "msec", "msecs", "millisecond", "milliseconds"}},
+                                {1, {"s", "sec", "secs", "second", "seconds"}},
+                                {60, {"min", "mins", "minute", "minutes"}},
+                                {3600, {"h", "hr", "hrs", "hour", "hours"}},
+                                {86400, {"d", "day", "days"}}};
+  const std::string small = lower(name);
+  for (const Unit& unit : kUnits)
+    if (std::find(unit.names.begin(), unit.names.end(), small) != unit.names.end()) return unit.seconds;
+  return std::nullopt;
+}
+
+/// Where the members lie, in a unit that is asked for instead of that of their headers, and its name: hours since the
+/// same day for days since then.
+std::string converted(std::vector<Member>& members, const std::string& own, const std::string& wanted) {
+  constexpr std::string_view kSince = " since ";
+  const auto split = [&](const std::string& unit) {
+    const std::size_t at = std::min(unit.find(kSince), unit.size());
+    return std::pair(unit.substr(0, at), unit.substr(at));
+  };
+  const auto [from, since] = split(own);
+  const auto [to, of_wanted] = split(wanted);
+  const auto from_seconds = seconds_of(from);
+  const auto to_seconds = seconds_of(to);
+  if (own != wanted && (!from_seconds || !to_seconds || (!of_wanted.empty() && of_wanted != since)))
+    fail(ErrorCode::InvalidArgument, members.front().path,
+         "lies along the new axis in '{}' by its header; expected no other unit than that, or one of ms, s, min, h "
+         "and d that it can be converted to, not '{}'",
+         own, wanted);
+  if (own == wanted || *from_seconds == *to_seconds) return to + since;
+  for (Member& member : members) member.at = member.at * *from_seconds / *to_seconds;
+  return to + since;
+}
+
 /// The new axis. Says where each member lies, and sorts them by that if it is asked for.
 SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
   SingleAxis found;
@@ -172,11 +214,13 @@ SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options)
   if (by_coordinate)
     std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.at < b.at; });
   require_monotone(members, says, options.order);
+  if (!options.unit.empty())
+    found.axis.unit = found.axis.unit.empty() ? options.unit : converted(members, found.axis.unit, options.unit);
   std::vector<double> coordinates;
   for (const Member& member : members) coordinates.push_back(member.at);
   Axis axis = axis_of(coordinates);
   axis.name = found.axis.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.axis.name;
-  axis.unit = options.unit.empty() ? found.axis.unit : options.unit;
+  axis.unit = found.axis.unit;
   return {std::move(axis), found.direction};
 }
 
@@ -187,9 +231,10 @@ void require_sound(std::span<const fs::path> files, const SeriesOptions& options
   if (!options.coordinates.empty() && options.coordinates.size() != files.size())
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} coordinates for {} files; expected one for each",
                                                         options.coordinates.size(), files.size()));
-  if (options.step && (!std::isfinite(*options.step) || *options.step == 0.0))
+  if (options.step && !std::isnormal(*options.step))
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("a step of {}; expected a finite number other than 0", *options.step));
+                fmt::format("a step of {}; expected a finite number, of a size of at least {:.2g}", *options.step,
+                            std::numeric_limits<double>::min()));
 }
 
 /// The headers of all files in their order, compared; a coordinate that is given goes with its file.
@@ -316,7 +361,9 @@ SeriesOptions series_options(std::span<const fs::path> files, const SeriesReques
   if (request.times && request.times->size() != files.size())
     refuse(fmt::format("{} has {} numbers for {} files; expected one for each", words.times, request.times->size(),
                        files.size()));
-  if (request.time_step == 0.0) refuse(fmt::format("{} is 0; expected another number", words.time_step));
+  if (request.time_step && std::isfinite(*request.time_step) && !std::isnormal(*request.time_step))
+    refuse(fmt::format("{} is {}; expected a number of a size of at least {:.2g}", words.time_step, *request.time_step,
+                       std::numeric_limits<double>::min()));
   if (!request.sort && (request.raw || !are_dicom_files(files))) require_order_that_is_meant(files, words);
   SeriesOptions options;
   options.variable = request.variable;

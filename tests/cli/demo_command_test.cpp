@@ -79,6 +79,52 @@ TEST_F(Demo, PlaysNothingOnATerminalThatCannotMoveItsCursor) {
   EXPECT_THAT(run.out, HasSubstr("%%%"));
 }
 
+// What is played, between hiding the cursor and showing it, as a window sees it: no line as wide as the window, which
+// would break, and never more lines than it has, which would scroll.
+TEST_F(Demo, StandsInASmallWindowOrPlaysNothing) {
+  if (!has_terminals()) GTEST_SKIP() << "this machine gives no pseudo-terminals";
+  struct Window {
+    std::size_t columns;
+    std::size_t lines;
+    bool fits;
+  };
+  for (const Window& window : {Window{20, 8, true}, Window{17, 6, true}, Window{150, 12, true}, Window{120, 24, true},
+                               Window{3, 2, false}, Window{80, 5, false}, Window{16, 24, false}}) {
+    for (const std::string setting : {"LC_ALL=C.UTF-8", "NO_COLOR=1"}) {
+      SCOPED_TRACE(testing::Message() << window.columns << " x " << window.lines << " " << setting);
+      const RunResult run = run_tegl_on_terminal(
+          {"demo", "--frames", "3"},
+          {setting, "COLUMNS=" + std::to_string(window.columns), "LINES=" + std::to_string(window.lines)});
+      EXPECT_EQ(run.exit, 0);
+      const std::string& shown = run.out;
+      EXPECT_THAT(shown, HasSubstr("What next"));
+      const std::size_t begin = shown.find("\x1b[?25l");
+      EXPECT_EQ(begin != std::string::npos, window.fits);
+      if (window.columns < 17) {
+        EXPECT_THAT(shown, HasSubstr("too narrow"));
+      }
+      if (!window.fits) continue;
+      const std::string film = shown.substr(begin, shown.find("\x1b[?25h") - begin);
+      std::size_t wide = 0;
+      std::size_t lines = 0;
+      for (std::size_t i = 0; i < film.size(); ++i) {
+        if (film[i] == '\x1b') {  // an escape, of no width
+          i = film.find_first_of("ABCDHJKhlm", i);
+          ASSERT_NE(i, std::string::npos);
+          if (film[i] == 'A') lines = 0;
+        } else if (film[i] == '\n' || film[i] == '\r') {
+          lines += film[i] == '\n' ? 1 : 0;
+          EXPECT_LT(lines, window.lines);
+          wide = 0;
+        } else if ((film[i] & 0xc0) != 0x80) {  // not within a character of several bytes
+          ++wide;
+          ASSERT_LT(wide, window.columns);
+        }
+      }
+    }
+  }
+}
+
 TEST_F(Demo, EndsWhenItIsInterrupted) {
   if (!has_terminals()) GTEST_SKIP() << "this machine gives no pseudo-terminals";
   const RunResult run = run_tegl_on_terminal({"demo", "--frames", "100000"}, {"LC_ALL=C.UTF-8"}, "t =  1.00");
@@ -87,6 +133,9 @@ TEST_F(Demo, EndsWhenItIsInterrupted) {
 }
 
 TEST_F(Demo, RefusesFilesAndFramesThatCannotBe) {
+  EXPECT_EQ(run_tegl({"--completion=zsh"}).out, run_tegl({"--completion", "zsh"}).out);
+  EXPECT_THAT(run_tegl({"--completion", "bash", "contour"}).err, HasSubstr("--completion with 'contour'"));
+  EXPECT_THAT(run_tegl({"--completion"}).err, HasSubstr("needs a shell"));
   EXPECT_EQ(run_tegl({"demo", "file.nii"}).exit, 2);
   EXPECT_EQ(run_tegl({"demo", "--frames", "1"}).exit, 2);
 }

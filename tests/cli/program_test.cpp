@@ -47,6 +47,15 @@ class Program : public testing::Test {
     const int status = pclose(pipe.get());
     return {text, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
   }
+  /// Of a manual page on a terminal 80 columns wide.
+  static void expect_narrow(const std::string& shown) {
+    EXPECT_THAT(shown, HasSubstr(" \\\n")) << "a command that goes on in another line";
+    for (std::size_t at = 0; at < shown.size();) {
+      const std::size_t end = std::min(shown.find('\n', at), shown.size());
+      EXPECT_LE(end - at, 80U) << shown.substr(at, end - at);
+      at = end + 1;
+    }
+  }
   static bool has(const std::string& program) { return run("command -v " + program).second == 0; }
 
   CLI::App program_{"", "tegl"};
@@ -119,13 +128,16 @@ TEST_F(Program, HasAManualPageThatFormattersReadWithoutAWarning) {
     const auto [text, status] = run("groff -ww -man -Tutf8 -k -z " + page);
     EXPECT_EQ(status, 0);
     EXPECT_EQ(text, "");
+    expect_narrow(run("groff -man -Tascii -P-c -rLL=80n " + page + " | col -bx").first);
     any = true;
   }
   if (has("mandoc")) {
     const auto [text, status] = run("mandoc -T lint -W warning " + page);
     EXPECT_EQ(text, "");
     EXPECT_EQ(status, 0);
-    EXPECT_THAT(run("mandoc -T ascii " + page + " | col -b").first, HasSubstr("--ambiguity low|high|mean|saddle"));
+    const std::string shown = run("mandoc -T ascii -O width=78 " + page + " | col -bx").first;
+    EXPECT_THAT(shown, HasSubstr("--ambiguity low|high|mean|saddle"));
+    expect_narrow(shown);
     any = true;
   }
   std::filesystem::remove(page);
@@ -144,6 +156,11 @@ TEST_F(Program, CompletesInBash) {
   EXPECT_EQ(complete("contour --tri"), "--triangulation\n");
   EXPECT_EQ(complete("contour a.nii --ambiguity s"), "saddle\n");
   EXPECT_EQ(complete("check --require c"), "closed\n");
+  EXPECT_EQ(complete("contour --triangulation = ba"), "barycentric\n") << "= breaks words";
+  EXPECT_THAT(complete("contour --triangulation ="), HasSubstr("compact barycentric"));
+  EXPECT_EQ(complete("contour --triangulation=ba"), "--triangulation=barycentric\n") << "it does not";
+  EXPECT_EQ(complete("--completion = z"), "zsh\n");
+  EXPECT_EQ(complete("contour --output = " + script.substr(0, script.size() - 3)), script + "\n");
   EXPECT_EQ(complete("info " + script.substr(0, script.size() - 3)), script + "\n");
   const std::string blank = write("with two blanks.nrrd", "");
   EXPECT_EQ(run("bash -c 'source " + script + "; COMP_WORDS=(tegl info \"" + blank.substr(0, blank.size() - 8) +
@@ -162,7 +179,7 @@ TEST_F(Program, CompletesInZshAndFish) {
     EXPECT_EQ(
         run("zsh -f -c 'autoload -U compinit && compinit -D && source " + script + " && echo $_comps[tegl]'").first,
         "_tegl\n");
-    EXPECT_THAT(completion_script(program_, "zsh"), HasSubstr("--var[netCDF\\: the variable to read"));
+    EXPECT_THAT(completion_script(program_, "zsh"), HasSubstr("--var=[netCDF\\: the variable to read"));
     std::filesystem::remove(script);
     any = true;
   }
@@ -174,6 +191,7 @@ TEST_F(Program, CompletesInZshAndFish) {
     EXPECT_THAT(complete("tegl con"), testing::StartsWith("contour\t"));
     EXPECT_THAT(complete("tegl contour --tri"), testing::StartsWith("--triangulation\t"));
     EXPECT_THAT(complete("tegl contour --ambiguity sa"), HasSubstr("saddle"));
+    EXPECT_THAT(complete("tegl contour --triangulation=ba"), testing::StartsWith("--triangulation=barycentric"));
     EXPECT_THAT(complete("tegl --comp"), testing::StartsWith("--completion\t"));
     EXPECT_THAT(complete("tegl --completion "), AllOf(HasSubstr("zsh"), Not(HasSubstr("contour"))));
     EXPECT_THAT(complete("tegl contour --var"), HasSubstr("variable to read")) << "more than what comes before a colon";
@@ -181,6 +199,53 @@ TEST_F(Program, CompletesInZshAndFish) {
     any = true;
   }
   if (!any) GTEST_SKIP() << "neither zsh nor fish";
+}
+
+// A zsh of its own on a terminal of its own, in which the tab key is pressed: what its completion offers.
+TEST_F(Program, CompletesWhatIsTypedInZsh) {
+  if (!has("zsh") || run("zsh -f -c 'zmodload zsh/zpty'").second != 0) GTEST_SKIP() << "no zsh with terminals";
+  const std::string script = write("tegl.zsh", completion_script(program_, "zsh"));
+  const std::string file = write("of_zsh.nrrd", "");
+  const std::string setup = write("setup.zsh", R"(
+PROMPT= ; RPROMPT=
+autoload -U compinit && compinit -D -u
+source )" + script + R"(
+compadd() {
+  if [[ -n ${(M)@[1,(i)(-|--)]:#-(O|A|D|OA|AO)} ]]; then builtin compadd "$@"; return; fi
+  local -a hits
+  builtin compadd -A hits "$@"
+  builtin compadd "$@"
+  local hit
+  for hit in $hits; do print "\n<$IPREFIX$hit>"; done
+}
+told() { print "\n<end>"; }
+comppostfuncs=(told)
+bindkey '^I' complete-word
+print ready.
+)");
+  const std::string driver = write("driver.zsh", R"(
+zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell "source )" + setup + R"("
+zpty -r -m shell ignored '*ready.*' || exit 1
+for line in "$@"; do
+  zpty -w -n shell $line$'\t'
+  zpty -r -m shell shown '*<end>*' || exit 1
+  print -r -- "$line ->" ${(@M)${(@f)${shown//$'\r'}}:#<*>}
+  zpty -w -n shell $'\x03'
+done
+zpty -d shell
+)");
+  const auto complete = [&](const std::string& line) {
+    return run("timeout 30 zsh -f " + driver + " '" + line + "'").first;
+  };
+  EXPECT_THAT(complete("tegl con"), HasSubstr("-> <contour> <end>"));
+  EXPECT_THAT(complete("tegl contour a.nii --ambiguity s"), HasSubstr("-> <saddle> <end>"));
+  EXPECT_THAT(complete("tegl contour --triangulation=ba"), HasSubstr("<--triangulation=barycentric> <end>"));
+  EXPECT_THAT(complete("tegl contour --tri"), HasSubstr("-> <--triangulation> <end>"));
+  EXPECT_THAT(complete("tegl info " + file.substr(0, file.size() - 2)),
+              HasSubstr(std::filesystem::path(file).filename().string() + ">"));
+  for (const std::string& each : {script, file, setup, driver}) std::filesystem::remove(each);
 }
 
 TEST_F(Program, KnowsNoOtherShell) { EXPECT_THROW((void)completion_script(program_, "tcsh"), Error); }

@@ -135,6 +135,8 @@ TEST_F(SeriesCommand, NumbersTheSeriesOfAFolder) {
   EXPECT_THAT(list.out, testing::ContainsRegex("1 +1\\.2\\.3 .*\n.*2 +1\\.2\\.4 "));
   EXPECT_EQ(run({"info", path("scan")})["variables"][1], "1.2.4");
   EXPECT_EQ(run({"info", path("scan"), "--series", "2"})["axes"][0]["size"], 8);
+  expect_refused(2, {"info", path("scan"), "--var", "2"}, {"--var 2", "DICOM", "expected --series"});
+  expect_refused(2, {"info", path("scan/a0.dcm"), "--var", "2"}, {"--var 2", "DICOM", "expected --series"});
 }
 
 TEST_F(SeriesCommand, LeavesAsideColoursAndFilesOfTheFinder) {
@@ -254,6 +256,8 @@ TEST_F(SeriesCommand, LiesAtTheTimesThatAreGiven) {
   EXPECT_EQ(run(of_frames({"info", "--times", "1:12:12"}, {}))["axes"][3]["last"], 12);
   EXPECT_EQ(run(of_frames({"info", "--times", "0,1,2,3,4,5,6,7,8,9,10,20"}, {}))["axes"][3]["coordinates"][11], 20);
   expect_refused(2, of_frames({"info", "--times", "0,1"}, {}), {"--times has 2 numbers for 12 files"});
+  expect_refused(2, of_frames({"info", "--time-step", "1e-320"}, {}), {"--time-step is 1e-320"});
+  expect_refused(2, of_frames({"info", "--series", "foo"}, {}), {"--series foo", "no DICOM", "--var"});
   expect_refused(2, of_frames({"info", "--times", "0:1:12", "--time-step", "1"}, {}), {"one of the two"});
   expect_refused(2, of_frames({"info", "--time-step", "none"}, {}), {"--time-step", "none"});
   expect_refused(2, of_frames({"info", "--time-step", "0"}, {}), {"--time-step is 0"});

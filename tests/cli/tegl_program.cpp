@@ -115,7 +115,11 @@ RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const 
   RunResult result;
   const auto [terminal, other_side] = open_terminal();
   if (terminal < 0) return result;
-  const winsize size{.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+  winsize size{.ws_row = 24, .ws_col = 80, .ws_xpixel = 0, .ws_ypixel = 0};
+  for (const std::string& setting : environment) {
+    if (setting.starts_with("LINES=")) size.ws_row = static_cast<unsigned short>(std::stoi(setting.substr(6)));
+    if (setting.starts_with("COLUMNS=")) size.ws_col = static_cast<unsigned short>(std::stoi(setting.substr(8)));
+  }
   ioctl(other_side, TIOCSWINSZ, &size);
   const pid_t child = start(arguments, [&, terminal = terminal, other_side = other_side] {
     setenv("TERM", "xterm", 1);

@@ -29,7 +29,7 @@ RunResult run_tegl(const std::vector<std::string>& arguments, const std::functio
 /// Whether the machine gives pseudo-terminals, which run_tegl_on_terminal needs.
 bool has_terminals();
 
-/// A run with standard output and error on a pseudo terminal (TERM=xterm), `environment` added ("NAME=value").
+/// A run on a pseudo terminal (TERM=xterm; 80 x 24, or COLUMNS x LINES), with `environment` added ("NAME=value").
 /// If `interrupt_at` is not empty, sends SIGINT as soon as that text appeared. All that was shown is in `out`.
 RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
                                const std::string& interrupt_at = "");

@@ -50,6 +50,30 @@ TEST_F(Terminal, ShowsNoColoursWhereNoneAreWanted) {
   }
 }
 
+TEST_F(Terminal, ShowsNoProgressWhereItCannotBeWrittenOver) {
+  for (const char* setting : {"TERM=dumb", "TERM="}) {
+    const RunResult run = run_tegl_on_terminal(contour({"--no-check"}), {setting, "NO_COLOR=1"});
+    EXPECT_EQ(run.exit, 0);
+    EXPECT_THAT(run.out, Not(HasSubstr("\x1b"))) << setting;
+    EXPECT_THAT(run.out, Not(HasSubstr("%"))) << setting;
+  }
+}
+
+TEST_F(Terminal, KeepsItsProgressInOneLineOfNarrowWindows) {
+  for (const std::size_t columns : {2, 3, 7, 12, 20, 24, 30, 200}) {
+    SCOPED_TRACE(columns);
+    const RunResult run = run_tegl_on_terminal(contour({"--no-check"}), {"COLUMNS=" + std::to_string(columns)});
+    EXPECT_EQ(run.exit, 0);
+    const std::string bar = run.out.substr(0, run.out.rfind("\r\x1b[K"));
+    EXPECT_THAT(bar, HasSubstr("\x1b[K"));
+    for (std::size_t at = 0; at < bar.size();) {
+      const std::size_t end = std::min(bar.find("\r\x1b[K", at), bar.size());
+      EXPECT_LT(end - at, columns) << bar.substr(at, end - at);
+      at = end + 4;
+    }
+  }
+}
+
 TEST_F(Terminal, ShowsNoProgressInQuietOrJsonRuns) {
   EXPECT_EQ(run_tegl_on_terminal(contour({"--quiet"}), {}).out, "");
   EXPECT_THAT(run_tegl_on_terminal(contour({"--json"}), {}).out, Not(HasSubstr("\x1b")));

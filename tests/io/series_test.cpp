@@ -239,6 +239,46 @@ TEST_F(Series, OfNetcdfHasTheDirectionThatAllFilesGiveItsNewAxis) {
   }
 }
 
+TEST_F(Series, ConvertsTheTimesOfHeadersAndNeverTheirUnitAlone) {
+  const auto add_times = [&](const std::string& unit) {
+    files_.clear();
+    for (const int k : {0, 1, 3})
+      add("frame_" + std::to_string(k) + ".nrrd",
+          nrrd({2, 2, 2, 1}, k,
+               "axis mins: 0 0 0 " + std::to_string(k) + "\nunits: \"\" \"\" \"\" \"" + unit + "\"\n"));
+  };
+  const auto unit_of = [&](const SeriesOptions& options) {
+    return image_as<std::int16_t, 4>(read_series(files_, options).image).grid.axes[3].unit;
+  };
+  SeriesOptions options;
+  add_times("days since 2000-01-01");
+  options.unit = "h";
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 24, 72));
+  EXPECT_EQ(unit_of(options), "h since 2000-01-01");
+  options.unit = "hours since 2000-01-01";
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 24, 72));
+  EXPECT_EQ(unit_of(options), "hours since 2000-01-01");
+  options.unit = "day";
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 3));
+  for (const char* const other : {"mm", "months", "hours since 1999-01-01"}) {
+    options.unit = other;
+    expect_refused(ErrorCode::InvalidArgument, {"frame_0.nrrd", "days since 2000-01-01", other}, options);
+  }
+  add_times("ms");
+  options.unit = "s";
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 0.001, 0.003));
+  options.unit = "ms";
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 3));
+  options.unit = "h";  // of what is given there is no other unit
+  options.coordinates = {0, 1, 2};
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 2));
+  EXPECT_EQ(unit_of(options), "h");
+  options.coordinates = {};
+  add_times("");
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 3));
+  EXPECT_EQ(unit_of(options), "h");
+}
+
 TEST_F(Series, OfRawValuesIsReadByTheLayoutOfOneFile) {
   for (int k = 0; k < 3; ++k) {
     std::vector<float> values(24);
@@ -310,6 +350,8 @@ TEST_F(Series, OptionsThatDoNotFitAreRefused) {
   options.coordinates = {};
   options.step = 0;
   expect_refused(ErrorCode::InvalidArgument, {"step of 0"}, options);
+  options.step = 1e-320;
+  expect_refused(ErrorCode::InvalidArgument, {"step of 1e-320", "2.2e-308"}, options);
   options = {};
   options.order = SeriesOrder::coordinate;
   expect_refused(ErrorCode::UnsupportedData, {"does not say where it lies"}, options);

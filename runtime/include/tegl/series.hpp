@@ -24,10 +24,12 @@ enum class SeriesOrder {
 
 /// How files become one image.
 struct SeriesOptions {
-  std::string variable;                    ///< netCDF: as in ReadImageOptions, of every file
-  std::vector<double> coordinates;         ///< where each file lies, as they are listed; empty: see read_series
-  std::optional<double> step;              ///< instead of them: 0, step, 2 step, ...
-  std::string unit;                        ///< of the new axis; empty: the files' own
+  std::string variable;             ///< netCDF: as in ReadImageOptions, of every file
+  std::vector<double> coordinates;  ///< where each file lies, as they are listed; empty: see read_series
+  std::optional<double> step;       ///< instead of them: 0, step, 2 step, ...
+  /// Of the new axis; empty: the files' own. Where the files give times in a unit, these are converted (ms, s, min, h,
+  /// d, "since" the same moment if that is said); another unit is an error.
+  std::string unit;
   SeriesOrder order = SeriesOrder::given;  ///< of the files
   std::optional<RawLayout> raw;            ///< files of nothing but values: how each one of them is laid out
   Progress progress;                       ///< of read_series, over all files
@@ -91,7 +93,7 @@ std::string series_hint(const Error& error, const SeriesOptions& options, const 
 ///
 /// Errors, naming the file and what differs from the first: UnsupportedData (files that do not fit together; more than
 /// 3 axes), InvalidArgument (no file; coordinates that are not one for each file or not monotone, both `coordinates`
-/// and `step`), and those of read_image.
+/// and `step`, a unit that the files' own does not become), and those of read_image.
 ReadSeriesResult read_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
 /// The same to be read layer by layer, a file for each layer: what is larger than memory as a whole. Values as in

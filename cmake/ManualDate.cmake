@@ -1,0 +1,28 @@
+# The date of the manual page: SOURCE_DATE_EPOCH where a packager sets it; else that of the version's release in the
+# changelog ("## [1.2.0] - 2026-11-30"), of the changelog's last commit, or of the file.
+function(tegl_manual_date result changelog version)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${changelog}")
+  set(date "")
+  if(DEFINED ENV{SOURCE_DATE_EPOCH})
+    string(TIMESTAMP date "%Y-%m-%d" UTC)  # of that
+  endif()
+  set(released "## \\[${version}\\] - ([0-9]+-[0-9]+-[0-9]+)")
+  if(NOT date)
+    file(STRINGS "${changelog}" lines REGEX "^## \\[")
+    if("${lines}" MATCHES "${released}")
+      set(date "${CMAKE_MATCH_1}")
+    endif()
+  endif()
+  if(NOT date)
+    find_package(Git QUIET)
+    if(GIT_FOUND)
+      get_filename_component(folder "${changelog}" DIRECTORY)
+      execute_process(COMMAND "${GIT_EXECUTABLE}" log -1 --format=%cs -- "${changelog}" WORKING_DIRECTORY "${folder}"
+        OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    endif()
+  endif()
+  if(NOT date)
+    file(TIMESTAMP "${changelog}" date "%Y-%m-%d" UTC)
+  endif()
+  set(${result} "${date}" PARENT_SCOPE)
+endfunction()
