@@ -11,6 +11,15 @@ function(tegl_warnings target)
   endif()
 endfunction()
 
+# tegl_precompile(target headers...): with TEGL_PRECOMPILE_HEADERS, headers of others are read once per target and not once
+# per source. Not under a compiler launcher: ccache, for one, could keep nothing then.
+function(tegl_precompile target)
+  if(TEGL_PRECOMPILE_HEADERS AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <span>
+      <string> <vector> ${ARGN})
+  endif()
+endfunction()
+
 # tegl_add_test(name sources... LIBS libraries...): a GoogleTest program, its cases known to ctest one by one.
 function(tegl_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LIBS")

@@ -26,29 +26,59 @@ missing_packages() {
   done
 }
 
+# system_name: what the system says it is called.
+system_name() { (. /etc/os-release 2>/dev/null && echo "${PRETTY_NAME:-unknown}") || echo "unknown"; }
+
+# is_debian_12: whether this is the system that tegl is built and tested on.
+is_debian_12() { (. /etc/os-release 2>/dev/null && [[ ${ID:-} == debian && ${VERSION_ID:-} == 12 ]]); }
+
+# elsewhere: what helps on a system that lacks packages.
+elsewhere() {
+  printf '%s' "tegl is built and tested on Debian 12, and this is $(system_name). Either get them by other means and build " \
+    "by hand ($root/docs/getting-started.md), or work in a container: " \
+    "docker run -it -v '$root:/tegl' -w /tegl debian:12"
+}
+
 # install_packages PACKAGE...: installs the Debian packages that are missing. If none is, it touches nothing and needs
 # neither network nor root.
 install_packages() {
-  local missing as_root=()
-  command -v apt-get >/dev/null || fail "needs apt-get (Debian 12 or a relative); packages to install by other means: $*"
+  local missing unknown as_root=() current=yes
+  command -v apt-get >/dev/null || fail "no apt-get here to install packages with: $*. $(elsewhere)"
   mapfile -t missing < <(missing_packages "$@")
   if [[ ${#missing[@]} -eq 0 ]]; then
     echo "Set-up: all $# packages are installed."
     return
   fi
+  is_debian_12 || say "This is $(system_name). tegl is built and tested on Debian 12; packages may be missing here"
   say "Installing ${#missing[@]} of $# Debian packages: ${missing[*]}"
   if [[ $(id -u) -ne 0 ]]; then
-    command -v sudo >/dev/null || fail "not root, and no sudo: let root run: apt-get install --no-install-recommends ${missing[*]}"
+    command -v sudo >/dev/null || fail "not root, and no sudo. Let root run, once, and then begin again:
+  apt-get update && apt-get install --no-install-recommends ${missing[*]}"
     as_root=(sudo)
   fi
-  "${as_root[@]}" apt-get update
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+  "${as_root[@]}" apt-get -o APT::Update::Error-Mode=any update || current=
+  mapfile -t unknown < <(unknown_packages "${missing[@]}")
+  if [[ ${#unknown[@]} -ne 0 ]]; then
+    [[ -n $current ]] || fail "the lists of packages could not be fetched (see above: is there a network?), and these are not known without: ${unknown[*]}"
+    fail "packages that are not to be had here: ${unknown[*]}. $(elsewhere)"
+  fi
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" ||
+    fail "apt-get could not install them: see above. If the network failed, begin again: what was fetched is kept"
   mapfile -t missing < <(missing_packages "$@")
   [[ ${#missing[@]} -eq 0 ]] || fail "apt-get succeeded, but these packages are still not installed: ${missing[*]}"
 }
 
-# The number of compilers to run at a time: one per core, but at most one per 2 GiB of memory, which is what
-# the sources that include ITK need at worst. JOBS overrides it.
+# unknown_packages PACKAGE...: those of them that apt has nothing to install of, one per line.
+unknown_packages() {
+  local package policy
+  for package in "$@"; do
+    policy=$(apt-cache policy "$package" 2>/dev/null) || true
+    [[ $policy =~ Candidate:\ [^\(] ]] || echo "$package"
+  done
+}
+
+# The number of compilers to run at a time: one per core, but at most one per 1.2 GB of memory, which is what the
+# largest sources need. JOBS overrides it.
 job_count() {
   if [[ -n ${JOBS:-} ]]; then
     echo "$JOBS"
@@ -56,11 +86,11 @@ job_count() {
   fi
   local cores by_memory
   cores=$(nproc)
-  by_memory=$(awk '/^MemAvailable:/ { n = int($2 / 2097152); print n < 1 ? 1 : n }' /proc/meminfo)
+  by_memory=$(awk '/^MemAvailable:/ { n = int($2 / 1200000); print n < 1 ? 1 : n }' /proc/meminfo)
   echo $((cores < by_memory ? cores : by_memory))
 }
 
-# build PRESET [TARGET...]: configures and builds build/PRESET; generates the tables on the way.
+# build PRESET [TARGET...]: configures and builds it in build/PRESET (`program`: build/release); generates the tables on the way.
 build() {
   local preset=$1
   shift
@@ -68,8 +98,11 @@ build() {
   if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
   fi
-  say "Configuring build/$preset"
+  local version
+  version=$(cmake --version | sed -n 's/^cmake version //p')
+  printf '3.25\n%s\n' "$version" | sort -C -V || fail "CMake 3.25 or later is needed; $(command -v cmake) is $version"
+  say "Configuring the preset $preset"
   cmake --preset "$preset"
-  say "Building build/$preset with $(job_count) jobs (the build runs the generator for 2D, 3D and 4D first)"
+  say "Building the preset $preset with $(job_count) jobs (the build runs the generator for 2D, 3D and 4D first)"
   cmake --build --preset "$preset" -j "$(job_count)" ${1:+--target "$@"}
 }
