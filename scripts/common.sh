@@ -56,16 +56,29 @@ install_packages() {
   apt-get update && apt-get install --no-install-recommends ${missing[*]}"
     as_root=(sudo)
   fi
-  "${as_root[@]}" apt-get -o APT::Update::Error-Mode=any update || current=
+  fetch_package_lists "${as_root[@]}" || current=
   mapfile -t unknown < <(unknown_packages "${missing[@]}")
   if [[ ${#unknown[@]} -ne 0 ]]; then
-    [[ -n $current ]] || fail "the lists of packages could not be fetched (see above: is there a network?), and these are not known without: ${unknown[*]}"
+    [[ -n $current ]] || fail "not all lists of packages could be fetched (see above), and these are in none that is there: ${unknown[*]}"
     fail "packages that are not to be had here: ${unknown[*]}. $(elsewhere)"
   fi
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}" ||
     fail "apt-get could not install them: see above. If the network failed, begin again: what was fetched is kept"
   mapfile -t missing < <(missing_packages "$@")
   [[ ${#missing[@]} -eq 0 ]] || fail "apt-get succeeded, but these packages are still not installed: ${missing[*]}"
+}
+
+# fetch_package_lists [sudo]: what packages there are. Fails if one of the sources could not be asked, and ends if none could.
+fetch_package_lists() {
+  local log status=0
+  log=$(mktemp)
+  "$@" apt-get -o APT::Update::Error-Mode=any update 2>&1 | tee "$log" || status=$?
+  if [[ $status -ne 0 ]] && ! grep -qE '^(Hit|Get):' "$log"; then
+    rm "$log"
+    fail "no list of packages could be fetched: is there a network (behind a proxy: is http_proxy set)? Begin again when there is"
+  fi
+  rm "$log"
+  return "$status"
 }
 
 # unknown_packages PACKAGE...: those of them that apt has nothing to install of, one per line.
