@@ -5,7 +5,8 @@ Where scikit-build-core is installed it does the work ([tool.scikit-build] in py
 otherwise the few steps are done here, with CMake and the standard library alone: configure, build, install the
 component `python` into a folder, zip that up. Settings, with `pip --config-settings NAME=VALUE`:
 
-    build-dir     a folder to build in, which is kept; one that is configured already is used as it is
+    build-dir     a folder to build in, which is kept; one that is configured already is used as it is, with the
+                  package turned on, so that `build/release` takes what is built there for the program
     cmake-args    further arguments of CMake's configuration, between blanks
 """
 
@@ -79,7 +80,11 @@ def _run(*command):
 
 def _build(build_dir, prefix, settings):
     """Configures (unless that is done), builds, and installs the package into a folder."""
-    if not (build_dir / "CMakeCache.txt").exists():
+    cache = build_dir / "CMakeCache.txt"
+    if cache.exists():
+        if not re.search(r"^TEGL_BUILD_PYTHON:BOOL=(ON|TRUE|YES|1)$", cache.read_text(encoding="utf-8"), re.MULTILINE):
+            _run("cmake", f"-DPython_EXECUTABLE={sys.executable}", "-DTEGL_BUILD_PYTHON=ON", build_dir)
+    else:
         defines = _project()["tool"]["scikit-build"]["cmake"]["define"]
         ninja = ["-G", "Ninja"] if subprocess.run(["ninja", "--version"], capture_output=True, check=False).returncode == 0 \
             else []
