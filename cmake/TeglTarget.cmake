@@ -5,7 +5,7 @@
 function(tegl_warnings target)
   if(NOT TEGL_BUILD_TESTS AND NOT TEGL_WERROR)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_compile_options(${target} PRIVATE -Wno-aggressive-loop-optimizations)
+      target_compile_options(${target} PRIVATE -Wno-aggressive-loop-optimizations -Wno-stringop-overflow)
     endif()
     return()
   endif()
