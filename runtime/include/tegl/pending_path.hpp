@@ -17,6 +17,7 @@ std::filesystem::path place_of(const std::filesystem::path& path);
 /// Errors of all members: WriteFailed, naming the target and the reason.
 class PendingPath {
  public:
+  /// Claims a name beside the target. Errors also where the target is there and no file, or cannot be overwritten.
   explicit PendingPath(const std::filesystem::path& target);
   ~PendingPath();
   PendingPath(const PendingPath&) = delete;
