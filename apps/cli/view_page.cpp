@@ -243,7 +243,7 @@ Thinned thin(Contour<N, double>& contour, std::uint64_t limit, const WorkOptions
     result.simplices += sizes[label];
     ++result.components;
   }
-  contour = select_components(contour, labels, keep);
+  contour = select_components(contour, labels, keep, options.progress);
   return result;
 }
 

@@ -31,8 +31,8 @@ struct EdgeSamples {
 /// goes to the finite end, or to the middle between two infinities.
 template <Value T>
 void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
-/// The same of all 32 edges of a tile of four dimensions, from the values at its 16 corners; of edges that are not
-/// critical: nothing.
+/// The same of all 32 edges of a tile of four dimensions, from the values at its 16 corners; what is written for edges
+/// that are not critical means nothing.
 void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept;
 
 /// Edges in rows of one layer, by how far their rows are from the first (SampleSource::strides), and where they are
@@ -90,7 +90,7 @@ class SampleSource {
   virtual void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept = 0;
 
   /// The same for single edges of the cell along `axes` based at `base`: local edge e of the bit mask `edges`, to
-  /// out[e].
+  /// out[e]. What other places of `out`, which has one for each edge of the cell, are given means nothing.
   virtual void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept = 0;
 
   /// Whether float holds all values.

@@ -484,6 +484,7 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
       }
       local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
     }
+    static_assert(CubeRegions::kMoreTetrahedra >= kMoreSimplices, "map_simplices reads so many behind them");
     const auto tetrahedra = all.tetrahedra(region);
     const std::size_t needed = simplex_count_ + tetrahedra.size() + kMoreSimplices;
     if (simplices_.size() < needed) simplices_.resize(std::max(2 * simplex_count_ + 256, needed));

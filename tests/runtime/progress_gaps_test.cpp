@@ -154,7 +154,7 @@ TEST_F(ProgressGaps, AnyCallCanEndTheWork) {
 /// Files too, of every format that holds the contour; in text and in numbers.
 TEST_F(ProgressGaps, OfReadingFilesAreShort) {
   const auto surface = extract<float>(noise<float, 3>(48, 3).view(), 0.5);
-  // A .gltf is one text that is taken apart as a whole.
+  // A .gltf is one text that is taken apart as a whole: nothing is expected of its gaps.
   const std::vector<std::pair<std::string, double>> files = {
       {"gaps.ply", 0.5}, {"gaps.glb", 0.5}, {"gaps.gltf", 1.0}, {"gaps.vtkhdf", 0.5}};
   for (const auto& [name, share] : files) {
@@ -166,7 +166,8 @@ TEST_F(ProgressGaps, OfReadingFilesAreShort) {
       probe.watch([&](const Progress& progress) { read_mesh(path, progress); });
       expect_sound(probe);
     }
-    EXPECT_LE(probe.longest_share(), share) << "of " << probe.seconds() << " s, after " << probe.longest_after();
+    if (share < 1)
+      EXPECT_LE(probe.longest_share(), share) << "of " << probe.seconds() << " s, after " << probe.longest_after();
     std::size_t seen = 0;
     expect_error(ErrorCode::Cancelled, "cancelled",
                  [&] { read_mesh(path, [&](double fraction) { return ++seen > 0 && fraction < 0.3; }); });

@@ -68,8 +68,8 @@ struct SimplifyOptions {
   std::array<double, N> scale = all_one();
   /// Whether the result gets its error bounds: the vertex attribute "simplification_error". Is done anyway if
   /// max_error is given. With a count or ratio alone, the least largest error is searched for with which the count is
-  /// reached, in some 5 to 35 rounds (but for `fast`); without bounds there is one round, with up to 40 times the
-  /// error.
+  /// reached, in mostly 5 to 35 rounds, 171 at most (but for `fast`); without bounds there is one round, with up to 40
+  /// times the error.
   bool measure = true;
   /// fast: hand out what is no manifold, too.
   bool allow_nonmanifold = false;
@@ -138,8 +138,8 @@ struct SimplifyStats {
 ///
 /// Time: O(S log S), about 5 microseconds for each triangle and 10 for each tetrahedron (facets, vertices: two to three
 /// times that); the error as long for triangles, 8 to 20 microseconds for each tetrahedron and 60 to 130 for each of
-/// the result, in each of up to 12 rounds if there is a `max_error`, and of 5 to 35 if there is a count (a third of
-/// those without the error); with both, in as many as for each. If no round keeps max_error, the result is the
+/// the result, in each of up to 12 rounds if there is a `max_error`, and of mostly 5 to 35 if there is a count (a third
+/// of those without the error); with both, in as many as for each. If no round keeps max_error, the result is the
 /// contour itself, and SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
 Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
