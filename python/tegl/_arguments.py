@@ -320,9 +320,18 @@ def _in_order(mask, data):
     return mask.transpose(*data.dims)
 
 
+def _booleans(mask) -> np.ndarray:
+    """A mask as True and False."""
+    mask = np.asarray(mask)
+    if mask.dtype.kind == "f" and np.isnan(mask).any():
+        raise ValueError("mask has NaN, which is neither True nor False; expected one of these for each sample (xarray's "
+                         "where leaves NaN: use mask.fillna(False))")
+    return mask.astype(bool, copy=False)
+
+
 def _masked(array: np.ndarray, mask) -> np.ndarray:
     """Where the mask is False, values are missing: NaN, in a copy."""
-    mask = np.asarray(mask, dtype=bool)
+    mask = _booleans(mask)
     if mask.shape != array.shape:
         raise ValueError(f"mask has the shape {mask.shape}; expected {array.shape}, that of the array")
     if mask.all():
@@ -359,7 +368,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         data = data.data if isinstance(data.data, np.ndarray) else data.values
     if isinstance(data, np.ma.MaskedArray):
         if np.ma.getmask(data) is not np.ma.nomask:
-            mask = ~np.ma.getmaskarray(data) if mask is None else ~np.ma.getmaskarray(data) & np.asarray(mask, bool)
+            mask = ~np.ma.getmaskarray(data) if mask is None else ~np.ma.getmaskarray(data) & _booleans(mask)
         data = data.data
     array = np.asarray(data)
     ndim = array.ndim

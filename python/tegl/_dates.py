@@ -87,7 +87,12 @@ def _start(unit: str, text: str, is_mixed: bool) -> int:
         digits = zone[1:].replace(":", "")
         hours, minutes = (int(digits), 0) if len(digits) <= 2 else (int(digits[:-2]), int(digits[-2:]))
         rest -= (1 if zone[0] == "+" else -1) * (hours * 3600 + minutes * 60) * _SECOND
-    date = (int(found["year"]), int(found["month"]), int(found["day"]))
+    year = int(found["year"])
+    if is_mixed and year == 0:
+        raise ValueError(f"the unit '{unit}' counts from the year 0, which the standard calendar has not; expected another "
+                         "year, or a number for the coordinate")
+    # Before the year 1 comes the year -1 there, which is 0 in the count of years that calculations go by.
+    date = (year + 1 if is_mixed and year < 0 else year, int(found["month"]), int(found["day"]))
     return _nanoseconds(f"the start of the unit '{unit}'", date, rest, is_mixed)
 
 

@@ -48,6 +48,12 @@ def test_dates_are_cftimes(calendar):
                     assert number(date, unit) == number(date, f"{unit} (standard)")
 
 
+def test_julian_days_are_those_of_astronomers():
+    # The days since noon of 4713-01-01 before Christ; those of the first day of 2000 are known.
+    assert number("2000-01-01T12:00", "days since -4713-01-01 12:00:00") == 2451545
+    assert number("2000-01-01T12:00", "days since -4713-11-24 12:00:00 (proleptic_gregorian)") == 2451545
+
+
 @pytest.mark.parametrize("at, unit, text", [
     ("2000-01-03", "days since then", "the unit 'days since then' counts from 'then', which is no date that is understood; "
      "expected such as 2000-1-1 12:00:00 UTC"),
@@ -57,6 +63,7 @@ def test_dates_are_cftimes(calendar):
     ("2000-01-03", "days since 2000-1-1 CET", "counts from '2000-1-1 CET', which is no date that is understood"),
     ("2000-01-03", "months since 2000-1-1", "whose 'months' have no one length; expected a number"),
     ("2000-01-03", "days since 2000-01-01 (360_day)", "of another calendar; expected a number"),
+    ("2000-01-03", "days since 0000-01-01", "counts from the year 0, which the standard calendar has not"),
     ("1582-10-10", "days since 1-1-1", "a day that the standard calendar leaves out"),
     ("2000-01-03", "h", "is a date, and the axis has the unit 'h'; expected a number"),
     ("in May", "days since 2000-1-1", "the coordinate 'in May' is no number, and no date; expected one"),
@@ -167,6 +174,8 @@ def test_masks_are_aligned_by_their_coordinates():
     assert_same(tegl.contour(data, 0.0, mask=mask[::-1]), expected)
     assert_same(tegl.contour(data, 0.0, mask=mask.isel(x=[3, 1, 0, 2, 6, 5, 4]).transpose("x", "z", "y")), expected)
     assert_same(tegl.contour(data, 0.0, mask=mask.drop_vars("z")), expected)
+    with pytest.raises(ValueError, match="mask has NaN, which is neither True nor False; expected one of these"):
+        tegl.contour(data, 0.0, mask=mask.where(mask))
     with pytest.raises(ValueError, match="mask has other coordinates along 'z' than the array, 1.0 to 9.0; expected those"):
         tegl.contour(data, 0.0, mask=mask.assign_coords(z=mask.z + 1))
 

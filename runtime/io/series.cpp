@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "common.hpp"
 #include "raw_image.hpp"
 #include "readers.hpp"
+#include "time_units.hpp"
 
 namespace tegl {
 
@@ -115,17 +115,21 @@ void require_same(const Member& member, const Member& first) {
 std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAxis& found) {
   const std::vector<SingleAxis>& singles = members.front().grid.single;
   for (std::size_t s = 0; s < singles.size(); ++s) {
+    const std::string& unit = singles[s].axis.unit;
     std::vector<double> coordinates;
     for (const Member& member : members) {
       if (member.grid.single.size() != singles.size()) return {};
-      coordinates.push_back(member.grid.single[s].axis[0]);
+      const Axis& axis = member.grid.single[s].axis;
+      // Many files count from a day of their own, at which all of them are 0.
+      const std::optional<double> at = convert_time(axis[0], axis.unit, unit);
+      if (!at)
+        fail(
+            ErrorCode::UnsupportedData, member.path,
+            "lies along '{}' in '{}'; expected '{}', as {}, what can be converted to it, or coordinates that are given",
+            axis.name, axis.unit, unit, members.front().path.string());
+      coordinates.push_back(*at);
     }
     if (std::all_of(coordinates.begin(), coordinates.end(), [&](double c) { return c == coordinates[0]; })) continue;
-    for (const Member& member : members)
-      if (member.grid.single[s].axis.unit != singles[s].axis.unit)
-        fail(ErrorCode::UnsupportedData, member.path,
-             "lies along '{}' in '{}'; expected '{}', as {}, or coordinates that are given", singles[s].axis.name,
-             member.grid.single[s].axis.unit, singles[s].axis.unit, members.front().path.string());
     found = singles[s];
     for (const Member& member : members)
       if (member.grid.single[s].direction != found.direction) found.direction = AxisDirection::unknown;
@@ -157,43 +161,20 @@ void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder
   }
 }
 
-/// How many seconds a unit of time has, by its name; none for others. (Months and years differ in length.)
-std::optional<double> seconds_of(std::string_view name) {
-  struct Unit {
-    double seconds;
-    std::initializer_list<std::string_view> names;
-  };
-  static const Unit kUnits[] = {{1e-3, {"ms", "msec", "msecs", "millisecond", "milliseconds"}},
-                                {1, {"s", "sec", "secs", "second", "seconds"}},
-                                {60, {"min", "mins", "minute", "minutes"}},
-                                {3600, {"h", "hr", "hrs", "hour", "hours"}},
-                                {86400, {"d", "day", "days"}}};
-  const std::string small = lower(name);
-  for (const Unit& unit : kUnits)
-    if (std::find(unit.names.begin(), unit.names.end(), small) != unit.names.end()) return unit.seconds;
-  return std::nullopt;
-}
-
 /// Where the members lie, in a unit that is asked for instead of that of their headers, and its name: hours since the
 /// same day for days since then.
-std::string converted(std::vector<Member>& members, const std::string& own, const std::string& wanted) {
-  constexpr std::string_view kSince = " since ";
-  const auto split = [&](const std::string& unit) {
-    const std::size_t at = std::min(unit.find(kSince), unit.size());
-    return std::pair(unit.substr(0, at), unit.substr(at));
-  };
-  const auto [from, since] = split(own);
-  const auto [to, of_wanted] = split(wanted);
-  const auto from_seconds = seconds_of(from);
-  const auto to_seconds = seconds_of(to);
-  if (own != wanted && (!from_seconds || !to_seconds || (!of_wanted.empty() && of_wanted != since)))
+std::string converted(std::vector<Member>& members, const std::string& own, const std::string& asked) {
+  if (own == asked) return own;
+  const std::string since = split_time_unit(own).since;
+  const TimeUnit wanted = split_time_unit(asked);
+  const std::string unit = wanted.since.empty() && !since.empty() ? asked + " since " + since : asked;
+  if ((!wanted.since.empty() && wanted.since != since) || !convert_time(0, own, unit))
     fail(ErrorCode::InvalidArgument, members.front().path,
-         "lies along the new axis in '{}' by its header; expected no other unit than that, or one of ms, s, min, h "
-         "and d that it can be converted to, not '{}'",
-         own, wanted);
-  if (own == wanted || *from_seconds == *to_seconds) return to + since;
-  for (Member& member : members) member.at = member.at * *from_seconds / *to_seconds;
-  return to + since;
+         "lies along the new axis in '{}' by its header; expected no other unit than that, or one of ms, s, min, h, d "
+         "and weeks that it can be converted to, not '{}'",
+         own, asked);
+  for (Member& member : members) member.at = *convert_time(member.at, own, unit);
+  return unit;
 }
 
 /// The new axis. Says where each member lies, and sorts them by that if it is asked for.

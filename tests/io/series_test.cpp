@@ -204,6 +204,51 @@ TEST_F(Series, OfNetcdfLiesAtItsTimes) {
   expect_layers_of(read.image, open_series(files_).layers);
 }
 
+/// Files of a day each often count from that day: at 0, all of them.
+TEST_F(Series, OfFilesThatCountFromDaysOfTheirOwnLiesOnOneAxis) {
+  struct Case {
+    std::vector<std::pair<std::string, double>> times;  // unit, value
+    std::vector<double> expected;                       // in the first unit; none: refused
+  };
+  const std::vector<Case> cases = {
+      {{{"days since 2000-01-01", 0}, {"days since 2000-01-02", 0}, {"days since 2000-01-09", 0}}, {0, 1, 8}},
+      {{{"Hours Since 2000-02-28 12:00", 1},
+        {"hours since 2000-02-28 12:30 UTC", 2},
+        {"days  since 2000-3-1T0:0:0.0Z", 0.5}},
+       {1, 2.5, 48}},
+      {{{"hours since 2000-01-01 00:00 +02:00", 0}, {"hours since 2000-01-01", 0}, {"s since 2000-01-01", 7200}},
+       {0, 2, 4}},
+      {{{"days since 1500-01-01", 1}, {"hours since 1500-01-01", 48}, {"days since 1500-01-01", 4}}, {1, 2, 4}},
+      {{{"days since 1500-01-01", 0}, {"days since 1500-01-02", 0}, {"days since 1500-01-09", 0}}, {}},
+      {{{"days since 2000-01-01", 0}, {"days since 2000-01-02 (noleap)", 0}, {"days since 2000-01-03", 0}}, {}},
+      {{{"months since 2000-01-01", 0}, {"months since 2000-02-01", 0}, {"months since 2000-03-01", 0}}, {}},
+      {{{"days since 2000-01-01", 0}, {"days since 2000-02-31", 0}, {"days since 2000-03-01", 0}}, {}},
+      {{{"days since 2000-01-01", 0}, {"days", 1}, {"days", 2}}, {}}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.times[1].first);
+    files_.clear();
+    for (std::size_t k = 0; k < 3; ++k) {
+      files_.push_back(dir_ / ("own_day_" + std::to_string(k) + ".nc"));
+      NcWriter file(files_.back());
+      const std::vector<int> dims = {file.dimension("time", 1), file.dimension("lat", 3), file.dimension("lon", 4)};
+      const int time = file.variable("time", NC_DOUBLE, {dims[0]});
+      const int value = file.variable("temperature", NC_FLOAT, dims);
+      file.text(time, "units", one.times[k].first);
+      file.end();
+      file.values(time, std::vector<double>{one.times[k].second});
+      file.values(value, std::vector<double>(12, 1.0));
+    }
+    if (one.expected.empty()) {
+      expect_refused(ErrorCode::UnsupportedData, {one.times[1].first, "coordinates that are given"}, {});
+      continue;
+    }
+    const ReadImageResult read = read_series(files_);
+    const auto image = image_as<float, 3>(read.image);
+    EXPECT_EQ(image.grid.axes[2].unit, one.times[0].first);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(image.grid.axes[2][k], one.expected[static_cast<std::size_t>(k)]);
+  }
+}
+
 /// What the files say of an axis of one sample each is so of the axis that they make, where all of them say it.
 TEST_F(Series, OfNetcdfHasTheDirectionThatAllFilesGiveItsNewAxis) {
   struct Case {
@@ -260,6 +305,10 @@ TEST_F(Series, ConvertsTheTimesOfHeadersAndNeverTheirUnitAlone) {
   EXPECT_EQ(unit_of(options), "hours since 2000-01-01");
   options.unit = "day";
   EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 3));
+  add_times("Days  Since 2000-01-01");
+  options.unit = "h";
+  EXPECT_THAT(last_axis(options), ElementsAre(0, 24, 72));
+  add_times("days since 2000-01-01");
   for (const char* const other : {"mm", "months", "hours since 1999-01-01"}) {
     options.unit = other;
     expect_refused(ErrorCode::InvalidArgument, {"frame_0.nrrd", "days since 2000-01-01", other}, options);

@@ -586,6 +586,22 @@ class Viewer(unittest.TestCase):
         self.assertLess(drawn["ranges"], 20)
         self.assertGreater(drawn["tetrahedra"], browser.run("return tegl.count()") / 2)
 
+    def test_times_are_the_dates_that_netcdf_means(self):
+        meaning = "return new tegl.app.format.constructor({ name: 'time', unit: arguments[0] }, 0, arguments[2]).meaning(arguments[1])"
+        browser = self.open()
+        for unit, time, text in (
+                ("days since 0001-01-01 00:00:00", 730124, "4 Jan 2000"),  # Julian until 1582
+                ("days since 1-1-1", 577736, "4 Oct 1582"), ("days since 1-1-1", 577737, "15 Oct 1582"),
+                ("days since 1500-2-28", 1, "29 Feb 1500"), ("months since 1950-01-01", 1.5, "15 Feb 1950"),
+                ("days since 0000-01-01", 15, "16 Jan"), ("hours since 1900-1-1 00:00:0.0 UTC", 48, "3 Jan 1900"),
+                ("days since 0001-01-01 (proleptic_gregorian)", 730122, "4 Jan 2000"), ("weeks since 2000-01-01 (standard)", 1, "8 Jan 2000"),
+                ("days since 2000-01-01 (noleap)", 3, ""), ("fortnights since 2000-01-01", 3, ""),
+                ("days since 2000-01-01 CET", 3, ""), ("days", 3, "")):
+            self.assertEqual(browser.run(meaning, unit, time, 1000000), text, (unit, time))
+        for unit, text in (("hours since 2000-01-01 12", "1 Jan 2000, 12:30"),
+                           ("hours since 2000-01-01 00:00 +02:00", "31 Dec 1999, 22:30"), ("ms since 2000-01-01 5:30", "1 Jan 2000, 05:30")):
+            self.assertEqual(browser.run(meaning, unit, 0.5, 1), text)
+
     def test_axes_that_point_down_have_their_low_end_above(self):
         for options, is_down in (([], False), (["--down", "z"], True)):
             tegl("view", self.folder / "balls.vtkhdf", *options, "-o", self.folder / "down.html", "-q")
