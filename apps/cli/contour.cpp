@@ -157,6 +157,11 @@ class ContourCommand final : public Command {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--one-file with {}; expected a file for each isovalue, as in -o 'out_{{iso}}.vtkhdf'",
                               facets_ ? "--facets" : "--stream or --raw"));
+    for (const char* const place : {"{iso}", "{n}"})
+      if (output_.find(place) != std::string::npos)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--output is '{}' with --one-file; expected a name without {}, as there is one file",
+                                output_, place));
   }
 
   /// One object for one isovalue, a list for several.

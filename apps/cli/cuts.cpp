@@ -36,15 +36,14 @@ std::pair<std::string, std::string_view> halves(std::string_view option, const s
   return {argument.substr(0, equals), std::string_view(argument).substr(equals + 1)};
 }
 
-/// `count` numbers from `first` to `last`. Those that are meant to have few digits, such as 0.3 or 5, have them: a last
+/// `count` numbers from `first` to `last`, these two as they are. Those between them that are meant to have few digits, such as 0.3 or 5, have them: a last
 /// bit more or less would be another side of the samples that equal the isovalue.
 std::vector<double> even_numbers(double first, double last, std::size_t count) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(first), std::abs(last));
-  std::vector<double> numbers;
-  for (std::size_t i = 0; i + 1 < count; ++i) {
-    // Halves of the step, as it may be beyond the largest number.
+  std::vector<double> numbers = {first};
+  for (std::size_t i = 1; i + 1 < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double value = first + 2 * (along * (last / 2 - first / 2));
+    const double value = first * (1 - along) + last * along;  // their difference may be beyond the largest number
     const double meant = std::abs(value) <= rounding ? 0.0 : *parse_number(fmt::format("{:.12g}", value));
     numbers.push_back(std::abs(meant - value) <= rounding ? meant : value);
   }

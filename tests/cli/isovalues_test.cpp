@@ -196,6 +196,7 @@ TEST_F(Isovalues, ThatCannotBeAreRefused) {
   expect_refused(2, {"--iso", "0,1,0", "-o", path("out.ply")}, {"--iso has 0 twice"});
   expect_refused(2, {"--iso", "0,", "-o", path("out.ply")}, {"--iso"});
   expect_refused(2, {"--iso", "0", "--one-file", "-o", path("out.ply")}, {"--one-file with one isovalue"});
+  expect_refused(2, {"--iso", "0,1", "--one-file", "-o", path("out_{iso}.ply")}, {"expected a name without {iso}"});
   expect_refused(2, {"--iso", "0,1", "--one-file", "--facets", "-o", path("out.vtu")}, {"--one-file with --facets"});
   const RunResult run = run_tegl({"slice", ball_, "--iso", "0,1", "--at", "z=5", "-o", path("out.ply")});
   EXPECT_EQ(run.exit, 2);

@@ -126,6 +126,9 @@ TEST(Cuts, ARangeHasTheNumbersThatAreMeant) {
   EXPECT_THAT(parse_numbers("--iso", "0:1:4"), ElementsAre(0, 1.0 / 3, 2.0 / 3, 1));
   EXPECT_THAT(parse_numbers("--iso", "6:1:3"), ElementsAre(6, 3.5, 1));
   EXPECT_THAT(parse_numbers("--iso", "-1.5e308:1.5e308:3"), ElementsAre(-1.5e308, 0, 1.5e308));
+  EXPECT_THAT(parse_numbers("--iso", "1e-10:1e6:3"), ElementsAre(1e-10, 500000, 1e6)) << "ends are as they are";
+  EXPECT_THAT(parse_numbers("--iso", "0.30000000000000004:1:2"), ElementsAre(0.30000000000000004, 1));
+  for (const double number : parse_numbers("--iso", "-1e308:1e308:21")) EXPECT_TRUE(std::isfinite(number));
   const std::vector<double> whole = parse_numbers("--iso", "-1000:1000:2001");
   for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_EQ(whole[i], static_cast<double>(i) - 1000);
   const std::vector<double> tenths = parse_numbers("--iso", "0:100:1001");
