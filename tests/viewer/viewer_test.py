@@ -489,6 +489,17 @@ class Viewer(unittest.TestCase):
         browser = self.view("told", self.folder / "saved.ply", "--world", "lps")
         self.assertEqual(ends(browser), "RLAPIS")
         self.assertLess(browser.run(side), 0)
+        # One that is left-handed is no mirror image: seen from the front and with the head above, right is at the left.
+        browser = self.view("left", self.folder / "saved.ply", "--world", "LAS")
+        self.assertEqual(ends(browser), "RLPAIS")
+        self.assertFalse(browser.run(tegl_draw.replace("at(0.5) < at(-0.5)", "tegl.app.stage.scale[0] > 0")))
+        self.assertGreater(browser.run(side), 0)
+        x = "return document.querySelectorAll('.axis-label b')[arguments[0]].getBoundingClientRect().x"
+        self.assertLess(browser.run(x, 0), browser.run(x, 1))  # R, L
+        # What is turned around says so.
+        self.assertNotIn("mirror", browser.element("#world").text)
+        browser.element("#flip").click()
+        self.assertIn("Shown as in a mirror", browser.element("#world").text)
         # Worlds that differ are not mixed silently.
         write_nrrd(self.folder / "lps.nrrd", (8, 8, 8), lambda x, y, z: 3 - ((x - 4)**2 + (y - 4)**2 + (z - 4)**2)**0.5,
                    'space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace units: "mm" "mm" "mm"\n')

@@ -36,6 +36,7 @@ export class Panel {
     $('flip').addEventListener('change', () => {
       stage.isFlipped = $('flip').checked;
       stage.arrange();
+      this.showWorld();
     });
     $('stretch').addEventListener('dblclick', () => {
       $('stretch').value = 0;
@@ -132,7 +133,8 @@ export class Panel {
     const { stage } = this.app;
     const isScan = !stage.isFlat && stage.axes.every(({ unit }) => unit.trim().toLowerCase() === 'mm');
     $('world').textContent = stage.world
-      ? `Sides of the patient, as the file says (${stage.world}): R right, L left; A front, P back; S head, I feet.`
+      ? `Sides of the patient, as the file says (${stage.world}): R right, L left; A front, P back; S head, I feet.${
+        stage.isMirrored ? ' Shown as in a mirror, as an axis is turned around.' : ''}`
       : stage.worlds.length > 1 ? `Sides of the patient: the files differ (${stage.worlds.join(', ')}).`
       : isScan ? 'Where left and right are is not known: no file says it (saved contours never do; tegl view --world RAS).' : '';
   }

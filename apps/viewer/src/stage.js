@@ -97,7 +97,11 @@ export class Stage {
   /** Places all by the scale of the axes. */
   arrange() {
     this.scale = scales(this.axes, this.extents);
+    // x, y and z are drawn right-handed: a left-handed world would be its mirror image.
+    const isLeftHanded = [...(this.world ?? '')].filter((letter) => 'LPI'.includes(letter)).length % 2 === 1;
+    if (isLeftHanded) this.scale[0] *= -1;
     this.scale[this.isFlat ? 1 : 2] *= this.isFlipped ? -this.stretch : this.stretch;
+    this.isMirrored = this.scale.filter((scale) => scale < 0).length % 2 === 1 !== isLeftHanded;
     for (const layer of this.layers) layer.place(this.center, this.scale);
     this.sides = this.extents.map((extent, a) => Math.max(1e-6, Math.abs(extent * this.scale[a])));
     this.box.scale.set(this.sides[0], this.sides[1], this.sides[2] ?? 1e-6);
