@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// STL and OBJ through assimp. STL repeats a vertex for every triangle that has it, and so does assimp; vertices with
+// STL through assimp. STL repeats a vertex for every triangle that has it, and so does assimp; vertices with
 // equal coordinates, bit by bit, become one (assimp's own joining has an absolute tolerance, which closes what is
 // open).
 #include <array>
@@ -53,7 +53,7 @@ class Joiner {
 
 }  // namespace
 
-Mesh read_with_assimp(const fs::path& path, ReadProgress& progress) {
+Mesh read_stl(const fs::path& path, ReadProgress& progress) {
   constexpr std::size_t kStlTriangle = 50;  // bytes; in text it takes more
   Assimp::Importer importer;
   const aiScene* scene =
@@ -61,23 +61,16 @@ Mesh read_with_assimp(const fs::path& path, ReadProgress& progress) {
   if (scene == nullptr) fail(ErrorCode::MalformedFile, path, "cannot be read ({})", importer.GetErrorString());
   Mesh mesh;
   Joiner joiner(mesh);
-  const auto add = [&](unsigned type, unsigned corners) {
-    for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-      const aiMesh& part = *scene->mMeshes[m];
-      if ((part.mPrimitiveTypes & type) == 0) continue;
-      for (unsigned f = 0; f < part.mNumFaces; ++f) {
-        for (unsigned corner = 0; corner < corners; ++corner)
-          mesh.simplices.push_back(joiner.number_of(part.mVertices[part.mFaces[f].mIndices[corner]]));
-        progress.add_rows(f, kStlTriangle);
-      }
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& part = *scene->mMeshes[m];
+    if ((part.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      for (unsigned corner = 0; corner < 3; ++corner)
+        mesh.simplices.push_back(joiner.number_of(part.mVertices[part.mFaces[f].mIndices[corner]]));
+      progress.add_rows(f, kStlTriangle);
     }
-  };
-  add(aiPrimitiveType_TRIANGLE, 3);
-  if (mesh.simplices.empty()) {
-    mesh.dim = 1;
-    add(aiPrimitiveType_LINE, 2);
   }
-  if (mesh.simplices.empty()) fail(ErrorCode::UnsupportedData, path, "no triangles, no lines; expected a surface");
+  if (mesh.simplices.empty()) fail(ErrorCode::UnsupportedData, path, "no triangles; expected a surface");
   mesh.axis_names.resize(3);
   mesh.axis_units.resize(3);
   return mesh;

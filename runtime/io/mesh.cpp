@@ -9,6 +9,7 @@
 #include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
+#include "obj_reader.hpp"
 
 namespace tegl {
 
@@ -209,7 +210,8 @@ Mesh read_mesh(const fs::path& path, const Progress& progress) {
   Mesh mesh = format.extension == ".ply"      ? read_ply(path, read)
               : format.extension == ".vtkhdf" ? read_vtkhdf(path, read)
               : is_gltf(format)               ? read_gltf(path, read)
-                                              : read_with_assimp(path, read);
+              : format.extension == ".obj"    ? read_obj(path, read)
+                                              : read_stl(path, read);
   check_indices(mesh, path);
   tick(progress, 1.0, path);
   return mesh;

@@ -49,8 +49,8 @@ std::uint32_t stl_triangle_count(std::uint64_t triangles, const std::filesystem:
 
 void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
 
-/// STL and OBJ: triangles, or segments where there are none; vertices are joined where their coordinates are equal.
-Mesh read_with_assimp(const std::filesystem::path& path, ReadProgress& progress);
+/// Vertices are joined where their coordinates, which are float, are equal.
+Mesh read_stl(const std::filesystem::path& path, ReadProgress& progress);
 
 /// Name or unit of an axis; "" where the mesh has none.
 inline const std::string& axis_text(const std::vector<std::string>& texts, int axis) {

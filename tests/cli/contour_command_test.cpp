@@ -95,6 +95,19 @@ TEST_F(Contour, GoesIntoStlAndObjWhereTheseHoldIt) {
   EXPECT_THAT(files(), ElementsAre("ball.nrrd", "balls.nii", "disc.nrrd", "line.obj", "part.obj", "part.stl"));
 }
 
+TEST_F(Contour, OfIntegersIsAsSoundInObjAsItWasMade) {
+  Samples integers = noise({9, 10, 11}, 5);
+  for (float& value : integers.values) value = std::floor(std::fmod(value, 7.0F));
+  const nlohmann::json made =
+      contour(write("integers.nrrd", nrrd_bytes_uint8(integers)), "3", "out.obj", {"--close", "--normals"});
+  EXPECT_GT(made["degenerate_simplices"], 100) << "vertices at the place of others";
+  const RunResult run = run_tegl({"check", path("out.obj"), "--require", "closed", "--json"});
+  ASSERT_EQ(run.exit, 0) << run.out << run.err;
+  nlohmann::json found = run.json();
+  found.erase("seconds");
+  for (const auto& [key, value] : found.items()) EXPECT_EQ(value, made[key]) << key;
+}
+
 TEST_F(Contour, ReportsEveryKey) {
   const nlohmann::json report = contour(write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2))), "0", "out.glb");
   for (const char* key : {"dim", "vertices", "simplices", "components", "euler", "boundary_simplices",

@@ -164,6 +164,13 @@ TEST(Fuzz, Ply) {
        read_as_mesh);
 }
 
+TEST(Fuzz, Obj) {
+  fuzz("a.obj", mesh_bytes(random_mesh(2, 3, 20, 30, 1, true), "a.obj"), read_as_mesh);
+  fuzz("b.obj", mesh_bytes(random_mesh(1, 2, 20, 30, 1), "a.obj"), read_as_mesh);
+  fuzz("c.obj", "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nvn 0 0 1\r\nf 1//1 -2//-1 \\\r\n3/1/1\r\nl 1 2 3 # end\r\n",
+       read_as_mesh);
+}
+
 TEST(Fuzz, Gltf) {
   fuzz("a.gltf", mesh_bytes(random_mesh(2, 3, 20, 30, 1), "a.gltf"), read_as_mesh);
   fuzz("b.glb", mesh_bytes(random_mesh(1, 2, 20, 30, 1), "a.glb"), read_as_mesh);

@@ -357,7 +357,7 @@ TEST(Mesh, ReadsPlyOfOtherPrograms) {
   EXPECT_THAT(std::vector<Index>(edges.simplices.begin(), edges.simplices.end()), testing::ElementsAre(1, 0));
 }
 
-TEST(Mesh, StlAndObjAreJoinedWhereCoordinatesAreEqual) {
+TEST(Mesh, StlIsJoinedWhereCoordinatesAreEqual) {
   TempDir dir;
   std::string stl = "solid tetrahedron\n";
   const std::array<const char*, 4> corners = {"0 0 0", "1 0 0", "0 1 0", "0 0 1e-7"};
@@ -370,8 +370,6 @@ TEST(Mesh, StlAndObjAreJoinedWhereCoordinatesAreEqual) {
   const Mesh mesh = read_mesh(dir / "a.stl");
   EXPECT_EQ(mesh.coordinates.size(), 12U);
   EXPECT_EQ(mesh.simplices.size(), 12U);
-  write_file(dir / "a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  EXPECT_EQ(read_mesh(dir / "a.obj").simplices.size(), 6U);
 }
 
 TEST(Mesh, GltfNodesPlaceTheirMeshes) {
@@ -435,8 +433,8 @@ TEST(Mesh, FailedWritingLeavesNothingAndKeepsTheOldFile) {
     EXPECT_EQ(dir.files(), 1U);
     write_mesh(mesh, dir / name);
     EXPECT_EQ(dir.files(), 1U);
-    const bool has_numbering = std::string(name) != "a.stl" && std::string(name) != "a.obj";
-    if (has_numbering) expect_same(read_mesh(dir / name), name[2] == 'g' ? as_floats(mesh) : mesh);
+    const bool has_all = std::string(name) != "a.stl" && std::string(name) != "a.obj";
+    if (has_all) expect_same(read_mesh(dir / name), name[2] == 'g' ? as_floats(mesh) : mesh);
     EXPECT_EQ(read_mesh(dir / name).simplices.size(), mesh.simplices.size());
     fs::remove(dir / name);
     fs::create_directory(dir / name);

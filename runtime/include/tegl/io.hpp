@@ -218,11 +218,14 @@ class ContourFile final : public ContourSink<N, Real> {
 };
 
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
-/// triangles; glTF: nodes applied). Of .stl and .obj come triangles (.obj: or segments, if there are none) with
-/// coordinates as float, where vertices with equal coordinates become one, and nothing else; empty ones are refused.
+/// triangles; glTF: nodes applied). Of .stl come triangles with coordinates as float, where vertices with equal
+/// coordinates become one, and nothing else. Of .obj come the vertices as they are numbered, with all digits, and
+/// triangles, polygons fanned, or segments, if there are none; normals where every corner of a face names the one of
+/// its vertex's number. Empty ones of these two are refused.
 /// Normals are read where one of the other formats has them for all vertices, and so are attributes: of other
 /// programs any numbers by a name of their own (PLY: scalar properties; VTKHDF: arrays of one or two dimensions; glTF:
-/// _NAME as float). What write_mesh wrote to these comes back with the same numbering, names, units and isovalue.
+/// _NAME as float). What write_mesh wrote to these comes back with the same numbering, names, units and isovalue; to
+/// .obj with the same numbering.
 /// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge, Cancelled.
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
