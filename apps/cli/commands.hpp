@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "console.hpp"
@@ -47,9 +48,12 @@ class Command {
   /// What is worked on: FILE, or all that are one image.
   [[nodiscard]] InputFiles inputs() const { return {worked_on_}; }
   [[nodiscard]] bool json() const { return json_; }
-  /// What there is to say of the images that were read, unless silence is asked for.
+  /// What there is to say of the images that were read and of what was written, unless silence is asked for.
   [[nodiscard]] std::vector<std::string> remarks() const {
-    return quiet_ ? std::vector<std::string>() : images_.remarks();
+    if (quiet_) return {};
+    std::vector<std::string> all = images_.remarks();
+    all.insert(all.end(), remarks_.begin(), remarks_.end());
+    return all;
   }
 
  protected:
@@ -77,6 +81,10 @@ class Command {
   [[nodiscard]] OpenLayersResult open();
   /// Throws FileNotFound unless the files that are worked on can be read.
   void require_inputs() const;
+  /// Keeps a remark for the end; an empty one is none.
+  void remark(std::string text) {
+    if (!text.empty()) remarks_.push_back(std::move(text));
+  }
 
  private:
   void take_order(const std::vector<std::filesystem::path>& files);
@@ -87,6 +95,7 @@ class Command {
   std::vector<std::string> worked_on_ = {""};
   Files files_kind_;
   ImageOptions images_;
+  std::vector<std::string> remarks_;
   bool json_ = false;
   bool quiet_ = false;
 };

@@ -113,7 +113,7 @@ class ComponentsCommand final : public ContourInputCommand {
   void require_outputs() const {
     if (!output_.empty()) {
       require_output(output_, files());
-      require_output_keeps(output_, normals(), false);
+      require_output_keeps(output_, normals(), true);
     }
     if (!csv_.empty()) require_text_output(csv_, files());
     std::vector<std::string> outputs;
@@ -157,8 +157,14 @@ class ComponentsCommand final : public ContourInputCommand {
       const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen, bar.stage("select")), input);
       const Progress progress = bar.stage("write");
       written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress); });
+      lost_ = lost_vertices(mesh, output_);
+      remark(lost_.remark(output_));
     }
-    if (!split_.empty()) write_split(contour, input, labels, found, bar, written);
+    if (!split_.empty()) {
+      const LostVertices lost = write_split(contour, input, labels, found, bar, written);
+      remark(lost.remark(split_));
+      lost_ += lost;
+    }
     if (!csv_.empty())
       written.write(csv_, [&](const auto& file) { write_text(table(input, found, &exact_number).to_csv(), file); });
     written.keep();
@@ -187,9 +193,10 @@ class ComponentsCommand final : public ContourInputCommand {
     return order;
   }
 
+  /// Returns how many vertices the files do not tell apart.
   template <int N>
-  void write_split(const Contour<N, double>& contour, const ContourInput& input, const ComponentLabels& labels,
-                   const Found& found, ProgressBar& bar, WrittenFiles& written) const {
+  LostVertices write_split(const Contour<N, double>& contour, const ContourInput& input, const ComponentLabels& labels,
+                           const Found& found, ProgressBar& bar, WrittenFiles& written) const {
     constexpr std::size_t kMostFiles = 10000;
     const auto count = static_cast<std::size_t>(std::count(found.chosen.begin(), found.chosen.end(), true));
     if (count > kMostFiles)
@@ -199,13 +206,17 @@ class ComponentsCommand final : public ContourInputCommand {
     const std::vector<Contour<N, double>> parts = split_components(contour, labels, bar.stage("split"));
     const Progress progress = bar.stage("write");
     std::size_t done = 0;
+    LostVertices lost;
     for (std::size_t label = 0; label < parts.size(); ++label) {
       if (!found.chosen[label]) continue;
       const std::string name = split_name(label);
       require_output(name, files());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
-      written.write(name, [&](const auto& file) { write_mesh(mesh_of(parts[label], input), file); });
+      const Mesh mesh = mesh_of(parts[label], input);
+      written.write(name, [&](const auto& file) { write_mesh(mesh, file); });
+      lost += lost_vertices(mesh, name);
     }
+    return lost;
   }
 
   [[nodiscard]] Table table(const ContourInput& input, const Found& found, std::string (*to_text)(double)) const {
@@ -276,6 +287,7 @@ class ComponentsCommand final : public ContourInputCommand {
     if (!output_.empty()) text += report_line("output", output_);
     if (!split_.empty())
       text += report_line("output", fmt::format("{} ({})", split_, counted(chosen, "file", "files")));
+    if (lost_.count() > 0) text += report_line("in the file", console.red(lost_.text()));
     if (!csv_.empty()) text += report_line("table", csv_);
     return text;
   }
@@ -289,6 +301,7 @@ class ComponentsCommand final : public ContourInputCommand {
     json["size_unit"] = unit(measure_unit(units(input), input.space_dim() - 1));
     json["content_unit"] = unit(content_unit(units(input)));
     json["count"] = found.facts.size();
+    json["vertices_together"] = lost_.count();
     Json& list = json["components"] = Json::array();
     for (std::size_t label = 0; label < found.facts.size(); ++label)
       if (found.chosen[label]) list.push_back(to_json(found.facts[label], label));
@@ -323,6 +336,7 @@ class ComponentsCommand final : public ContourInputCommand {
   std::string csv_;
   std::size_t rows_ = 20;
   std::vector<std::string> axes_;
+  LostVertices lost_;  ///< in the files
   double components_seconds_ = 0;
   double write_seconds_ = 0;
 };

@@ -124,7 +124,7 @@ class ContourCommand final : public Command {
     if (facets_) return run_facets(streams, isovalues, outputs, options);
     for (const std::string& output : outputs) {
       require_output(output, files());
-      require_output_keeps(output, options_.normals(), attributes_.wanted());
+      require_output_keeps(output, options_.normals(), attributes_.wanted() || one_file_);
     }
     if (!index_.empty()) {
       require_input(index_);
@@ -145,6 +145,7 @@ class ContourCommand final : public Command {
     else
       contour(options, bar, results);
     bar.clear();
+    for (const ContourResult& result : results) remark(result.lost.remark(result.output));
     return tell(streams, results);
   }
 

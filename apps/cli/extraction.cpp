@@ -194,6 +194,7 @@ void write_result(ContourResult& result, ProgressBar& bar, WrittenFiles& written
   result.mesh.isovalue = result.isovalue;
   result.output_bytes =
       written.write(result.output, [&](const auto& file) { write_mesh(result.mesh, file, progress); });
+  result.lost = lost_vertices(result.mesh, result.output);
   result.seconds.write = watch.lap();
 }
 

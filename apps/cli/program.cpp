@@ -8,7 +8,7 @@ namespace tegl::cli {
 std::vector<std::unique_ptr<Command>> add_commands(CLI::App& program, const std::string& version) {
   program.description(
       "Contours of images in 2, 3 and 4 dimensions: closed, manifold, oriented.\n"
-      "Reads NIfTI, NRRD, MetaImage, netCDF and DICOM; writes PLY, glTF and VTKHDF.");
+      "Reads NIfTI, NRRD, MetaImage, netCDF and DICOM; writes PLY, STL, OBJ, glTF and VTKHDF.");
   program.set_version_flag("--version", "tegl " + version);
   program.require_subcommand(1);
   program.footer(

@@ -150,6 +150,7 @@ class ProjectCommand final : public ContourInputCommand {
                   "something that moves (or --as cuts)");
     if (!no_check_ && kind_ != "tetrahedra") check_result(result, bar);
     write_result(result, bar);
+    remark(result.lost.remark(output_));
     bar.clear();
     if (json())
       streams.out.write(dump(to_json(result)));

@@ -170,6 +170,7 @@ Json to_json(const ContourResult& result) {
                     {"tiles", result.picked->tiles},
                     {"components", result.picked->components}};
   add_check_keys(json, result.size(), result.report);
+  json["vertices_together"] = result.lost.count();
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
   json["active_tiles"] = result.stats ? Json(result.stats->active_tiles) : Json(nullptr);
   Json& seconds = json["seconds"];
@@ -203,6 +204,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
   }
   text += check_text(console, result.size(), result.report, result.wording);
+  if (result.lost.count() > 0) text += report_line("in the file", console.red(result.lost.text()));
   text += report_line("seconds", seconds_text(result.seconds));
   text += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
   return text;

@@ -11,6 +11,7 @@
 
 #include "console.hpp"
 #include "exit_codes.hpp"
+#include "lost_vertices.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
@@ -134,6 +135,7 @@ struct ContourResult {
   std::optional<MeshReport> report;   ///< none with --no-check
   Mesh mesh;
   std::optional<MeshSize> streamed;  ///< for what went to the file without being in memory
+  LostVertices lost;                 ///< in the file
   StageSeconds seconds;
   Wording wording;
 

@@ -97,6 +97,7 @@ class SimplifyCommand final : public ContourInputCommand {
     input.contour = AnyContour();
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);
+    remark(result.lost.remark(output_));
     bar.clear();
     if (json())
       streams.out.write(dump(document(result, stats)));

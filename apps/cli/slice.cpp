@@ -240,6 +240,7 @@ class SliceCommand final : public Command {
     }
     write_all(results, bar);
     bar.clear();
+    for (const ContourResult& result : results) remark(result.lost.remark(result.output));
     if (json()) {
       streams.out.write(dump(document(results)));
     } else if (!quiet()) {

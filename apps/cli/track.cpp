@@ -206,7 +206,7 @@ class TrackCommand final : public ContourInputCommand {
     return select_tracks(graph, keep);
   }
 
-  void write(ContourInput& input, const TrackGraph& graph, ProgressBar& bar) const {
+  void write(ContourInput& input, const TrackGraph& graph, ProgressBar& bar) {
     WrittenFiles written;
     for (const std::string& output : outputs_) {
       const Progress writing = bar.stage("write");
@@ -214,6 +214,9 @@ class TrackCommand final : public ContourInputCommand {
         add_labels(contour, graph);
         const Mesh mesh = mesh_of(contour, input);
         written.write(output, [&](const auto& file) { write_mesh(mesh, file, writing); });
+        const LostVertices lost = lost_vertices(mesh, output);
+        remark(lost.remark(output));
+        lost_ += lost;
       };
       if (is_track_file(output))
         written.write(output, [&](const auto& file) { write_track(graph, file, {.title = title(input)}); });
@@ -245,6 +248,7 @@ class TrackCommand final : public ContourInputCommand {
     Json json;
     add_input_keys(json, input);
     json["outputs"] = written_files();
+    json["vertices_together"] = lost_.count();
     json["tracks_found"] = all;
     Json& kinds = json["events_by_kind"] = Json::object();
     for (const auto& [kind, count] : kinds_of(graph)) kinds[kind] = count;
@@ -273,6 +277,7 @@ class TrackCommand final : public ContourInputCommand {
     text += report_line("seconds", fmt::format("contour {:.3f} + track {:.3f} + write {:.3f}", input.seconds.total(),
                                                track_seconds, write_seconds));
     for (const std::string& output : written_files()) text += report_line("output", output);
+    if (lost_.count() > 0) text += report_line("in the file", console.red(lost_.text()));
     return text;
   }
 
@@ -320,6 +325,7 @@ class TrackCommand final : public ContourInputCommand {
   std::size_t samples_ = 100;
   std::optional<std::size_t> longest_;
   std::optional<std::size_t> largest_;
+  LostVertices lost_;  ///< in the files
 };
 
 }  // namespace

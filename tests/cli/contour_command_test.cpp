@@ -2,7 +2,11 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "sample_files.hpp"
@@ -106,6 +110,78 @@ TEST_F(Contour, OfIntegersIsAsSoundInObjAsItWasMade) {
   nlohmann::json found = run.json();
   found.erase("seconds");
   for (const auto& [key, value] : found.items()) EXPECT_EQ(value, made[key]) << key;
+}
+
+TEST_F(Contour, FarFromTheOriginSaysHowManyVerticesSinglePrecisionLoses) {
+  const std::string file =
+      write("far.nrrd", nrrd_bytes(noise({9, 10, 11}, 5),
+                                   "space dimension: 3\nspace directions: (0.05,0,0) (0,0.05,0) (0,0,0.05)\n"
+                                   "space origin: (500000.02,5400000,0)\n"));
+  for (const char* const extension : {".stl", ".glb", ".gltf"}) {
+    SCOPED_TRACE(extension);
+    const std::string out = path(std::string("far") + extension);
+    const RunResult run = run_tegl({"contour", file, "--iso", "128.5", "-o", out, "--json"});
+    ASSERT_EQ(run.exit, 0) << run.err;
+    const auto vertices = run.json()["vertices"].get<std::size_t>();
+    const auto together = run.json()["vertices_together"].get<std::size_t>();
+    // Counted another way: in STL they are one when read.
+    const Mesh read = read_mesh(out);
+    std::set<std::array<double, 3>> places;
+    for (std::size_t i = 0; i < read.coordinates.size(); i += 3)
+      places.insert({read.coordinates[i], read.coordinates[i + 1], read.coordinates[i + 2]});
+    EXPECT_GT(together, vertices / 10);
+    EXPECT_EQ(vertices - together, places.size());
+    const std::string some = std::to_string(together) + " of " + std::to_string(vertices) + " vertices fall together";
+    EXPECT_THAT(run.err, HasSubstr(out + ": in single precision, which " + extension + " has, " + some));
+    EXPECT_THAT(run.err, HasSubstr("expected a format with double, .ply, .obj or .vtkhdf"));
+    const RunResult told = run_tegl({"contour", file, "--iso", "128.5", "-o", out});
+    EXPECT_THAT(told.out, HasSubstr("fall together (single precision)"));
+    EXPECT_EQ(run_tegl({"contour", file, "--iso", "128.5", "-o", out, "--quiet"}).err, "");
+    const RunResult cut = run_tegl({"components", file, "--iso", "128.5", "--split",
+                                    path("{label}" + std::string(extension)), "--largest", "1", "--json"});
+    EXPECT_THAT(cut.err, HasSubstr("fall together"));
+    EXPECT_GT(cut.json()["vertices_together"], 0);
+  }
+  for (const char* const name : {"far.ply", "far.obj", "far.vtkhdf"}) {
+    const RunResult run = run_tegl({"contour", file, "--iso", "128.5", "-o", path(name), "--json"});
+    EXPECT_EQ(run.err, "") << name;
+    EXPECT_EQ(run.json()["vertices_together"], 0) << name;
+  }
+  const std::string near = write("near.nrrd", nrrd_bytes(noise({9, 10, 11}, 5)));
+  const RunResult run = run_tegl({"contour", near, "--iso", "128.5", "-o", path("near.stl"), "--json"});
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(run.json()["vertices_together"], 0);
+}
+
+TEST_F(Contour, OfTiesSaysThatStlMakesThemOne) {
+  Samples integers = noise({9, 10, 11}, 5);
+  for (float& value : integers.values) value = std::floor(std::fmod(value, 7.0F));
+  const std::string file = write("integers.nrrd", nrrd_bytes_uint8(integers));
+  const RunResult run = run_tegl({"contour", file, "--iso", "3", "-o", path("out.stl"), "--json"});
+  const auto vertices = run.json()["vertices"].get<std::size_t>();
+  const auto together = run.json()["vertices_together"].get<std::size_t>();
+  EXPECT_EQ(vertices - together, read_mesh(path("out.stl")).coordinates.size() / 3);
+  EXPECT_THAT(run.err, HasSubstr(std::to_string(together) + " of " + std::to_string(vertices) +
+                                 " vertices are at the place of others, and .stl has no numbers to tell them apart"));
+  EXPECT_THAT(run.err, HasSubstr("--epsilon"));
+  const RunResult glb = run_tegl({"contour", file, "--iso", "3", "-o", path("out.glb"), "--json"});
+  EXPECT_EQ(glb.err, "") << "numbered";
+}
+
+TEST_F(Contour, WithAttributesThatOptionsPromiseIsRefusedWhereThereIsNoPlaceForThem) {
+  const std::string file = write("ball.nrrd", nrrd_bytes(ball({12, 13, 14}, 4.3)));
+  for (const char* const name : {"a.stl", "a.obj"}) {
+    const RunResult run = run_tegl({"contour", file, "--iso", "0,1", "--one-file", "-o", path(name)});
+    EXPECT_EQ(run.exit, 6) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("has no place for attributes; expected .vtkhdf"));
+    const RunResult components = run_tegl({"components", file, "--iso", "0", "-o", path(name)});
+    EXPECT_EQ(components.exit, 6) << components.err;
+    EXPECT_THAT(components.err, HasSubstr("has no place for attributes; expected .vtkhdf"));
+    EXPECT_EQ(run_tegl({"contour", file, "--iso", "0,1", "-o", path(name)}).exit, 0) << "a file each";
+    EXPECT_EQ(run_tegl({"components", file, "--iso", "0", "--split", path("{label}" + std::string(name))}).exit, 0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("a.stl")));
+  EXPECT_THAT(run_tegl({"--help"}).out, HasSubstr("writes PLY, STL, OBJ, glTF and VTKHDF"));
 }
 
 TEST_F(Contour, ReportsEveryKey) {
