@@ -300,18 +300,7 @@ std::array<double, N> RowSource<T, N>::sobel(const Index& index, const std::arra
   return sobel_gradient<N>(values, weights);
 }
 
-#define TEGL_INSTANTIATE(T)       \
-  template class RowSource<T, 2>; \
-  template class RowSource<T, 3>; \
-  template class RowSource<T, 4>; \
-  template class RowSource<T, 5>;
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
+#define TEGL_INSTANTIATE_ONE(T, N) template class RowSource<T, N>;
+#include "active_tiles_instantiate.hpp"
 
 }  // namespace tegl::detail

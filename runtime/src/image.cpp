@@ -55,18 +55,7 @@ Image<T, N> Image<T, N>::part(int axis, std::size_t first, std::size_t count) co
   return Image(data_ + static_cast<std::ptrdiff_t>(first) * strides_[axis], std::move(grid), strides_);
 }
 
-#define TEGL_INSTANTIATE(T)   \
-  template class Image<T, 2>; \
-  template class Image<T, 3>; \
-  template class Image<T, 4>; \
-  template class Image<T, 5>;
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
+#define TEGL_INSTANTIATE_ONE(T, N) template class Image<T, N>;
+#include "active_tiles_instantiate.hpp"
 
 }  // namespace tegl

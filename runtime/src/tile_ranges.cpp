@@ -74,18 +74,7 @@ void TileRanges<T, N>::leave_out_missing() noexcept {
     }
 }
 
-#define TEGL_INSTANTIATE(T)        \
-  template class TileRanges<T, 2>; \
-  template class TileRanges<T, 3>; \
-  template class TileRanges<T, 4>; \
-  template class TileRanges<T, 5>;
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
+#define TEGL_INSTANTIATE_ONE(T, N) template class TileRanges<T, N>;
+#include "active_tiles_instantiate.hpp"
 
 }  // namespace tegl::detail
