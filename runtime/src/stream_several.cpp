@@ -161,21 +161,6 @@ void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedConto
 #define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                      \
   template void extract_streamed_several<Real, T, N>(LayerReader<T, N>&, std::span<StreamedContour<N, Real>>, \
                                                      const ExtractOptions&);
-#define TEGL_INSTANTIATE(T)          \
-  TEGL_INSTANTIATE_ONE(T, 2, float)  \
-  TEGL_INSTANTIATE_ONE(T, 2, double) \
-  TEGL_INSTANTIATE_ONE(T, 3, float)  \
-  TEGL_INSTANTIATE_ONE(T, 3, double) \
-  TEGL_INSTANTIATE_ONE(T, 4, float)  \
-  TEGL_INSTANTIATE_ONE(T, 4, double)
-TEGL_INSTANTIATE(std::uint8_t)
-TEGL_INSTANTIATE(std::int8_t)
-TEGL_INSTANTIATE(std::uint16_t)
-TEGL_INSTANTIATE(std::int16_t)
-TEGL_INSTANTIATE(std::int32_t)
-TEGL_INSTANTIATE(float)
-TEGL_INSTANTIATE(double)
-#undef TEGL_INSTANTIATE
-#undef TEGL_INSTANTIATE_ONE
+#include "instantiate_reals.hpp"
 
 }  // namespace tegl
