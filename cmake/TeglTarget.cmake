@@ -28,14 +28,29 @@ function(tegl_precompile target)
   endif()
 endfunction()
 
+# tegl_define_where_used(macro text SOURCES sources...): defines the macro as a string for those sources that name it. The
+# others compile to the same object files in every checkout, so that ccache has them for all checkouts at once.
+function(tegl_define_where_used macro text)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES")
+  foreach(source IN LISTS arg_SOURCES)
+    get_filename_component(path ${source} ABSOLUTE)
+    if(EXISTS ${path})
+      file(STRINGS ${path} uses REGEX ${macro} LIMIT_COUNT 1)
+      if(uses)
+        set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS "${macro}=\"${text}\"")
+      endif()
+    endif()
+  endforeach()
+endfunction()
+
 # tegl_add_test(name sources... LIBS libraries...): a GoogleTest program, its cases known to ctest one by one.
 function(tegl_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "LIBS")
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} GTest::gmock GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
-  target_compile_definitions(${name} PRIVATE
-    TEGL_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TEGL_SHARED_DATA_DIR="${PROJECT_SOURCE_DIR}/../shared/data")
+  tegl_define_where_used(TEGL_SOURCE_DIR "${PROJECT_SOURCE_DIR}" SOURCES ${arg_UNPARSED_ARGUMENTS})
+  tegl_define_where_used(TEGL_SHARED_DATA_DIR "${PROJECT_SOURCE_DIR}/../shared/data" SOURCES ${arg_UNPARSED_ARGUMENTS})
   tegl_warnings(${name})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)

@@ -110,6 +110,8 @@ build() {
   # ccache, where it is installed, makes a rebuild after a change of branch quick. CMake reads these variables.
   if command -v ccache >/dev/null; then
     export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+    # Checkouts in other folders share what is in the cache: paths below the checkout count from it.
+    export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
   fi
   local version
   version=$(cmake --version | sed -n 's/^cmake version //p')
