@@ -2,7 +2,7 @@
 //
 // Orbits of signatures in ascending order: the first signature not yet reached is the smallest of its orbit.
 //
-// Based on: thesis, algorithm 7.4.9.
+// Based on: M. Liversage, thesis, 1994, algorithm 7.4.9.
 #include "tegl/gen/transversal.hpp"
 
 #include <fmt/format.h>

@@ -93,7 +93,7 @@ class TileRowSet {
 /// How active tiles are found.
 enum class ActiveMethod : std::uint8_t {
   full_scan,      ///< every sample is looked at for every isovalue; nothing is built
-  interval_tree,  ///< Cignoni et al. 1997: O(log n + k) for k active tiles
+  interval_tree,  ///< Cignoni et al. 1997; O(log^2 n + k) for k active tiles, as lists are searched by bisection
   span_space,     ///< buckets of tiles by their greatest value, sorted by their least; Livnat et al. 1996, Shen et al.
   min_max_tree,   ///< a pyramid over bricks of tiles; Wilhelms, Van Gelder 1992
   seed_set,       ///< a few tiles, from which the others are reached (tegl/seed_set.hpp); looks at values around them

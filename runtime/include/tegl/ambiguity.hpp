@@ -2,8 +2,8 @@
 //
 // How the ambiguous faces of tiles are resolved: the same way everywhere, or from the data.
 //
-// Based on: M. Liversage, thesis, 1994, sections 6.3 and 7.3 (the consistent method and the estimation method); G. M.
-// Nielson and B. Hamann, "The asymptotic decider", 1991.
+// Based on: M. Liversage, thesis, 1994, sections 6.3 and 7.3 (the consistent method; the estimation method, for squares
+// and for cubes with two opposite corners); G. M. Nielson and B. Hamann, "The asymptotic decider", 1991.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ namespace tegl {
 
 /// A square with two high corners across from each other is ambiguous: are they joined in it, or apart? So is a cube in
 /// which the contour has several loops on the boundary (does a tunnel join them?), and so on upwards. However it is
-/// resolved, tiles agree in the faces that they share, and the contour is a closed manifold.
+/// resolved, tiles agree in shared faces: the contour is a manifold, open only at the image's border and missing data.
 /// - low, high: the consistent method, by table. low keeps high corners apart that meet only across a diagonal, high
 ///   joins them. Loops in a cube are never joined.
-/// - mean: the estimation method. The centre of every ambiguous face is high if the mean of the face's corners is at or
-///   above the isovalue, low otherwise, and what has the centre's sign hangs together in the face. Exactly, without
-///   rounding, but where the sum of the corners is too large for a double, or one is infinite: then the sum of the
-///   corners divided by 1024, rounded, is compared; with infinities of both signs the centre is high.
+/// - mean: the thesis's estimation method (6.3.5, 7.3.10), extended to all faces. The centre of an ambiguous face is
+///   high if the mean of its corners is at or above the isovalue, else low; all parts of its sign are connected in the
+///   face. Exact, except if the sum of the corners overflows a double, or one is infinite: then the sum of the corners
+///   divided by 1024, rounded, is compared; with infinities of both signs the centre is high.
 /// - saddle: as the multilinear interpolant has it, exactly in squares and cubes (tegl/saddle.hpp). In faces of higher
 ///   dimension, by the sign of their centre as `mean`.
 /// - custom: as ExtractOptions::estimator says.

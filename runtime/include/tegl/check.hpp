@@ -11,9 +11,9 @@
 
 namespace tegl {
 
-/// What `check` found. A closed oriented manifold without degenerate simplices has zeros in the last six
-/// and in `unused_vertices`. Simplices that repeat a vertex ("collapsed") span no d-dimensional piece: they are counted
-/// in `simplices` and `degenerate_simplices` and left out of all other counts.
+/// What `check` found. An oriented manifold without degenerate simplices has zeros in the last five members and in
+/// `unused_vertices`; a closed one in `boundary_simplices`, too. Simplices that repeat a vertex ("collapsed") are
+/// counted in `simplices` and `degenerate_simplices` and left out of all other counts.
 struct MeshReport {
   int dim = 0;                              ///< dimension d of the simplices (2 for triangles)
   std::uint64_t vertices = 0;               ///< vertices used by at least one simplex that is not collapsed

@@ -31,8 +31,8 @@ struct ComponentLabels {
 /// simplices that share vertices joins them. (What `extract` gives is a manifold, where sharing vertices is sharing
 /// faces. A simplex that repeats a vertex connects its vertices all the same.)
 ///
-/// Based on: parallel union-find, linked to the smallest number; the labels are what the seed fill of Wang et al., An
-/// improved MC algorithm for child isosurfaces, 2008, section 3.2, gives, whatever the number of threads.
+/// Based on: parallel union-find, linked to the smallest number. For any number of threads the labels are those that
+/// the seed fill of Zhu, Meng and Wang gives (An Improved Marching Cubes Algorithm, 2008, section 3.2), less one.
 /// Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S + #V) time nearly, 8 bytes per vertex and 4
 /// per simplex. Thread-safe.
 template <int N, class Real>

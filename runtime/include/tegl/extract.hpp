@@ -14,8 +14,8 @@
 
 namespace tegl {
 
-/// How facets become simplices: with few of them, or coned from barycentres, more and evener ones. In 5D there is the
-/// barycentric triangulation alone, and both names mean it.
+/// How facets become simplices: compact, with few of them (for intersections in 4D and biased volumes see
+/// docs/limits.md), or coned from barycentres, with more and evener ones. In 5D both names mean barycentric.
 enum class Triangulation { compact, barycentric };
 
 /// How the gradient at a sample is made, which normals follow. differences: the mean of the difference quotients

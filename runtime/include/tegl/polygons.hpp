@@ -2,7 +2,7 @@
 //
 // From polygons to triangles, in several ways.
 //
-// Based on: M. Liversage, thesis, 1994, section 8.1.
+// Based on: M. Liversage, thesis, 1994, section 8.1, whose Methods 1 to 4 these are. The names are ours.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace tegl {
 
 /// How a polygon becomes triangles.
 enum class PolygonTriangulation {
-  fan,            ///< chords from one point to all others (8.1.4)
-  zigzag,         ///< chords to and fro across the polygon (8.1.6)
-  halving_chord,  ///< in two halves by the shortest chord that halves it, and so on (8.1.9, 8.1.13)
-  halving_kink,   ///< likewise by the chord along which the polygon is bent least (8.1.14)
-  barycentric,    ///< a new point, the barycentre, joined to all others; triangles stay as they are (8.1.18, 8.1.23)
+  fan,            ///< Method 1: chords from one point to all others (8.1.4)
+  zigzag,         ///< Method 2: chords to and fro across the polygon (8.1.6)
+  halving_chord,  ///< Method 3: halves, by the shortest chord that halves the polygon, and so on (8.1.9, 8.1.13)
+  halving_kink,   ///< Method 3, by the chord along which the polygon is bent least (8.1.9, 8.1.14)
+  barycentric,    ///< Method 4: a new point, the barycentre, joined to all others; triangles stay (8.1.18, 8.1.23)
 };
 
 /// Two points of a polygon, by number.

@@ -24,7 +24,7 @@ enum class Neighbourhood : std::uint8_t {
 /// "faces", "faces-and-edges", "all".
 std::string_view neighbourhood_name(Neighbourhood neighbourhood) noexcept;
 
-/// How seeds are found. The first five come from the literature, docs/seed-sets.md describes and compares them.
+/// How seeds are found. All except `cover` come from the literature; docs/seed-sets.md compares them and their sizes.
 enum class SeedMethod : std::uint8_t {
   cover,                 ///< ours: a cover of the components of active tiles over all isovalues; by far the fewest
   whole1,                ///< Hung 2005: tiles whose range does not lie in that of a neighbour, one of each group

@@ -21,13 +21,13 @@ enum class SimplifyMethod {
   /// Edges, ordered by the sum of squared distances of the place that both ends move to from the hyperplanes of all
   /// simplices that were there; that place has the least such sum. The best contour for its size.
   quadric,
-  /// Facets (simplices), ordered by their estimated curvature: each is drawn together to one point in its middle. (1994
-  /// thesis, sections 8.3.8 to 8.3.13; the curvature of a vertex after G. Turk, Re-tiling polygonal surfaces, 1992.)
+  /// Simplices, by curvature (Turk 1992) times the square of the longest edge: each is contracted to one point in its
+  /// middle. The thesis (M. Liversage, 1994, 8.3.8 to 8.3.13) removes polygons, untriangulated, by curvature alone.
   facets,
-  /// Vertices, ordered by their distance from the hyperplane of their neighbourhood; the hole is filled from a
-  /// neighbour. The vertices that are left are vertices of the original. (1994 thesis, section 8.3.14, after W.
-  /// Schroeder,
-  /// J. Zarge and W. Lorensen, Decimation of triangle meshes, 1992.)
+  /// Vertices, ordered by their distance from the hyperplane of their neighbourhood: each is contracted into a
+  /// neighbour, so that the remaining vertices are vertices of the original. The distance is that of W. Schroeder, J.
+  /// Zarge and W. Lorensen, Decimation of triangle meshes, 1992, who (like the thesis, 8.3.14) remove the vertex and
+  /// triangulate the gap anew.
   vertices,
   /// Triangles alone, by the library meshoptimizer, where tegl was built with it: several times as fast. May leave a
   /// manifold or may not: its result is checked.

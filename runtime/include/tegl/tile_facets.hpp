@@ -47,11 +47,11 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// 3^N; TooLarge for a tile of more than 65 535 vertices (none is known). No state of its own, thread safe. N = 2
 /// ... 6.
 ///
-/// Time: 2D 7 us, 3D 0.1 ms, 4D 0.1 to 0.3 ms; 5D 0.3 ms (one corner cut off), 0.7 ms (a plane through it), 3 ms
-/// (random signature) or 10 ms (random signs as well); 6D 3 ms, 20 ms, 0.1 to 0.3 s, 1 to 3 s. Of this 0.1 ms in 3D and
-/// 4D, 0.2 ms in 5D and 1 ms in 6D go to setting up a builder. For many tiles use one facets::FacetBuilder of
-/// facets::FaceLattice::cube(N) per thread, which keeps what tiles have in common: a tile takes 2 us in 2D, 4 us in 3D
-/// and 0.01 to 0.1 ms in 4D.
+/// Time: microseconds in 2D, about 0.1 ms in 3D and 4D, up to 10 ms in 5D and seconds in 6D; docs/cost.md has measured
+/// times of 5D. Up to 4D most of it goes to setting up a builder.
+///
+/// For many tiles use one facets::FacetBuilder of facets::FaceLattice::cube(N) per thread: it keeps what tiles have in
+/// common.
 template <int N>
 facets::TileFacets tile_facets(std::uint64_t signature, std::span<const facets::Choice> signs = {},
                                facets::Alternative otherwise = facets::Alternative::low);

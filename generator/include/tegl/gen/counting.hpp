@@ -3,7 +3,7 @@
 // How many classes of signatures there are, without looking at a single signature or group element: the lemma of
 // Polya and Burnside, summed over the conjugacy classes of the cube's group.
 //
-// Based on: theory, section 2; thesis, section 6.5.8; conjugacy classes of B_n by pairs of partitions: A. Young (1930).
+// Based on: M. Liversage, thesis, 1994, section 6.5.8; conjugacy classes of B_n by pairs of partitions: Young, 1930.
 #pragma once
 
 #include <cstdint>

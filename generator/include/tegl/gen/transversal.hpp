@@ -3,7 +3,7 @@
 // The classes of signatures by enumeration: one representative per orbit of the group, and for every signature its
 // class and a group element that leads there from the representative.
 //
-// Based on: thesis, algorithm 7.4.9.
+// Based on: M. Liversage, thesis, 1994, algorithm 7.4.9.
 #pragma once
 
 #include <cstdint>
