@@ -16,7 +16,7 @@ namespace {
 
 template <int N>
 auto contour_of(const std::string& field, std::size_t samples) {
-  return extract(make_field<N>(field, samples).view(), 0.0);
+  return extract(view_of(make_field<N>(field, samples)), 0.0);
 }
 
 template <int N>

@@ -227,10 +227,11 @@ FacetBuilder::~FacetBuilder() = default;
 FacetBuilder::FacetBuilder(FacetBuilder&&) noexcept = default;
 FacetBuilder& FacetBuilder::operator=(FacetBuilder&&) noexcept = default;
 
-const FaceLattice& FacetBuilder::lattice() const { return impl_->lattice(); }
+const FaceLattice& FacetBuilder::lattice() const& { return impl_->lattice(); }
+FaceLattice FacetBuilder::lattice() const&& { return impl_->lattice(); }
 std::size_t FacetBuilder::kept_bytes() const { return impl_->kept_bytes(); }
 
-const TileFacets& FacetBuilder::build(Signature signature, const Resolution& resolution, Geometry geometry) {
+const TileFacets& FacetBuilder::build(Signature signature, const Resolution& resolution, Geometry geometry) & {
   const FaceLattice& lattice = impl_->lattice();
   if (const Signature corners = lattice.faces().back().corners; (signature & ~corners) != 0)
     throw std::invalid_argument("signature " + std::to_string(signature) + " has corners beyond those of the tile, " +
@@ -239,6 +240,10 @@ const TileFacets& FacetBuilder::build(Signature signature, const Resolution& res
     throw std::invalid_argument(std::to_string(resolution.choices.size()) + " choices, expected one for each of " +
                                 std::to_string(lattice.faces().size()) + " faces");
   return impl_->build(signature, resolution, geometry);
+}
+
+TileFacets FacetBuilder::build(Signature signature, const Resolution& resolution, Geometry geometry) && {
+  return build(signature, resolution, geometry);
 }
 
 TileFacets build_facets(const FaceLattice& lattice, Signature signature, const Resolution& resolution) {

@@ -153,10 +153,12 @@ TileCertifier::~TileCertifier() = default;
 TileCertifier::TileCertifier(TileCertifier&&) noexcept = default;
 TileCertifier& TileCertifier::operator=(TileCertifier&&) noexcept = default;
 
-const FaceLattice& TileCertifier::lattice() const { return impl_->lattice(); }
+const FaceLattice& TileCertifier::lattice() const& { return impl_->lattice(); }
+FaceLattice TileCertifier::lattice() const&& { return impl_->lattice(); }
 Fault TileCertifier::certify(Signature signature, const Resolution& resolution) {
   return impl_->certify(signature, resolution);
 }
-const TileFacets& TileCertifier::tile() const { return impl_->tile(); }
+const TileFacets& TileCertifier::tile() const& { return impl_->tile(); }
+TileFacets TileCertifier::tile() const&& { return impl_->tile(); }
 
 }  // namespace tegl::facets

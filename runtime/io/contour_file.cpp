@@ -32,7 +32,8 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<
 
 }  // namespace
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 struct ContourFile<N, Real>::Parts {
   Parts(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue)
       : writer(path, layout_of(path, grid, isovalue)) {}
@@ -53,38 +54,42 @@ struct ContourFile<N, Real>::Parts {
   std::vector<double> numbers;  ///< of a block
 };
 
-template <int N, class Real>
-ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue)
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid,
+                                                                     std::optional<double> isovalue)
     : parts_(std::make_unique<Parts>(path, grid, isovalue)) {}
 
-template <int N, class Real>
-ContourFile<N, Real>::~ContourFile() = default;
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> ContourFile<N, Real>::~ContourFile() = default;
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 void ContourFile<N, Real>::add_vertices(std::span<const Vertex> vertices) {
   parts_->append(vertices, &VtkhdfWriter::append_vertices);
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 void ContourFile<N, Real>::add_normals(std::span<const Vertex> normals) {
   parts_->append(normals, &VtkhdfWriter::append_normals);
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 void ContourFile<N, Real>::add_simplices(std::span<const Simplex> simplices) {
   static_assert(sizeof(Simplex) == N * sizeof(std::uint64_t));
   if (!simplices.empty()) parts_->writer.append_simplices({simplices.data()->data(), simplices.size() * N});
 }
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 void ContourFile<N, Real>::replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) {
   parts_->writer.replace_corner(simplex, corner, vertex);
 }
 
-template <int N, class Real>
-void ContourFile<N, Real>::commit() {
-  parts_->writer.commit();
-}
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
+void ContourFile<N, Real>::commit() { parts_->writer.commit(); }
 
 template class ContourFile<2, float>;
 template class ContourFile<2, double>;

@@ -124,7 +124,7 @@ void check_indices(const Mesh& mesh, const fs::path& path) {
 }  // namespace io_detail
 
 template <int N, class Real>
-Mesh to_mesh(const Contour<N, Real>& contour) {
+requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour) {
   Mesh mesh;
   mesh.dim = N - 1;
   mesh.space_dim = N;
@@ -146,7 +146,7 @@ Mesh to_mesh(const Contour<N, Real>& contour) {
 }
 
 template <int N>
-Contour<N, double> to_contour(const Mesh& mesh) {
+requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh) {
   const bool planar = N == 2 && mesh.dim == 1 && mesh.space_dim == 3;
   if (mesh.dim != N - 1 || (mesh.space_dim != N && !planar))
     throw Error(ErrorCode::UnsupportedData,

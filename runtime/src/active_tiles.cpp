@@ -114,7 +114,8 @@ void TileRowSet::add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumb
 }
 
 template <int N>
-std::vector<TileNumber> ActiveTiles<N>::find(double isovalue) const {
+requires DimensionBetween<N, 2, 5> std::vector<TileNumber> ActiveTiles<N>::find(double isovalue)
+const {
   require_finite(isovalue);
   std::vector<TileNumber> tiles;
   if (grid_.count() == 0) return tiles;
@@ -124,7 +125,8 @@ std::vector<TileNumber> ActiveTiles<N>::find(double isovalue) const {
 }
 
 template <int N>
-TileRowSet ActiveTiles<N>::find_rows(double isovalue) const {
+requires DimensionBetween<N, 2, 5> TileRowSet ActiveTiles<N>::find_rows(double isovalue)
+const {
   require_finite(isovalue);
   TileRowSet rows(grid_.rows());
   if (grid_.count() != 0) collect_rows(isovalue, rows);
@@ -132,6 +134,7 @@ TileRowSet ActiveTiles<N>::find_rows(double isovalue) const {
 }
 
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void ActiveTiles<N>::collect_rows(double isovalue, TileRowSet& rows) const {
   std::vector<TileNumber> tiles;
   collect(isovalue, tiles);
@@ -139,6 +142,7 @@ void ActiveTiles<N>::collect_rows(double isovalue, TileRowSet& rows) const {
 }
 
 template <int N>
+requires DimensionBetween<N, 2, 5>
 void ActiveTiles<N>::save(ByteSink& to) const {
   if (!is_complete())
     throw Error(ErrorCode::InvalidArgument, "chosen tiles cannot be saved; expected an index of all active tiles");

@@ -567,7 +567,8 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
 }  // namespace detail
 
 template <int N, class Real>
-Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, const DeviationOptions<N>& options) {
+requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
+                                                       const DeviationOptions<N>& options) {
   using namespace detail;
   require_scale<N>(options.scale);
   if (!(options.enough >= 0.0))

@@ -209,6 +209,7 @@ Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& gri
 }
 
 template <int N>
+requires DimensionBetween<N, 2, 5>
 double ElementSum<N>::closure_error() const noexcept {
   double largest = 0.0;
   for (int a = 0; a < N; ++a)

@@ -26,8 +26,9 @@ void require_index_of(const Image<T, N>& image, const ActiveTiles<N>& active) {
 }  // namespace
 
 template <class Real, Value T, int N>
-requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
-                                          const ActiveTiles<N>& active, ExtractStats* stats) {
+requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
+                                                            const ExtractOptions& options, const ActiveTiles<N>& active,
+                                                            ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
   require_index_of(image, active);
   const bool missing = active.image().any_missing;

@@ -196,8 +196,9 @@ ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOption
 }
 
 template <Value T, int N, class Real, VertexNumber I>
-ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
-                         const ExtractOptions& options, ExtractStats* stats) {
+requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
+                                                            const ContourRoom<N, Real, I>& room,
+                                                            const ExtractOptions& options, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
   if (detail::is_tile_by_tile<N>(options))
     return detail::copy_into(extract<Real>(image, isovalue, options, stats), room, options.normals);

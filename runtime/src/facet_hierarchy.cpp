@@ -13,7 +13,8 @@
 
 namespace tegl {
 
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 void FacetHierarchy<N, Real>::connect_up() {
   for (int k = 0; k + 1 < N; ++k) {
     Level& level = levels[k];
@@ -35,8 +36,9 @@ void FacetHierarchy<N, Real>::connect_up() {
   }
 }
 
-template <int N, class Real>
-std::vector<Index> FacetHierarchy<N, Real>::points_of(int k, std::size_t f) const {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4> std::vector<Index> FacetHierarchy<N, Real>::points_of(int k, std::size_t f)
+const {
   if (k == 0) return {static_cast<Index>(f)};
   const auto below = down(k, f);
   const auto signs = down_signs(k, f);
@@ -144,7 +146,8 @@ FacetReport check(const FacetHierarchy<N, Real>& facets) {
 }
 
 template <class Real, Value T, int N>
-FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue, const ExtractOptions& options) {
+requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
+                                                                          const ExtractOptions& options) {
   detail::check_arguments(isovalue, options);
   detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
   return detail::extract_facets<N, Real>(source, image.grid(), options);

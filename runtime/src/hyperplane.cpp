@@ -12,7 +12,7 @@
 namespace tegl {
 
 template <int N>
-HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
+requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
   const auto& normal = hyperplane.normal;
   double most = normal.cwiseAbs().maxCoeff();
   if (!normal.allFinite() || !(most > 0.0))
@@ -43,6 +43,7 @@ HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane) {
 }
 
 template <int N, class Real>
+requires DimensionBetween<N, 2, 4>
 void scale_axes(Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& factors) {
   for (int a = 0; a < N; ++a)
     if (!(factors[a] > 0.0) || !std::isfinite(factors[a]))

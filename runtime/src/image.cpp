@@ -37,17 +37,19 @@ void check_grid(const Grid<N>& grid) {
 }  // namespace
 
 template <Value T, int N>
-Image<T, N>::Image(const T* data, Grid<N> grid, const Strides& strides)
+requires DimensionBetween<N, 2, 5> Image<T, N>::Image(const T* data, Grid<N> grid, const Strides& strides)
     : data_(data), grid_(std::move(grid)), strides_(strides) {
   check_grid(grid_);
   if (data_ == nullptr) throw Error(ErrorCode::InvalidGrid, "image with a null data pointer; expected its samples");
 }
 
 template <Value T, int N>
-Image<T, N>::Image(const T* data, Grid<N> grid) : Image(data, grid, dense_strides(grid)) {}
+requires DimensionBetween<N, 2, 5> Image<T, N>::Image(const T* data, Grid<N> grid)
+    : Image(data, grid, dense_strides(grid)) {}
 
 template <Value T, int N>
-Image<T, N> Image<T, N>::part(int axis, std::size_t first, std::size_t count) const {
+requires DimensionBetween<N, 2, 5> Image<T, N> Image<T, N>::part(int axis, std::size_t first, std::size_t count)
+const {
   if (axis < 0 || axis >= N)
     throw Error(ErrorCode::InvalidArgument, fmt::format("axis {} of an image; expected 0 to {}", axis, N - 1));
   Grid<N> grid = grid_;

@@ -180,8 +180,9 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
 }
 
 template <int N, class Real>
-std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
-                                      const WorkOptions& options) {
+requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
+                                                                         std::span<const double> at,
+                                                                         const WorkOptions& options) {
   detail::require_vertices(contour);
   detail::require_finite(contour);
   for (const double t : at)

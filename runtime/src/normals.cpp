@@ -75,7 +75,8 @@ double weight_of(const std::array<PointOf<N>, N>& corners, int j, double measure
 }  // namespace
 
 template <int N, class Real>
-Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& contour, const WorkOptions& options) {
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> flat_normals(
+    const Contour<N, Real>& contour, const WorkOptions& options) {
   detail::require_vertices(contour);
   Buffer<typename Contour<N, Real>::Vertex> result(contour.simplices.size());
   detail::for_each_item(result.size(), options.threads, options.progress, [&](std::size_t s) {
@@ -85,8 +86,8 @@ Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& c
 }
 
 template <int N, class Real>
-Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Real>& contour, NormalWeights weights,
-                                                            const WorkOptions& options) {
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
+    const Contour<N, Real>& contour, NormalWeights weights, const WorkOptions& options) {
   detail::require_vertices(contour);
   // By simplex: its unit normal, and what it counts for at its corners.
   struct Share {
@@ -123,8 +124,8 @@ Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Rea
 }
 
 template <Value T, int N, class Real>
-Buffer<typename Contour<N, Real>::Vertex> gradient_normals(const Image<T, N>& image, const Contour<N, Real>& contour,
-                                                           GradientKind kind, const WorkOptions& options) {
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
+    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind, const WorkOptions& options) {
   const detail::GridLocator<N> locator(image.grid());
   const detail::ImageSource<T, N> source(image, 0.0, 0.0);
   const detail::NormalWriter<N, Real> writer(source, image.grid(), contour.direction, kind);

@@ -180,8 +180,8 @@ class Polygon {
 }  // namespace
 
 template <int N>
-std::vector<Triangle> triangulate_polygon(std::span<const std::array<double, N>> points, PolygonTriangulation method,
-                                          std::span<const Chord> forbidden) {
+requires DimensionBetween<N, 2, 4> std::vector<Triangle> triangulate_polygon(
+    std::span<const std::array<double, N>> points, PolygonTriangulation method, std::span<const Chord> forbidden) {
   if (points.size() < 3 || points.size() >= std::numeric_limits<Index>::max())
     throw Error(ErrorCode::InvalidArgument, fmt::format("a polygon of {} points; expected 3 or more", points.size()));
   for (const Chord& chord : forbidden)
@@ -193,7 +193,8 @@ std::vector<Triangle> triangulate_polygon(std::span<const std::array<double, N>>
 }
 
 template <int N>
-std::array<double, N> polygon_barycentre(std::span<const std::array<double, N>> points) {
+requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
+    std::span<const std::array<double, N>> points) {
   detail::Weighted<N> sum;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto &a = points[i], &b = points[(i + 1) % points.size()];

@@ -52,8 +52,9 @@ void report(const Progress& progress, double fraction) {
 
 }  // namespace
 
-template <int N, class Real>
-Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal, const WorkOptions& options)
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal,
+                                                               const WorkOptions& options)
     : contour_(&contour), normal_(normal) {
   const detail::Section<N> section(normal);
   detail::require_sound(contour);
@@ -109,13 +110,13 @@ Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& norma
   report(options.progress, 1.0);
 }
 
-template <int N, class Real>
-std::uint32_t Scrubber<N, Real>::place(double height) const noexcept {
-  return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(0.0, height - lowest_)));
-}
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::uint32_t Scrubber<N, Real>::place(double height)
+const noexcept { return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(0.0, height - lowest_))); }
 
 /// The node's simplices whose ranges contain the place `at`.
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4>
 void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vector<Index>& found) const {
   const auto node = std::lower_bound(nodes_.begin(), nodes_.end() - 1, middle,
                                      [](const Node& n, std::uint32_t m) { return n.middle < m; });
@@ -131,8 +132,9 @@ void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vecto
   }
 }
 
-template <int N, class Real>
-std::vector<Index> Scrubber<N, Real>::touching(double offset) const {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::vector<Index> Scrubber<N, Real>::touching(double offset)
+const {
   const detail::Section<N> section(normal_);
   const double level = section.template level<Real>(offset);
   std::vector<Index> found;
@@ -158,14 +160,16 @@ std::vector<Index> Scrubber<N, Real>::touching(double offset) const {
   return found;
 }
 
-template <int N, class Real>
-Contour<N - 1, Real> Scrubber<N, Real>::cut(double offset) const {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> Scrubber<N, Real>::cut(double offset)
+const {
   const detail::Section<N> section(normal_);
   return detail::cut_simplices(*contour_, section, section.template level<Real>(offset), touching(offset));
 }
 
-template <int N, class Real>
-std::size_t Scrubber<N, Real>::memory() const noexcept {
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::size_t Scrubber<N, Real>::memory()
+const noexcept {
   return nodes_.capacity() * sizeof(Node) + (by_least_.capacity() + by_most_.capacity()) * sizeof(Entry);
 }
 

@@ -691,7 +691,8 @@ class Simplifier {
 }  // namespace detail
 
 template <int N, class Real>
-Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options, SimplifyStats* stats) {
+requires DimensionBetween<N, 2, 4> Contour<N, Real> simplify(const Contour<N, Real>& contour,
+                                                             const SimplifyOptions<N>& options, SimplifyStats* stats) {
   detail::Simplifier<N, Real> simplifier(contour, options);
   Contour<N, Real> result = simplifier.run();
   if (stats != nullptr) *stats = simplifier.stats();

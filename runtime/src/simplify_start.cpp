@@ -13,7 +13,7 @@
 namespace tegl {
 
 template <int N>
-std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
+requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
   // Points of the border across axis a: origin + what the other columns of the map span.
   const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
   std::vector<Hyperplane<N>> result;
@@ -29,7 +29,7 @@ std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
 }
 
 template <int N, class Real>
-std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
+requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
   std::array<double, N> extent{};
   for (const auto& simplex : contour.simplices)
     for (int a = 0; a < N; ++a) {

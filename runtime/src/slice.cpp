@@ -73,19 +73,20 @@ void report(const Progress& progress, double fraction) { detail::tell(progress, 
 }  // namespace
 
 template <int N, class Real>
-Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at) {
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at) {
   return cut(contour, Section<N>(Vector<N>::Unit(N - 1)), at);
 }
 
 template <int N, class Real>
-Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane) {
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
+                                                              const Hyperplane<N>& hyperplane) {
   return cut(contour, Section<N>(hyperplane.normal), hyperplane.offset);
 }
 
 template <int N, class Real>
-std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
-                                              const Eigen::Matrix<double, N, 1>& normal,
-                                              std::span<const double> offsets, const WorkOptions& options) {
+requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+    const Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& normal, std::span<const double> offsets,
+    const WorkOptions& options) {
   const Section<N> section(normal);
   detail::require_sound(contour);
   std::vector<double> levels;

@@ -108,8 +108,10 @@ bool is_at_layer(const Grid<N>& grid, int axis, double at, std::pair<std::size_t
 namespace tegl {
 
 template <class Real, Value T, int N>
-Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue, int axis, double at,
-                                        const ExtractOptions& options, ExtractStats* stats) {
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
+                                                                           int axis, double at,
+                                                                           const ExtractOptions& options,
+                                                                           ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
   auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
   const bool is_last = axis == N - 1;
@@ -130,8 +132,9 @@ Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalu
 }
 
 template <class Real, Value T, int N>
-Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, double at, const ExtractOptions& options,
-                                 ExtractStats* stats) {
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
+                                                                    double at, const ExtractOptions& options,
+                                                                    ExtractStats* stats) {
   return slice_image_across<Real>(image, isovalue, N - 1, at, options, stats);
 }
 

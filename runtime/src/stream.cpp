@@ -56,8 +56,9 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
 }  // namespace detail
 
 template <class Real, Value T, int N>
-StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
-                              ContourSink<N, Real>& sink, ExtractStats* stats) {
+requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
+                                                                 const ExtractOptions& options,
+                                                                 ContourSink<N, Real>& sink, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
   detail::LayerRing<T, N> ring(layers);
   detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);

@@ -143,6 +143,7 @@ class SideBySide {
 }  // namespace
 
 template <class Real, Value T, int N>
+requires DimensionBetween<N, 2, 4>
 void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
                               const ExtractOptions& options) {
   for (const auto& contour : contours) {

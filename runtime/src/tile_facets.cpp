@@ -20,7 +20,7 @@ const detail::CubeFaces& cube_faces() {
 }  // namespace
 
 template <int N>
-std::size_t face_number(unsigned base, unsigned axes) {
+requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsigned axes) {
   if ((base & axes) != 0 || (base | axes) >> N != 0)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("face with base {:#b} and axes {:#b}; expected disjoint sets of {} bits", base, axes, N));
@@ -28,8 +28,9 @@ std::size_t face_number(unsigned base, unsigned axes) {
 }
 
 template <int N>
-facets::TileFacets tile_facets(std::uint64_t signature, std::span<const facets::Choice> signs,
-                               facets::Alternative otherwise) {
+requires DimensionBetween<N, 2, 6> facets::TileFacets tile_facets(std::uint64_t signature,
+                                                                  std::span<const facets::Choice> signs,
+                                                                  facets::Alternative otherwise) {
   constexpr std::uint64_t kCorners = ~std::uint64_t{0} >> (64 - (1 << N));
   if ((signature & ~kCorners) != 0)
     throw Error(ErrorCode::InvalidArgument,

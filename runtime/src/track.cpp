@@ -268,7 +268,7 @@ std::vector<double> even_times(double first, double last, std::size_t count) {
 }
 
 template <int N, class Real>
-TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
+requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
   require_sound(options);
   require_sound(contour);
   return Builder<N, Real>(contour, options, detail::sweep(contour, options)).build();

@@ -45,7 +45,7 @@ void expect_named(const NamedCell<kCorners>& cell) {
     for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
       ExtractOptions options = by_saddle();
       options.triangulation = triangulation;
-      const auto contour = extract<double>(image_of<std::int8_t>(field).view(), 0.0, options);
+      const auto contour = extract<double>(view_of(image_of<std::int8_t>(field)), 0.0, options);
       ASSERT_TRUE(has_topology_of(contour, below, interpolant));
     }
   }
@@ -88,7 +88,7 @@ void expect_embedded(const NamedCell<kCorners>& cell, std::mt19937_64& bits, con
   const auto below = just_below(field);
   const auto interpolant = interpolant_topology(below);
   ASSERT_TRUE(interpolant.regular);
-  const auto contour = extract<double>(image_of<std::int8_t>(field).view(), 0.0, by_saddle());
+  const auto contour = extract<double>(view_of(image_of<std::int8_t>(field)), 0.0, by_saddle());
   ASSERT_TRUE(is_closed_oriented_manifold(check(contour)));
   ASSERT_TRUE(has_topology_of(contour, below, interpolant));
 }

@@ -59,7 +59,7 @@ void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t s
       EXPECT_GT(contour.simplices.size(), 0u);
       for (std::size_t s = seed % every; s < symmetries.size(); s += every) {
         const auto expected = moved<N>(contour, symmetries[s], sizes);
-        const auto found = extract<double>(moved(image, symmetries[s]).view(), 0.0, options);
+        const auto found = extract<double>(view_of(moved(image, symmetries[s])), 0.0, options);
         ASSERT_EQ(tile_pieces(found), tile_pieces(expected)) << "symmetry " << s;
         if (name == "low, barycentric" || name == "high, barycentric") {
           ASSERT_TRUE(same_surface(rounded(found), rounded(expected))) << "symmetry " << s;
@@ -79,7 +79,7 @@ TEST(Symmetry, KeepsHowManyVerticesAndTrianglesThereAreThoughTunnelsOwnVerticesM
       const ExtractOptions options = by_ambiguity(ambiguity);
       const auto contour = extract<double>(image.view(), 0.0, options);
       for (std::size_t s = 0; s < symmetries.size(); s += 5) {
-        const auto found = rounded(extract<double>(moved(image, symmetries[s]).view(), 0.0, options));
+        const auto found = rounded(extract<double>(view_of(moved(image, symmetries[s])), 0.0, options));
         const auto expected = rounded(moved<3>(contour, symmetries[s], {4, 4, 4}));
         ASSERT_EQ(found.vertices.size(), expected.vertices.size());
         ASSERT_EQ(found.simplices.size(), expected.simplices.size());

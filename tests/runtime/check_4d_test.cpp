@@ -55,7 +55,7 @@ Simplices cones(const Contour<4>& base, int count) {
 
 template <class Field>
 Contour<4> contour_of(const Field& field) {
-  return extract(sample_field<float, 4>(centred_grid<4>(9, 1.6), field).view(), 0.0);
+  return extract(view_of(sample_field<float, 4>(centred_grid<4>(9, 1.6), field)), 0.0);
 }
 
 TEST(Check4d, TheSmallest4SphereIsOne) {

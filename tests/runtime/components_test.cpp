@@ -54,7 +54,7 @@ template <int N>
 Contour<N, double> noise_contour(std::size_t samples, std::uint64_t seed, bool close) {
   ExtractOptions options;
   options.close = close;
-  return extract<double>(noise<float, N>(samples, seed).view(), N == 5 ? 0.93 : 0.85, options);
+  return extract<double>(view_of(noise<float, N>(samples, seed)), N == 5 ? 0.93 : 0.85, options);
 }
 
 template <int N>

@@ -240,18 +240,19 @@ TEST(Plain, EqualsTheKernelWhereBusyAndEmptyLayersAlternate) {
 /// Beyond 2^16 samples, and just within.
 TEST(Plain, EqualsTheKernelInLongRows) {
   RecursiveBuilder<2> builder(ExtractOptions{});
-  expect_plain<float>(noise<float, 2>({65536, 3}, 780).view(), 0.5, {}, builder);
-  expect_plain<float>(noise<float, 2>({65536 + 70, 3}, 781).view(), 0.5, {}, builder);
+  expect_plain<float>(view_of(noise<float, 2>({65536, 3}, 780)), 0.5, {}, builder);
+  expect_plain<float>(view_of(noise<float, 2>({65536 + 70, 3}, 781)), 0.5, {}, builder);
 }
 
 /// As large as several of the kernel's working units along every axis.
 TEST(Plain, EqualsTheKernelForImagesOfManyRowsAndLayers) {
   RecursiveBuilder<2> builder2(ExtractOptions{});
-  expect_plain<float>(noise<float, 2>({100, 700}, 800).view(), 0.5, {}, builder2);
+  expect_plain<float>(view_of(noise<float, 2>({100, 700}, 800)), 0.5, {}, builder2);
   RecursiveBuilder<3> builder3(ExtractOptions{});
-  expect_plain<float>(noise<std::uint16_t, 3>({65, 20, 40}, 801).view(), noise_isovalue<std::uint16_t>(), {}, builder3);
+  expect_plain<float>(view_of(noise<std::uint16_t, 3>({65, 20, 40}, 801)), noise_isovalue<std::uint16_t>(), {},
+                      builder3);
   RecursiveBuilder<4> builder4(ExtractOptions{});
-  expect_plain<float>(noise<float, 4>({9, 7, 8, 24}, 802).view(), 0.5, {}, builder4);
+  expect_plain<float>(view_of(noise<float, 4>({9, 7, 8, 24}, 802)), 0.5, {}, builder4);
 }
 
 }  // namespace

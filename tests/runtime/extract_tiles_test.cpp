@@ -147,11 +147,11 @@ TEST(BuiltTiles, WhatIsTooLargeForABuilderIsAnErrorOfTegl) {
 }
 
 TEST(ExtractTiles, PlaneImagesHaveTheContoursOfTheTables) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(noise<float, 2>(70, seed).view(), 0.5);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(view_of(noise<float, 2>(70, seed)), 0.5);
 }
 
 TEST(ExtractTiles, VolumesHaveTheContoursOfTheTables) {
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(noise<float, 3>(12, seed).view(), 0.5);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_as_by_tables(view_of(noise<float, 3>(12, seed)), 0.5);
 }
 
 TEST(ExtractTiles, ResolvedFromTheDataPlaneImagesHaveTheContoursOfTheTables) {
@@ -182,13 +182,13 @@ TEST(ExtractTiles, AnyGridDirectionAndEpsilonHaveTheContoursOfTheTables) {
   ExtractOptions options;
   options.direction = GradientDirection::ascent;
   options.epsilon = 0.05;
-  expect_as_by_tables(noise<float, 2>(bent_grid<2>(20), 1).view(), 0.5, options);
-  expect_as_by_tables(noise<std::uint8_t, 3>(bent_grid<3>(8), 2).view(), 127.5, options);
+  expect_as_by_tables(view_of(noise<float, 2>(bent_grid<2>(20), 1)), 0.5, options);
+  expect_as_by_tables(view_of(noise<std::uint8_t, 3>(bent_grid<3>(8), 2)), 127.5, options);
 }
 
 TEST(ExtractTiles, SmoothFieldsIn4dHaveTheContoursOfTheTables) {
-  expect_as_by_tables(sample_field<float, 4>(centred_grid<4>(9, 1.5), Ball<4>{}).view(), 0.0);
-  expect_as_by_tables(sample_field<float, 4>(centred_grid<4>(8, 1.6), RingTube<4>{}).view(), 0.0);
+  expect_as_by_tables(view_of(sample_field<float, 4>(centred_grid<4>(9, 1.5), Ball<4>{})), 0.0);
+  expect_as_by_tables(view_of(sample_field<float, 4>(centred_grid<4>(8, 1.6), RingTube<4>{})), 0.0);
 }
 
 TEST(ExtractTiles, TilesIn4dHaveTheContoursOfTheTablesWhereAllIsConed) {
@@ -221,21 +221,21 @@ TEST(ExtractTiles, ClosedBordersEncloseWhatTheCapsOfTheTablesDo) {
     EXPECT_EQ(check(ours).euler, check(theirs).euler);
     EXPECT_EQ(check(ours).components, check(theirs).components);
   };
-  expect_equal(noise<float, 2>(30, 1).view(), 0.5);
-  expect_equal(noise<float, 3>(8, 1).view(), 0.5);
-  expect_equal(sample_field<float, 4>(centred_grid<4>(6, 0.9), Ball<4>{}).view(), 0.0);
+  expect_equal(view_of(noise<float, 2>(30, 1)), 0.5);
+  expect_equal(view_of(noise<float, 3>(8, 1)), 0.5);
+  expect_equal(view_of(sample_field<float, 4>(centred_grid<4>(6, 0.9), Ball<4>{})), 0.0);
 }
 
 TEST(ExtractTiles, NoiseIn4dIsAClosedManifold) {
   ExtractOptions options;
   options.close = true;
-  expect_closed_manifold(extract_tile_by_tile(noise<float, 4>(5, 3).view(), 0.5, options));
+  expect_closed_manifold(extract_tile_by_tile(view_of(noise<float, 4>(5, 3)), 0.5, options));
 }
 
 // ---- 5D, by the public functions ----
 
 TEST(Extract5d, ABallHasA4SphereAroundIt) {
-  const auto contour = extract(sample_field<float, 5>(centred_grid<5>(7, 1.4), Ball<5>{}).view(), 0.0);
+  const auto contour = extract(view_of(sample_field<float, 5>(centred_grid<5>(7, 1.4), Ball<5>{})), 0.0);
   const MeshReport report = expect_closed_manifold(contour);
   EXPECT_EQ(report.euler, 2);
   EXPECT_EQ(report.components, 1u);
@@ -245,7 +245,7 @@ TEST(Extract5d, ABallHasA4SphereAroundIt) {
 TEST(Extract5d, MeasureAndContentOfABallConvergeWithTheSquareOfTheStep) {
   const Ball<5> ball;
   const auto errors = [&](std::size_t samples) {
-    const auto contour = extract<double>(sample_field<float, 5>(centred_grid<5>(samples, 1.2), ball).view(), 0.0);
+    const auto contour = extract<double>(view_of(sample_field<float, 5>(centred_grid<5>(samples, 1.2), ball)), 0.0);
     return std::array{1.0 - enclosed_content(contour) / ball.content(), 1.0 - measure(contour) / ball.surface()};
   };
   const auto coarse = errors(6), fine = errors(11);  // steps of 0.48 and 0.24
@@ -263,10 +263,10 @@ TEST(Extract5d, TubesAroundACircleAndASphereHaveTheirEulerCharacteristics) {
     return 0.5 - std::hypot(std::hypot(x[0], x[1], x[2]) - 1.0, x[3], x[4]);
   };
   const auto grid = centred_grid<5>(8, 1.75);
-  const MeshReport circle = expect_closed_manifold(extract(sample_field<float, 5>(grid, around_circle).view(), 0.0));
+  const MeshReport circle = expect_closed_manifold(extract(view_of(sample_field<float, 5>(grid, around_circle)), 0.0));
   EXPECT_EQ(circle.euler, 0);
   EXPECT_EQ(circle.components, 1u);
-  const MeshReport sphere = expect_closed_manifold(extract(sample_field<float, 5>(grid, around_sphere).view(), 0.0));
+  const MeshReport sphere = expect_closed_manifold(extract(view_of(sample_field<float, 5>(grid, around_sphere)), 0.0));
   EXPECT_EQ(sphere.euler, 4);
   EXPECT_EQ(sphere.components, 1u);
 }
@@ -472,7 +472,7 @@ TEST(Extract5d, StopsWhenToldTo) {
 }
 
 TEST(Extract5d, ImagesWithoutTilesHaveNoContour) {
-  EXPECT_TRUE(extract(noise<float, 5>({3, 3, 1, 3, 3}, 13).view(), 0.5).vertices.empty());
+  EXPECT_TRUE(extract(view_of(noise<float, 5>({3, 3, 1, 3, 3}, 13)), 0.5).vertices.empty());
 }
 
 }  // namespace

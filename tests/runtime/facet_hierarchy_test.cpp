@@ -298,7 +298,7 @@ TEST(FacetsOf4d, AreThoseThatTheBuilderOfTilesFinds) {
       const unsigned signature = ambiguity == Ambiguity::low ? signatures[i] : 65535 - signatures[i];
       ExtractOptions options;
       options.ambiguity = ambiguity;
-      const auto facets = extract_facets<float>(tile_image(signature).view(), 0.5, options);
+      const auto facets = extract_facets<float>(view_of(tile_image(signature)), 0.5, options);
       auto expected = tile_facets<4>(signature, {},
                                      ambiguity == Ambiguity::low ? facets::Alternative::low : facets::Alternative::high)
                           .sigma_euler;
@@ -352,7 +352,7 @@ TEST(FacetsOf4d, ResolvedInAnyWayAreThoseThatTheBuilderOfTilesFinds) {
   for (int i = 0; i < 600; ++i) {
     const auto signature = static_cast<unsigned>(random_below(bits, 65536));
     for (facets::Choice& sign : signs) sign = static_cast<facets::Choice>(random_below(bits, 3));
-    const auto hierarchy = extract_facets<float>(tile_image(signature).view(), 0.5, options);
+    const auto hierarchy = extract_facets<float>(view_of(tile_image(signature)), 0.5, options);
     std::vector<int> expected, eulers;
     for (const facets::Facet& facet : tile_facets<4>(signature, signs).facets)
       for (const int euler : parts_of(facet)) expected.push_back(euler);

@@ -219,7 +219,7 @@ TEST(SliceByHyperplane, NormalsOfAnyLengthGiveTheSameCut) {
 }
 
 TEST(SliceByHyperplane, BeyondAllNumbersIsEmpty) {
-  const auto whole = extract<float>(test::noise<float, 4>(4, 6).view(), 0.5);
+  const auto whole = extract<float>(view_of(test::noise<float, 4>(4, 6)), 0.5);
   EXPECT_TRUE(slice(whole, Hyperplane<4>{{1e-300, 0, 1e-300, 0}, 1e300}).simplices.empty());
   EXPECT_TRUE(slice(whole, Hyperplane<4>::across(1, -1e300)).simplices.empty());
   EXPECT_TRUE(slice(whole, Hyperplane<4>{{0, 1e-300, 0, 0}, 1e300}).simplices.empty());

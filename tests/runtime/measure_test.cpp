@@ -21,7 +21,7 @@ template <int N, class Field>
 Contour<N, double> contour_of(const Field& field, std::size_t samples, double half_width, bool close = false) {
   ExtractOptions options;
   options.close = close;
-  return extract<double>(sample_field<double>(centred_grid<N>(samples, half_width), field).view(), 0.0, options);
+  return extract<double>(view_of(sample_field<double>(centred_grid<N>(samples, half_width), field)), 0.0, options);
 }
 
 /// Errors of size and content at two steps, one half of the other: small, and of second order.
@@ -66,10 +66,10 @@ TEST(Measure, OfNoiseIsThatOfPlainSums) {
   };
   ExtractOptions closed;
   closed.close = true;
-  each(extract<double>(noise<float, 2>(40, 1).view(), 0.5, closed));
-  each(extract<double>(noise<float, 3>(12, 2).view(), 0.5, closed));
-  each(extract<double>(noise<float, 4>(7, 3).view(), 0.5, closed));
-  each(extract<double>(noise<float, 5>(3, 4).view(), 0.5, closed));
+  each(extract<double>(view_of(noise<float, 2>(40, 1)), 0.5, closed));
+  each(extract<double>(view_of(noise<float, 3>(12, 2)), 0.5, closed));
+  each(extract<double>(view_of(noise<float, 4>(7, 3)), 0.5, closed));
+  each(extract<double>(view_of(noise<float, 5>(3, 4)), 0.5, closed));
 }
 
 TEST(Measure, DoesNotLoseDigitsFarFromTheOrigin) {
@@ -103,7 +103,7 @@ TEST(Measure, FacesThatDoNotCancelLeaveNoContent) {
 }
 
 TEST(Measure, IsTheSameForAnyNumberOfThreads) {
-  const auto contour = extract<float>(noise<float, 4>(9, 8).view(), 0.5);
+  const auto contour = extract<float>(view_of(noise<float, 4>(9, 8)), 0.5);
   const std::vector<double> at = {0, 0.5, 1.25, 7.9, 8, 3, 3};
   const Measures<4> one = tegl::measure(contour, {1, {}});
   const std::vector<CutMeasures> cuts = measure_cuts(contour, at, {1, {}});
@@ -154,9 +154,9 @@ TEST(MeasureCuts, AreThoseOfSlices) {
     ExtractOptions options;
     options.close = close;
     // Whole values too: at the first one the limit is from above, elsewhere from below.
-    expect_measures_of_slices<3>(extract<double>(noise<float, 3>(9, 21).view(), 0.5, options),
+    expect_measures_of_slices<3>(extract<double>(view_of(noise<float, 3>(9, 21)), 0.5, options),
                                  {0.0, 0.1, 1.0, 2.5, 4.999, 7.0, 7.75, 8.0});
-    expect_measures_of_slices<4>(extract<double>(noise<float, 4>(6, 22).view(), 0.5, options),
+    expect_measures_of_slices<4>(extract<double>(view_of(noise<float, 4>(6, 22)), 0.5, options),
                                  {3.2, 0.0, 0.3, 1.0, 2.5, 4.0, 4.75, 5.0});
   }
 }
@@ -166,7 +166,7 @@ TEST(MeasureCuts, OfASingleContourMeetTheTimesThatDoublesMiss) {
   // last time the contour must not be missed.
   Grid<4> grid = Grid<4>::unit({6, 6, 6, 8});
   grid.axes[3] = Axis::uniform(8, 0.1, 0.1);
-  const auto contour = extract<float>(noise<float, 4>(grid, 23).view(), 0.5);
+  const auto contour = extract<float>(view_of(noise<float, 4>(grid, 23)), 0.5);
   std::vector<double> at;
   for (std::size_t k = 0; k < 8; ++k) at.push_back(grid.axes[3][k]);
   at.push_back(0.7);

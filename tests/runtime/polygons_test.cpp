@@ -322,7 +322,7 @@ TEST(ContoursFromPolygons, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(ContoursFromPolygons, CanBeCancelled) {
-  const auto facets = extract_facets<float>(noise<float, 3>(20, 8).view(), 0.5);
+  const auto facets = extract_facets<float>(view_of(noise<float, 3>(20, 8)), 0.5);
   try {
     triangulate(facets, PolygonTriangulation::fan, {1, [](double) { return false; }});
     FAIL() << "not cancelled";

@@ -43,7 +43,7 @@ class ProgressGaps : public testing::Test {
     image_ = new OwnedImage<float, kN>(noise<float, kN>(kSize, 1));
     contour_ = new Contour<kN, float>(extract<float>(image_->view(), 0.5));
     labels_ = new ComponentLabels(label_components(*contour_));
-    surface_ = new Contour<3, float>(extract<float>(noise<float, 3>(16, 2).view(), 0.5));
+    surface_ = new Contour<3, float>(extract<float>(view_of(noise<float, 3>(16, 2)), 0.5));
   }
   static void TearDownTestSuite() {
     delete std::exchange(image_, nullptr);
@@ -153,7 +153,7 @@ TEST_F(ProgressGaps, AnyCallCanEndTheWork) {
 
 /// Files too, of every format that holds the contour; in text and in numbers.
 TEST_F(ProgressGaps, OfReadingFilesAreShort) {
-  const auto surface = extract<float>(noise<float, 3>(48, 3).view(), 0.5);
+  const auto surface = extract<float>(view_of(noise<float, 3>(48, 3)), 0.5);
   // A .gltf is one text that is taken apart as a whole: nothing is expected of its gaps.
   const std::vector<std::pair<std::string, double>> files = {
       {"gaps.ply", 0.5}, {"gaps.glb", 0.5}, {"gaps.gltf", 1.0}, {"gaps.vtkhdf", 0.5}};

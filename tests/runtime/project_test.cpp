@@ -30,7 +30,7 @@ Contour<4, double> moving_ball(bool close) {
   grid.axes[3].unit = "s";
   ExtractOptions options;
   options.close = close;
-  return extract<double>(test::sample_field<double>(grid, MovingBall()).view(), 0.0, options);
+  return extract<double>(view_of(test::sample_field<double>(grid, MovingBall())), 0.0, options);
 }
 
 TEST(Outline, OfAMovingBallIsTheSurfaceOfACapsule) {

@@ -61,7 +61,7 @@ TEST(Resolved4d, AnyChoicesForTheFacesGiveAClosedManifold) {
   options.estimator.choose = hashed;
   options.close = true;
   for (std::uint64_t seed = 11; seed <= 13; ++seed) {
-    const auto contour = extract<double>(noise<float, 4>(7, seed).view(), 0.5, options);
+    const auto contour = extract<double>(view_of(noise<float, 4>(7, seed)), 0.5, options);
     expect_closed_manifold(contour);
     expect_closed_manifold(slice(contour, 2.75));
   }

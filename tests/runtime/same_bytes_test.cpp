@@ -82,10 +82,10 @@ void expect_same_bytes_of_noise(const std::array<std::size_t, N>& sizes, std::ui
     options.close = seed % 3 == 0;
     options.normals = seed % 2 == 0;
     SCOPED_TRACE(describe(options) + ", seed " + std::to_string(seed));
-    expect_same_bytes<Real>(noise<T, N>(slanted<N>(sizes, seed % 2 == 0), seed).view(), noise_isovalue<T>(), options);
+    expect_same_bytes<Real>(view_of(noise<T, N>(slanted<N>(sizes, seed % 2 == 0), seed)), noise_isovalue<T>(), options);
     options.epsilon = seed % 5 == 0 ? 0.01 : 0.0;
     // Many samples at the isovalue: places of 0 with either sign.
-    expect_same_bytes<Real>(coarse_noise<T, N>(slanted<N>(sizes, seed % 2 != 0), seed, 3).view(), 1.0, options);
+    expect_same_bytes<Real>(view_of(coarse_noise<T, N>(slanted<N>(sizes, seed % 2 != 0), seed, 3)), 1.0, options);
     ++seed;
   }
 }
@@ -133,19 +133,19 @@ TEST(SameBytes, OfFacesThatTheDataDecide) {
   for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
     ExtractOptions options;
     options.ambiguity = ambiguity;
-    expect_same_bytes<float>(noise<float, 3>({130, 6, 7}, 94).view(), 0.5, options);
-    expect_same_bytes<float>(coarse_noise<std::uint8_t, 3>(Grid<3>::unit({67, 9, 5}), 95, 2).view(), 0.5, options);
-    expect_same_bytes<float>(coarse_noise<float, 3>(Grid<3>::unit({67, 5, 9}), 96, 5).view(), 1.3, options);
-    expect_same_bytes<float>(noise_with_missing<float, 3>(Grid<3>::unit({67, 6, 7}), 97, 0.02).view(), 0.5, options);
-    expect_same_bytes<float>(noise<float, 4>({67, 3, 4, 3}, 98).view(), 0.5, options);
-    expect_same_bytes<float>(coarse_noise<double, 4>(Grid<4>::unit({9, 4, 3, 4}), 99, 2).view(), 0.5, options);
+    expect_same_bytes<float>(view_of(noise<float, 3>({130, 6, 7}, 94)), 0.5, options);
+    expect_same_bytes<float>(view_of(coarse_noise<std::uint8_t, 3>(Grid<3>::unit({67, 9, 5}), 95, 2)), 0.5, options);
+    expect_same_bytes<float>(view_of(coarse_noise<float, 3>(Grid<3>::unit({67, 5, 9}), 96, 5)), 1.3, options);
+    expect_same_bytes<float>(view_of(noise_with_missing<float, 3>(Grid<3>::unit({67, 6, 7}), 97, 0.02)), 0.5, options);
+    expect_same_bytes<float>(view_of(noise<float, 4>({67, 3, 4, 3}, 98)), 0.5, options);
+    expect_same_bytes<float>(view_of(coarse_noise<double, 4>(Grid<4>::unit({9, 4, 3, 4}), 99, 2)), 0.5, options);
   }
 }
 
 TEST(SameBytes, OfManyBatchesOfRows) {
-  expect_same_bytes<float>(noise<float, 2>({600, 2000}, 91).view(), 0.5, {});
-  expect_same_bytes<float>(noise<float, 3>(80, 92).view(), 0.5, {});
-  expect_same_bytes<float>(noise<std::uint8_t, 4>(14, 93).view(), noise_isovalue<std::uint8_t>(), {});
+  expect_same_bytes<float>(view_of(noise<float, 2>({600, 2000}, 91)), 0.5, {});
+  expect_same_bytes<float>(view_of(noise<float, 3>(80, 92)), 0.5, {});
+  expect_same_bytes<float>(view_of(noise<std::uint8_t, 4>(14, 93)), noise_isovalue<std::uint8_t>(), {});
 }
 
 TEST(SameBytes, OfMoreThreadsThanThereAre) {

@@ -89,8 +89,8 @@ TYPED_TEST(SliceOfValueType, AtALayerEqualsTheContourOfThatLayer) {
 TEST(SliceImage, OfSmoothFieldsAtATimeStepEqualsThe3dContour) {
   const Grid<4> grid = test::centred_grid<4>(13, 1.6);
   for (const ExtractOptions& options : all_options()) {
-    expect_cuts_are_layers<float>(test::sample_field<float>(grid, test::SphereTube{}).view(), 0.01, options);
-    expect_cuts_are_layers<double>(test::sample_field<double>(grid, test::Gyroid<4>{}).view(), 0.1, options);
+    expect_cuts_are_layers<float>(view_of(test::sample_field<float>(grid, test::SphereTube{})), 0.01, options);
+    expect_cuts_are_layers<double>(view_of(test::sample_field<double>(grid, test::Gyroid<4>{})), 0.1, options);
   }
 }
 

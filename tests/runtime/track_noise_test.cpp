@@ -244,7 +244,7 @@ Contour<N, double> noise_contour(std::array<std::size_t, N> sizes, std::uint64_t
   ExtractOptions options;
   options.close = close;
   options.triangulation = seed % 2 == 0 ? Triangulation::compact : Triangulation::barycentric;
-  return extract<double>(test::noise<float, N>(sizes, seed).view(), 0.5, options);
+  return extract<double>(view_of(test::noise<float, N>(sizes, seed)), 0.5, options);
 }
 
 TEST(TrackNoise, In3dAgreesWithEveryCut) {

@@ -35,7 +35,7 @@ template <int N, class Field>
 Contour<N, double> contour_of(const Grid<N>& grid, const Field& field, bool close = false) {
   ExtractOptions options;
   options.close = close;
-  return extract<double>(test::sample_field<double, N>(grid, field).view(), 0.0, options);
+  return extract<double>(view_of(test::sample_field<double, N>(grid, field)), 0.0, options);
 }
 
 std::vector<Kind> kinds(const TrackGraph& graph) {
@@ -283,8 +283,8 @@ TEST(Track, AtTheFirstTimeSamplesAreTheCutFromAbove) {
   for (const bool close : {false, true}) {
     options.close = close;
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
-      expect_first_sample_is_the_cut(extract<double>(test::noise<float, 4>(5, seed).view(), 0.3, options));
-      expect_first_sample_is_the_cut(extract<double>(test::noise<float, 3>(7, seed).view(), 0.3, options));
+      expect_first_sample_is_the_cut(extract<double>(view_of(test::noise<float, 4>(5, seed)), 0.3, options));
+      expect_first_sample_is_the_cut(extract<double>(view_of(test::noise<float, 3>(7, seed)), 0.3, options));
     }
   }
 }

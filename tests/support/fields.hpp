@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "tegl/image.hpp"
+#include "view_of.hpp"
 
 namespace tegl::test {
 

@@ -14,6 +14,7 @@
 #include "fields.hpp"
 #include "multilinear.hpp"
 #include "tegl/image.hpp"
+#include "view_of.hpp"
 
 namespace tegl::test {
 

@@ -24,6 +24,7 @@ using TileNumber = std::uint64_t;
 
 /// The tiles between the samples of an image. A row of them is a line along axis 0.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 class TileGrid {
  public:
   using Index = std::array<std::size_t, N>;  ///< of a tile's lowest corner, or sizes, by axis
@@ -83,7 +84,8 @@ class TileRowSet {
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }  ///< in it or not
   [[nodiscard]] std::size_t count() const noexcept;                  ///< how many are in
   /// ceil(rows / 64) words, lowest bit first; bits behind the last row are 0.
-  [[nodiscard]] const std::vector<std::uint64_t>& words() const noexcept { return words_; }
+  [[nodiscard]] const std::vector<std::uint64_t>& words() const& noexcept { return words_; }
+  [[nodiscard]] std::vector<std::uint64_t> words() const&& { return words_; }  ///< of a temporary: a copy
 
  private:
   std::size_t rows_;
@@ -105,9 +107,10 @@ std::vector<ActiveMethod> active_methods();
 
 /// What is known of the image that an index was built for.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct IndexedImage {
   std::array<std::size_t, N> sizes{};  ///< samples
-  std::string value_type;              ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  std::string value_type = {};         ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
   std::uint64_t digest = 0;            ///< of sizes, type and the bits of all values
   bool any_missing = false;            ///< whether any value is NaN
 
@@ -143,8 +146,8 @@ class ByteSource {
 struct ActiveTilesHead {
   std::uint32_t version = 0;                      ///< of the format
   ActiveMethod method = ActiveMethod::full_scan;  ///< how tiles are found
-  std::vector<std::uint64_t> sizes;               ///< of the image: 2 to 5 axes, axis 0 first
-  std::string value_type;                         ///< as in IndexedImage
+  std::vector<std::uint64_t> sizes = {};          ///< of the image: 2 to 5 axes, axis 0 first
+  std::string value_type = {};                    ///< as in IndexedImage
   std::uint64_t digest = 0;                       ///< as in IndexedImage
   bool any_missing = false;                       ///< as in IndexedImage
 };
@@ -165,6 +168,7 @@ class IndexWriter;
 /// isovalues; InvalidIsovalue otherwise. Some methods look at the image's values when asked (`needs_image`): then the
 /// values must outlive the index; the view need not. The values must not change.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 class ActiveTiles {
  public:
   virtual ~ActiveTiles() = default;
@@ -173,8 +177,10 @@ class ActiveTiles {
 
   /// How tiles are found.
   [[nodiscard]] virtual ActiveMethod method() const noexcept = 0;
-  [[nodiscard]] const IndexedImage<N>& image() const noexcept { return image_; }  ///< what it was built for
-  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }        ///< the image's tiles
+  [[nodiscard]] const IndexedImage<N>& image() const& noexcept { return image_; }  ///< what it was built for
+  [[nodiscard]] IndexedImage<N> image() const&& { return image_; }                 ///< of a temporary: a copy
+  [[nodiscard]] const TileGrid<N>& grid() const& noexcept { return grid_; }        ///< the image's tiles
+  [[nodiscard]] TileGrid<N> grid() const&& noexcept { return grid_; }              ///< of a temporary: a copy
   /// Bytes that the index holds beside the image.
   [[nodiscard]] virtual std::size_t memory_bytes() const noexcept = 0;
   /// Whether `find` looks at the image's values.
@@ -248,7 +254,8 @@ std::unique_ptr<ActiveTiles<N>> choose_tiles(const Image<T, N>& image, std::vect
 /// Errors: those of `extract`; InvalidArgument for an index of an image of other sizes or value type, or for `close`
 /// with one that is not complete.
 template <class Real = float, Value T, int N>
-requires(N <= 4) Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
-                                          const ActiveTiles<N>& active, ExtractStats* stats = nullptr);
+requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
+                                                            const ExtractOptions& options, const ActiveTiles<N>& active,
+                                                            ExtractStats* stats = nullptr);
 
 }  // namespace tegl

@@ -51,6 +51,9 @@ class AmbiguousFace {
   /// Called by extractions: a face by its first corner, axes and corners' values. What it refers to must outlive it.
   AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
                 const Surroundings& around);
+  /// Deleted: the surroundings are not copied.
+  AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
+                const Surroundings&& around) = delete;
 
   /// Dimensions of the image, and of the face: 2 or more.
   [[nodiscard]] int image_dim() const noexcept { return image_dim_; }
@@ -58,9 +61,11 @@ class AmbiguousFace {
   /// Bit a: whether the face extends along axis a.
   [[nodiscard]] unsigned axes() const noexcept { return axes_; }
   /// The index of its first corner in the image, by axis: the face goes from there to the next sample along its axes.
-  [[nodiscard]] std::span<const std::size_t> base() const noexcept {
+  [[nodiscard]] std::span<const std::size_t> base() const& noexcept {
     return {base_.data(), static_cast<std::size_t>(image_dim_)};
   }
+  /// Deleted: the index lies in the face itself.
+  std::span<const std::size_t> base() const&& = delete;
   /// At its 2^dim corners; corner v is one step along the j-th of its axes where bit j of v is set.
   [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
   [[nodiscard]] double isovalue() const noexcept { return isovalue_; }  ///< the isovalue of the contour
@@ -88,7 +93,7 @@ struct Estimator {
   /// InvalidArgument; answers that change and are not found out give tiles that do not fit together. Nothing is written
   /// outside of the contour in either case. For a square, `separate` is as `low`. What it throws ends the extraction
   /// and reaches the caller.
-  std::function<facets::Choice(const AmbiguousFace& face)> choose;
+  std::function<facets::Choice(const AmbiguousFace& face)> choose = {};
   /// How many samples beyond the face `choose` looks at, along any axis, through AmbiguousFace::sample. Layers of
   /// streamed images are kept for so long; beyond them nothing is known there.
   std::size_t reach = 0;

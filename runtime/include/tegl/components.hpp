@@ -22,9 +22,9 @@ inline constexpr Index kNoComponent = std::numeric_limits<Index>::max();
 /// simplices, with a label for a vertex in no simplex or none for one in a simplex, with a simplex whose vertices have
 /// other labels, or with a component without simplices.
 struct ComponentLabels {
-  Index count = 0;          ///< how many components
-  Buffer<Index> vertices;   ///< #V; kNoComponent for vertices in no simplex
-  Buffer<Index> simplices;  ///< #S
+  Index count = 0;               ///< how many components
+  Buffer<Index> vertices = {};   ///< #V; kNoComponent for vertices in no simplex
+  Buffer<Index> simplices = {};  ///< #S
 };
 
 /// Labels the components of a contour in N = 2 to 5 dimensions. Two simplices are in one component if a chain of
@@ -40,6 +40,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
 
 /// What is known of one component.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct Component {
   Index label = 0;              ///< its number, as in ComponentLabels
   std::uint64_t vertices = 0;   ///< how many
@@ -48,7 +49,7 @@ struct Component {
   double size = 0.0;
   /// The enclosed area (N = 2), volume (3), 4-volume (4) …: positive where the component's inside is high, negative for
   /// a cavity in it; none where it is open. The sum over the components is that of the whole.
-  std::optional<double> content;
+  std::optional<double> content = {};
   std::array<double, N> centroid{};      ///< of its points, each as much as any other; of size 0: the middle of the box
   std::array<double, N> lowest{};        ///< bounding box
   std::array<double, N> highest{};       ///< the other corner

@@ -13,6 +13,8 @@
 
 #include <Eigen/Core>
 
+#include "tegl/dimensions.hpp"
+
 namespace tegl {
 
 namespace detail {
@@ -71,10 +73,10 @@ struct ContourSize {
 
 /// Named numbers of every vertex, or of every simplex.
 struct Attribute {
-  std::string name;       ///< such as "temperature"; not empty
-  std::string unit;       ///< may be empty
-  int width = 1;          ///< how many numbers each has
-  Buffer<double> values;  ///< #V (or #S) x width, row = vertex (or simplex)
+  std::string name = {};       ///< such as "temperature"; not empty
+  std::string unit = {};       ///< may be empty
+  int width = 1;               ///< how many numbers each has
+  Buffer<double> values = {};  ///< #V (or #S) x width, row = vertex (or simplex)
 };
 
 /// Which way the orientation of a contour points: normals towards low (descent), or towards high (ascent).
@@ -82,7 +84,8 @@ enum class GradientDirection { descent, ascent };
 
 /// The contour of an N-dimensional image: an (N-1)-dimensional simplicial complex in N-space.
 /// N = 2: segments, 3: triangles, 4: tetrahedra, 5: 4-simplices.
-template <int N, class Real = float>
+template <int N, Coordinate Real = float>
+requires DimensionBetween<N, 2, 5>
 struct Contour {
   using Vertex = std::array<Real, N>;  ///< a point, N coordinates
   /// N vertex numbers.
@@ -90,25 +93,29 @@ struct Contour {
   using VertexMatrix = Eigen::Matrix<Real, Eigen::Dynamic, N, Eigen::RowMajor>;    ///< #V x N, row = vertex
   using SimplexMatrix = Eigen::Matrix<Index, Eigen::Dynamic, N, Eigen::RowMajor>;  ///< #S x N, row = simplex
 
-  Buffer<Vertex> vertices;                ///< #V x N world coordinates, row = vertex; for time-varying images t is last
-  Buffer<Simplex> simplices;              ///< #S x N vertex numbers, row = simplex, consistently oriented
-  Buffer<Vertex> normals;                 ///< #V x N of length 1, if asked for (ExtractOptions::normals); else empty
-  std::array<std::string, N> axis_names;  ///< taken from the grid
-  std::array<std::string, N> axis_units;  ///< likewise; such as "mm"
+  Buffer<Vertex> vertices = {};    ///< #V x N world coordinates, row = vertex; for time-varying images t is last
+  Buffer<Simplex> simplices = {};  ///< #S x N vertex numbers, row = simplex, consistently oriented
+  Buffer<Vertex> normals = {};     ///< #V x N of length 1, if asked for (ExtractOptions::normals); else empty
+  std::array<std::string, N> axis_names = {};                ///< taken from the grid
+  std::array<std::string, N> axis_units = {};                ///< likewise; such as "mm"
   GradientDirection direction = GradientDirection::descent;  ///< which side simplices and normals face
-  std::vector<Attribute> vertex_attributes;                  ///< `extract` makes none
-  std::vector<Attribute> simplex_attributes;                 ///< likewise
+  std::vector<Attribute> vertex_attributes = {};             ///< `extract` makes none
+  std::vector<Attribute> simplex_attributes = {};            ///< likewise
 
   /// The vertices as an Eigen matrix without a copy; valid while `vertices` is unchanged.
-  [[nodiscard]] auto vertex_matrix() const {
+  [[nodiscard]] auto vertex_matrix() const& {
     return Eigen::Map<const VertexMatrix>(vertices.empty() ? nullptr : vertices.data()->data(),
                                           static_cast<Eigen::Index>(vertices.size()), N);
   }
-  /// The simplices, likewise.
-  [[nodiscard]] auto simplex_matrix() const {
+  /// Deleted: the matrix of a temporary would refer to vertices that are gone.
+  void vertex_matrix() const&& = delete;
+  /// The simplices as an Eigen matrix without a copy; valid while `simplices` is unchanged.
+  [[nodiscard]] auto simplex_matrix() const& {
     return Eigen::Map<const SimplexMatrix>(simplices.empty() ? nullptr : simplices.data()->data(),
                                            static_cast<Eigen::Index>(simplices.size()), N);
   }
+  /// Deleted: the matrix of a temporary would refer to simplices that are gone.
+  void simplex_matrix() const&& = delete;
 };
 
 }  // namespace tegl

@@ -13,13 +13,14 @@ namespace tegl {
 
 /// How distances are measured.
 template <int N>
+requires DimensionBetween<N, 2, 4>
 struct DeviationOptions {
   /// Distances are taken after coordinates were multiplied by these: what makes axes of different units comparable.
   std::array<double, N> scale = all_one();
   /// No bound of a simplex has to be less than that: where it is, closer ones cost time. They hold all the same.
   double enough = 0.0;
-  unsigned threads = 0;  ///< 0: all that the machine has. The result is the same, byte by byte.
-  Progress progress;     ///< see Progress
+  unsigned threads = 0;    ///< 0: all that the machine has. The result is the same, byte by byte.
+  Progress progress = {};  ///< see Progress
 
  private:
   static constexpr std::array<double, N> all_one() {
@@ -33,8 +34,8 @@ struct DeviationOptions {
 struct Deviation {
   double bound = 0;  ///< no point of `from` is farther than this from `to` (infinite if only one of them is empty)
   double least = 0;  ///< and some point of it is as far as this: the truth lies in between
-  std::vector<double> of_from;  ///< #S of `from`: the bound for each of its simplices
-  std::vector<double> of_to;    ///< #S of `to`: the largest distance of what was matched with it; 0 if nothing was
+  std::vector<double> of_from = {};  ///< #S of `from`: the bound for each of its simplices
+  std::vector<double> of_to = {};    ///< #S of `to`: the largest distance of what was matched with it; 0 if nothing was
 };
 
 /// One half of the Hausdorff distance; call it both ways for the whole. N = 2, 3, 4; Real: float or double.
@@ -54,6 +55,7 @@ struct Deviation {
 /// finite), Cancelled. Time: about O(S log S) for contours that are close to each other. Memory: about 300 bytes for
 /// each simplex of either.
 template <int N, class Real>
-Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, const DeviationOptions<N>& options = {});
+requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
+                                                       const DeviationOptions<N>& options = {});
 
 }  // namespace tegl

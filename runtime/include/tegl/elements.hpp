@@ -21,16 +21,17 @@ namespace tegl {
 /// the product of the units of all other axes. They face the side that the contour's orientation does: low (descent) or
 /// high (ascent).
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct Elements {
   using Point = std::array<double, N>;  ///< coordinates, or components of a vector
 
-  Buffer<Point> centroids;                ///< #E x N world coordinates, row = element
-  Buffer<Point> normals;                  ///< #E x N, row = element
-  Buffer<double> measures;                ///< #E: lengths, areas or volumes, as Euclid has them
-  Buffer<Index> counts;                   ///< #E: of how many simplices the element is made
-  std::vector<Attribute> attributes;      ///< of elements: the contour's, of vertices first, then of simplices
-  std::array<std::string, N> axis_names;  ///< the contour's
-  std::array<std::string, N> axis_units;  ///< likewise
+  Buffer<Point> centroids = {};                ///< #E x N world coordinates, row = element
+  Buffer<Point> normals = {};                  ///< #E x N, row = element
+  Buffer<double> measures = {};                ///< #E: lengths, areas or volumes, as Euclid has them
+  Buffer<Index> counts = {};                   ///< #E: of how many simplices the element is made
+  std::vector<Attribute> attributes = {};      ///< of elements: the contour's, of vertices first, then of simplices
+  std::array<std::string, N> axis_names = {};  ///< the contour's
+  std::array<std::string, N> axis_units = {};  ///< likewise
   GradientDirection direction = GradientDirection::descent;  ///< which side dsigma points to
 };
 
@@ -55,6 +56,7 @@ Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& gri
 
 /// Sums over elements, exact to the last bits (compensated), whatever their number and order.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct ElementSum {
   std::array<double, N> normal{};    ///< the sum of the normals: 0 for a closed contour, by Gauss's theorem
   std::array<double, N> absolute{};  ///< the sums of their components' absolute values

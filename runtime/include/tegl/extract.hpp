@@ -48,7 +48,7 @@ struct ExtractOptions {
   /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
   /// axis) at least once, and within large ones, with fractions that do not fall; how often depends on the threads'
   /// pace. It may use threads (TBB) itself: while it waits for them, it is not called again.
-  Progress progress;
+  Progress progress = {};
 };
 
 /// What an extraction did, for reports.
@@ -95,11 +95,12 @@ template <class I>
 concept VertexNumber = std::is_same_v<I, std::uint32_t> || std::is_same_v<I, std::uint64_t>;
 
 /// Memory of the caller's for a contour.
-template <int N, class Real, VertexNumber I = Index>
+template <int N, Coordinate Real, VertexNumber I = Index>
+requires DimensionBetween<N, 2, 4>
 struct ContourRoom {
-  std::span<std::array<Real, N>> vertices;      ///< at least as many as `count` says
-  std::span<std::array<I, N>> simplices;        ///< likewise
-  std::span<std::array<Real, N>> normals = {};  ///< used with ExtractOptions::normals alone: as many as vertices
+  std::span<std::array<Real, N>> vertices = {};  ///< at least as many as `count` says
+  std::span<std::array<I, N>> simplices = {};    ///< likewise
+  std::span<std::array<Real, N>> normals = {};   ///< used with ExtractOptions::normals alone: as many as vertices
 };
 
 /// As `extract`, into memory of the caller's, which has to have room for the contour's size (`count` tells it) or more;
@@ -108,7 +109,9 @@ struct ContourRoom {
 /// twice. Errors: those of `extract`; InvalidArgument if there is no room; what the memory holds then, or after any
 /// error, is not defined.
 template <Value T, int N, class Real, VertexNumber I>
-ContourSize extract_into(const Image<T, N>& image, double isovalue, const ContourRoom<N, Real, I>& room,
-                         const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
+requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
+                                                            const ContourRoom<N, Real, I>& room,
+                                                            const ExtractOptions& options = {},
+                                                            ExtractStats* stats = nullptr);
 
 }  // namespace tegl

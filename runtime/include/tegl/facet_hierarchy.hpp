@@ -47,28 +47,28 @@ struct FacetPlace {
 /// ascending; (N-1)-facets are oriented as the simplices of `extract`, by ExtractOptions::direction. Points have no
 /// orientation; nor have segments inside of cubes but that of their start and end. The incidence number of a facet in
 /// the boundary of another is +1 or -1; the boundary of a boundary is zero.
-template <int N, class Real = float>
+template <int N, Coordinate Real = float>
+requires DimensionBetween<N, 2, 4>
 struct FacetHierarchy {
-  static_assert(N >= 2 && N <= 4);
   using Vertex = std::array<Real, N>;  ///< a point, N coordinates
 
   /// Facets of one dimension.
   struct Level {
-    Buffer<FacetPlace> places;       ///< #F
-    Buffer<Index> down_first;        ///< #F + 1; of points none
-    Buffer<Index> down;              ///< facets of the next lower dimension, those of facet f from down_first[f] on
-    Buffer<std::int8_t> down_signs;  ///< their incidence numbers
-    Buffer<Index> up_first;          ///< after connect_up: #F + 1; of (N-1)-facets none
-    Buffer<Index> up;                ///< facets of the next higher dimension, ascending
-    Buffer<std::int8_t> up_signs;    ///< the incidence numbers of this facet in them
+    Buffer<FacetPlace> places = {};  ///< #F
+    Buffer<Index> down_first = {};   ///< #F + 1; of points none
+    Buffer<Index> down = {};         ///< facets of the next lower dimension, those of facet f from down_first[f] on
+    Buffer<std::int8_t> down_signs = {};  ///< their incidence numbers
+    Buffer<Index> up_first = {};          ///< after connect_up: #F + 1; of (N-1)-facets none
+    Buffer<Index> up = {};                ///< facets of the next higher dimension, ascending
+    Buffer<std::int8_t> up_signs = {};    ///< the incidence numbers of this facet in them
   };
 
-  std::array<Level, N> levels;                               ///< by dimension k
-  Buffer<Vertex> vertices;                                   ///< #0-facets x N world coordinates, row = 0-facet
-  Buffer<Vertex> normals;                                    ///< as many, of length 1 or 0, if asked for; else empty
+  std::array<Level, N> levels = {};                          ///< by dimension k
+  Buffer<Vertex> vertices = {};                              ///< #0-facets x N world coordinates, row = 0-facet
+  Buffer<Vertex> normals = {};                               ///< as many, of length 1 or 0, if asked for; else empty
   std::array<std::size_t, N> sizes{};                        ///< of the image
-  std::array<std::string, N> axis_names;                     ///< taken from the grid
-  std::array<std::string, N> axis_units;                     ///< likewise
+  std::array<std::string, N> axis_names = {};                ///< taken from the grid
+  std::array<std::string, N> axis_units = {};                ///< likewise
   GradientDirection direction = GradientDirection::descent;  ///< which side facets face
 
   /// Facets of dimension k.
@@ -76,21 +76,29 @@ struct FacetHierarchy {
 
   /// The facets that bound facet f of dimension k >= 1. Of a segment: its start and its end. Of a polygon: its segments
   /// in turn, along its orientation, each beginning where the one before ends. Of a polyhedron: its polygons.
-  [[nodiscard]] std::span<const Index> down(int k, std::size_t f) const noexcept {
+  [[nodiscard]] std::span<const Index> down(int k, std::size_t f) const& noexcept {
     return part(levels[k].down, levels[k].down_first, f);
   }
+  /// Deleted: the numbers of a temporary would be gone.
+  std::span<const Index> down(int k, std::size_t f) const&& = delete;
   /// As many incidence numbers. A segment of a polygon with -1 is gone along from its end to its start.
-  [[nodiscard]] std::span<const std::int8_t> down_signs(int k, std::size_t f) const noexcept {
+  [[nodiscard]] std::span<const std::int8_t> down_signs(int k, std::size_t f) const& noexcept {
     return part(levels[k].down_signs, levels[k].down_first, f);
   }
+  /// Deleted: the numbers of a temporary would be gone.
+  std::span<const std::int8_t> down_signs(int k, std::size_t f) const&& = delete;
   /// The facets of dimension k + 1 that facet f of dimension k < N - 1 bounds; empty before connect_up.
-  [[nodiscard]] std::span<const Index> up(int k, std::size_t f) const noexcept {
+  [[nodiscard]] std::span<const Index> up(int k, std::size_t f) const& noexcept {
     return part(levels[k].up, levels[k].up_first, f);
   }
+  /// Deleted: the numbers of a temporary would be gone.
+  std::span<const Index> up(int k, std::size_t f) const&& = delete;
   /// As many incidence numbers: the sign that f has in the boundary of each.
-  [[nodiscard]] std::span<const std::int8_t> up_signs(int k, std::size_t f) const noexcept {
+  [[nodiscard]] std::span<const std::int8_t> up_signs(int k, std::size_t f) const& noexcept {
     return part(levels[k].up_signs, levels[k].up_first, f);
   }
+  /// Deleted: the numbers of a temporary would be gone.
+  std::span<const std::int8_t> up_signs(int k, std::size_t f) const&& = delete;
 
   /// Makes what `up` tells. O(size). Call it again after changes.
   void connect_up();
@@ -131,7 +139,8 @@ struct FacetHierarchy {
 /// row along axis 0 and 4 per facet; half of that in 3D, a fifth in 2D; twice as much for closed contours. Where the
 /// data decide, 100 more per row and 2 per face of two dimensions or more.
 template <class Real = float, Value T, int N>
-FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {});
+requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, double isovalue,
+                                                                          const ExtractOptions& options = {});
 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus; of a polyhedron
 /// half of that of its boundary: 1 less for each handle, 1 more for each part of the boundary beside the first.

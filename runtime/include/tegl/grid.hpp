@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "tegl/dimensions.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {
@@ -43,8 +44,8 @@ class Axis {
   /// Samples [first, first + count), with exactly the coordinates that they have here.
   [[nodiscard]] Axis part(std::size_t first, std::size_t count) const;
 
-  std::string name;  ///< such as "lon", "t"; may be empty
-  std::string unit;  ///< such as "mm", "degrees_east", "s"; may be empty
+  std::string name = {};  ///< such as "lon", "t"; may be empty
+  std::string unit = {};  ///< such as "mm", "degrees_east", "s"; may be empty
 
  private:
   std::size_t size_ = 0;
@@ -56,8 +57,9 @@ class Axis {
 /// An N-dimensional grid: axis 0 runs fastest in memory by convention of the readers, time is last.
 /// World position of index i: linear * (axes[0][i_0], ..., axes[N-1][i_{N-1}]) + offset.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct Grid {
-  std::array<Axis, N> axes;                                                      ///< axis 0 first; time last
+  std::array<Axis, N> axes = {};                                                 ///< axis 0 first; time last
   Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();  ///< the world map's matrix
   Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();      ///< and what it adds
 

@@ -11,6 +11,7 @@ namespace tegl {
 
 /// The points x with <normal, x> = offset. The normal may have any length but 0; the side that it points to is above.
 template <int N>
+requires DimensionBetween<N, 2, 4>
 struct Hyperplane {
   using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
   Vector normal = Vector::Unit(N - 1);         ///< a, of any length but 0
@@ -27,6 +28,7 @@ struct Hyperplane {
 /// its opposite if that is nearer. So across a coordinate axis the frame is the other axes themselves, to the last bit;
 /// and it changes continuously with the normal as long as k stays the same.
 template <int N>
+requires DimensionBetween<N, 2, 4>
 struct HyperplaneFrame {
   Eigen::Matrix<double, N, N - 1> axes;  ///< column = axis
   Eigen::Matrix<double, N, 1> origin;    ///< the hyperplane's point nearest to 0
@@ -48,11 +50,12 @@ struct HyperplaneFrame {
 /// by `scale_axes` first how much of one is as long as how much of the other. N = 2, 3, 4.
 /// Throws InvalidArgument if the normal is 0 or not finite, or the offset not finite.
 template <int N>
-HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
+requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
 
 /// Multiplies the coordinates along each axis by a factor above 0. Normals are made those of the stretched contour;
 /// names, units, attributes and simplices stay. N = 2, 3, 4. Throws InvalidArgument for other factors. O(#V).
 template <int N, class Real>
+requires DimensionBetween<N, 2, 4>
 void scale_axes(Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& factors);
 
 }  // namespace tegl

@@ -22,6 +22,7 @@ concept Value = std::is_same_v<T, std::uint8_t> || std::is_same_v<T, std::int8_t
 /// data[sum_a i_a * strides[a]]; strides count elements, may be negative or zero.
 /// A NaN is a missing value: no tile that touches one has a contour.
 template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
 class Image {
  public:
   using value_type = T;                           ///< the type of a sample
@@ -33,9 +34,11 @@ class Image {
   /// A view by any strides.
   Image(const T* data, Grid<N> grid, const Strides& strides);
 
-  [[nodiscard]] const T* data() const noexcept { return data_; }              ///< the sample of index 0, ..., 0
-  [[nodiscard]] const Grid<N>& grid() const noexcept { return grid_; }        ///< the samples' coordinates
-  [[nodiscard]] const Strides& strides() const noexcept { return strides_; }  ///< by axis, in elements
+  [[nodiscard]] const T* data() const noexcept { return data_; }               ///< the sample of index 0, ..., 0
+  [[nodiscard]] const Grid<N>& grid() const& noexcept { return grid_; }        ///< the samples' coordinates
+  [[nodiscard]] Grid<N> grid() const&& { return grid_; }                       ///< of a temporary: a copy
+  [[nodiscard]] const Strides& strides() const& noexcept { return strides_; }  ///< by axis, in elements
+  [[nodiscard]] Strides strides() const&& noexcept { return strides_; }        ///< of a temporary: a copy
   /// Samples along an axis.
   [[nodiscard]] std::size_t size(int axis) const noexcept { return grid_.axes[axis].size(); }
 
@@ -58,12 +61,15 @@ class Image {
 
 /// An image that owns its values, axis 0 fastest.
 template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
 struct OwnedImage {
-  Grid<N> grid;           ///< the samples' coordinates
-  std::vector<T> values;  ///< axis 0 fastest
+  Grid<N> grid = {};           ///< the samples' coordinates
+  std::vector<T> values = {};  ///< axis 0 fastest
 
   /// The image, to be handed on; valid while this one lives.
-  [[nodiscard]] Image<T, N> view() const { return Image<T, N>(values.data(), grid); }
+  [[nodiscard]] Image<T, N> view() const& { return Image<T, N>(values.data(), grid); }
+  /// Deleted: a view of a temporary would refer to values that are gone.
+  Image<T, N> view() const&& = delete;
 };
 
 }  // namespace tegl

@@ -38,27 +38,28 @@ enum class AxisDirection : std::uint8_t { unknown, up, down };
 
 /// What a file says beyond values and grid.
 struct ImageInfo {
-  std::string format;                          ///< "NIfTI", "NRRD", "MetaImage", "netCDF", "DICOM", "raw"
-  std::string variable;                        ///< netCDF: the variable read
-  std::vector<std::string> variables;          ///< netCDF: all that can be read as an image
-  std::string value_unit;                      ///< such as "degC"; may be empty
-  std::string value_name;                      ///< long name; may be empty
-  std::string world_frame;                     ///< such as "RAS", "LPS", "" where there is none
-  std::string stored_type;                     ///< value type in the file, before any conversion
-  std::vector<AxisDirection> axis_directions;  ///< netCDF: of each axis of the image; else empty
-  std::vector<std::string> remarks;            ///< DICOM: what was left out, slices at uneven distances; else empty
+  std::string format = {};                          ///< "NIfTI", "NRRD", "MetaImage", "netCDF", "DICOM", "raw"
+  std::string variable = {};                        ///< netCDF: the variable read
+  std::vector<std::string> variables = {};          ///< netCDF: all that can be read as an image
+  std::string value_unit = {};                      ///< such as "degC"; may be empty
+  std::string value_name = {};                      ///< long name; may be empty
+  std::string world_frame = {};                     ///< such as "RAS", "LPS", "" where there is none
+  std::string stored_type = {};                     ///< value type in the file, before any conversion
+  std::vector<AxisDirection> axis_directions = {};  ///< netCDF: of each axis of the image; else empty
+  std::vector<std::string> remarks = {};  ///< DICOM: what was left out, slices at uneven distances; else empty
 };
 
 /// An image, and what its file says of it.
 struct ReadImageResult {
-  AnyImage image;  ///< values and grid
-  ImageInfo info;  ///< beyond these
+  AnyImage image = {};  ///< values and grid
+  ImageInfo info = {};  ///< beyond these
 };
 
 /// What to read of a file.
 struct ReadImageOptions {
-  std::string variable;  ///< netCDF: which; DICOM: which series, by UID, description or number; empty: the only one
-  Progress progress;     ///< see Progress
+  std::string variable =
+      {};                  ///< netCDF: which; DICOM: which series, by UID, description or number; empty: the only one
+  Progress progress = {};  ///< see Progress
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
@@ -82,10 +83,11 @@ ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOpt
 
 /// A variable that can be read as an image.
 struct ImageVariable {
-  std::string name;                ///< as ReadImageOptions::variable takes it
-  std::vector<std::size_t> sizes;  ///< of its axes longer than 1, as in the image: axis 0, which runs fastest, first
-  std::string unit;                ///< may be empty
-  std::string long_name;           ///< may be empty
+  std::string name = {};  ///< as ReadImageOptions::variable takes it
+  std::vector<std::size_t> sizes =
+      {};                      ///< of its axes longer than 1, as in the image: axis 0, which runs fastest, first
+  std::string unit = {};       ///< may be empty
+  std::string long_name = {};  ///< may be empty
 };
 
 /// The variables that ReadImageOptions::variable may name in a netCDF file, or the series in DICOM (the description as
@@ -105,8 +107,8 @@ using AnyLayers = std::variant<AnyLayersN<2>, AnyLayersN<3>, AnyLayersN<4>>;
 
 /// An image to be read layer by layer, and what its file says of it.
 struct OpenLayersResult {
-  AnyLayers layers;  ///< of whatever type and dimension
-  ImageInfo info;    ///< beyond values and grid
+  AnyLayers layers = {};  ///< of whatever type and dimension
+  ImageInfo info = {};    ///< beyond values and grid
 };
 
 /// Opens a variable of a netCDF file, or a dataset of an HDF5 file, to be read layer by layer: what read_image reads
@@ -118,10 +120,10 @@ OpenLayersResult open_layers(const std::filesystem::path& path, const std::strin
 
 /// Values that lie in a file one after the other, axis 0 fastest.
 struct RawLayout {
-  std::vector<std::size_t> sizes;  ///< of 2 to 4 axes
-  std::string type;                ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
-  std::uint64_t offset = 0;        ///< bytes before the first value
-  bool big_endian = false;         ///< the order of a value's bytes
+  std::vector<std::size_t> sizes = {};  ///< of 2 to 4 axes
+  std::string type = {};                ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  std::uint64_t offset = 0;             ///< bytes before the first value
+  bool big_endian = false;              ///< the order of a value's bytes
 };
 
 /// The same of a file that holds nothing but values, on a grid of step 1. Errors: FileNotFound; InvalidArgument (the
@@ -130,23 +132,23 @@ OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLay
 
 /// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.
 struct Mesh {
-  int dim = 2;                                ///< of the simplices
-  int space_dim = 3;                          ///< of the coordinates
-  Buffer<double> coordinates;                 ///< #V x space_dim, row = vertex
-  Buffer<double> normals;                     ///< as many, of length 1 or 0; or none
-  Buffer<Index> simplices;                    ///< #S x (dim + 1), row = simplex
-  std::vector<std::string> axis_names;        ///< space_dim names, may be empty
-  std::vector<std::string> axis_units;        ///< as many, may be empty
-  std::vector<Attribute> vertex_attributes;   ///< rows as many as vertices; names not empty and different
-  std::vector<Attribute> simplex_attributes;  ///< likewise, as many as simplices
-  std::optional<double> isovalue;             ///< of the contour, where it is known; finite
+  int dim = 2;                                     ///< of the simplices
+  int space_dim = 3;                               ///< of the coordinates
+  Buffer<double> coordinates = {};                 ///< #V x space_dim, row = vertex
+  Buffer<double> normals = {};                     ///< as many, of length 1 or 0; or none
+  Buffer<Index> simplices = {};                    ///< #S x (dim + 1), row = simplex
+  std::vector<std::string> axis_names = {};        ///< space_dim names, may be empty
+  std::vector<std::string> axis_units = {};        ///< as many, may be empty
+  std::vector<Attribute> vertex_attributes = {};   ///< rows as many as vertices; names not empty and different
+  std::vector<Attribute> simplex_attributes = {};  ///< likewise, as many as simplices
+  std::optional<double> isovalue = {};             ///< of the contour, where it is known; finite
 };
 
 /// What a file with a certain extension holds.
 struct MeshFileFormat {
-  std::string_view extension;  ///< with its dot, in lower case
-  int least_dim;               ///< simplices from this dimension
-  int most_dim;                ///< up to this one; 3: in 4-space as well
+  std::string_view extension = {};  ///< with its dot, in lower case
+  int least_dim = 0;                ///< simplices from this dimension
+  int most_dim = 0;                 ///< up to this one; 3: in 4-space as well
 };
 
 /// The formats of read_mesh and write_mesh, by extension.
@@ -157,11 +159,11 @@ const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 
 /// The contour as files hold it, with names, units, normals and attributes. Copies all of them.
 template <int N, class Real>
-Mesh to_mesh(const Contour<N, Real>& contour);
+requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour);
 /// The contour of a mesh with dim = N - 1 and space_dim = N (planar meshes read back from 3D files:
 /// dim 1 with all z = 0 become N = 2; normals lose their z). Throws UnsupportedData otherwise.
 template <int N>
-Contour<N, double> to_contour(const Mesh& mesh);
+requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mesh);
 
 /// Writes by extension: .ply, .obj (text; both lossless) and .gltf/.glb (coordinates as float) hold segments and
 /// triangles in the plane or in space; .stl (binary, float) triangles alone; .vtkhdf (lossless) segments, triangles and
@@ -197,7 +199,8 @@ void write_facets(const FacetHierarchy<N, Real>& facets, const std::filesystem::
 /// contour, the same datasets with the same bytes. Written under another name beside the target: nothing is at the
 /// target before `commit`, nor ever if that is not called. Memory: a few MiB. Errors, of all functions: WriteFailed;
 /// UnsupportedFormat for another extension.
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 class ContourFile final : public ContourSink<N, Real> {
  public:
   using typename ContourSink<N, Real>::Vertex;

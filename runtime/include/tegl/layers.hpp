@@ -13,6 +13,7 @@ namespace tegl {
 
 /// The layers of an image along its last axis, from wherever they come.
 template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
 class LayerReader {
  public:
   using value_type = T;  ///< the type of a sample
@@ -32,6 +33,7 @@ class LayerReader {
 
 /// Layers that a function fills in.
 template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
 class FunctionLayers final : public LayerReader<T, N> {
  public:
   using Function = std::function<void(std::size_t k, T* to)>;  ///< writes layer `k` to `to`, as LayerReader::read

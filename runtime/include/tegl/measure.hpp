@@ -16,12 +16,13 @@ namespace tegl {
 
 /// Measures of a whole contour.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct Measures {
   /// Length (N = 2), area (3), 3-volume (4) or 4-volume (5), as Euclid has it: of use where all axes have one unit.
   double size = 0.0;
   /// The enclosed area (N = 2), volume (3) or N-volume, in the product of the axes' units; none where the contour is
   /// open. Positive where high samples are inside.
-  std::optional<double> content;
+  std::optional<double> content = {};
   std::array<double, N> centroid{};      ///< of the contour's points; of an empty contour 0
   std::array<double, N> lowest{};        ///< bounding box
   std::array<double, N> highest{};       ///< the other corner
@@ -44,7 +45,7 @@ struct CutMeasures {
   double at = 0.0;    ///< the value of the last coordinate
   double size = 0.0;  ///< length (N = 3), area (4) or 3-volume (5) of the cut, in the units of the other axes
   /// The enclosed area (N = 3), volume (4) or 4-volume (5); none where the cut is open.
-  std::optional<double> content;
+  std::optional<double> content = {};
 };
 
 /// Measures the cuts of a contour in N = 3, 4 or 5 dimensions at any values of the last coordinate, in any order,
@@ -61,7 +62,8 @@ struct CutMeasures {
 /// h) time for h pairs of a simplex and a cut of it; memory as `measure`, and up to 64 MiB, or 64 bytes for each value.
 /// Thread-safe.
 template <int N, class Real>
-std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,
-                                      const WorkOptions& options = {});
+requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
+                                                                         std::span<const double> at,
+                                                                         const WorkOptions& options = {});
 
 }  // namespace tegl

@@ -17,8 +17,8 @@ enum class NormalWeights { area, angle, equal };
 /// 4. Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S) time; thread-safe. Source: M. Liversage,
 /// thesis, 1994, section 8.2.4.
 template <int N, class Real>
-Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& contour,
-                                                       const WorkOptions& options = {});
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> flat_normals(
+    const Contour<N, Real>& contour, const WorkOptions& options = {});
 
 /// The unit normal of every vertex from the simplices around it, #V x N, as Contour::normals has them: the mean of
 /// their unit normals by `weights`; 0 where that vanishes and for vertices in no simplex. Simplices of zero size count
@@ -30,9 +30,8 @@ Buffer<typename Contour<N, Real>::Vertex> flat_normals(const Contour<N, Real>& c
 /// and C. A. Wuethrich, "Computing Vertex Normals from Polygonal Facets", 1998; solid angles: A. van Oosterom and J.
 /// Strackee, "The Solid Angle of a Plane Triangle", 1983.
 template <int N, class Real>
-Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Real>& contour,
-                                                            NormalWeights weights = NormalWeights::angle,
-                                                            const WorkOptions& options = {});
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
+    const Contour<N, Real>& contour, NormalWeights weights = NormalWeights::angle, const WorkOptions& options = {});
 
 /// The normal of every vertex from an image, #V x N: what `extract` with ExtractOptions::normals gives, but for any
 /// contour in the image's world, such as a saved or a simplified one; the gradients at the samples of the vertex's
@@ -40,8 +39,8 @@ Buffer<typename Contour<N, Real>::Vertex> geometric_normals(const Contour<N, Rea
 /// outside of the grid (by more than a thousandth of a step). N = 2, 3, 4.
 /// Errors: Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994, sections 8.2.6 to 8.2.15.
 template <Value T, int N, class Real>
-Buffer<typename Contour<N, Real>::Vertex> gradient_normals(const Image<T, N>& image, const Contour<N, Real>& contour,
-                                                           GradientKind kind = GradientKind::differences,
-                                                           const WorkOptions& options = {});
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
+    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind = GradientKind::differences,
+    const WorkOptions& options = {});
 
 }  // namespace tegl

@@ -24,11 +24,15 @@ class PendingPath {
   PendingPath& operator=(const PendingPath&) = delete;
 
   /// Where to write; the file exists and is empty.
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return pending_; }
+  [[nodiscard]] const std::filesystem::path& path() const& noexcept { return pending_; }
+  /// Deleted: with the temporary the file is gone.
+  const std::filesystem::path& path() const&& = delete;
   /// The target as the user named it, for messages.
-  [[nodiscard]] const std::filesystem::path& target() const noexcept { return named_; }
+  [[nodiscard]] const std::filesystem::path& target() const& noexcept { return named_; }
+  [[nodiscard]] std::filesystem::path target() const&& { return named_; }  ///< of a temporary: a copy
   /// place_of() the target.
-  [[nodiscard]] const std::filesystem::path& place() const noexcept { return place_; }
+  [[nodiscard]] const std::filesystem::path& place() const& noexcept { return place_; }
+  [[nodiscard]] std::filesystem::path place() const&& { return place_; }  ///< of a temporary: a copy
   /// Moves the file, written and closed, to its place.
   void commit();
   /// As commit(), but what was there is kept until destruction, so that roll_back() can restore it. File systems that

@@ -16,6 +16,7 @@ namespace tegl {
 
 /// What was picked.
 template <int N>
+requires DimensionBetween<N, 2, 5>
 struct PickReport {
   bool found = false;               ///< whether any tile is active
   TileNumber tile = 0;              ///< the active tile that is nearest to the point

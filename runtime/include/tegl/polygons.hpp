@@ -46,14 +46,14 @@ using Chord = std::array<Index, 2>;
 /// Errors: InvalidArgument for fewer than 3 points, or numbers in `forbidden` beyond them. O(#points) for fan and
 /// zigzag, O(#points log #points) for halving; with forbidden chords a power of it that is meant for small polygons.
 template <int N>
-std::vector<std::array<Index, 3>> triangulate_polygon(std::span<const std::array<double, N>> points,
-                                                      PolygonTriangulation method,
-                                                      std::span<const Chord> forbidden = {});
+requires DimensionBetween<N, 2, 4> std::vector<std::array<Index, 3>> triangulate_polygon(
+    std::span<const std::array<double, N>> points, PolygonTriangulation method, std::span<const Chord> forbidden = {});
 
 /// The mean of the middles of a polygon's edges, weighted by their length; of points that are all in one place, that.
 /// `points`: at least one.
 template <int N>
-std::array<double, N> polygon_barycentre(std::span<const std::array<double, N>> points);
+requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
+    std::span<const std::array<double, N>> points);
 
 /// The contour of a 3D image from its polygons. A manifold, as the polygons are, whatever the method: chords that join
 /// two points of one square of the grid, which the cube on the other side might draw too, are forbidden.

@@ -20,14 +20,15 @@ struct Projection {
 };
 
 /// The projected tetrahedra of a contour. They overlap.
-template <class Real>
+template <Coordinate Real>
 struct ProjectedContour {
-  Buffer<std::array<Real, 3>> vertices;       ///< #V x 3, row = vertex, numbered as in the contour
-  Buffer<std::array<Index, 4>> tetrahedra;    ///< #S x 4, as in the contour
-  std::array<std::string, 3> axis_names;      ///< where an axis of the result is one of the contour's
-  std::array<std::string, 3> axis_units;      ///< likewise
-  std::vector<Attribute> vertex_attributes;   ///< the contour's, and the height along the direction (see `project`)
-  std::vector<Attribute> simplex_attributes;  ///< the contour's, and "side": -1 for the near side, 1 for the far side
+  Buffer<std::array<Real, 3>> vertices = {};      ///< #V x 3, row = vertex, numbered as in the contour
+  Buffer<std::array<Index, 4>> tetrahedra = {};   ///< #S x 4, as in the contour
+  std::array<std::string, 3> axis_names = {};     ///< where an axis of the result is one of the contour's
+  std::array<std::string, 3> axis_units = {};     ///< likewise
+  std::vector<Attribute> vertex_attributes = {};  ///< the contour's, and the height along the direction (see `project`)
+  std::vector<Attribute> simplex_attributes =
+      {};  ///< the contour's, and "side": -1 for the near side, 1 for the far side
 };
 
 /// Projects a 4D contour (M. Liversage, thesis, 1994, 10.2.5, down to space instead of the screen).

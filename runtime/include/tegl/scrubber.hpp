@@ -26,7 +26,8 @@ namespace tegl {
 /// Based on: H. Edelsbrunner, Dynamic data structures for orthogonal intersection queries, 1980 (interval trees);
 /// P. Cignoni et al., Speeding up isosurface extraction using interval trees, 1997; M. Liversage, thesis, 1994,
 /// 10.2.11.
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4>
 class Scrubber {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
@@ -35,7 +36,7 @@ class Scrubber {
   /// not finite, a vertex number out of range, or attributes or normals are of another number; Cancelled.
   explicit Scrubber(const Contour<N, Real>& contour, const Vector& normal = Vector::Unit(N - 1),
                     const WorkOptions& options = {});
-  explicit Scrubber(Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const WorkOptions& = {}) = delete;
+  explicit Scrubber(const Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const WorkOptions& = {}) = delete;
 
   /// slice(contour, Hyperplane<N>{normal, offset}). O(c + log s) for c simplices that touch the hyperplane, of which
   /// there are few more than the cut has; where vertices lie on it, O(c log c).

@@ -44,12 +44,12 @@ struct SeedSetOptions {
   SeedMethod method = SeedMethod::cover;             ///< by which method
   Neighbourhood neighbourhood = Neighbourhood::all;  ///< which tiles seeds reach
   /// All axes, the one that a scan runs along first; empty: 0, 1, ... `cover` does not depend on it.
-  std::vector<int> scan_order;
+  std::vector<int> scan_order = {};
   /// volume_thinning alone: whether tiles of one value, which are never active, stay in the skeleton as published.
   bool keep_constant_tiles = false;
   /// How many threads read the image; all else is done by one.
   unsigned threads = 0;
-  Progress progress;  ///< see Progress
+  Progress progress = {};  ///< see Progress
 };
 
 /// Tiles that meet every component of active tiles at every isovalue: any two neighbours that are active belong to one
@@ -57,9 +57,9 @@ struct SeedSetOptions {
 struct SeedSet {
   SeedMethod method = SeedMethod::cover;             ///< found by this method
   Neighbourhood neighbourhood = Neighbourhood::all;  ///< for these neighbours
-  std::vector<TileNumber> tiles;                     ///< ascending
+  std::vector<TileNumber> tiles = {};                ///< ascending
   /// Active where least[i] < T <= greatest[i].
-  std::vector<double> least, greatest;  ///< of each tile's corners
+  std::vector<double> least = {}, greatest = {};  ///< of each tile's corners
 };
 
 /// What a seed set costs.

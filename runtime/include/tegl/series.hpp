@@ -24,46 +24,46 @@ enum class SeriesOrder {
 
 /// How files become one image.
 struct SeriesOptions {
-  std::string variable;             ///< netCDF: as in ReadImageOptions, of every file
-  std::vector<double> coordinates;  ///< where each file lies, as they are listed; empty: see read_series
-  std::optional<double> step;       ///< instead of them: 0, step, 2 step, ...
+  std::string variable = {};             ///< netCDF: as in ReadImageOptions, of every file
+  std::vector<double> coordinates = {};  ///< where each file lies, as they are listed; empty: see read_series
+  std::optional<double> step = {};       ///< instead of them: 0, step, 2 step, ...
   /// Of the new axis; empty: the files' own. Where the files give times in a unit, these are converted (ms, s, min, h,
   /// d, "since" the same moment if that is said); another unit is an error.
-  std::string unit;
+  std::string unit = {};
   SeriesOrder order = SeriesOrder::given;  ///< of the files
-  std::optional<RawLayout> raw;            ///< files of nothing but values: how each one of them is laid out
-  Progress progress;                       ///< of read_series, over all files
+  std::optional<RawLayout> raw = {};       ///< files of nothing but values: how each one of them is laid out
+  Progress progress = {};                  ///< of read_series, over all files
 };
 
 /// An image of several files, which is a ReadImageResult as any other, and those files.
 struct ReadSeriesResult : ReadImageResult {
-  std::vector<std::filesystem::path> files;  ///< in the order of the new axis; of DICOM as they were listed
+  std::vector<std::filesystem::path> files = {};  ///< in the order of the new axis; of DICOM as they were listed
 };
 
 /// The same to be read layer by layer.
 struct OpenSeriesResult : OpenLayersResult {
-  std::vector<std::filesystem::path> files;  ///< as above
+  std::vector<std::filesystem::path> files = {};  ///< as above
 };
 
 /// What a person asks of a series, where each is said or not.
 struct SeriesRequest {
-  std::string variable;                      ///< as in SeriesOptions
-  std::optional<std::vector<double>> times;  ///< where each file lies along the new axis
-  std::optional<double> time_step;           ///< or how far one is from the next
-  std::optional<std::string> time_unit;      ///< of the new axis
-  std::optional<SeriesOrder> sort;           ///< of the files
-  std::optional<RawLayout> raw;              ///< as in SeriesOptions
+  std::string variable = {};                      ///< as in SeriesOptions
+  std::optional<std::vector<double>> times = {};  ///< where each file lies along the new axis
+  std::optional<double> time_step = {};           ///< or how far one is from the next
+  std::optional<std::string> time_unit = {};      ///< of the new axis
+  std::optional<SeriesOrder> sort = {};           ///< of the files
+  std::optional<RawLayout> raw = {};              ///< as in SeriesOptions
 };
 
 /// What these are called where they are asked for: "--times" on a command line.
 struct SeriesWords {
-  std::string_view times;      ///< of SeriesRequest::times
-  std::string_view time_step;  ///< of SeriesRequest::time_step
-  std::string_view time_unit;  ///< of SeriesRequest::time_unit
-  std::string_view sort;       ///< of SeriesRequest::sort
-  std::string_view by_time;    ///< of SeriesRequest::sort as SeriesOrder::coordinate
-  std::string_view by_name;    ///< as SeriesOrder::by_name
-  std::string_view given;      ///< as SeriesOrder::given
+  std::string_view times = {};      ///< of SeriesRequest::times
+  std::string_view time_step = {};  ///< of SeriesRequest::time_step
+  std::string_view time_unit = {};  ///< of SeriesRequest::time_unit
+  std::string_view sort = {};       ///< of SeriesRequest::sort
+  std::string_view by_time = {};    ///< of SeriesRequest::sort as SeriesOrder::coordinate
+  std::string_view by_name = {};    ///< as SeriesOrder::by_name
+  std::string_view given = {};      ///< as SeriesOrder::given
 };
 
 /// The options for what is asked for, where that makes sense together and for these files. Errors, all InvalidArgument

@@ -43,26 +43,27 @@ enum class SimplifyBorder {
 /// The 2 N hyperplanes that the border of an image lies in: what keeps caps (ExtractOptions::close) in it, also where
 /// the grid has a world map.
 template <int N>
-std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
+requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid);
 
 /// At least one of `count`, `ratio` and `max_error` has to be given (or, for facets, `max_curvature`); with several,
 /// the first that is reached ends it. (A count that can be reached within max_error is, with the error that it has
 /// alone.)
 template <int N>
+requires DimensionBetween<N, 2, 4>
 struct SimplifyOptions {
   SimplifyMethod method = SimplifyMethod::quadric;  ///< what is removed, in which order
-  std::optional<std::uint64_t> count;               ///< as few simplices as this
-  std::optional<double> ratio;                      ///< of the simplices that there are, in [0, 1]
+  std::optional<std::uint64_t> count = {};          ///< as few simplices as this
+  std::optional<double> ratio = {};                 ///< of the simplices that there are, in [0, 1]
   /// The largest distance between any point of one of the two contours and the other one. The result keeps it by its
   /// bound: where the bound is too large for a part of the contour, that part is simplified anew with more care. 0
   /// leaves the contour as it is. At least the error that the contour has from an earlier simplification.
-  std::optional<double> max_error;
+  std::optional<double> max_error = {};
   /// facets: no facet of more curvature (1 / radius) than this is removed.
   double max_curvature = std::numeric_limits<double>::infinity();
   SimplifyBorder border = SimplifyBorder::fixed;  ///< what happens to an open contour's border
   /// Vertices that lie in one of these hyperplanes stay in it, and those in several stay in all. Up to 20. To these are
   /// added the sides of the contour's bounding box that whole simplices, or parts of the border, lie in.
-  std::vector<Hyperplane<N>> planes;
+  std::vector<Hyperplane<N>> planes = {};
   /// Distances and curvatures are those after coordinates were multiplied by these: what makes axes of different units
   /// comparable (a month and a degree).
   std::array<double, N> scale = all_one();
@@ -73,8 +74,8 @@ struct SimplifyOptions {
   bool measure = true;
   /// fast: hand out what is no manifold, too.
   bool allow_nonmanifold = false;
-  unsigned threads = 0;  ///< for the bounds; 0: all that the machine has. The result is the same, byte by byte.
-  Progress progress;     ///< see Progress
+  unsigned threads = 0;    ///< for the bounds; 0: all that the machine has. The result is the same, byte by byte.
+  Progress progress = {};  ///< see Progress
 
  private:
   static constexpr std::array<double, N> all_one() {
@@ -100,12 +101,12 @@ struct SimplifyStats {
   std::uint64_t vertices_after = 0;    ///< of the result
   /// No point of the original is farther than this from the result, and none of the result from the original; in units
   /// of `scale`. None if not measured.
-  std::optional<double> error_of_original;
-  std::optional<double> error_of_result;  ///< likewise, from the result to the original
-  SimplifyEnd end = SimplifyEnd::count;   ///< why it has as many simplices as it has
-  unsigned rounds = 0;                    ///< how often it was simplified, to keep max_error or for a small error
-  double simplify_seconds = 0;            ///< time to remove simplices
-  double measure_seconds = 0;             ///< time to bound the error
+  std::optional<double> error_of_original = {};
+  std::optional<double> error_of_result = {};  ///< likewise, from the result to the original
+  SimplifyEnd end = SimplifyEnd::count;        ///< why it has as many simplices as it has
+  unsigned rounds = 0;                         ///< how often it was simplified, to keep max_error or for a small error
+  double simplify_seconds = 0;                 ///< time to remove simplices
+  double measure_seconds = 0;                  ///< time to bound the error
 
   /// The larger of the two: a bound of the Hausdorff distance.
   [[nodiscard]] std::optional<double> error() const {
@@ -142,14 +143,15 @@ struct SimplifyStats {
 /// of those without the error); with both, in as many as for each. If no round keeps max_error, the result is the
 /// contour itself, and SimplifyStats::end says so. Memory: about 200 bytes for each simplex.
 template <int N, class Real>
-Contour<N, Real> simplify(const Contour<N, Real>& contour, const SimplifyOptions<N>& options,
-                          SimplifyStats* stats = nullptr);
+requires DimensionBetween<N, 2, 4> Contour<N, Real> simplify(const Contour<N, Real>& contour,
+                                                             const SimplifyOptions<N>& options,
+                                                             SimplifyStats* stats = nullptr);
 
 /// A `scale` for a contour whose axes have different units: the mean extent of a simplex along an axis of another unit
 /// than the first counts as that along the first axis; all others, and what has no extent, count as they are. N = 2, 3,
 /// 4; Real: float or double. O(S).
 template <int N, class Real>
-std::array<double, N> automatic_scale(const Contour<N, Real>& contour);
+requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour);
 
 /// Whether SimplifyMethod::fast is there.
 bool has_fast_simplify() noexcept;

@@ -35,7 +35,7 @@ namespace tegl {
 /// another number). An `at` beyond the contour gives an empty cut. O(#S + #V) time plus O(c log c) for a cut of c
 /// simplices; #V bytes and O(c) of memory. Thread-safe.
 template <int N, class Real>
-Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
 /// The cut by any hyperplane, in the coordinates of `frame_of(hyperplane)`: along x of a 4D contour a surface in y, z
 /// and t. "Above" is the side that the hyperplane's normal points to; along the last axis it is the cut above. Whatever
@@ -53,16 +53,17 @@ Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 /// left-handed. Names and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere.
 /// Errors: those of `frame_of`, and as above. Cost: as above.
 template <int N, class Real>
-Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane);
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
+                                                              const Hyperplane<N>& hyperplane);
 
 /// The cuts by parallel hyperplanes <normal, x> = offsets[i], all found in one pass over the contour: each the same,
 /// bit by bit, as `slice` gives it. The offsets may come in any order; as many cuts are made at a time as
 /// there are threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) plus the cuts' own cost; 8 #V bytes,
 /// and memory for all cuts.
 template <int N, class Real>
-std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
-                                              const Eigen::Matrix<double, N, 1>& normal,
-                                              std::span<const double> offsets, const WorkOptions& options = {});
+requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
+    const Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& normal, std::span<const double> offsets,
+    const WorkOptions& options = {});
 
 /// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
 /// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
@@ -75,15 +76,18 @@ std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>& contour,
 /// the grid's world map mixes the last axis with others, so that "last world coordinate = at" is not a layer.
 /// Cost: that of extracting one or two slabs, whatever the length of the last axis.
 template <class Real = float, Value T, int N>
-Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue, double at,
-                                 const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
+                                                                    double at, const ExtractOptions& options = {},
+                                                                    ExtractStats* stats = nullptr);
 
 /// The same across any axis: the cut by x_axis = at, in the other coordinates. Only a slab of layers of that axis is
 /// contoured (for normals, the layers beside it too); all said of the last axis holds for this one, but that normals
 /// are the same up to rounding. So at a sample's coordinate a cut of a 4D image is the contour of that layer, also
 /// where samples equal the isovalue, when cuts of the whole contour may differ from it.
 template <class Real = float, Value T, int N>
-Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue, int axis, double at,
-                                        const ExtractOptions& options = {}, ExtractStats* stats = nullptr);
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
+                                                                           int axis, double at,
+                                                                           const ExtractOptions& options = {},
+                                                                           ExtractStats* stats = nullptr);
 
 }  // namespace tegl

@@ -14,7 +14,8 @@
 namespace tegl {
 
 /// Takes a contour in parts, in the order of its numbers. What it throws ends the extraction and reaches its caller.
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 class ContourSink {
  public:
   using Vertex = std::array<Real, N>;  ///< a point, N coordinates
@@ -48,7 +49,9 @@ using StreamedSize = ContourSize;
 /// or the closing of the image's border. Errors: those of `extract`, but TooLarge, and what the reader and the sink
 /// throw.
 template <class Real = float, Value T, int N>
-StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue, const ExtractOptions& options,
-                              ContourSink<N, Real>& sink, ExtractStats* stats = nullptr);
+requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
+                                                                 const ExtractOptions& options,
+                                                                 ContourSink<N, Real>& sink,
+                                                                 ExtractStats* stats = nullptr);
 
 }  // namespace tegl

@@ -10,12 +10,13 @@
 namespace tegl {
 
 /// One of the contours of extract_streamed_several: its isovalue, where it goes, and how large it became.
-template <int N, class Real>
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 4>
 struct StreamedContour {
   double isovalue = 0;                   ///< finite
   ContourSink<N, Real>* sink = nullptr;  ///< where the contour goes; not owned
-  StreamedSize size;                     ///< set by the extraction
-  ExtractStats stats;                    ///< likewise
+  StreamedSize size = {};                ///< set by the extraction
+  ExtractStats stats = {};               ///< likewise
 };
 
 /// What extract_streamed gives for each isovalue, each with the same vertices, normals and simplices in the same order;
@@ -25,6 +26,7 @@ struct StreamedContour {
 /// once, and the rest of it for each isovalue. Errors: those of extract_streamed, of the first contour that had any;
 /// InvalidArgument for a sink that is null. The contours of the others are then unfinished.
 template <class Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
 void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
                               const ExtractOptions& options);
 

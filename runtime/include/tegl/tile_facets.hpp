@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "tegl/dimensions.hpp"
 #include "tegl/facets/facets.hpp"
 
 namespace tegl {
@@ -17,7 +18,7 @@ namespace tegl {
 /// `base | s` for all subsets s of the bits of `axes` (theory's numbering). It has as many dimensions as `axes` bits.
 /// Throws InvalidArgument unless base and axes are disjoint sets of the axes 0 ... N - 1. O(1), after the first call.
 template <int N>
-std::size_t face_number(unsigned base, unsigned axes);
+requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsigned axes);
 
 /// How many faces the N-cube has, itself and its corners included: 3^N.
 template <int N>
@@ -53,7 +54,8 @@ inline constexpr std::size_t kFaceCount<0> = 1;
 /// For many tiles use one facets::FacetBuilder of facets::FaceLattice::cube(N) per thread: it keeps what tiles have in
 /// common.
 template <int N>
-facets::TileFacets tile_facets(std::uint64_t signature, std::span<const facets::Choice> signs = {},
-                               facets::Alternative otherwise = facets::Alternative::low);
+requires DimensionBetween<N, 2, 6> facets::TileFacets tile_facets(
+    std::uint64_t signature, std::span<const facets::Choice> signs = {},
+    facets::Alternative otherwise = facets::Alternative::low);
 
 }  // namespace tegl

@@ -39,8 +39,8 @@ struct TrackEvent {
   std::array<double, 3> place{};                ///< the vertex's coordinates but the last; space_dim - 1 of them
   Index vertex = 0;                             ///< of the contour: where it happens
   bool at_border = false;                       ///< whether that vertex lies in the contour's border
-  std::vector<Index> in;                        ///< the segments that end here, ascending
-  std::vector<Index> out;                       ///< the segments that start here, ascending
+  std::vector<Index> in = {};                   ///< the segments that end here, ascending
+  std::vector<Index> out = {};                  ///< the segments that start here, ascending
   std::int64_t euler_change = 0;  ///< by how much the Euler characteristic of the cut through them changes
 };
 
@@ -69,40 +69,40 @@ struct TrackSample {
 
 /// One part from one event to the next: an arc of the graph.
 struct TrackSegment {
-  Index from = 0;                    ///< event
-  Index to = 0;                      ///< event
-  double start = 0;                  ///< time of `from`
-  double end = 0;                    ///< time of `to`
-  Index track = 0;                   ///< the track that it is a piece of
-  std::uint64_t size_at_start = 0;   ///< simplices of the contour that the part consists of just after `start`
-  std::uint64_t size_at_end = 0;     ///< just before `end`
-  std::int64_t euler_at_start = 0;   ///< Euler characteristic just after `start`; closed, without handles, in 4D: 2
-  std::int64_t euler_at_end = 0;     ///< just before `end`; the difference are the handles on the way
-  std::vector<TrackSample> samples;  ///< at those of TrackOptions::times that lie in it, ascending
+  Index from = 0;                   ///< event
+  Index to = 0;                     ///< event
+  double start = 0;                 ///< time of `from`
+  double end = 0;                   ///< time of `to`
+  Index track = 0;                  ///< the track that it is a piece of
+  std::uint64_t size_at_start = 0;  ///< simplices of the contour that the part consists of just after `start`
+  std::uint64_t size_at_end = 0;    ///< just before `end`
+  std::int64_t euler_at_start = 0;  ///< Euler characteristic just after `start`; closed, without handles, in 4D: 2
+  std::int64_t euler_at_end = 0;    ///< just before `end`; the difference are the handles on the way
+  std::vector<TrackSample> samples = {};  ///< at those of TrackOptions::times that lie in it, ascending
 };
 
 /// A part that goes on, as the largest one, through merges and splits.
 struct Track {
-  Index number = 0;             ///< in the graph as it was found; `select_tracks` leaves it as it is
-  std::vector<Index> segments;  ///< one after the other
-  double start = 0;             ///< time of its first event
-  double end = 0;               ///< time of its last one
+  Index number = 0;                  ///< in the graph as it was found; `select_tracks` leaves it as it is
+  std::vector<Index> segments = {};  ///< one after the other
+  double start = 0;                  ///< time of its first event
+  double end = 0;                    ///< time of its last one
 };
 
 /// The Reeb graph of the last coordinate on a contour.
 struct TrackGraph {
-  int space_dim = 0;                      ///< N
-  std::array<std::string, 4> axis_names;  ///< the contour's
-  std::array<std::string, 4> axis_units;  ///< likewise
-  double first = 0;                       ///< when the data begin
-  double last = 0;                        ///< and end
-  std::vector<TrackEvent> events;         ///< by time, then vertex
-  std::vector<TrackSegment> segments;     ///< by start, then the vertex there
-  std::vector<Track> tracks;              ///< by start, then the vertex there
-  std::vector<TrackHandle> handles;       ///< by time, then vertex
+  int space_dim = 0;                           ///< N
+  std::array<std::string, 4> axis_names = {};  ///< the contour's
+  std::array<std::string, 4> axis_units = {};  ///< likewise
+  double first = 0;                            ///< when the data begin
+  double last = 0;                             ///< and end
+  std::vector<TrackEvent> events = {};         ///< by time, then vertex
+  std::vector<TrackSegment> segments = {};     ///< by start, then the vertex there
+  std::vector<Track> tracks = {};              ///< by start, then the vertex there
+  std::vector<TrackHandle> handles = {};       ///< by time, then vertex
   /// #S, if asked for: the segment that each of the contour's simplices is in when it first appears; kNoSegment for
   /// those that are never cut (flat in time) and those of parts that were filtered out.
-  std::vector<Index> simplex_segments;
+  std::vector<Index> simplex_segments = {};
 
   static constexpr Index kNoSegment = std::numeric_limits<Index>::max();  ///< no segment
 };
@@ -162,7 +162,7 @@ std::vector<double> even_times(double first, double last, std::size_t count);
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (the sweep over cuts whose components are
 /// maintained). M. Liversage's thesis, 1994, §10.2.9 to §10.2.11: what a cut at any time is good for.
 template <int N, class Real>
-TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
+requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options = {});
 
 /// The graph with these tracks alone, `keep[track]`, in the same order; `Track::number` tells which they were. Events
 /// keep those of their segments that are left, their kind and their change, and are dropped when none is left. Errors:

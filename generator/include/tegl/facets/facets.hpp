@@ -46,8 +46,9 @@ class FaceLattice {
   static FaceLattice simplex(int n);     ///< n = 1 ... 6; n + 1 corners
   static FaceLattice octahedron(int n);  ///< n = 2 ... 6; corners 2 a and 2 a + 1 are the ends of axis a
 
-  [[nodiscard]] int dim() const { return faces_.back().dim; }              ///< of the polytope
-  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }  ///< all of them
+  [[nodiscard]] int dim() const { return faces_.back().dim; }               ///< of the polytope
+  [[nodiscard]] const std::vector<Face>& faces() const& { return faces_; }  ///< all of them
+  [[nodiscard]] std::vector<Face> faces() const&& { return faces_; }        ///< of a temporary: a copy
   /// The polytope itself, as a face.
   [[nodiscard]] std::uint32_t tile() const { return static_cast<std::uint32_t>(faces_.size() - 1); }
 
@@ -106,15 +107,15 @@ struct Facet {
 
 /// The contour of one tile of dimension n.
 struct TileFacets {
-  std::vector<Vertex> vertices;  ///< all that the tile's facets and faces have
-  std::vector<Facet> facets;     ///< simplices of n vertices
-  Simplices sigma;               ///< simplices of n - 1 vertices
-  std::vector<int> sigma_sign;   ///< +1 or -1 for each simplex of Sigma
-  std::vector<int> sigma_euler;  ///< Euler characteristics of Sigma's components
+  std::vector<Vertex> vertices = {};  ///< all that the tile's facets and faces have
+  std::vector<Facet> facets = {};     ///< simplices of n vertices
+  Simplices sigma = {};               ///< simplices of n - 1 vertices
+  std::vector<int> sigma_sign = {};   ///< +1 or -1 for each simplex of Sigma
+  std::vector<int> sigma_euler = {};  ///< Euler characteristics of Sigma's components
   /// The contour in each face of codimension one, in the order of the tile's `faces`, vertices ascending, and for each
   /// simplex its sign: of the orientation that it has as a part of the face's own contour.
-  std::vector<Simplices> in_face;
-  std::vector<std::vector<int>> in_face_sign;  ///< see above
+  std::vector<Simplices> in_face = {};
+  std::vector<std::vector<int>> in_face_sign = {};  ///< see above
 };
 
 /// Whether it is told where vertices lie.
@@ -133,14 +134,17 @@ class FacetBuilder {
   FacetBuilder(FacetBuilder&&) noexcept;             ///< moved from: good for nothing but to be assigned to
   FacetBuilder& operator=(FacetBuilder&&) noexcept;  ///< likewise
 
-  [[nodiscard]] const FaceLattice& lattice() const;  ///< what tiles are made of
+  [[nodiscard]] const FaceLattice& lattice() const&;  ///< what tiles are made of
+  [[nodiscard]] FaceLattice lattice() const&&;        ///< of a temporary: a copy
   /// What is kept of faces of dimension 4 and more.
   [[nodiscard]] std::size_t kept_bytes() const;
 
   /// The contour of a tile, valid until the next call. Time: about linear in the simplices of all faces.
   /// Throws std::invalid_argument for a signature with bits beyond the corners or a wrong number of choices,
   /// std::length_error for a tile of more than 65 535 vertices (none is known).
-  const TileFacets& build(Signature signature, const Resolution& resolution = {}, Geometry geometry = Geometry::with);
+  const TileFacets& build(Signature signature, const Resolution& resolution = {}, Geometry geometry = Geometry::with) &;
+  /// By a temporary: the contour itself.
+  TileFacets build(Signature signature, const Resolution& resolution = {}, Geometry geometry = Geometry::with) &&;
 
  private:
   class Impl;

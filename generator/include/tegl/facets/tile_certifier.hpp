@@ -29,13 +29,15 @@ class TileCertifier {
   TileCertifier(TileCertifier&&) noexcept;             ///< moved from: good for nothing but to be assigned to
   TileCertifier& operator=(TileCertifier&&) noexcept;  ///< likewise
 
-  [[nodiscard]] const FaceLattice& lattice() const;  ///< what tiles are made of
+  [[nodiscard]] const FaceLattice& lattice() const&;  ///< what tiles are made of
+  [[nodiscard]] FaceLattice lattice() const&&;        ///< of a temporary: a copy
 
   /// Builds and certifies a tile. Errors: as FacetBuilder::build.
   Fault certify(Signature signature, const Resolution& resolution);
 
   /// The tile built last, without geometry.
-  [[nodiscard]] const TileFacets& tile() const;
+  [[nodiscard]] const TileFacets& tile() const&;
+  [[nodiscard]] TileFacets tile() const&&;  ///< of a temporary: a copy
 
  private:
   class Impl;

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the compiler accepts of the public headers: dimensions and types within their limits, no view of a temporary,
+// and designated initialisers of any subset of an options struct. The checks are static; headers_test compiles this
+// file again, with the warnings and the compilers of users.
+#include <concepts>
+#include <type_traits>
+#include <utility>
+
+#include "tegl/active_tiles_io.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
+#include "tegl/deviation.hpp"
+#include "tegl/elements_io.hpp"
+#include "tegl/extract.hpp"
+#include "tegl/facet_hierarchy.hpp"
+#include "tegl/facets/tile_certifier.hpp"
+#include "tegl/io.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/normals.hpp"
+#include "tegl/pending_path.hpp"
+#include "tegl/pick.hpp"
+#include "tegl/polygons.hpp"
+#include "tegl/project.hpp"
+#include "tegl/sample.hpp"
+#include "tegl/scrubber.hpp"
+#include "tegl/seed_set.hpp"
+#include "tegl/series.hpp"
+#include "tegl/simplify.hpp"
+#include "tegl/slice.hpp"
+#include "tegl/stream_several.hpp"
+#include "tegl/tile_facets.hpp"
+#include "tegl/track.hpp"
+#include "tegl/track_io.hpp"
+
+namespace {
+
+using namespace tegl;
+
+// --- Dimensions and types. `allowed<kLeast, kMost>(test)`: whether test.operator()<N>() holds exactly from kLeast to
+// kMost, of the dimensions 1 to 7.
+template <int kLeast, int kMost, class Test>
+consteval bool only_in(Test test) {
+  return []<int... I>(std::integer_sequence<int, I...>, Test has) {
+    return ((has.template operator()<I + 1>() == (I + 1 >= kLeast && I + 1 <= kMost)) && ...);
+  }
+  (std::make_integer_sequence<int, 7>(), test);
+}
+
+// `using` in requires-expressions: a type that violates a constraint makes the expression false.
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Grid<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Image<float, N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename OwnedImage<float, N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Contour<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename TileGrid<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename ActiveTiles<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename LayerReader<float, N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename FunctionLayers<float, N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Component<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Measures<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename Elements<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename ElementSum<N>; };
+}));
+static_assert(only_in<2, 5>([]<int N>() {
+  return requires { typename PickReport<N>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename Hyperplane<N>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename HyperplaneFrame<N>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename SimplifyOptions<N>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename DeviationOptions<N>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename FacetHierarchy<N>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename ContourRoom<N, float>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename ContourSink<N, float>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename StreamedContour<N, float>; };
+}));
+static_assert(only_in<2, 4>([]<int N>() {
+  return requires { typename ContourFile<N, float>; };
+}));
+static_assert(only_in<3, 4>([]<int N>() {
+  return requires { typename Scrubber<N, float>; };
+}));
+
+// Functions that do not exist in all dimensions of their arguments: by the dimension of a contour C or an image I.
+template <class C>
+concept Sliced = requires(const C& c, double at) {
+  slice(c, at);
+};
+template <class C, int N>
+concept SlicedByHyperplane = requires(const C& c, const Hyperplane<N>& plane) {
+  slice(c, plane);
+};
+template <class C, int N>
+concept SlicedOften = requires(const C& c, Eigen::Matrix<double, N, 1> normal, std::span<const double> at) {
+  slice_stack(c, normal, at);
+};
+template <class I>
+concept ImageSliced = requires(const I& image) {
+  slice_image(image, 0.0, 0.0);
+};
+template <class I>
+concept ImageSlicedAcross = requires(const I& image) {
+  slice_image_across(image, 0.0, 0, 0.0);
+};
+template <class C>
+concept CutsMeasured = requires(const C& c, std::span<const double> at) {
+  measure_cuts(c, at);
+};
+template <class C>
+concept Tracked = requires(const C& c) {
+  track(c);
+};
+template <class C, int N>
+concept Simplified = requires(const C& c, const SimplifyOptions<N>& options) {
+  simplify(c, options);
+};
+template <class C>
+concept Scaled = requires(const C& c) {
+  automatic_scale(c);
+};
+template <class C, int N>
+concept AxesScaled = requires(C& c, Eigen::Matrix<double, N, 1> factors) {
+  scale_axes(c, factors);
+};
+template <class C>
+concept Compared = requires(const C& c) {
+  deviation(c, c);
+};
+template <class C>
+concept FlatNormals = requires(const C& c) {
+  flat_normals(c);
+};
+template <class C>
+concept GeometricNormals = requires(const C& c) {
+  geometric_normals(c);
+};
+template <class C, class I>
+concept GradientNormals = requires(const C& c, const I& image) {
+  gradient_normals(image, c);
+};
+template <class I>
+concept FacetsExtracted = requires(const I& image) {
+  extract_facets(image, 0.0);
+};
+template <class I, int N>
+concept ExtractedByIndex = requires(const I& image, const ActiveTiles<N>& active) {
+  extract(image, 0.0, {}, active);
+};
+template <class I, int N>
+concept ExtractedInto = requires(const I& image, const ContourRoom<N, float>& room) {
+  extract_into(image, 0.0, room);
+};
+template <class L, int N>
+concept Streamed = requires(L& layers, ContourSink<N, float>& sink) {
+  extract_streamed(layers, 0.0, {}, sink);
+};
+template <class L, int N>
+concept SeveralStreamed = requires(L& layers, std::span<StreamedContour<N, float>> contours) {
+  extract_streamed_several(layers, contours, {});
+};
+template <class C>
+concept BecomesMesh = requires(const C& c) {
+  to_mesh(c);
+};
+template <int N>
+concept FromMesh = requires(const Mesh& mesh) {
+  to_contour<N>(mesh);
+};
+template <int N>
+concept HasTileFacets = requires {
+  tile_facets<N>(1);
+}
+&&requires { face_number<N>(0, 1); };
+template <int N>
+concept PolygonsTriangulated = requires(std::span<const std::array<double, N>> points) {
+  triangulate_polygon<N>(points, PolygonTriangulation::fan);
+  polygon_barycentre<N>(points);
+};
+template <int N>
+concept HasBorderPlanes = requires(const Grid<N>& grid) {
+  border_planes(grid);
+};
+
+// For all of them: from 2 to 5, so that contours and images themselves are there; `kLeast` to `kMost` are expected.
+template <int kLeast, int kMost, class Test>
+consteval bool of_2_to_5_only(Test test) {
+  return []<int... I>(std::integer_sequence<int, I...>, Test has) {
+    return ((has.template operator()<I + 2>() == (I + 2 >= kLeast && I + 2 <= kMost)) && ...);
+  }
+  (std::make_integer_sequence<int, 4>(), test);
+}
+static_assert(of_2_to_5_only<3, 4>([]<int N>() { return Sliced<Contour<N>>; }));
+static_assert(of_2_to_5_only<3, 4>([]<int N>() { return SlicedByHyperplane<Contour<N>, N>; }));
+static_assert(of_2_to_5_only<3, 4>([]<int N>() { return SlicedOften<Contour<N>, N>; }));
+static_assert(of_2_to_5_only<3, 4>([]<int N>() { return ImageSliced<Image<float, N>>; }));
+static_assert(of_2_to_5_only<3, 4>([]<int N>() { return ImageSlicedAcross<Image<float, N>>; }));
+static_assert(of_2_to_5_only<3, 5>([]<int N>() { return CutsMeasured<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Tracked<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Simplified<Contour<N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Scaled<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return AxesScaled<Contour<N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Compared<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return FlatNormals<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return GeometricNormals<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return GradientNormals<Contour<N>, Image<float, N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return FacetsExtracted<Image<float, N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return ExtractedByIndex<Image<float, N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return ExtractedInto<Image<float, N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return Streamed<LayerReader<float, N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return SeveralStreamed<LayerReader<float, N>, N>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return BecomesMesh<Contour<N>>; }));
+static_assert(of_2_to_5_only<2, 4>([]<int N>() { return HasBorderPlanes<N>; }));
+static_assert(only_in<2, 4>([]<int N>() { return FromMesh<N>; }));
+static_assert(only_in<2, 4>([]<int N>() { return PolygonsTriangulated<N>; }));
+static_assert(only_in<2, 6>([]<int N>() { return HasTileFacets<N>; }));
+
+// Types of values and of coordinates.
+template <class T>
+concept ImageValue = requires {
+  typename Image<T, 3>;
+};
+static_assert(ImageValue<std::uint8_t> && ImageValue<std::int8_t> && ImageValue<std::uint16_t> &&
+              ImageValue<std::int16_t> && ImageValue<std::int32_t> && ImageValue<float> && ImageValue<double>);
+static_assert(!ImageValue<long double> && !ImageValue<std::uint32_t> && !ImageValue<std::int64_t> &&
+              !ImageValue<bool> && !ImageValue<const float>);
+template <class Real>
+concept ContourCoordinate = requires {
+  typename Contour<3, Real>;
+};
+template <class Real>
+concept ExtractedAs = requires(const Image<float, 3>& image) {
+  extract<Real>(image, 0.0);
+};
+static_assert(ContourCoordinate<float> && ContourCoordinate<double> && ExtractedAs<float> && ExtractedAs<double>);
+static_assert(!ContourCoordinate<long double> && !ContourCoordinate<int> && !ExtractedAs<long double> &&
+              !ExtractedAs<int>);
+
+// --- Temporaries: members that return a reference or a view of their object. `is_safe_of_temporaries(call)`: the call
+// is there for an object with a name, and of a temporary, const or not, it is deleted or gives a value of its own.
+template <class Object, class Call>
+consteval bool is_safe_of_temporaries(Call) {
+  static_assert(std::invocable<Call, Object&>);
+  constexpr auto is_safe = []<class Temporary>(std::type_identity<Temporary>) {
+    if constexpr (!std::invocable<Call, Temporary>)
+      return true;
+    else {
+      using Result = std::invoke_result_t<Call, Temporary>;
+      using OfNamed = std::remove_cvref_t<std::invoke_result_t<Call, Object&>>;
+      // A value of its own, where objects with a name give a reference; a view would still refer to the temporary.
+      return !std::is_reference_v<Result> && std::is_reference_v<std::invoke_result_t<Call, Object&>> &&
+             std::same_as<Result, OfNamed>;
+    }
+  };
+  return is_safe(std::type_identity<Object&&>{}) && is_safe(std::type_identity<const Object&&>{});
+}
+// Calls a member; `decltype(auto)` keeps references, and the constraint shows whether there is such a member.
+#define CALL(member)                                                                           \
+  [](auto&& object) -> decltype(std::forward<decltype(object)>(object).member) requires true { \
+    return std::forward<decltype(object)>(object).member;                                      \
+  }
+static_assert(is_safe_of_temporaries<OwnedImage<float, 3>>(CALL(view())));
+static_assert(is_safe_of_temporaries<Image<float, 3>>(CALL(grid())));
+static_assert(is_safe_of_temporaries<Image<float, 3>>(CALL(strides())));
+static_assert(is_safe_of_temporaries<Contour<4>>(CALL(vertex_matrix())));
+static_assert(is_safe_of_temporaries<Contour<4>>(CALL(simplex_matrix())));
+static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(down(1, 0))));
+static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(down_signs(1, 0))));
+static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(up(1, 0))));
+static_assert(is_safe_of_temporaries<FacetHierarchy<3>>(CALL(up_signs(1, 0))));
+static_assert(is_safe_of_temporaries<AmbiguousFace>(CALL(base())));
+static_assert(is_safe_of_temporaries<TileRowSet>(CALL(words())));
+static_assert(is_safe_of_temporaries<ActiveTiles<3>>(CALL(image())));
+static_assert(is_safe_of_temporaries<ActiveTiles<3>>(CALL(grid())));
+static_assert(is_safe_of_temporaries<PendingPath>(CALL(path())));
+static_assert(is_safe_of_temporaries<PendingPath>(CALL(target())));
+static_assert(is_safe_of_temporaries<PendingPath>(CALL(place())));
+static_assert(is_safe_of_temporaries<facets::FaceLattice>(CALL(faces())));
+static_assert(is_safe_of_temporaries<facets::FacetBuilder>(CALL(lattice())));
+static_assert(is_safe_of_temporaries<facets::FacetBuilder>(CALL(build(1))));
+static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(lattice())));
+static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(tile())));
+#undef CALL
+
+// Constructors that keep a reference to an argument.
+static_assert(std::constructible_from<Scrubber<4, float>, const Contour<4>&>);
+static_assert(!std::constructible_from<Scrubber<4, float>, Contour<4>&&>);
+static_assert(!std::constructible_from<Scrubber<4, float>, const Contour<4>&&>);
+template <class Around>
+concept FaceOf = std::constructible_from < AmbiguousFace,
+        std::span<const std::size_t>,
+unsigned, std::span<const double>, double, Around > ;
+static_assert(FaceOf<const AmbiguousFace::Surroundings&> && FaceOf<AmbiguousFace::Surroundings&>);
+static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousFace::Surroundings&&>);
+
+// --- Options: an aggregate, and one of its fields by name, the others left out, without a warning (-Wextra has
+// -Wmissing-field-initializers). The first field and one from the middle: fields behind it are what would warn.
+[[maybe_unused]] void options_by_name() {
+  const auto progress = [](double) { return true; };
+  [[maybe_unused]] const WorkOptions work[] = {{.threads = 2}, {.progress = progress}};
+  [[maybe_unused]] const ExtractOptions extraction[] = {{.triangulation = Triangulation::barycentric},
+                                                        {.ambiguity = Ambiguity::mean},
+                                                        {.close = true},
+                                                        {.normals = true},
+                                                        {.threads = 1},
+                                                        {.progress = progress}};
+  [[maybe_unused]] const Estimator estimators[] = {{.choose = {}}, {.reach = 1}};
+  [[maybe_unused]] const SimplifyOptions<3> simplification[] = {
+      {.method = SimplifyMethod::facets}, {.count = 5}, {.ratio = 0.1}, {.max_error = 1.0}, {.threads = 1}};
+  [[maybe_unused]] const DeviationOptions<4> deviations[] = {{.scale = {1, 1, 1, 2}}, {.enough = 1.0}, {.threads = 1}};
+  [[maybe_unused]] const TrackOptions tracks[] = {{.min_lifetime = 1}, {.times = {1.0}}, {.handles = false}};
+  [[maybe_unused]] const TrackPicture picture[] = {{.title = "a"}, {.width = 100}};
+  [[maybe_unused]] const SeedSetOptions seeds[] = {{.method = SeedMethod::cover}, {.scan_order = {0}}, {.threads = 1}};
+  [[maybe_unused]] const ActiveTilesOptions tiles[] = {{.threads = 1}, {.seed_method = SeedMethod::cover}};
+  [[maybe_unused]] const ElementFileOptions elements[] = {{.axes = ElementAxes::as_is}, {.header = true}};
+  [[maybe_unused]] const ReadImageOptions reading[] = {{.variable = "a"}, {.progress = progress}};
+  [[maybe_unused]] const SeriesOptions series[] = {{.variable = "a"}, {.step = 1.0}, {.order = SeriesOrder::by_name}};
+  [[maybe_unused]] const SeriesRequest requests[] = {{.variable = "a"}, {.time_step = 1.0}};
+  [[maybe_unused]] const SeriesWords words[] = {{.times = "a"}, {.sort = "b"}};
+  [[maybe_unused]] const RawLayout raw[] = {{.sizes = {1, 2}}, {.type = "float"}, {.big_endian = true}};
+  [[maybe_unused]] const Projection projections[] = {{.direction = Eigen::Vector4d::UnitX()}, {.eye_distance = 1}};
+  [[maybe_unused]] const Hyperplane<4> planes[] = {{.normal = Eigen::Vector4d::UnitX()}, {.offset = 1}};
+  [[maybe_unused]] const facets::Resolution resolution[] = {{.choices = {}},
+                                                            {.alternative = facets::Alternative::high}};
+  [[maybe_unused]] const Attribute attributes[] = {{.name = "a"}, {.width = 2}};
+  [[maybe_unused]] const Mesh meshes[] = {{.dim = 1}, {.simplices = {0, 1}}, {.isovalue = 1.0}};
+  [[maybe_unused]] const ContourRoom<3, float> room[] = {{.vertices = {}}, {.simplices = {}}};
+  [[maybe_unused]] const Grid<2> grids[] = {{.axes = {}}, {.offset = Eigen::Vector2d(1, 2)}};
+  [[maybe_unused]] const OwnedImage<float, 2> images[] = {{.grid = Grid<2>::unit({1, 1})}, {.values = {1.0F}}};
+  [[maybe_unused]] const StreamedContour<3, float> streamed[] = {{.isovalue = 1}, {.sink = nullptr}};
+}
+
+}  // namespace
