@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
               surface.simplices.size(), static_cast<std::size_t>(report.components),
               static_cast<long long>(report.euler), static_cast<std::size_t>(report.boundary_simplices));
 
-  // One body without a hole: a sphere as far as topology goes. And the file holds what memory holds.
+  // One body without a tunnel: a sphere as far as topology goes. And the file holds what memory holds.
   const bool sphere = report.components == 1 && report.euler == 2 && report.boundary_simplices == 0;
   return sphere && tegl::read_mesh(argv[1]).simplices.size() == 3 * surface.simplices.size() ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 5: images where they lie, and with holes. One buffer of (r, g, b) pixels serves as an image of its green
-// channel, upside down, without a copy; and samples that are NaN are taken for missing: the contour ends
+// Example 5: images where they lie, and with missing values. One buffer of (r, g, b) pixels serves as an image of its
+// green channel, upside down, without a copy; and samples that are NaN are taken for missing: the contour ends
 // there, and does not run around them.
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>

@@ -2,8 +2,8 @@
 //
 // Components by parallel union-find over the simplices; what each is, by sums in fixed blocks; parts of a contour.
 //
-// Based on: the child isosurfaces of Wang et al., An improved MC algorithm for child isosurfaces, 2008, section 3.2,
-// whose seed fill gives the same labels in one thread.
+// Based on: Zhu Jingwei, Meng Peisheng, Wang Cheng, An Improved Marching Cubes Algorithm, 2008, section 3.2, whose seed
+// fill gives the same labels, counted from 1, in one thread.
 #include "tegl/components.hpp"
 
 #include <algorithm>

@@ -3,7 +3,8 @@
 // Gradients of images at samples: how differences between neighbours are weighted, and which values the gradients along
 // an edge are made of.
 // Based on: M. Liversage, thesis, 1994, section 8.2: differences on non-regular axes (8.4), of which central
-// differences on regular ones (8.3) are the special case; interpolation along the edge.
+// differences on regular ones (8.3) are the special case; interpolation along the edge. Other than there (5.4.2),
+// differences are one-sided at the border.
 #pragma once
 
 #include <algorithm>

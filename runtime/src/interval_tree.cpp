@@ -6,10 +6,10 @@
 // is found by bisection.
 //
 // Based on: P. Cignoni, P. Marino, C. Montani, E. Puppo, R. Scopigno, Speeding Up Isosurface Extraction Using Interval
-// Trees, 1997; as pseudo code in T. Takahashi, I. Ide, Y. Mekada, H. Murase, T. Yonekura on
-// contours of FCC lattices. Other than there, the nodes' values
-// are quantiles of the ranges' ends, not all of them: a node is then known from two small numbers by bit operations,
-// and a leaf keeps the few tiles that lie between two values.
+// Trees, 1997. T. Takahashi, I. Ide, Y. Mekada, H. Murase, T. Yonekura, A Speedup Method for Isosurfacing Volumetric
+// Data Sampled with a Face-Centered Cubic Lattice, section 2.3, has it as pseudo code, with the middle of the values
+// that are left in a node. Here the nodes' values are quantiles of the ranges' ends: a node is then known from two
+// small numbers by bit operations, and a leaf keeps the few tiles that lie between two values.
 #include <algorithm>
 #include <bit>
 #include <vector>

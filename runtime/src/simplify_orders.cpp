@@ -4,9 +4,9 @@
 // their queue, so they are put into it anew, with a stamp; what was there before is known by its old stamp, and
 // skipped.
 //
-// Based on: M. G. Liversage's thesis of 1994, sections 8.3.8 to 8.3.14 (facets by curvature, vertices by distance); G.
-// Turk, Re-tiling polygonal surfaces, 1992 (curvature); W. Schroeder, J. Zarge and W. Lorensen, Decimation of triangle
-// meshes, 1992 (distance); M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997.
+// Based on: M. Liversage, thesis, 1994, sections 8.3.8 to 8.3.14 (facets by curvature, vertices); G. Turk, Re-tiling
+// polygonal surfaces, 1992 (curvature); W. Schroeder, J. Zarge and W. Lorensen, Decimation of triangle meshes, 1992
+// (distance); M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997.
 #include "simplify_orders.hpp"
 
 #include <algorithm>
