@@ -1,10 +1,13 @@
 # Installs BUILD under PREFIX, into a folder that holds nothing else, and looks whether all is there.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${PREFIX})
+# As after a build of the program alone, without its manual page: what is missing is built.
+file(REMOVE ${BUILD}/apps/cli/tegl.1)
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB_RECURSE installed RELATIVE ${PREFIX} ${PREFIX}/*)
-foreach(pattern "^include/tegl/extract.hpp$" "/cmake/tegl/teglConfig.cmake$" "/cmake/tegl/teglConfigVersion.cmake$"
+foreach(pattern "^include/tegl/extract.hpp$" "^include/tegl/facets/facets.hpp$"
+    "/cmake/tegl/teglConfig.cmake$" "/cmake/tegl/teglConfigVersion.cmake$"
     "^bin/gen$" "/libtegl\\.(a|so)$" "/LICENSE$")
   set(found ${installed})
   list(FILTER found INCLUDE REGEX "${pattern}")
