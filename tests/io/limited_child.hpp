@@ -6,13 +6,14 @@
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "tegl/error.hpp"
@@ -24,7 +25,7 @@ struct ChildResult {
   int signal = 0;                 ///< that ended it; SIGALRM: it ran for longer than it may
   std::optional<ErrorCode> code;  ///< of the tegl::Error that it threw; none: it threw nothing, or something else
   std::string message;            ///< of any exception
-  double seconds = 0;             ///< wall clock
+  double seconds = 0;             ///< of processor time, so that other work on the machine does not count
   std::uint64_t peak_bytes = 0;   ///< resident memory beyond that at the beginning
 };
 
@@ -92,7 +93,6 @@ ChildResult in_limited_child(Work&& work, std::uint64_t address_space = std::uin
   ChildResult result;
   int ends[2] = {-1, -1};
   if (pipe(ends) != 0) throw std::runtime_error("pipe");
-  const auto start = std::chrono::steady_clock::now();
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork");
   if (child == 0) detail::run_and_report(work, ends[1], address_space, seconds);
@@ -103,8 +103,12 @@ ChildResult in_limited_child(Work&& work, std::uint64_t address_space = std::uin
     bytes.append(block, static_cast<std::size_t>(count));
   close(ends[0]);
   int status = 0;
-  waitpid(child, &status, 0);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rusage usage{};
+  wait4(child, &status, 0, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  result.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
   if (bytes.size() < sizeof(detail::Report)) return result;
   detail::Report report;
