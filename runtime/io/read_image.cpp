@@ -3,6 +3,7 @@
 // read_image: which format a file has, and the steps that all formats share.
 #include <array>
 #include <memory>
+#include <new>
 #include <string_view>
 
 #include "common.hpp"
@@ -82,7 +83,13 @@ RawImage read_stored(StoredImage&& stored, Extent extent, const Progress& progre
   SampleReader reader(std::move(stored.samples));
   const std::vector<std::uint64_t>& sizes = reader.samples().sizes;
   const std::uint64_t count = extent == Extent::whole ? checked_bytes(sizes, 1, reader.samples().path) : 0;
-  ValueArray values = reader.read(0, count, progress);
+  ValueArray values;
+  try {
+    values = reader.read(0, count, progress);
+  } catch (const std::bad_alloc&) {
+    fail(ErrorCode::TooLarge, reader.samples().path, "{} values of type {} do not fit into memory", count,
+         reader.samples().type);
+  }
   if (stored.list_axis && extent == Extent::whole) {
     std::uint64_t inner = 1;
     for (std::size_t a = 0; a < *stored.list_axis; ++a) inner *= sizes[a];

@@ -13,10 +13,8 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <new>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 
 #include "common.hpp"
@@ -349,16 +347,7 @@ const StoredSamples& SampleReader::samples() const noexcept { return source_->sa
 
 ValueArray SampleReader::read(std::uint64_t first, std::uint64_t count, const Progress& progress) {
   ValueArray result = array_of_type(samples().type);
-  const auto fail_memory = [&] {
-    fail(ErrorCode::TooLarge, samples().path, "{} values of type {} do not fit into memory", count, samples().type);
-  };
-  try {
-    std::visit([&](auto& values) { source_->read(first, count, values, progress); }, result);
-  } catch (const std::bad_alloc&) {
-    fail_memory();
-  } catch (const std::length_error&) {
-    fail_memory();
-  }
+  std::visit([&](auto& values) { source_->read(first, count, values, progress); }, result);
   return result;
 }
 

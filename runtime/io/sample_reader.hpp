@@ -50,7 +50,8 @@ class SampleReader {
   /// The samples with numbers [first, first + count). Of encodings other than raw, samples in ascending order cost one
   /// pass over the file; others start a new one. Once the last sample is read, the end is checked: of a compressed
   /// stream the checksum, of text that no further number follows. Errors: MalformedFile for fewer samples, damaged
-  /// compressed data, and words that are no number of the type's range; TooLarge when memory runs out; Cancelled.
+  /// compressed data, and words that are no number of the type's range; Cancelled. Memory that runs out is
+  /// std::bad_alloc.
   ValueArray read(std::uint64_t first, std::uint64_t count, const Progress& progress);
 
   /// What a sample's file, place and encoding are.
