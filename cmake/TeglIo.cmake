@@ -1,17 +1,7 @@
 # The libraries that tegl::io needs, found here and not in runtime/io, as whether it is built depends on them: with
 # TEGL_BUILD_IO=ON one that is missing is an error, with AUTO tegl::io is left out. Sets TEGL_BUILD_IO to ON or OFF.
 #
-# Of ITK only its NrrdIO and MetaIO libraries are used, and found by themselves: ITK's package loads what all of ITK
-# needs, HDF5's C++ parts and GDCM among it. They and HDF5 are linked by their paths, so that users of an installed
-# tegl::io need neither package's CMake files.
-set(tegl_itk_versions 5.2 5.3 5.4)
-list(TRANSFORM tegl_itk_versions PREPEND "ITK-" OUTPUT_VARIABLE tegl_itk_folders)
-list(TRANSFORM tegl_itk_versions PREPEND "ITKNrrdIO-" OUTPUT_VARIABLE tegl_nrrdio_names)
-list(TRANSFORM tegl_itk_versions PREPEND "ITKMetaIO-" OUTPUT_VARIABLE tegl_metaio_names)
-find_path(TEGL_ITK_INCLUDE_DIR NAMES NrrdIO.h PATH_SUFFIXES ${tegl_itk_folders})
-find_library(TEGL_ITK_NRRDIO NAMES ${tegl_nrrdio_names})
-find_library(TEGL_ITK_METAIO NAMES ${tegl_metaio_names})
-mark_as_advanced(TEGL_ITK_INCLUDE_DIR TEGL_ITK_NRRDIO TEGL_ITK_METAIO)
+# HDF5 is linked by its path, so that users of an installed tegl::io need not its package's CMake files.
 find_package(netCDF QUIET)
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
@@ -23,8 +13,7 @@ find_package(assimp QUIET)
 
 # What is missing, each with the Debian package that has it.
 set(tegl_io_missing "")
-foreach(need "TEGL_ITK_INCLUDE_DIR|ITK's NrrdIO.h|libinsighttoolkit5-dev" "TEGL_ITK_NRRDIO|ITK's NrrdIO|libinsighttoolkit5-dev"
-    "TEGL_ITK_METAIO|ITK's MetaIO|libinsighttoolkit5-dev" "netCDF_FOUND|netCDF|libnetcdf-dev" "PkgConfig_FOUND|pkg-config|pkg-config"
+foreach(need "netCDF_FOUND|netCDF|libnetcdf-dev" "PkgConfig_FOUND|pkg-config|pkg-config"
     "TEGL_HDF5_FOUND|HDF5 (by pkg-config)|libhdf5-dev" "ZLIB_FOUND|zlib|zlib1g-dev"
     "nlohmann_json_FOUND|nlohmann_json|nlohmann-json3-dev" "assimp_FOUND|assimp|libassimp-dev")
   string(REPLACE "|" ";" need "${need}")

@@ -33,6 +33,7 @@ FileAndVariable parse_file_and_variable(const std::string& text) {
 }
 
 void AttributeOptions::add_to(CLI::App& app) {
+  app_ = &app;
   app.add_option("--attribute", texts_,
                  "values of another image at the vertices: FILE, or FILE:VARIABLE (netCDF); may be given again")
       ->allow_extra_args(false)
@@ -43,13 +44,26 @@ void AttributeOptions::require_inputs() const {
   for (const std::string& text : texts_) require_input(parse_file_and_variable(text).file, Folders::allowed);
 }
 
+ReadImageResult AttributeOptions::read(const FileAndVariable& from, const Progress& progress) const {
+  ReadImageOptions options;
+  options.variable = from.variable;
+  options.progress = progress;
+  const CLI::Option* const outside = app_->get_option_no_throw("--allow-outside-paths");
+  options.allow_outside_paths = outside != nullptr && outside->count() > 0;
+  try {
+    return read_image(from.file, options);
+  } catch (const Error& error) {
+    throw Error(error.code(), with_option_names(error.what()));
+  }
+}
+
 template <int N, class Real>
 void AttributeOptions::sample_to(Contour<N, Real>& contour, unsigned threads, ProgressBar& bar) const {
   for (const std::string& text : texts_) {
     const FileAndVariable from = parse_file_and_variable(text);
     const Progress progress = bar.stage("attribute");
     const auto reading = [&](double fraction) { return progress(0.7 * fraction); };
-    const ReadImageResult input = read_image(from.file, {.variable = from.variable, .progress = reading});
+    const ReadImageResult input = read(from, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: an image of {} dimensions on a contour in {}D; expected {}", from.file,

@@ -39,7 +39,11 @@ class AttributeOptions {
   void sample_to(Contour<N, Real>& contour, unsigned threads, ProgressBar& bar) const;
 
  private:
+  /// The image of FILE:VARIABLE. --allow-outside-paths of the command holds for it, too.
+  [[nodiscard]] ReadImageResult read(const FileAndVariable& from, const Progress& progress) const;
+
   std::vector<std::string> texts_;
+  const CLI::App* app_ = nullptr;
 };
 
 }  // namespace tegl::cli

@@ -101,10 +101,10 @@ class ContourCommand final : public Command {
             "the image's axes")
         ->type_name("X,Y,Z[,T]");
     attributes_.add_to(app());
-    app().add_flag(
-        "--stream", stream_,
-        "read layer by layer and write as it comes, with little memory: netCDF, HDF5, --raw, or several FILEs, "
-        "to .vtkhdf");
+    app().add_flag("--stream", stream_,
+                   "read layer by layer and write as it comes, with little memory: one FILE of any format, --raw, or "
+                   "several FILEs, "
+                   "to .vtkhdf");
     add_image_options();
     add_quiet();
     app().footer(kExamples);

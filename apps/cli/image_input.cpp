@@ -34,6 +34,23 @@ std::vector<std::size_t> parse_sizes(const std::string& text) {
   return sizes;
 }
 
+/// "member=3", "depth=0" as dimensions and indices. Names may have an equals sign in them.
+std::vector<FixedIndex> parse_fixed(const std::vector<std::string>& texts) {
+  std::vector<FixedIndex> fixed;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    const std::optional<double> index =
+        equals == std::string::npos ? std::nullopt : parse_number(std::string_view(text).substr(equals + 1));
+    constexpr double kMost = 0x1p48;
+    if (!index || equals == 0 || !(*index >= 0 && *index <= kMost) || *index != std::floor(*index))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--fix is '{}'; expected the name of a dimension and an index from 0 on, as in member=3", text));
+    fixed.push_back({text.substr(0, equals), static_cast<std::size_t>(*index)});
+  }
+  return fixed;
+}
+
 constexpr SeriesWords kWords{"--times",     "--time-step", "--time-unit", "--sort",
                              "--sort time", "--sort name", "--sort given"};
 
@@ -51,13 +68,22 @@ auto with_hint(const std::string& variable, const std::vector<std::string>& file
   } catch (const Error& error) {
     if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
       throw Error(error.code(), error.what() + hint);
-    if (error.code() != ErrorCode::VariableNotFound || !variable.empty()) throw;
+    if (error.code() != ErrorCode::VariableNotFound || !variable.empty())
+      throw Error(error.code(), with_option_names(error.what()));
     throw Error(error.code(),
                 fmt::format("{} (choose it with {})", error.what(), ImageOptions::choosing_option(files)));
   }
 }
 
 }  // namespace
+
+std::string with_option_names(std::string message) {
+  if (const std::size_t at = message.find("the option allow_outside_paths"); at != std::string::npos)
+    return message.replace(at, std::string_view("the option allow_outside_paths").size(),
+                           "the option --allow-outside-paths");
+  if (message.find("a fixed index of another dimension") != std::string::npos) message += " (--fix DIMENSION=INDEX)";
+  return message;
+}
 
 void ImageOptions::add_to(CLI::App& app) {
   options_ = {
@@ -82,6 +108,14 @@ void ImageOptions::add_to(CLI::App& app) {
                      "of several FILEs: by the numbers in their names, by their times (--times, which go with them, "
                      "or those in their headers), or as given")
           ->check(CLI::IsMember({"given", "name", "time"})),
+      app.add_option("--fix", fixed_,
+                     "netCDF: reads one index of this dimension, as in member=3, from 0 on; may be given again. Needed "
+                     "for variables of more than 4 axes")
+          ->allow_extra_args(false)
+          ->type_name("DIM=INDEX"),
+      app.add_flag(
+          "--allow-outside-paths", allow_outside_paths_,
+          "reads the file of samples that a header names (NRRD, MetaImage) also outside of the header's folder"),
   };
   options_[1]->excludes(options_[0]);
   raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
@@ -141,6 +175,8 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
     request.sort = sort_ == "name"   ? SeriesOrder::by_name
                    : sort_ == "time" ? SeriesOrder::coordinate
                                      : SeriesOrder::given;
+  request.fixed = parse_fixed(fixed_);
+  request.allow_outside_paths = allow_outside_paths_;
   if (raw()) request.raw = RawLayout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_};
   return tegl::series_options(paths_of(files), request, kWords);
 }

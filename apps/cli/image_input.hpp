@@ -14,7 +14,11 @@
 
 namespace tegl::cli {
 
-/// --var, --series, --times, --time-step, --time-unit, --sort, --raw and what belongs to it.
+/// The message of an error of the library's readers with the names of the program's options.
+std::string with_option_names(std::string message);
+
+/// --var, --series, --times, --time-step, --time-unit, --sort, --fix, --allow-outside-paths, --raw and what belongs to
+/// it.
 class ImageOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
@@ -37,6 +41,8 @@ class ImageOptions {
   /// What the readers said of the files read so far: what they left out, what is uneven.
   [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
+  /// Whether the index of a dimension is given.
+  [[nodiscard]] bool has_fixed() const { return !fixed_.empty(); }
   /// The names of those that are given.
   [[nodiscard]] std::vector<std::string> given() const;
 
@@ -54,6 +60,8 @@ class ImageOptions {
   std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
+  bool allow_outside_paths_ = false;
+  std::vector<std::string> fixed_;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;
   mutable std::vector<std::string> remarks_;

@@ -22,11 +22,13 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  tegl info brain.nii.gz\n"
     "  tegl info ocean.nc --var TEMP --json\n"
+    "  tegl info ensemble.nc --fix member=3\n"
     "Suggested values: 'otsu' splits the values into two classes best, 'contrast' has the steepest mean step\n"
     "along its contour, 'median' and 'percentile p' leave 50 or p % of the samples below. 'edges' is the number\n"
     "of grid edges that the contour cuts: about the number of its vertices.";
 constexpr std::size_t kJsonBins = 256;
 constexpr std::size_t kTextBins = 16;
+constexpr std::size_t kMostAxes = 4;
 
 template <class T>
 constexpr const char* kTypeName = "";
@@ -276,19 +278,35 @@ std::string to_text(const Console& console, const Description& description, cons
                             description.statistics_seconds);
 }
 
-/// What is said of a file with several variables when none was chosen.
+/// "5 x 4 x 3 x 2 x 6 (x, y, z, time, member)", with the names of variables only that are images only if an index of a
+/// dimension is chosen.
+std::string variable_shape(const ImageVariable& variable) {
+  const std::string sizes = fmt::format("{}", fmt::join(variable.sizes, " x "));
+  return variable.sizes.size() > kMostAxes ? fmt::format("{} ({})", sizes, fmt::join(variable.axes, ", ")) : sizes;
+}
+
+/// What is said of a file with several variables, or one of more axes than an image, when none was chosen.
 std::string choice_text(const Console& console, const InputFiles& input, const std::vector<ImageVariable>& variables) {
   const std::string option = ImageOptions::choosing_option(input.names);
-  std::string text = fmt::format(
-      "{}\n", console.bold(fmt::format("{}: several {}", input.text(), option == "--series" ? "series" : "variables")));
+  const std::string title = variables.size() == 1  ? fmt::format("a variable of {} axes", variables[0].sizes.size())
+                            : option == "--series" ? "several series"
+                                                   : "several variables";
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: {}", input.text(), title)));
   std::size_t number = 0;  // what --series takes
   for (const ImageVariable& variable : variables) {
     const std::string name = option == "--series" ? fmt::format("{:>2}  {}", ++number, variable.name) : variable.name;
     text += report_line(
-        name, fmt::format("{}{}{}", fmt::join(variable.sizes, " x "), variable.unit.empty() ? "" : " " + variable.unit,
+        name, fmt::format("{}{}{}", variable_shape(variable), variable.unit.empty() ? "" : " " + variable.unit,
                           variable.long_name.empty() ? "" : ", " + variable.long_name));
   }
-  return text + fmt::format("\nChoose one with {}{}.\n", option, number > 0 ? ", by its number or name" : "");
+  text += "\n";
+  if (variables.size() > 1)
+    text += fmt::format("Choose one with {}{}.\n", option, number > 0 ? ", by its number or name" : "");
+  const auto large = std::ranges::find_if(variables, [](const auto& one) { return one.sizes.size() > kMostAxes; });
+  if (large != variables.end())
+    text += fmt::format("Images have 2 to {} axes: choose an index of a dimension, as with --fix {}=0.\n", kMostAxes,
+                        large->axes.empty() ? "DIM" : large->axes.back());
+  return text;
 }
 
 Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& variables) {
@@ -297,9 +315,11 @@ Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& vari
   json["variable"] = nullptr;
   json["variables"] = Json::array();
   json["shapes"] = Json::object();
+  json["dimensions"] = Json::object();
   for (const ImageVariable& variable : variables) {
     json["variables"].push_back(variable.name);
     json["shapes"][variable.name] = variable.sizes;
+    json["dimensions"][variable.name] = variable.axes;
   }
   return json;
 }
@@ -325,9 +345,9 @@ class InfoCommand final : public Command {
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }
-    if (images().variable().empty()) {
+    if (images().variable().empty() && !images().has_fixed()) {
       const std::vector<ImageVariable> variables = images().variables(files());
-      if (variables.size() > 1) {
+      if (variables.size() > 1 || (variables.size() == 1 && variables[0].sizes.size() > kMostAxes)) {
         streams.out.write(json() ? dump(choice_json(inputs(), variables))
                                  : choice_text(streams.out, inputs(), variables));
         return ExitCode::Ok;

@@ -89,14 +89,17 @@ py::list directions_of(const ImageInfo& info) {
 py::dict read_any(const std::vector<std::string>& paths, const std::string& variable,
                   const std::optional<std::vector<double>>& times, std::optional<double> time_step,
                   const std::optional<std::string>& time_unit, const std::optional<std::string>& sort,
+                  const std::vector<std::pair<std::string, std::size_t>>& fixed, bool allow_outside_paths,
                   const py::object& progress) {
   Call call(progress);
   const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
-  SeriesRequest request{variable, times, time_step, time_unit, {}, {}};
+  SeriesRequest request{variable, times, time_step, time_unit, {}, {}, {}, false};
   if (sort)
     request.sort = named<SeriesOrder>(
         "sort", *sort,
         {{"given", SeriesOrder::given}, {"name", SeriesOrder::by_name}, {"time", SeriesOrder::coordinate}});
+  for (const auto& [dimension, index] : fixed) request.fixed.push_back({dimension, index});
+  request.allow_outside_paths = allow_outside_paths;
   const Progress tell = call.progress();
   ReadImageResult read = call.run([&] {
     const FileLock lock(tell);
@@ -162,7 +165,8 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, const py::object& 
 
 void bind_files(py::module_& m) {
   m.def("read_series", &read_any, py::arg("paths"), py::arg("variable"), py::arg("times"), py::arg("time_step"),
-        py::arg("time_unit"), py::arg("sort"), py::arg("progress"), doc::read_series);
+        py::arg("time_unit"), py::arg("sort"), py::arg("fixed"), py::arg("allow_outside_paths"), py::arg("progress"),
+        doc::read_series);
   m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
   m.def("load_contour", &load_any, py::arg("path"), py::arg("progress"), doc::read_mesh);
 }

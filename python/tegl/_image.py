@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import typing
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -127,12 +127,14 @@ Path = typing.Union[str, "os.PathLike[str]"]
 @_arguments.documents("read_image", "read_series")
 def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None = None, times=None,
          time_step: float | None = None, time_unit: str | None = None, sort: str | None = None, time_axis: int = 0,
+         fix: Mapping[str, int] | None = None, allow_outside_paths: bool = False,
          progress: Progress | None = None) -> Image:
     """Reads an image: NIfTI, NRRD, MetaImage, netCDF, DICOM. The values are not copied from the library's memory.
 
     ::
 
         tegl.read("ocean.nc", "temp")                             # a variable of a file
+        tegl.read("ensemble.nc", fix={"member": 3})               # the fourth member of a variable of 5 axes
         tegl.read("scan/")                                        # a folder of DICOM files
         tegl.read("scan/", series="T1")                           # one series of several there
         tegl.read(glob.glob("step_*.nrrd"), sort="name", time_step=0.5, time_unit="s")
@@ -148,6 +150,12 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         the order of `sort`; and the unit. Without, as the files say, else 0, 1, 2 ...
     sort
         Of a list: "name", by the numbers in the names; "time", by `times`, or those in the headers; or "given".
+    fix
+        netCDF: an index, from 0 on, of each of these dimensions. Only the samples there are read, and the image does not
+        have these dimensions as axes.
+    allow_outside_paths
+        Whether a file of samples that a header names (NRRD, MetaImage) is also read if it lies outside of the header's
+        folder.
 
     The array's first axis is the one that runs slowest in the file: (t, z, y, x), in C order. With `time_axis=-1` the
     axes are the other way round, (x, y, z, t) in Fortran order, as nibabel has them.
@@ -160,7 +168,8 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
         None if times is None else _times(times, len(paths), time_unit),
         None if time_step is None else _arguments.as_number("time_step", time_step),
         None if time_unit is None else _arguments.as_text("time_unit", time_unit),
-        None if sort is None else _arguments.as_text("sort", sort), progress)
+        None if sort is None else _arguments.as_text("sort", sort), _fixed(fix),
+        bool(allow_outside_paths), progress)
     array = found["array"]
     ndim = array.ndim
     is_reversed = _arguments.turn_around(time_axis, ndim)
@@ -184,6 +193,15 @@ def _path(path) -> str:
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError(f"path is {path!r}; expected a path, or a list of them")
     return os.fspath(path)
+
+
+def _fixed(fix) -> list[tuple[str, int]]:
+    if fix is None:
+        return []
+    if not isinstance(fix, Mapping):
+        raise TypeError(f"fix is {fix!r}; expected the names of dimensions with an index each, such as {{'member': 3}}")
+    return [(_arguments.as_text("a dimension of fix", name), _arguments.as_whole(f"fix[{name!r}]", index, 0))
+            for name, index in fix.items()]
 
 
 def _times(times, files: int, unit: str | None) -> list[float]:

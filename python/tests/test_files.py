@@ -35,6 +35,34 @@ def test_an_image_from_a_file_has_its_coordinates():
         tegl.read(OCEAN.with_name("no_such.nc"))
 
 
+def test_one_index_of_a_dimension_is_read():
+    image = tegl.read(OCEAN)
+    part = tegl.read(OCEAN, fix={image.axis_names[0]: np.int64(3)})
+    assert np.array_equal(part.array, image.array[3], equal_nan=True) and part.axis_names == image.axis_names[1:]
+    plane = tegl.read(OCEAN, fix={image.axis_names[0]: 3, image.axis_names[1]: 0})
+    assert np.array_equal(plane.array, image.array[3, 0], equal_nan=True)
+    for fix, error, text in [({"no_such": 0}, ValueError, "no dimension 'no_such'"),
+                             ({image.axis_names[0]: 99}, ValueError, "=99; expected an index from 0 to"),
+                             ({image.axis_names[0]: -1}, ValueError, "is -1; expected 0 or more"),
+                             ({image.axis_names[0]: 1.5}, TypeError, "is 1.5; expected a whole number"),
+                             ({3: 1}, TypeError, "expected text"), ("time=3", TypeError, "fix is 'time=3'")]:
+        with pytest.raises(error, match=text):
+            tegl.read(OCEAN, fix=fix)
+
+
+def test_samples_outside_of_the_headers_folder_are_read_only_if_allowed(tmp_path):
+    (tmp_path / "headers").mkdir()
+    (tmp_path / "a.raw").write_bytes(bytes(range(8)))
+    header = tmp_path / "headers" / "a.nhdr"
+    header.write_text("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: ../a.raw\n")
+    with pytest.raises(ValueError, match="allow_outside_paths"):
+        tegl.read(header)
+    assert tegl.read(header, allow_outside_paths=True).array.ravel().tolist() == list(range(8))
+    header.write_text(header.read_text().replace("../a.raw", "/etc/passwd"))
+    with pytest.raises(ValueError, match="/etc/passwd"):
+        tegl.read(header)
+
+
 @needs_program
 @pytest.mark.parametrize("suffix", [".vtkhdf", ".ply"])
 def test_the_program_gives_the_same_contour(suffix, tmp_path):

@@ -27,16 +27,18 @@ class HeaderWalk {
   HeaderWalk(std::span<const unsigned char> bytes, std::uint64_t file_bytes, const fs::path& path)
       : bytes_(bytes), file_bytes_(file_bytes), path_(path) {}
 
-  void run() {
+  /// Returns the bytes that header and variables take.
+  std::uint64_t run() {
     take(3);
     version_ = take(1)[0];
-    const std::uint64_t unknown_records = version_ == 5 ? ~std::uint64_t{0} : 0xffffffffU;
     records_ = count_field();
-    streaming_ = records_ == unknown_records;
+    if (records_ == largest_count())
+      fail(ErrorCode::UnsupportedData, path_,
+           "netCDF file whose number of records is left open, as while it is written; expected a number");
     dimensions();
     attributes();
     variables();
-    check_extents();
+    return check_extents();
   }
 
  private:
@@ -46,10 +48,13 @@ class HeaderWalk {
     std::uint64_t begin;
     bool record;
   };
+  static constexpr std::uint64_t kLongestName = 256;      // NC_MAX_NAME: the room that the library and its users have
+  static constexpr std::uint64_t kMostDimensions = 1024;  // of a variable: NC_MAX_VAR_DIMS
+  static constexpr std::uint64_t kMostItems = 65536;      // of a list: far more than any program writes
 
   std::span<const unsigned char> take(std::uint64_t count) {
     if (count > bytes_.size() - at_) {
-      if (at_ + count > file_bytes_ || at_ + count < at_)
+      if (count > file_bytes_ - std::min(file_bytes_, at_))
         fail(ErrorCode::MalformedFile, path_, "netCDF header needs {} bytes at byte {}; expected them in the file's {}",
              count, at_, file_bytes_);
       throw EndOfBytes{};
@@ -65,8 +70,13 @@ class HeaderWalk {
   }
   std::uint64_t count_field() { return big_endian(version_ == 5 ? 8 : 4); }
 
+  [[nodiscard]] std::uint64_t largest_count() const { return version_ == 5 ? ~std::uint64_t{0} : 0xffffffffU; }
+
   std::string name() {
     const std::uint64_t length = count_field();
+    if (length < 1 || length > kLongestName)
+      fail(ErrorCode::MalformedFile, path_, "netCDF name of {} bytes before byte {}; expected 1 to {}", length, at_,
+           kLongestName);
     const auto bytes = take(length + (4 - length % 4) % 4);
     return {reinterpret_cast<const char*>(bytes.data()), static_cast<std::size_t>(length)};
   }
@@ -78,9 +88,9 @@ class HeaderWalk {
     const std::uint64_t count = count_field();
     if (found != tag && (found != 0 || count != 0))
       fail(ErrorCode::MalformedFile, path_, "netCDF header has tag {} before the {}; expected {}", found, what, tag);
-    if (count > file_bytes_ / 8)
-      fail(ErrorCode::MalformedFile, path_, "netCDF header announces {} {}; expected fewer in {} bytes", count, what,
-           file_bytes_);
+    if (count > std::min(file_bytes_ / 8, kMostItems))
+      fail(ErrorCode::MalformedFile, path_, "netCDF header announces {} {}; expected at most {} in {} bytes", count,
+           what, std::min(file_bytes_ / 8, kMostItems), file_bytes_);
     return count;
   }
 
@@ -95,8 +105,15 @@ class HeaderWalk {
   void dimensions() {
     constexpr std::uint64_t kTag = 10;
     for (std::uint64_t i = list(kTag, "dimensions"); i > 0; --i) {
-      name();
-      sizes_.push_back(count_field());
+      const std::string label = name();
+      const std::uint64_t size = count_field();
+      const std::uint64_t most = version_ == 2 ? largest_count() : largest_count() >> 1;
+      if (size > most)
+        fail(ErrorCode::MalformedFile, path_, "dimension '{}' has size {}; expected at most {}", label, size, most);
+      if (size == 0 && std::ranges::find(sizes_, 0U) != sizes_.end())
+        fail(ErrorCode::MalformedFile, path_, "dimension '{}' is a second one of records (size 0); expected one",
+             label);
+      sizes_.push_back(size);
     }
   }
 
@@ -119,13 +136,19 @@ class HeaderWalk {
       Variable variable{name(), 1, 0, false};
       std::vector<std::uint64_t> shape;
       const std::uint64_t rank = count_field();
+      if (rank > kMostDimensions)
+        fail(ErrorCode::MalformedFile, path_, "variable '{}' has {} dimensions; expected at most {}", variable.name,
+             rank, kMostDimensions);
       for (std::uint64_t d = 0; d < rank; ++d) {
         const std::uint64_t id = count_field();
         if (id >= sizes_.size())
           fail(ErrorCode::MalformedFile, path_, "variable '{}' has dimension number {}; expected less than {}",
                variable.name, id, sizes_.size());
         const std::uint64_t size = sizes_[static_cast<std::size_t>(id)];
-        if (d == 0 && size == 0)
+        if (d > 0 && size == 0)
+          fail(ErrorCode::MalformedFile, path_,
+               "variable '{}' has the dimension of records at place {}; expected it first", variable.name, d);
+        if (size == 0)
           variable.record = true;
         else
           shape.push_back(size);
@@ -138,26 +161,38 @@ class HeaderWalk {
     }
   }
 
-  void check_extents() const {
+  /// Throws unless all variables lie behind the header and within the file. Returns where the last one ends.
+  [[nodiscard]] std::uint64_t check_extents() const {
     std::uint64_t record_bytes = 0;
     const auto count = std::count_if(variables_.begin(), variables_.end(), [](const Variable& v) { return v.record; });
     // A single record variable is not padded to 4 bytes.
-    for (const Variable& variable : variables_)
-      if (variable.record) record_bytes += count == 1 ? variable.bytes : (variable.bytes + 3) / 4 * 4;
+    for (const Variable& variable : variables_) {
+      if (!variable.record) continue;
+      const std::uint64_t padded = count == 1 ? variable.bytes : (variable.bytes + 3) / 4 * 4;
+      if (__builtin_add_overflow(record_bytes, padded, &record_bytes))
+        fail(ErrorCode::MalformedFile, path_, "records up to variable '{}' take more than 2^64 bytes; expected fewer",
+             variable.name);
+    }
+    std::uint64_t last = at_;
     for (const Variable& variable : variables_) {
       std::uint64_t end = variable.bytes;
       if (variable.record) {
-        const std::uint64_t before = streaming_ || records_ == 0 ? 0 : records_ - 1;
-        if (streaming_ || records_ == 0) end = 0;
         std::uint64_t skipped = 0;
-        if (__builtin_mul_overflow(before, record_bytes, &skipped) || __builtin_add_overflow(end, skipped, &end))
+        if (records_ == 0) continue;
+        if (__builtin_mul_overflow(records_ - 1, record_bytes, &skipped) || __builtin_add_overflow(end, skipped, &end))
           end = ~std::uint64_t{0};
       }
       if (end == 0) continue;
+      if (variable.begin < at_)
+        fail(ErrorCode::MalformedFile, path_,
+             "variable '{}' begins at byte {}; expected at least {}, behind the header", variable.name, variable.begin,
+             at_);
       if (__builtin_add_overflow(end, variable.begin, &end) || end > file_bytes_)
         fail(ErrorCode::MalformedFile, path_, "variable '{}' ends at byte {}; expected at most {}, the file's size",
              variable.name, end, file_bytes_);
+      last = std::max(last, end);
     }
+    return last;
   }
 
   std::span<const unsigned char> bytes_;
@@ -166,7 +201,6 @@ class HeaderWalk {
   std::uint64_t at_ = 0;
   unsigned version_ = 0;
   std::uint64_t records_ = 0;
-  bool streaming_ = false;
   std::vector<std::uint64_t> sizes_;
   std::vector<Variable> variables_;
 };
@@ -178,21 +212,19 @@ bool is_classic_netcdf(std::span<const unsigned char> prefix) {
          (prefix[3] == 1 || prefix[3] == 2 || prefix[3] == 5);
 }
 
-void check_classic_netcdf(const fs::path& path, std::span<const unsigned char> content) {
-  if (!content.empty()) {
-    HeaderWalk(content, content.size(), path).run();
-    return;
+std::uint64_t bytes_of_classic_netcdf(std::span<const unsigned char> bytes, std::uint64_t most, const fs::path& path) {
+  try {
+    return HeaderWalk(bytes, most, path).run();
+  } catch (const EndOfBytes&) {
+    return 0;
   }
+}
+
+void check_classic_netcdf(const fs::path& path) {
   const std::uint64_t size = size_of_file(path);
   // Headers are mostly some kilobytes; the rare long one is read again in larger pieces.
-  for (std::size_t piece = std::size_t{1} << 16;; piece *= 16) {
-    const auto bytes = read_bytes(path, 0, piece);
-    try {
-      HeaderWalk(bytes, size, path).run();
-      return;
-    } catch (const EndOfBytes&) {
-    }
-  }
+  for (std::size_t piece = std::size_t{1} << 16; bytes_of_classic_netcdf(read_bytes(path, 0, piece), size, path) == 0;)
+    piece *= 16;
 }
 
 }  // namespace tegl::io_detail

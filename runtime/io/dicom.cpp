@@ -405,7 +405,7 @@ RawImage spatial_grid(const Volume& volume) {
   for (Axis& axis : image.grid.axes) axis.unit = frame.spacing ? "mm" : "";
   if (!is_placed(volume)) image.grid.axes[2].unit.clear();
   name_axes(image.grid);
-  drop_trailing_axes(image);
+  drop_trailing_axes(image.grid, image.info);
   return image;
 }
 

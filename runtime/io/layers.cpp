@@ -8,8 +8,8 @@
 
 #include "common.hpp"
 #include "raw_image.hpp"
-#include "raw_values.hpp"
 #include "readers.hpp"
+#include "sample_reader.hpp"
 
 namespace tegl {
 
@@ -104,14 +104,18 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
     case 4:
       return {with_dimension<4>(std::move(source), path), std::move(info)};
     default:
-      fail(ErrorCode::InvalidArgument, path, "image of {} axes; expected 2, 3 or 4", source.grid.axes.size());
+      fail_axes(source.grid, path);
   }
 }
 
+OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
+  return to_open_layers(open_any_layers(path, options), path);
+}
+
 OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
-  if (is_dicom(path)) return to_open_layers(open_dicom(std::span(&path, 1), variable, {}), path);
-  require_readable_file(path);
-  return to_open_layers(open_netcdf_layers(path, variable), path);
+  ReadImageOptions options;
+  options.variable = variable;
+  return open_layers(path, options);
 }
 
 RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
@@ -128,17 +132,17 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   source.grid.linear = Eigen::MatrixXd::Identity(n, n);
   source.grid.offset = Eigen::VectorXd::Zero(n);
   name_axes(source.grid);
-  const std::uint64_t item = std::visit([]<class T>(const std::vector<T>&) { return sizeof(T); }, array_of_type(type));
-  const std::vector<std::uint64_t> sizes(layout.sizes.begin(), layout.sizes.end());
-  const std::uint64_t needed = checked_bytes(sizes, item, path);
-  const std::uint64_t found = size_of_file(path);
-  if (layout.offset > found || needed > found - layout.offset)
-    fail(ErrorCode::MalformedFile, path, "{} bytes; expected {} from byte {} on, for {} values of type {}", found,
-         needed, layout.offset, shape_text(sizes), type);
-  const std::uint64_t per_layer = needed / item / sizes.back();
-  const bool swapped = layout.big_endian != (std::endian::native == std::endian::big);
-  source.read = [path, type, item, per_layer, swapped, offset = layout.offset](std::size_t first, std::size_t count) {
-    return read_values_at(path, offset + first * per_layer * item, type, count * per_layer, swapped);
+  const std::uint64_t per_layer =
+      checked_bytes(std::vector<std::uint64_t>(layout.sizes.begin(), layout.sizes.end() - 1), 1, path);
+  StoredSamples samples;
+  samples.path = path;
+  samples.offset = layout.offset;
+  samples.type = type;
+  samples.sizes.assign(layout.sizes.begin(), layout.sizes.end());
+  samples.swapped = layout.big_endian != (std::endian::native == std::endian::big);
+  source.read = [reader = std::make_shared<SampleReader>(std::move(samples)), per_layer](std::size_t first,
+                                                                                         std::size_t count) {
+    return reader->read(first * per_layer, count * per_layer, {});
   };
   source.info.format = "raw";
   source.info.stored_type = type;

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// MetaImage files (.mha, and .mhd with the data beside). The header is read here for a check, before anything is
-// allocated, that the data are all there, which MetaIO leaves to the user; ITK reads the values.
+// Headers of MetaImage files (.mha, and .mhd with the data beside). MetaIO, the format's own library, keeps keys and
+// values in buffers that a longer one overflows: what does not fit there is no MetaImage.
 //
 // Based on: S. Aylward, "MetaIO: Introduction and Documentation" (ITK wiki).
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <string>
 
 #include "common.hpp"
-#include "inflate.hpp"
-#include "itk_values.hpp"
 #include "readers.hpp"
 
 namespace tegl::io_detail {
@@ -24,20 +23,19 @@ namespace {
 struct StoredType {
   std::string_view keyword;
   const char* name;
-  unsigned bytes;
 };
 
 // MET_LONG is 4 bytes in the format's definition, and 8 in files that ITK wrote on 64-bit machines: ambiguous.
-constexpr std::array<StoredType, 10> kTypes = {{{"MET_CHAR", "int8", 1},
-                                                {"MET_UCHAR", "uint8", 1},
-                                                {"MET_SHORT", "int16", 2},
-                                                {"MET_USHORT", "uint16", 2},
-                                                {"MET_INT", "int32", 4},
-                                                {"MET_UINT", "uint32", 4},
-                                                {"MET_LONG_LONG", "int64", 8},
-                                                {"MET_ULONG_LONG", "uint64", 8},
-                                                {"MET_FLOAT", "float", 4},
-                                                {"MET_DOUBLE", "double", 8}}};
+constexpr std::array<StoredType, 10> kTypes = {{{"MET_CHAR", "int8"},
+                                                {"MET_UCHAR", "uint8"},
+                                                {"MET_SHORT", "int16"},
+                                                {"MET_USHORT", "uint16"},
+                                                {"MET_INT", "int32"},
+                                                {"MET_UINT", "uint32"},
+                                                {"MET_LONG_LONG", "int64"},
+                                                {"MET_ULONG_LONG", "uint64"},
+                                                {"MET_FLOAT", "float"},
+                                                {"MET_DOUBLE", "double"}}};
 
 class Fields {
  public:
@@ -91,11 +89,28 @@ class Fields {
 struct Header {
   std::vector<std::uint64_t> sizes;
   StoredType type{};
-  bool compressed = false;
-  bool text = false;
-  fs::path data_path;
-  std::uint64_t data_offset = 0;
+  StoredSamples samples;
 };
+
+/// Fields of numbers, which MetaIO does not keep as text.
+bool holds_numbers(std::string_view key) {
+  constexpr std::array<std::string_view, 9> kKeys = {"TransformMatrix", "Rotation", "Orientation",
+                                                     "Offset",          "Position", "Origin",
+                                                     "ElementSpacing",  "DimSize",  "ElementSize"};
+  return std::ranges::find(kKeys, key) != kKeys.end();
+}
+
+void require_room(std::string_view key, std::string_view value, const fs::path& path) {
+  constexpr std::size_t kLongest = 254;
+  constexpr std::size_t kLongestNumbers = 4096;  // 10 x 10 of them
+  if (key.size() > kLongest)
+    fail(ErrorCode::MalformedFile, path, "header field {} has a name of {} bytes; expected at most {}", shown(key),
+         key.size(), kLongest);
+  const std::size_t longest = holds_numbers(key) ? kLongestNumbers : kLongest;
+  if (value.size() > longest)
+    fail(ErrorCode::MalformedFile, path, "header field {} is {}, {} bytes long; expected at most {}", shown(key),
+         shown(value), value.size(), longest);
+}
 
 /// "Key = value" lines up to and with ElementDataFile, which by definition is the last.
 Fields read_fields(const fs::path& path, std::uint64_t& end) {
@@ -114,7 +129,9 @@ Fields read_fields(const fs::path& path, std::uint64_t& end) {
     const bool printable = std::all_of(key.begin(), key.end(), [](char c) { return c > 0x20 && c < 0x7f; });
     if (equals == std::string_view::npos || key.empty() || !printable)
       fail(ErrorCode::MalformedFile, path, "header line {}; expected 'Key = value'", shown(line));
-    if (!values.emplace(key, trim(line.substr(equals + 1))).second)
+    const std::string_view value = trim(line.substr(equals + 1));
+    require_room(key, value, path);
+    if (!values.emplace(key, value).second)
       fail(ErrorCode::MalformedFile, path, "header field '{}' twice; expected it once", key);
   }
   return {path, std::move(values)};
@@ -142,7 +159,8 @@ StoredType read_type(const Fields& fields, const fs::path& path) {
   const std::string& keyword = fields.text("ElementType");
   const auto channels = fields.number<std::uint64_t>("ElementNumberOfChannels", 1);
   if (channels != 1 || keyword.ends_with("_ARRAY"))
-    fail(ErrorCode::UnsupportedData, path, "{} channels of type {}; expected one number per sample", channels, keyword);
+    fail(ErrorCode::UnsupportedData, path, "{} channels of type {}; expected one number per sample", channels,
+         shown(keyword));
   for (const StoredType& type : kTypes)
     if (type.keyword == keyword) return type;
   if (keyword == "MET_LONG" || keyword == "MET_ULONG")
@@ -152,71 +170,65 @@ StoredType read_type(const Fields& fields, const fs::path& path) {
        shown(keyword));
 }
 
-void locate_data(const Fields& fields, std::uint64_t header_end, Header& header, const fs::path& path) {
+Encoding read_encoding(const Fields& fields, const fs::path& path) {
+  const bool compressed = fields.flag("CompressedData", false);
+  const bool text = !fields.flag("BinaryData", false);
+  if (text && compressed)
+    fail(ErrorCode::UnsupportedFormat, path, "compressed text; expected BinaryData = True with CompressedData = True");
+  return text ? Encoding::text : compressed ? Encoding::deflate : Encoding::raw;
+}
+
+/// Whether bytes of samples come in the other order than this machine's.
+bool read_byte_order(const Fields& fields, const fs::path& path) {
+  constexpr bool kBig = std::endian::native == std::endian::big;
+  const bool big = fields.flag("BinaryDataByteOrderMSB", fields.flag("ElementByteOrderMSB", kBig));
+  if (fields.flag("ElementByteOrderMSB", big) != big)
+    fail(ErrorCode::MalformedFile, path, "BinaryDataByteOrderMSB is {}, ElementByteOrderMSB is {}; expected the same",
+         fields.text("BinaryDataByteOrderMSB"), fields.text("ElementByteOrderMSB"));
+  return big != kBig;
+}
+
+/// Where samples begin in a file of their own.
+std::uint64_t read_header_size(const Fields& fields, const StoredSamples& samples, const fs::path& path) {
+  const auto skip = fields.number<std::int64_t>("HeaderSize", 0);
+  if (skip < -1) fail(ErrorCode::MalformedFile, path, "HeaderSize is {}; expected -1 or more", skip);
+  if (skip >= 0) return static_cast<std::uint64_t>(skip);
+  // The samples are the end of the file.
+  if (samples.encoding != Encoding::raw)
+    fail(ErrorCode::MalformedFile, path, "HeaderSize is -1 for compressed samples or text; expected 0 or more");
+  const std::uint64_t size = size_of_file(samples.path);
+  return size - std::min(size, checked_bytes(samples.sizes, bytes_of_type(samples.type), path));
+}
+
+void locate_data(const Fields& fields, std::uint64_t header_end, bool allow_outside_paths, StoredSamples& samples,
+                 const fs::path& path) {
   const std::string& file = fields.text("ElementDataFile");
   const bool local = lower(file) == "local";
   if (file.empty() || file.starts_with("LIST") || file.find('%') != std::string::npos)
     fail(ErrorCode::UnsupportedFormat, path, "ElementDataFile {}; expected LOCAL or the name of one file", shown(file));
-  header.data_path = local ? path : path.parent_path() / file;
-  require_readable_file(header.data_path);
-  const auto skip = fields.number<std::int64_t>("HeaderSize", 0);
-  const std::uint64_t bytes = checked_bytes(header.sizes, header.type.bytes, path);
-  const std::uint64_t size = size_of_file(header.data_path);
-  if (local)
-    header.data_offset = header_end;
-  else if (skip == -1)  // the values are the end of the file
-    header.data_offset = size - std::min(size, bytes);
-  else if (skip < 0)
-    fail(ErrorCode::MalformedFile, path, "HeaderSize is {}; expected -1 or more", skip);
-  else
-    header.data_offset = static_cast<std::uint64_t>(skip);
+  samples.path = local ? path : path_beside(path, file, allow_outside_paths);
+  require_readable_file(samples.path);
+  samples.offset = local ? header_end : read_header_size(fields, samples, path);
+  const auto compressed = fields.number<std::int64_t>("CompressedDataSize", 0);
+  if (compressed < 0)
+    fail(ErrorCode::MalformedFile, path,
+         "CompressedDataSize is {}; expected the bytes of the compressed samples, or 0 where it is not known",
+         compressed);
+  if (samples.encoding == Encoding::deflate) samples.compressed_bytes = static_cast<std::uint64_t>(compressed);
 }
 
-Header parse_header(const Fields& fields, std::uint64_t header_end, const fs::path& path) {
+Header parse_header(const Fields& fields, std::uint64_t header_end, bool allow_outside_paths, const fs::path& path) {
   if (fields.has("ObjectType") && lower(fields.text("ObjectType")) != "image")
     fail(ErrorCode::UnsupportedData, path, "ObjectType is {}; expected Image", shown(fields.text("ObjectType")));
   Header header;
   header.sizes = read_sizes(fields, path);
   header.type = read_type(fields, path);
-  header.compressed = fields.flag("CompressedData", false);
-  header.text = !fields.flag("BinaryData", false);
-  if (header.text && header.compressed)
-    fail(ErrorCode::UnsupportedFormat, path, "compressed text; expected BinaryData = True with CompressedData = True");
-  locate_data(fields, header_end, header, path);
+  header.samples.type = header.type.name;
+  header.samples.sizes = header.sizes;
+  header.samples.encoding = read_encoding(fields, path);
+  header.samples.swapped = read_byte_order(fields, path);
+  locate_data(fields, header_end, allow_outside_paths, header.samples, path);
   return header;
-}
-
-/// Number of words from `offset` on: the values of a text file.
-std::uint64_t count_words(const fs::path& path, std::uint64_t offset) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20;
-  std::uint64_t count = 0;
-  bool inside = false;
-  for (auto bytes = read_bytes(path, offset, kBlock); !bytes.empty(); bytes = read_bytes(path, offset, kBlock)) {
-    for (const unsigned char byte : bytes) {
-      const bool blank = byte <= 0x20;
-      const bool plain =
-          (byte >= '0' && byte <= '9') || byte == '.' || byte == '-' || byte == '+' || byte == 'e' || byte == 'E';
-      if (!blank && !plain)
-        fail(ErrorCode::MalformedFile, path, "byte 0x{:02x} among values as text; expected numbers", byte);
-      if (!blank && !inside) ++count;
-      inside = !blank;
-    }
-    offset += bytes.size();
-  }
-  return count;
-}
-
-void check_length(const Header& header, const Progress& progress) {
-  const std::uint64_t unit = header.text ? 1 : header.type.bytes;
-  const std::uint64_t needed = checked_bytes(header.sizes, unit, header.data_path);
-  const std::uint64_t size = size_of_file(header.data_path);
-  const std::uint64_t found = header.text         ? count_words(header.data_path, header.data_offset)
-                              : header.compressed ? inflated_size(header.data_path, header.data_offset, progress)
-                                                  : size - std::min(size, header.data_offset);
-  if (found < needed)
-    fail(ErrorCode::MalformedFile, header.data_path, "{} {} of data{}; expected {} for {} samples of type {}", found,
-         header.text ? "numbers" : "bytes", header.compressed ? " after decompression" : "", needed,
-         shape_text(header.sizes), header.type.name);
 }
 
 /// The matrix has a row per axis: the direction, in the world, of a step along it.
@@ -244,12 +256,11 @@ RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& pa
 
 }  // namespace
 
-RawImage read_metaimage(const fs::path& path, Extent extent, const Progress& progress) {
+StoredImage open_metaimage(const fs::path& path, bool allow_outside_paths) {
   std::uint64_t header_end = 0;
   const Fields fields = read_fields(path, header_end);
-  const Header header = parse_header(fields, header_end, path);
-  if (extent == Extent::whole) check_length(header, progress);
-  RawImage image;
+  Header header = parse_header(fields, header_end, allow_outside_paths, path);
+  StoredImage image;
   image.grid = make_grid(fields, header, path);
   image.info.format = "MetaImage";
   image.info.stored_type = header.type.name;
@@ -261,8 +272,7 @@ RawImage read_metaimage(const fs::path& path, Extent extent, const Progress& pro
   if (unit.empty() && anatomical) unit = "mm";
   for (std::size_t a = 0; a < std::min<std::size_t>(3, image.grid.axes.size()); ++a) image.grid.axes[a].unit = unit;
   name_axes(image.grid);
-  image.values = array_of_type(header.type.name);
-  if (extent == Extent::whole) read_metaimage_values(path, checked_bytes(header.sizes, 1, path), image.values);
+  image.samples = std::move(header.samples);
   return image;
 }
 

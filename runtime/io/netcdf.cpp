@@ -103,11 +103,58 @@ ValueArray unpack(ValueArray&& values, Packing packing) {
 }
 
 /// Number of dimensions longer than 1.
-std::size_t rank(const NcVariable& variable) {
-  return static_cast<std::size_t>(
-      std::count_if(variable.sizes.begin(), variable.sizes.end(), [](std::size_t size) { return size > 1; }));
+std::size_t rank(const std::vector<std::size_t>& sizes) {
+  return static_cast<std::size_t>(std::count_if(sizes.begin(), sizes.end(), [](std::size_t size) { return size > 1; }));
 }
 
+bool is_image_rank(std::size_t axes) { return axes >= 2 && axes <= 4; }
+
+/// Names and sizes of the dimensions longer than 1, the one that runs fastest first.
+ImageVariable describe(const NcFile& file, const NcVariable& variable) {
+  ImageVariable result;
+  result.name = variable.name;
+  for (std::size_t d = variable.sizes.size(); d-- > 0;) {
+    if (variable.sizes[d] == 1) continue;
+    result.sizes.push_back(variable.sizes[d]);
+    result.axes.push_back(file.dimension_name(variable, d));
+  }
+  return result;
+}
+
+/// The samples of a variable at the fixed indices of its dimensions. Dimensions that it does not have are left aside.
+NcSlab slab_of(const NcFile& file, const NcVariable& variable, const std::vector<FixedIndex>& fixed) {
+  NcSlab slab = whole(variable);
+  for (std::size_t d = 0; d < variable.sizes.size() && !fixed.empty(); ++d) {
+    const std::string name = file.dimension_name(variable, d);
+    for (const FixedIndex& one : fixed) {
+      if (one.dimension != name) continue;
+      if (one.index >= variable.sizes[d])
+        fail(ErrorCode::InvalidArgument, file.path(), "{}={}; expected an index from 0 to {} of the dimension of '{}'",
+             name, one.index, variable.sizes[d] - std::min<std::size_t>(variable.sizes[d], 1), variable.name);
+      slab.start[d] = one.index;
+      slab.count[d] = 1;
+    }
+  }
+  return slab;
+}
+
+/// Throws unless the variable has the dimensions that are fixed, each once.
+void require_dimensions(const NcFile& file, const NcVariable& variable, const std::vector<FixedIndex>& fixed) {
+  std::vector<std::string> names;
+  for (std::size_t d = 0; d < variable.sizes.size(); ++d) names.push_back(file.dimension_name(variable, d));
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    const std::string& name = fixed[i].dimension;
+    if (std::ranges::find(names, name) == names.end())
+      fail(ErrorCode::InvalidArgument, file.path(), "variable '{}' has no dimension '{}'; expected one of {}",
+           variable.name, name, fmt::join(names, ", "));
+    for (std::size_t j = 0; j < i; ++j)
+      if (fixed[j].dimension == name)
+        fail(ErrorCode::InvalidArgument, file.path(), "two indices of the dimension '{}', {} and {}; expected one",
+             name, fixed[j].index, fixed[i].index);
+  }
+}
+
+/// Variables that are images, or are with some of their dimensions fixed.
 std::vector<NcVariable> image_variables(const NcFile& file, const std::vector<NcVariable>& all) {
   std::set<std::string, std::less<>> auxiliary;  // named by others as their bounds or coordinates
   for (const NcVariable& variable : all)
@@ -119,28 +166,38 @@ std::vector<NcVariable> image_variables(const NcFile& file, const std::vector<Nc
   for (const NcVariable& variable : all) {
     const std::string plain = variable.name.substr(variable.name.rfind('/') + 1);
     const bool empty = std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end();
-    if (is_numeric(variable.type) && rank(variable) >= 2 && rank(variable) <= 4 && !empty && !auxiliary.contains(plain))
+    if (is_numeric(variable.type) && rank(variable.sizes) >= 2 && !empty && !auxiliary.contains(plain))
       result.push_back(variable);
   }
   return result;
 }
 
+/// Sizes of all dimensions, the one that runs fastest first, as of an image.
+std::string image_shape(const NcVariable& variable) {
+  return shape_text(std::vector<std::size_t>(variable.sizes.rbegin(), variable.sizes.rend()));
+}
+
 std::string listing(const std::vector<NcVariable>& variables) {
   std::vector<std::string> items;
   for (const NcVariable& variable : variables)
-    items.push_back(fmt::format("{} ({})", variable.name, shape_text(variable.sizes)));
+    items.push_back(fmt::format("{} ({})", variable.name, image_shape(variable)));
   return fmt::format("{}", fmt::join(items, ", "));
 }
 
 NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const std::vector<NcVariable>& candidates,
-                  const std::string& wanted) {
+                  const ReadImageOptions& options) {
+  const std::string& wanted = options.variable;
   if (!wanted.empty()) {
     for (const NcVariable& variable : all)
       if (variable.name == wanted || variable.name == "/" + wanted) return variable;
     fail(ErrorCode::VariableNotFound, file.path(), "no variable '{}'; expected one of {}", wanted,
-         candidates.empty() ? "none: no variable here has 2 to 4 axes" : listing(candidates));
+         candidates.empty() ? "none: no variable here has 2 or more axes" : listing(candidates));
   }
   if (candidates.size() == 1) return candidates[0];
+  std::vector<NcVariable> fitting;
+  for (const NcVariable& variable : candidates)
+    if (is_image_rank(rank(slab_of(file, variable, options.fixed).count))) fitting.push_back(variable);
+  if (fitting.size() == 1) return fitting[0];
   if (candidates.empty())
     fail(ErrorCode::UnsupportedData, file.path(), "no variable with 2 to 4 axes longer than 1; it has {}",
          all.empty() ? "no variables" : listing(all));
@@ -217,7 +274,7 @@ AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t
   if (coordinate) {
     std::vector<double> values =
         std::visit([](const auto& stored) { return std::vector<double>(stored.begin(), stored.end()); },
-                   unpack(file.values(*coordinate, {}), read_packing(file, *coordinate)));
+                   unpack(file.values(*coordinate, whole(*coordinate)), read_packing(file, *coordinate)));
     try {
       axis = make_axis(std::move(values));
     } catch (const Error& e) {
@@ -234,14 +291,16 @@ AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t
   return {std::move(axis), direction, is_time};
 }
 
-/// Where the variable lies along a dimension of one sample, times first. Whatever is wrong with its coordinate is none
-/// of the image's business.
-void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension,
+/// Where the samples lie along a dimension of which one index is read, times first. Whatever is wrong with its
+/// coordinate is none of the image's business.
+void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::size_t index,
                 std::vector<SingleAxis>& singles) {
   try {
-    AxisOfFile single = read_axis(file, variable, dimension);
-    singles.insert(single.is_time ? singles.begin() : singles.end(),
-                   SingleAxis{std::move(single.axis), single.direction});
+    const AxisOfFile all = read_axis(file, variable, dimension);
+    Axis axis = Axis::uniform(1, all.axis[index]);
+    axis.name = all.axis.name;
+    axis.unit = all.axis.unit;
+    singles.insert(all.is_time ? singles.begin() : singles.end(), SingleAxis{std::move(axis), all.direction});
   } catch (const Error&) {
     return;
   }
@@ -255,14 +314,14 @@ struct VariableGrid {
   std::size_t time_axis = 0;  ///< where the last axis lies in the file, counted from the fastest
 };
 
-VariableGrid read_grid(const NcFile& file, const NcVariable& variable) {
+VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
   VariableGrid result;
   std::vector<Axis>& axes = result.grid.axes;
   std::vector<bool> is_time;
   std::vector<std::size_t> dimension_of;
   for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
-    if (variable.sizes[d] == 1) {
-      add_single(file, variable, d, result.grid.single);
+    if (slab.count[d] == 1) {
+      add_single(file, variable, d, slab.start[d], result.grid.single);
       continue;
     }
     AxisOfFile read = read_axis(file, variable, d);
@@ -295,20 +354,40 @@ ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t c
 
 struct Found {
   NcVariable variable;
+  NcSlab slab;
   ImageInfo info;
 };
 
-/// The variable that is asked for, if it can be an image.
-Found find_variable(const NcFile& file, const std::string& wanted) {
-  const auto all = file.variables();
-  const auto candidates = image_variables(file, all);
-  const NcVariable variable = choose(file, all, candidates, wanted);
-  if (rank(variable) < 2 || rank(variable) > 4)
-    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected 2 to 4 axes longer than 1 ({})",
-         variable.name, variable.sizes.empty() ? "a single value" : shape_text(variable.sizes), kMoreAxes);
+/// Throws unless the chosen samples of a variable are an image.
+void require_image(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
   if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
     fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected at least one sample", variable.name,
-         shape_text(variable.sizes));
+         image_shape(variable));
+  const std::size_t axes = rank(slab.count);
+  if (is_image_rank(axes)) return;
+  const bool is_fixed = axes < rank(variable.sizes);
+  if (axes < 2)
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}{}; expected 2 to 4 axes longer than 1",
+         variable.name, variable.sizes.empty() ? "a single value" : image_shape(variable),
+         is_fixed ? fmt::format(", which leaves {} beside the fixed indices", axes) : "");
+  const ImageVariable described = describe(file, variable);
+  fail(ErrorCode::UnsupportedData, file.path(),
+       "variable '{}' is {} ({}){}; expected 2 to 4 axes longer than 1 ({}), or a fixed index of another dimension, "
+       "such "
+       "as {}=0",
+       variable.name, shape_text(described.sizes), fmt::join(described.axes, ", "),
+       is_fixed ? fmt::format(", which leaves {} beside the fixed indices", axes) : "", kMoreAxes,
+       described.axes.back());
+}
+
+/// The variable that is asked for, if it can be an image.
+Found find_variable(const NcFile& file, const ReadImageOptions& options) {
+  const auto all = file.variables();
+  const auto candidates = image_variables(file, all);
+  const NcVariable variable = choose(file, all, candidates, options);
+  require_dimensions(file, variable, options.fixed);
+  const NcSlab slab = slab_of(file, variable, options.fixed);
+  require_image(file, variable, slab);
   ImageInfo info;
   info.format = "netCDF";
   info.variable = variable.name;
@@ -317,38 +396,46 @@ Found find_variable(const NcFile& file, const std::string& wanted) {
   info.value_name = file.text(variable, "long_name");
   if (info.value_name.empty()) info.value_name = file.text(variable, "standard_name");
   info.stored_type = nc_type_name(variable.type);
-  return {variable, info};
+  return {variable, slab, info};
+}
+
+/// `count` layers of the samples along a dimension, from number `first` on.
+NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::size_t count) {
+  slab.start[dimension] = first;
+  slab.count[dimension] = count;
+  return slab;
 }
 
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
   const NcFile file(path, options.progress);
-  Found found = find_variable(file, options.variable);
-  VariableGrid grid = read_grid(file, found.variable);
+  Found found = find_variable(file, options);
+  VariableGrid grid = read_grid(file, found.variable, found.slab);
   found.info.axis_directions = std::move(grid.directions);
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
-  image.values = extent == Extent::header ? unpack(file.values(found.variable, grid.last_dimension, 0, 0), packing)
-                                          : in_order(unpack(file.values(found.variable, options.progress), packing),
-                                                     grid, grid.grid.axes.back().size());
+  const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
+  image.values = unpack(file.values(found.variable, slab, options.progress), packing);
+  if (extent == Extent::whole) image.values = in_order(std::move(image.values), grid, grid.grid.axes.back().size());
   image.grid = std::move(grid.grid);
   image.info = std::move(found.info);
   return image;
 }
 
-RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::string& variable) {
-  const auto file = std::make_shared<const NcFile>(path, Progress());
+RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageOptions& options) {
+  const auto file = std::make_shared<const NcFile>(path, options.progress);
   if (file->is_compressed())
     fail(ErrorCode::UnsupportedData, path,
          "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");
-  Found found = find_variable(*file, variable);
-  const VariableGrid grid = read_grid(*file, found.variable);
+  Found found = find_variable(*file, options);
+  const VariableGrid grid = read_grid(*file, found.variable, found.slab);
   found.info.axis_directions = grid.directions;
   const Packing packing = read_packing(*file, found.variable);
   return {grid.grid, found.info, file->block_length(found.variable, grid.last_dimension),
-          [file, packing, grid, variable = found.variable](std::size_t first, std::size_t count) {
-            return in_order(unpack(file->values(variable, grid.last_dimension, first, count), packing), grid, count);
+          [file, packing, grid, variable = found.variable, slab = found.slab](std::size_t first, std::size_t count) {
+            const NcSlab layers = layers_of(slab, grid.last_dimension, first, count);
+            return in_order(unpack(file->values(variable, layers), packing), grid, count);
           }};
 }
 
@@ -356,10 +443,7 @@ std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path) {
   const NcFile file(path, {});
   std::vector<ImageVariable> result;
   for (const NcVariable& variable : image_variables(file, file.variables())) {
-    ImageVariable& entry = result.emplace_back();
-    entry.name = variable.name;
-    std::copy_if(variable.sizes.rbegin(), variable.sizes.rend(), std::back_inserter(entry.sizes),
-                 [](std::size_t size) { return size > 1; });
+    ImageVariable& entry = result.emplace_back(describe(file, variable));
     entry.unit = file.text(variable, "units");
     entry.long_name = file.text(variable, "long_name");
   }

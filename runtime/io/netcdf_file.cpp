@@ -7,7 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <memory>
+#include <utility>
 
 #include <netcdf_mem.h>
 
@@ -25,6 +26,54 @@ constexpr std::array<unsigned char, 8> kHdf5Magic = {0x89, 'H', 'D', 'F', '\r', 
 
 bool is_hdf5(std::span<const unsigned char> prefix) {
   return prefix.size() >= kHdf5Magic.size() && std::equal(kHdf5Magic.begin(), kHdf5Magic.end(), prefix.begin());
+}
+
+/// How many bytes an HDF5 file takes, from its superblock; 0 if that does not lie in the first bytes.
+///
+/// Based on: The HDF Group, "HDF5 File Format Specification", section II.A.
+std::uint64_t bytes_of_hdf5(std::span<const unsigned char> bytes, const fs::path& path) {
+  constexpr std::size_t kVersion = 8;
+  if (bytes.size() < 96) return 0;
+  const unsigned version = bytes[kVersion];
+  // Three addresses, of which the third is the end: base, free space or extension, end.
+  const std::size_t item = bytes[version < 2 ? 13 : 9];
+  const std::size_t first = version == 0 ? 24 : version == 1 ? 28 : 12;
+  if (version > 3 || (item != 2 && item != 4 && item != 8))
+    fail(ErrorCode::MalformedFile, path,
+         "HDF5 superblock of version {} with addresses of {} bytes; expected version 0 to 3 and 2, 4 or 8 bytes",
+         version, item);
+  std::uint64_t end = 0;
+  for (std::size_t i = item; i-- > 0;) end = end << 8 | bytes[first + 2 * item + i];
+  const std::uint64_t most = size_of_file(path) * kMostInflation;
+  if (end == 0 || end > most)
+    fail(ErrorCode::MalformedFile, path, "HDF5 file of {} bytes by its superblock; expected 1 to {} from {} compressed",
+         end, most, size_of_file(path));
+  return end;
+}
+
+/// The decompressed content of a gzipped netCDF file, as far as header and variables go.
+std::vector<unsigned char> inflate_netcdf(const fs::path& path, const Progress& progress) {
+  const std::uint64_t most = size_of_file(path) * kMostInflation;
+  const auto needed = [&](std::span<const unsigned char> bytes) -> std::uint64_t {
+    if (is_classic_netcdf(bytes)) return bytes_of_classic_netcdf(bytes, most, path);
+    if (is_hdf5(bytes)) return bytes_of_hdf5(bytes, path);
+    return bytes.size();
+  };
+  std::vector<unsigned char> content = inflate_to_memory(path, needed, progress);
+  if (is_classic_netcdf(content)) bytes_of_classic_netcdf(content, content.size(), path);
+  return content;
+}
+
+/// A name that `get` writes into a buffer without saying how long it is: netCDF promises NC_MAX_NAME bytes, and takes
+/// names of damaged files as they come.
+template <class Get>
+std::pair<int, std::string> name_from(const Get& get) {
+  constexpr std::size_t kRoom = std::size_t{1} << 16;  // the longest name of HDF5's old format
+  const auto buffer = std::make_unique_for_overwrite<char[]>(kRoom + 1);
+  buffer[0] = buffer[kRoom] = '\0';
+  const int status = get(buffer.get());
+  buffer[kRoom] = '\0';
+  return {status, buffer.get()};
 }
 
 /// An empty array of a netCDF type.
@@ -68,17 +117,16 @@ const char* nc_type_name(nc_type type) noexcept {
 bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UINT64 && type != NC_CHAR; }
 
 NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
-  if (is_gzip(path)) content_ = inflate_to_memory(path, progress);
-  const auto prefix =
-      content_.empty() ? read_bytes(path, 0, 8)
-                       : std::vector<unsigned char>(
-                             content_.begin(),
-                             content_.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(8, content_.size())));
-  if (is_classic_netcdf(prefix))
-    check_classic_netcdf(path, content_);
-  else if (!is_hdf5(prefix))
+  if (is_gzip(path)) content_ = inflate_netcdf(path, progress);
+  const std::vector<unsigned char> start = content_.empty() ? read_bytes(path, 0, 8) : std::vector<unsigned char>();
+  const auto all = std::span<const unsigned char>(content_.empty() ? start : content_);
+  const auto prefix = all.first(std::min<std::size_t>(all.size(), 8));
+  if (is_classic_netcdf(prefix)) {
+    if (content_.empty()) check_classic_netcdf(path);
+  } else if (!is_hdf5(prefix)) {
     fail(ErrorCode::MalformedFile, path, "starts with {}; expected netCDF: 'CDF' and 1, 2 or 5, or '\\x89HDF'",
-         shown(std::span<const unsigned char>(prefix)));
+         shown(prefix));
+  }
   // An absolute path cannot be taken for the address of a server.
   const int status = content_.empty()
                          ? nc_open(fs::absolute(path).c_str(), NC_NOWRITE, &id_)
@@ -98,10 +146,11 @@ void NcFile::check(int status, const std::string& what) const {
 
 NcVariable NcFile::describe(int group, int id, const std::string& prefix) const {
   NcVariable variable{group, id, "", NC_NAT, {}, {}};
-  std::array<char, NC_MAX_NAME + 1> name{};
   int rank = 0;
-  check(nc_inq_var(group, id, name.data(), &variable.type, &rank, nullptr, nullptr), "reading a variable's name");
-  variable.name = prefix + name.data();
+  const auto [status, name] =
+      name_from([&](char* to) { return nc_inq_var(group, id, to, &variable.type, &rank, nullptr, nullptr); });
+  check(status, "reading a variable's name");
+  variable.name = prefix + name;
   variable.dimensions.resize(static_cast<std::size_t>(rank));
   check(nc_inq_vardimid(group, id, variable.dimensions.data()), "reading the dimensions of " + variable.name);
   for (const int dimension : variable.dimensions) {
@@ -124,13 +173,13 @@ void NcFile::collect(int group, const std::string& prefix, int depth, std::vecto
   constexpr int kDeepest = 32;
   if (depth > kDeepest) fail(ErrorCode::MalformedFile, path_, "groups nested deeper than {}", kDeepest);
   for (const int child : groups) {
-    std::array<char, NC_MAX_NAME + 1> name{};
-    check(nc_inq_grpname(child, name.data()), "reading a group's name");
-    if (depth == 0 && std::string_view(name.data()) == "VTKHDF")
+    const auto [status, name] = name_from([&](char* to) { return nc_inq_grpname(child, to); });
+    check(status, "reading a group's name");
+    if (depth == 0 && name == "VTKHDF")
       fail(ErrorCode::UnsupportedData, path_,
            "holds a mesh (VTKHDF), such as a saved contour; expected an image: 'tegl check' and 'tegl slice' take "
            "meshes");
-    collect(child, (prefix.empty() ? "/" : prefix) + name.data() + "/", depth + 1, out);
+    collect(child, (prefix.empty() ? "/" : prefix) + name + "/", depth + 1, out);
   }
 }
 
@@ -141,9 +190,10 @@ std::vector<NcVariable> NcFile::variables() const {
 }
 
 std::string NcFile::dimension_name(const NcVariable& variable, std::size_t dimension) const {
-  std::array<char, NC_MAX_NAME + 1> name{};
-  check(nc_inq_dimname(variable.group, variable.dimensions[dimension], name.data()), "reading a dimension's name");
-  return name.data();
+  const auto [status, name] =
+      name_from([&](char* to) { return nc_inq_dimname(variable.group, variable.dimensions[dimension], to); });
+  check(status, "reading a dimension's name");
+  return name;
 }
 
 std::optional<NcVariable> NcFile::coordinate(const NcVariable& variable, std::size_t dimension) const {
@@ -193,24 +243,27 @@ std::optional<double> NcFile::number(const NcVariable& variable, const char* att
   return values[0];
 }
 
-void NcFile::read_blocks(const NcVariable& variable, std::size_t item, void* to, const Progress& progress) const {
-  const std::size_t rank = variable.sizes.size();
+void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
+                         const Progress& progress) const {
+  const std::size_t rank = slab.count.size();
   if (rank == 0) return check(nc_get_var(variable.group, variable.id, to), "reading " + variable.name);
-  const std::size_t layers = variable.sizes[0];
+  // Blocks along the slowest dimension of more than one sample: they lie one after the other in memory.
+  std::size_t along = 0;
+  while (along + 1 < rank && slab.count[along] == 1) ++along;
   std::size_t layer_bytes = item;
-  for (std::size_t d = 1; d < rank; ++d) layer_bytes *= variable.sizes[d];
+  for (std::size_t d = along + 1; d < rank; ++d) layer_bytes *= slab.count[d];
   // Blocks of whole chunks, so that none is decompressed twice.
   constexpr std::size_t kBlockBytes = std::size_t{1} << 24;
-  const std::size_t block = block_length(variable, 0);
+  const std::size_t block = block_length(variable, along);
   std::size_t step = std::max<std::size_t>(1, kBlockBytes / std::max<std::size_t>(1, layer_bytes));
   step = (step + block - 1) / block * block;
-  std::vector<std::size_t> start(rank, 0);
-  std::vector<std::size_t> count = variable.sizes;
+  NcSlab part = slab;
+  const std::size_t layers = slab.count[along];
   for (std::size_t first = 0; first < layers; first += step) {
     tick(progress, static_cast<double>(first) / static_cast<double>(layers), path_);
-    start[0] = first;
-    count[0] = std::min(step, layers - first);
-    check(nc_get_vara(variable.group, variable.id, start.data(), count.data(),
+    part.start[along] = slab.start[along] + first;
+    part.count[along] = std::min(step, layers - first);
+    check(nc_get_vara(variable.group, variable.id, part.start.data(), part.count.data(),
                       static_cast<unsigned char*>(to) + first * layer_bytes),
           "reading " + variable.name);
   }
@@ -231,41 +284,30 @@ ValueArray NcFile::numeric_array(const NcVariable& variable) const {
   return array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
 }
 
-ValueArray NcFile::values(const NcVariable& variable, std::size_t dimension, std::size_t first,
-                          std::size_t count) const {
+ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const Progress& progress) const {
   ValueArray result = numeric_array(variable);
-  std::vector<std::size_t> start(variable.sizes.size(), 0);
-  std::vector<std::size_t> sizes = variable.sizes;
-  start[dimension] = first;
-  sizes[dimension] = count;
+  const auto bytes_of = [&](const std::vector<std::size_t>& sizes, std::size_t item) {
+    return checked_bytes(std::vector<std::uint64_t>(sizes.begin(), sizes.end()), item, path_);
+  };
   std::visit(
       [&]<class T>(std::vector<T>& values) {
-        const std::vector<std::uint64_t> wide(sizes.begin(), sizes.end());
-        values.resize(static_cast<std::size_t>(checked_bytes(wide, sizeof(T), path_) / sizeof(T)));
-        check(nc_get_vara(variable.group, variable.id, start.data(), sizes.data(), values.data()),
-              "reading " + variable.name);
+        // No filter of the library compresses better; more is a damaged header, not data.
+        constexpr std::uint64_t kBestRatio = 4096;
+        const std::uint64_t stored = content_.empty() ? size_of_file(path_) : content_.size();
+        const std::uint64_t bytes = bytes_of(slab.count, sizeof(T));
+        if (bytes / kBestRatio > stored)
+          fail(ErrorCode::MalformedFile, path_,
+               "{} samples of variable '{}' in a file of {} bytes; expected at most {} bytes of samples",
+               shape_text(slab.count), variable.name, stored, stored * kBestRatio);
+        values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
+        if (!values.empty()) read_blocks(variable, slab, sizeof(T), values.data(), progress);
       },
       result);
   return result;
 }
 
-ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) const {
-  ValueArray result = numeric_array(variable);
-  const std::vector<std::uint64_t> sizes(variable.sizes.begin(), variable.sizes.end());
-  std::visit(
-      [&]<class T>(std::vector<T>& values) {
-        const std::uint64_t bytes = checked_bytes(sizes, sizeof(T), path_);
-        // No filter of the library compresses better; more is a damaged header, not data.
-        constexpr std::uint64_t kBestRatio = 4096;
-        const std::uint64_t stored = content_.empty() ? size_of_file(path_) : content_.size();
-        if (bytes / kBestRatio > stored)
-          fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} samples in a file of {} bytes", variable.name,
-               shape_text(sizes), stored);
-        values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
-        read_blocks(variable, sizeof(T), values.data(), progress);
-      },
-      result);
-  return result;
+NcSlab whole(const NcVariable& variable) {
+  return {std::vector<std::size_t>(variable.sizes.size(), 0), variable.sizes};
 }
 
 }  // namespace tegl::io_detail

@@ -26,6 +26,14 @@ struct NcVariable {
   std::vector<std::size_t> sizes;  ///< slowest first
 };
 
+/// Some of the samples of a variable: `count` of them along each dimension, from `start` on.
+struct NcSlab {
+  std::vector<std::size_t> start;
+  std::vector<std::size_t> count;
+};
+/// All samples.
+NcSlab whole(const NcVariable& variable);
+
 class NcFile {
  public:
   /// Opens classic and netCDF-4 files, gzipped as a whole too (then in memory). Errors: MalformedFile.
@@ -45,11 +53,9 @@ class NcFile {
   [[nodiscard]] std::vector<double> numbers(const NcVariable& variable, const char* attribute) const;
   [[nodiscard]] std::optional<double> number(const NcVariable& variable, const char* attribute) const;
 
-  /// All values, in the order of the file; attribute _Unsigned is taken into account. UnsupportedData unless numeric.
-  [[nodiscard]] ValueArray values(const NcVariable& variable, const Progress& progress) const;
-  /// Those with indices [first, first + count) along one dimension (the others whole).
-  [[nodiscard]] ValueArray values(const NcVariable& variable, std::size_t dimension, std::size_t first,
-                                  std::size_t count) const;
+  /// Values in the order of the file; attribute _Unsigned is taken into account. UnsupportedData unless numeric,
+  /// MalformedFile for a variable that the file cannot hold.
+  [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress = {}) const;
   /// How many indices of a dimension lie in one block of the file; 1 if it is not stored in blocks.
   [[nodiscard]] std::size_t block_length(const NcVariable& variable, std::size_t dimension) const;
   [[nodiscard]] bool is_compressed() const noexcept { return !content_.empty(); }
@@ -59,7 +65,8 @@ class NcFile {
   void collect(int group, const std::string& prefix, int depth, std::vector<NcVariable>& out) const;
   [[nodiscard]] NcVariable describe(int group, int id, const std::string& prefix) const;
   [[nodiscard]] ValueArray numeric_array(const NcVariable& variable) const;
-  void read_blocks(const NcVariable& variable, std::size_t item, void* to, const Progress& progress) const;
+  void read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
+                   const Progress& progress) const;
 
   std::filesystem::path path_;
   std::vector<unsigned char> content_;  ///< of a compressed file; the library reads from here

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NIfTI-1 images, header and values. Not through ITK, whose reader (5.2) replaces NaN, our missing values, by 0 and
-// refuses files whose only orientation is a sheared sform.
+// Headers of NIfTI-1 images. Not through ITK, whose reader (5.2) replaces NaN, our missing values, by 0 and refuses
+// files whose only orientation is a sheared sform.
 //
 // Based on: R. W. Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004; nifti1.h.
 #include <algorithm>
@@ -14,7 +14,6 @@
 
 #include "common.hpp"
 #include "inflate.hpp"
-#include "raw_values.hpp"
 #include "readers.hpp"
 
 namespace tegl::io_detail {
@@ -275,42 +274,52 @@ fs::path partner(const fs::path& path, const std::string& wanted) {
        path.filename().string());
 }
 
-/// slope * v + intercept, as float for values of up to 16 bits and for float, else as double.
-ValueArray scaled(ValueArray&& values, const Header& header) {
-  const bool plain = header.slope == 0 || !std::isfinite(header.slope) || !std::isfinite(header.intercept) ||
-                     (header.slope == 1 && header.intercept == 0);
-  if (plain) return std::move(values);
-  return std::visit(
-      [&]<class T>(const std::vector<T>& stored) -> ValueArray {
-        using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
-        std::vector<Real> result(stored.size());
-        std::transform(stored.begin(), stored.end(), result.begin(), [&](T value) {
-          return static_cast<Real>(header.slope * static_cast<double>(value) + header.intercept);
-        });
-        return result;
-      },
-      values);
-}
+/// How values are scaled when they are read.
+struct Scaling {
+  double slope;
+  double intercept;
+
+  [[nodiscard]] bool is_plain() const {
+    return slope == 0 || !std::isfinite(slope) || !std::isfinite(intercept) || (slope == 1 && intercept == 0);
+  }
+  /// slope * v + intercept, as float for values of up to 16 bits and for float, else as double.
+  [[nodiscard]] ValueArray apply(const ValueArray& values) const {
+    return std::visit(
+        [&]<class T>(const std::vector<T>& stored) -> ValueArray {
+          using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
+          std::vector<Real> result(stored.size());
+          std::transform(stored.begin(), stored.end(), result.begin(),
+                         [&](T value) { return static_cast<Real>(slope * static_cast<double>(value) + intercept); });
+          return result;
+        },
+        values);
+  }
+};
 
 }  // namespace
 
-RawImage read_nifti(const fs::path& path, Extent extent, const Progress& progress) {
+StoredImage open_nifti(const fs::path& path) {
   const std::string name = lower_name(path);
   const bool is_img = name.ends_with(".img") || name.ends_with(".img.gz");
   const fs::path header_path = is_img ? partner(path, ".hdr") : path;
   const Header header = parse_header(header_path);
-  const fs::path data_path = header.pair && !is_img ? partner(path, ".img") : path;
-  require_readable_file(data_path);
-  RawImage image;
+  StoredImage image;
+  StoredSamples& samples = image.samples;
+  samples.path = header.pair && !is_img ? partner(path, ".img") : path;
+  require_readable_file(samples.path);
+  // Bytes of a compressed file are counted after decompression.
+  const bool compressed = is_gzip(samples.path);
+  samples.encoding = compressed ? Encoding::deflate : Encoding::raw;
+  (compressed ? samples.skip : samples.offset) = header.vox_offset;
+  samples.type = header.type.name;
+  samples.sizes = header.sizes;
+  samples.swapped = header.swapped;
   image.grid = make_grid(header, header_path);
   image.info.format = "NIfTI";
   image.info.stored_type = header.type.name;
   if (header.sform_code > 0 || header.qform_code > 0) image.info.world_frame = "RAS";
-  const std::uint64_t count = checked_bytes(header.sizes, header.type.bytes, path) / header.type.bytes;
-  image.values = scaled(extent == Extent::header ? array_of_type(header.type.name)
-                                                 : read_raw_values(data_path, header.vox_offset, header.type.name,
-                                                                   count, header.swapped, progress),
-                        header);
+  const Scaling scaling{header.slope, header.intercept};
+  if (!scaling.is_plain()) image.convert = [scaling](ValueArray&& values) { return scaling.apply(values); };
   return image;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NRRD images, with the data attached or in a file of their own. The header is read here for the geometry and for a
-// check, before anything is allocated, that the data are all there; ITK reads the values.
+// Headers of NRRD images, with the data attached or in a file of their own.
 //
 // Based on: G. Kindlmann, "Definition of NRRD File Format" (Teem), versions NRRD0001 to NRRD0005.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -13,8 +13,6 @@
 #include <string>
 
 #include "common.hpp"
-#include "inflate.hpp"
-#include "itk_values.hpp"
 #include "readers.hpp"
 
 namespace tegl::io_detail {
@@ -58,7 +56,7 @@ void parse_line(std::string_view line, Fields& fields, const fs::path& path) {
     fail(ErrorCode::MalformedFile, path, "header line {}; expected 'field: value', 'key:=value' or a comment",
          shown(line));
   if (!fields.emplace(name, trim(line.substr(colon + 2))).second)
-    fail(ErrorCode::MalformedFile, path, "header field '{}' twice; expected it once", line.substr(0, colon));
+    fail(ErrorCode::MalformedFile, path, "header field '{}' twice; expected it once", name);
 }
 
 Text read_header_text(const fs::path& path) {
@@ -108,7 +106,8 @@ std::vector<std::uint64_t> read_sizes(const Fields& fields, const fs::path& path
     sizes.push_back(size);
   }
   if (sizes.size() != dimension)
-    fail(ErrorCode::MalformedFile, path, "{} sizes ({}); expected {}, as the dimension", sizes.size(), list, dimension);
+    fail(ErrorCode::MalformedFile, path, "{} sizes ({}); expected {}, as the dimension", sizes.size(), shown(list),
+         dimension);
   return sizes;
 }
 
@@ -166,10 +165,13 @@ std::vector<std::string> words_per_axis(const Fields& fields, std::string_view n
   return result;
 }
 
-/// A field of strings in quotation marks; missing ones at the end are empty.
-std::vector<std::string> quoted_strings(const Fields& fields, std::string_view name, std::size_t count) {
-  std::vector<std::string> result;
+/// A field of `count` strings in quotation marks; empty ones if there is no such field.
+std::vector<std::string> quoted_strings(const Fields& fields, std::string_view name, std::size_t count,
+                                        const fs::path& path) {
+  constexpr std::size_t kLongest = 1024;  // bytes of a string
   const std::string text = optional_field(fields, name);
+  if (text.empty()) return std::vector<std::string>(count);
+  std::vector<std::string> result;
   bool inside = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '"') {
@@ -178,9 +180,19 @@ std::vector<std::string> quoted_strings(const Fields& fields, std::string_view n
     } else if (inside) {
       if (text[i] == '\\' && i + 1 < text.size()) ++i;
       result.back() += text[i];
+      if (result.back().size() > kLongest)
+        fail(ErrorCode::MalformedFile, path, "string {} of {} is longer than {} bytes ({}); expected at most these",
+             result.size() - 1, name, kLongest, shown(result.back()));
+    } else if (text[i] != ' ' && text[i] != '\t') {
+      fail(ErrorCode::MalformedFile, path, "{} with {}; expected strings in quotation marks", name,
+           shown(std::string_view(text).substr(i)));
     }
   }
-  result.resize(count);
+  if (inside)
+    fail(ErrorCode::MalformedFile, path, "string {} of {} has no closing quotation mark ({}); expected one",
+         result.size() - 1, name, shown(result.back()));
+  if (result.size() != count)
+    fail(ErrorCode::MalformedFile, path, "{} strings in {}; expected {}", result.size(), name, count);
   return result;
 }
 
@@ -202,10 +214,10 @@ std::vector<std::optional<Eigen::VectorXd>> vectors(std::string_view text, std::
     Eigen::VectorXd vector(static_cast<Eigen::Index>(parts.size()));
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (!parse_number(parts[i], vector[static_cast<Eigen::Index>(i)]))
-        fail(ErrorCode::MalformedFile, path, "vector ({}); expected numbers", inner);
+        fail(ErrorCode::MalformedFile, path, "vector {}; expected numbers", shown(inner));
     if (parts.size() != length)
-      fail(ErrorCode::MalformedFile, path, "vector ({}); expected {} numbers, as the space has dimensions", inner,
-           length);
+      fail(ErrorCode::MalformedFile, path, "vector {} of {} numbers; expected {}, as the space has dimensions",
+           shown(inner), parts.size(), length);
     result.emplace_back(std::move(vector));
     text.remove_prefix(end + 1);
   }
@@ -255,10 +267,7 @@ struct Header {
   StoredType type{};
   std::optional<std::size_t> list_axis;  ///< a list of images: read as time
   std::vector<bool> kept;                ///< axis of the image
-  std::string encoding;
-  fs::path data_path;
-  std::uint64_t data_offset = 0;  ///< of raw or compressed bytes in data_path
-  std::int64_t byte_skip = 0;
+  StoredSamples samples;
 };
 
 /// Sorts the axes: the image's own, at most one list of images, and axes inside of a value.
@@ -271,75 +280,97 @@ void read_kinds(const Fields& fields, Header& header, const fs::path& path) {
     const bool single = header.sizes[a] == 1;
     const bool list = kind == "list" && !single && !header.list_axis;
     if (!domain && !single && !list)
-      fail(ErrorCode::UnsupportedData, path, "axis {} of kind '{}' with {} samples; expected one number per sample", a,
-           kind, header.sizes[a]);
+      fail(ErrorCode::UnsupportedData, path, "axis {} of kind {} with {} samples; expected one number per sample", a,
+           shown(kind), header.sizes[a]);
     if (list) header.list_axis = a;
     header.kept.push_back(domain);
   }
 }
 
+/// The offset behind some more lines.
 std::uint64_t after_lines(const fs::path& path, std::uint64_t offset, std::uint64_t lines) {
-  for (; lines > 0; --lines) {
+  while (lines > 0) {
     const auto bytes = read_bytes(path, offset, kLongestHeader);
-    const auto end = std::find(bytes.begin(), bytes.end(), '\n');
-    if (end == bytes.end())
+    if (bytes.empty())
       fail(ErrorCode::MalformedFile, path, "{} more lines to skip at byte {}; expected them in the file", lines,
            offset);
-    offset += static_cast<std::uint64_t>(end - bytes.begin()) + 1;
+    std::size_t used = 0;
+    for (; lines > 0 && used < bytes.size(); ++used)
+      if (bytes[used] == '\n') --lines;
+    offset += used;
   }
   return offset;
 }
 
-void locate_data(const Text& text, Header& header, const fs::path& path) {
-  header.encoding = lower(required(text.fields, "encoding", path));
+Encoding read_encoding(const Fields& fields, const fs::path& path) {
+  const std::string name = lower(required(fields, "encoding", path));
+  if (name == "raw") return Encoding::raw;
+  if (name == "gz" || name == "gzip") return Encoding::deflate;
+  if (name == "txt" || name == "text" || name == "ascii") return Encoding::text;
+  if (name == "hex") return Encoding::hex;
+  fail(ErrorCode::UnsupportedFormat, path, "encoding {}; expected raw, gzip, ascii or hex", shown(name));
+}
+
+/// Whether bytes of samples come in the other order than this machine's.
+bool read_byte_order(const Fields& fields, const Header& header, const fs::path& path) {
+  if (header.type.bytes == 1 || header.samples.encoding == Encoding::text) return false;
+  const std::string& order = required(fields, "endian", path);
+  if (lower(order) != "little" && lower(order) != "big")
+    fail(ErrorCode::MalformedFile, path, "endian {}; expected 'little' or 'big'", shown(order));
+  return (lower(order) == "big") != (std::endian::native == std::endian::big);
+}
+
+/// Where samples begin, after the lines and bytes that are to be skipped.
+void skip_to_samples(const Fields& fields, StoredSamples& samples, const fs::path& path) {
+  std::uint64_t lines = 0;
+  std::int64_t bytes = 0;
+  const std::string line_skip = optional_field(fields, "lineskip");
+  const std::string byte_skip = optional_field(fields, "byteskip");
+  constexpr std::uint64_t kMostLines = 1000;
+  if (!line_skip.empty() && (!parse_number(line_skip, lines) || lines > kMostLines))
+    fail(ErrorCode::MalformedFile, path, "line skip {}; expected 0 to {}", shown(line_skip), kMostLines);
+  if (!byte_skip.empty() && (!parse_number(byte_skip, bytes) || bytes < -1))
+    fail(ErrorCode::MalformedFile, path, "byte skip {}; expected -1 or more", shown(byte_skip));
+  samples.offset = after_lines(samples.path, samples.offset, lines);
+  if (bytes == -1) {  // the samples are the end of the file
+    if (samples.encoding != Encoding::raw)
+      fail(ErrorCode::MalformedFile, path, "byte skip -1 with encoding {}; expected it with raw only",
+           shown(required(fields, "encoding", path)));
+    const std::uint64_t size = size_of_file(samples.path);
+    const std::uint64_t needed = checked_bytes(samples.sizes, bytes_of_type(samples.type), path);
+    samples.offset = std::max(samples.offset, size - std::min(size, needed));
+  } else if (samples.encoding == Encoding::deflate) {  // bytes are skipped after decompression
+    samples.skip = static_cast<std::uint64_t>(bytes);
+  } else {
+    samples.offset += static_cast<std::uint64_t>(bytes);
+  }
+}
+
+void locate_data(const Text& text, Header& header, bool allow_outside_paths, const fs::path& path) {
+  StoredSamples& samples = header.samples;
+  samples.type = header.type.name;
+  samples.sizes = header.sizes;
+  samples.encoding = read_encoding(text.fields, path);
+  samples.swapped = read_byte_order(text.fields, header, path);
   const std::string file = optional_field(text.fields, "datafile");
   if (file.empty() && !text.has_blank_line)
     fail(ErrorCode::MalformedFile, path, "neither a 'data file' nor data after the header (no blank line)");
   if (file.starts_with("LIST") || file.find('%') != std::string::npos)
     fail(ErrorCode::UnsupportedFormat, path, "data in several files ({}); expected one data file", shown(file));
-  header.data_path = file.empty() ? path : path.parent_path() / file;
-  header.data_offset = file.empty() ? text.end : 0;
-  require_readable_file(header.data_path);
-  std::uint64_t lines = 0;
-  const std::string line_skip = optional_field(text.fields, "lineskip");
-  const std::string byte_skip = optional_field(text.fields, "byteskip");
-  constexpr std::uint64_t kMostLines = 1000;
-  if (!line_skip.empty() && (!parse_number(line_skip, lines) || lines > kMostLines))
-    fail(ErrorCode::MalformedFile, path, "line skip {}; expected 0 to {}", shown(line_skip), kMostLines);
-  if (!byte_skip.empty() && (!parse_number(byte_skip, header.byte_skip) || header.byte_skip < -1))
-    fail(ErrorCode::MalformedFile, path, "byte skip {}; expected -1 or more", shown(byte_skip));
-  header.data_offset = after_lines(header.data_path, header.data_offset, lines);
+  samples.path = file.empty() ? path : path_beside(path, file, allow_outside_paths);
+  samples.offset = file.empty() ? text.end : 0;
+  require_readable_file(samples.path);
+  skip_to_samples(text.fields, samples, path);
 }
 
-Header parse_header(const Text& text, const fs::path& path) {
+Header parse_header(const Text& text, bool allow_outside_paths, const fs::path& path) {
   Header header;
   header.sizes = read_sizes(text.fields, path);
   header.type = read_type(text.fields, path);
+  checked_bytes(header.sizes, header.type.bytes, path);
   read_kinds(text.fields, header, path);
-  locate_data(text, header, path);
+  locate_data(text, header, allow_outside_paths, path);
   return header;
-}
-
-/// Throws unless all the data that the header promises are there. Text is counted by ITK while it reads.
-void check_length(const Header& header, const fs::path& path, const Progress& progress) {
-  const std::uint64_t needed = checked_bytes(header.sizes, header.type.bytes, path);
-  const bool gzip = header.encoding == "gz" || header.encoding == "gzip";
-  const bool raw = header.encoding == "raw";
-  const bool text =
-      header.encoding == "txt" || header.encoding == "text" || header.encoding == "ascii" || header.encoding == "hex";
-  if (!gzip && !raw && !text)
-    fail(ErrorCode::UnsupportedFormat, path, "encoding {}; expected raw, gzip, ascii or hex", shown(header.encoding));
-  const std::uint64_t size = size_of_file(header.data_path);
-  const std::uint64_t left = size - std::min(size, header.data_offset);
-  std::uint64_t found = gzip ? inflated_size(header.data_path, header.data_offset, progress) : left;
-  const auto skip = static_cast<std::uint64_t>(std::max<std::int64_t>(header.byte_skip, 0));
-  found -= std::min(found, skip);
-  // A number in text needs a digit and a blank, in hex two digits a byte: enough to bound what is allocated.
-  const std::uint64_t samples = needed / header.type.bytes;
-  const std::uint64_t least = text ? (header.encoding == "hex" ? 2 * needed : 2 * samples - 1) : needed;
-  if (found < least)
-    fail(ErrorCode::MalformedFile, header.data_path, "{} bytes of data{}; expected {} for {} samples of type {}", found,
-         gzip ? " after decompression" : "", least, shape_text(header.sizes), header.type.name);
 }
 
 /// Steps and origins of axes without directions: spacings, else the range that the axis covers.
@@ -402,9 +433,9 @@ bool spatial_geometry(const Fields& fields, const Space& space, const std::vecto
 
 /// Names and units, for the axes of the image in their order.
 void label_axes(const Fields& fields, const Header& header, const Space& space, RawGrid& grid, const fs::path& path) {
-  const auto labels = quoted_strings(fields, "labels", header.sizes.size());
-  const auto units = quoted_strings(fields, "units", header.sizes.size());
-  const auto space_units = quoted_strings(fields, "spaceunits", space.dimension);
+  const auto labels = quoted_strings(fields, "labels", header.sizes.size(), path);
+  const auto units = quoted_strings(fields, "units", header.sizes.size(), path);
+  const auto space_units = quoted_strings(fields, "spaceunits", space.dimension, path);
   const auto directions =
       vectors(space.dimension > 0 ? required(fields, "spacedirections", path) : "", space.dimension, path);
   std::size_t axis = 0;
@@ -424,6 +455,22 @@ void label_axes(const Fields& fields, const Header& header, const Space& space, 
     grid.axes.back().name = labels[*header.list_axis].empty() ? "t" : labels[*header.list_axis];
     grid.axes.back().unit = units[*header.list_axis];
   }
+}
+
+/// Checks fields that say nothing of the image's samples or places.
+void require_sound_rest(const Fields& fields, const Header& header, const Space& space, const fs::path& path) {
+  per_axis(fields, "thicknesses", header.sizes.size(), path);
+  for (const char* name : {"min", "max", "oldmin", "oldmax"}) {
+    double value = 0;
+    const std::string text = optional_field(fields, name);
+    if (!text.empty() && !parse_number(text, value))
+      fail(ErrorCode::MalformedFile, path, "{} {}; expected a number", name, shown(text));
+  }
+  const std::string frame = optional_field(fields, "measurementframe");
+  if (frame.empty()) return;
+  if (const auto count = vectors(frame, space.dimension, path).size(); count != space.dimension)
+    fail(ErrorCode::MalformedFile, path, "measurement frame of {} vectors; expected {}, as the space has dimensions",
+         count, space.dimension);
 }
 
 RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, const fs::path& path) {
@@ -450,36 +497,27 @@ RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, cons
   RawGrid grid = affine_grid(sizes, affine, offset, path);
   label_axes(fields, header, space, grid, path);
   name_axes(grid);
+  require_sound_rest(fields, header, space, path);
   return grid;
-}
-
-/// The values in the order of the grid, where a list of images is the last axis.
-void move_list_last(const Header& header, ValueArray& values) {
-  std::size_t inner = 1;
-  std::size_t outer = 1;
-  for (std::size_t a = 0; a < header.sizes.size(); ++a)
-    if (a != *header.list_axis) (a < *header.list_axis ? inner : outer) *= static_cast<std::size_t>(header.sizes[a]);
-  if (outer > 1)
-    values = with_axis_last(values, inner, static_cast<std::size_t>(header.sizes[*header.list_axis]), outer);
 }
 
 }  // namespace
 
-RawImage read_nrrd(const fs::path& path, Extent extent, const Progress& progress) {
+StoredImage open_nrrd(const fs::path& path, bool allow_outside_paths) {
   const Text text = read_header_text(path);
-  Header header = parse_header(text, path);
-  if (extent == Extent::whole) check_length(header, path, progress);
-  RawImage image;
+  Header header = parse_header(text, allow_outside_paths, path);
+  StoredImage image;
   image.grid = make_grid(text.fields, header, image.info.world_frame, path);
   image.info.format = "NRRD";
   image.info.stored_type = header.type.name;
   image.info.value_unit = optional_field(text.fields, "sampleunits");
   std::erase(image.info.value_unit, '"');
   image.info.value_name = optional_field(text.fields, "content");
-  image.values = array_of_type(header.type.name);
-  if (extent == Extent::header) return image;
-  image.values = read_nrrd_values(path, checked_bytes(header.sizes, 1, path));
-  if (header.list_axis) move_list_last(header, image.values);
+  image.samples = std::move(header.samples);
+  const auto is_long = [](std::uint64_t size) { return size > 1; };
+  if (header.list_axis && std::any_of(header.sizes.begin() + static_cast<std::ptrdiff_t>(*header.list_axis) + 1,
+                                      header.sizes.end(), is_long))
+    image.list_axis = header.list_axis;
   return image;
 }
 

@@ -61,6 +61,25 @@ bool is_decoupled(const Eigen::MatrixXd& matrix, Eigen::Index a) {
   return true;
 }
 
+/// Throws unless every sample of the grid lies at finite coordinates, along its axes and in the world.
+void require_finite_samples(const RawGrid& grid, const std::filesystem::path& path) {
+  const auto n = static_cast<Eigen::Index>(grid.axes.size());
+  Eigen::VectorXd farthest(n);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    const Axis& axis = grid.axes[static_cast<std::size_t>(a)];
+    const double last = axis[axis.size() - 1];
+    if (!std::isfinite(last))
+      fail(ErrorCode::MalformedFile, path,
+           "axis {} of {} samples from {} in steps of {} ends at {}; expected a finite coordinate", a, axis.size(),
+           axis[0], axis.step(), last);
+    farthest(a) = std::max(std::abs(axis[0]), std::abs(last));
+  }
+  const Eigen::VectorXd reach = grid.linear.cwiseAbs() * farthest + grid.offset.cwiseAbs();
+  if (!reach.allFinite())
+    fail(ErrorCode::MalformedFile, path,
+         "the corners of the image lie up to {} from the origin; expected finite coordinates", reach.maxCoeff());
+}
+
 }  // namespace
 
 RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd& affine, const Eigen::VectorXd& offset,
@@ -83,6 +102,7 @@ RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd
   if (!(std::abs(grid.linear.determinant()) > kSmallestVolume))
     fail(ErrorCode::MalformedFile, path, "orientation of determinant {}; expected axes in independent directions",
          grid.linear.determinant());
+  require_finite_samples(grid, path);
   return grid;
 }
 
@@ -110,8 +130,7 @@ RawGrid with_last_axis(const RawGrid& grid, Axis last) {
   return result;
 }
 
-void drop_trailing_axes(RawImage& image) {
-  RawGrid& grid = image.grid;
+void drop_trailing_axes(RawGrid& grid, ImageInfo& info) {
   while (grid.axes.size() > 2 && grid.axes.back().size() == 1) {
     const auto left = static_cast<Eigen::Index>(grid.axes.size()) - 1;
     const bool decoupled = grid.linear.col(left).head(left).isZero(0.0) && grid.linear.row(left).head(left).isZero(0.0);
@@ -127,9 +146,16 @@ void drop_trailing_axes(RawImage& image) {
     } else {
       grid.linear = Eigen::MatrixXd::Identity(left, left);
       grid.offset = Eigen::VectorXd::Zero(left);
-      image.info.world_frame.clear();
+      info.world_frame.clear();
     }
   }
+}
+
+void fail_axes(const RawGrid& grid, const std::filesystem::path& path) {
+  std::vector<std::size_t> sizes;
+  for (const Axis& axis : grid.axes) sizes.push_back(axis.size());
+  fail(ErrorCode::UnsupportedData, path, "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample ({})",
+       sizes.size(), shape_text(sizes), kMoreAxes);
 }
 
 AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
@@ -141,12 +167,8 @@ AnyImage to_any_image(RawImage&& image, const std::filesystem::path& path) {
     case 4:
       return with_dimension<4>(std::move(image));
     default:
-      break;
+      fail_axes(image.grid, path);
   }
-  std::vector<std::size_t> sizes;
-  for (const Axis& axis : image.grid.axes) sizes.push_back(axis.size());
-  fail(ErrorCode::UnsupportedData, path, "image of {} axes ({}); expected 2, 3 or 4 axes of more than one sample ({})",
-       sizes.size(), shape_text(sizes), kMoreAxes);
 }
 
 const char* type_name(const ValueArray& values) noexcept {

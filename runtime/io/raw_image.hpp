@@ -40,7 +40,7 @@ struct RawImage {
 /// The grid of samples at affine * index + offset (affine: n x n, column a = step along axis a). An axis that is not
 /// coupled to others has its origin and signed step in itself, so that a diagonal affine leaves the world map the
 /// identity; the other axes hold the lengths of their columns, and `linear` their directions. Errors: MalformedFile for
-/// a column that is zero or not finite, or a singular affine.
+/// a column that is zero or not finite, a singular affine, or samples whose coordinates are not finite.
 RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd& affine, const Eigen::VectorXd& offset,
                     const std::filesystem::path& path);
 
@@ -55,7 +55,7 @@ RawGrid with_last_axis(const RawGrid& grid, Axis last);
 
 /// Drops trailing axes of one sample, but keeps two axes; where a dropped axis takes part in the orientation
 /// (a slice that lies obliquely in space), what is left is the plane's own coordinates and no world frame.
-void drop_trailing_axes(RawImage& image);
+void drop_trailing_axes(RawGrid& grid, ImageInfo& info);
 
 /// The grid in N dimensions, of which it has as many axes.
 template <int N>
@@ -66,6 +66,9 @@ Grid<N> fixed_grid(const RawGrid& grid) {
   result.offset = grid.offset;
   return result;
 }
+
+/// Throws UnsupportedData for an image of other than 2, 3 or 4 axes.
+[[noreturn]] void fail_axes(const RawGrid& grid, const std::filesystem::path& path);
 
 /// The image, in 2, 3 or 4 dimensions; UnsupportedData for any other. uint32, int64 and uint64 become int32 if all
 /// values fit, else double.

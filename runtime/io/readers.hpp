@@ -5,20 +5,33 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "raw_image.hpp"
+#include "sample_reader.hpp"
 
 namespace tegl::io_detail {
 
 /// How much of a file to read: all of it, or grid and description with an empty array of the values' type.
 enum class Extent { whole, header };
 
-RawImage read_nifti(const std::filesystem::path& path, Extent extent, const Progress& progress);
-RawImage read_nrrd(const std::filesystem::path& path, Extent extent, const Progress& progress);
-RawImage read_metaimage(const std::filesystem::path& path, Extent extent, const Progress& progress);
+/// An image whose samples lie in one file in their order: what its header says of it.
+struct StoredImage {
+  RawGrid grid;
+  ImageInfo info;
+  StoredSamples samples;
+  /// The place among the file's axes of the image's last axis, if it is not the last there: a list of images in NRRD.
+  std::optional<std::size_t> list_axis;
+  /// From values as stored to those of the image; none: they are these.
+  std::function<ValueArray(ValueArray&&)> convert;
+};
+StoredImage open_nifti(const std::filesystem::path& path);
+StoredImage open_nrrd(const std::filesystem::path& path, bool allow_outside_paths);
+StoredImage open_metaimage(const std::filesystem::path& path, bool allow_outside_paths);
+
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options);
 
 /// A file of any format, without trailing axes of one sample.
@@ -44,7 +57,9 @@ bool is_dicom(const std::filesystem::path& path);
 RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::string& series, const Progress& progress);
 /// The series there.
 std::vector<ImageVariable> list_dicom(const std::filesystem::path& path);
-RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::string& variable);
+RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageOptions& options);
+/// One file of any format. UnsupportedData for one that cannot be read layer by layer.
+RawLayers open_any_layers(const std::filesystem::path& path, const ReadImageOptions& options);
 
 /// The variables of a netCDF file that can be read as images.
 std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path);

@@ -33,12 +33,16 @@ struct Member {
   double at = 0;         ///< where it lies along the new axis
 };
 
+ReadImageOptions member_options(const SeriesOptions& options, const Progress& progress) {
+  return {options.variable, progress, options.fixed, options.allow_outside_paths};
+}
+
 RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {
-  if (!options.raw) return read_any(path, extent, {options.variable, progress});
+  if (!options.raw) return read_any(path, extent, member_options(options, progress));
   const RawLayers layers = open_raw(path, *options.raw);
   const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
   RawImage image{layers.grid, layers.read(0, count), layers.info};
-  drop_trailing_axes(image);
+  drop_trailing_axes(image.grid, image.info);
   return image;
 }
 
@@ -294,6 +298,9 @@ RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions&
   if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
     fail(ErrorCode::InvalidArgument, files[0],
          "is a DICOM file, which says itself where it lies; expected neither coordinates, nor a step, unit or order");
+  if (!options.fixed.empty())
+    fail(ErrorCode::InvalidArgument, files[0], "is a DICOM file, which has no dimension '{}'; expected no fixed index",
+         options.fixed[0].dimension);
   return open_dicom(files, options.variable, options.progress);
 }
 
@@ -345,6 +352,9 @@ SeriesOptions series_options(std::span<const fs::path> files, const SeriesReques
   if (request.time_step && std::isfinite(*request.time_step) && !std::isnormal(*request.time_step))
     refuse(fmt::format("{} is {}; expected a number of a size of at least {:.2g}", words.time_step, *request.time_step,
                        std::numeric_limits<double>::min()));
+  if (request.raw && !request.fixed.empty())
+    refuse(fmt::format("an index of the dimension '{}' with raw values, whose dimensions have no names; expected none",
+                       request.fixed[0].dimension));
   if (!request.sort && (request.raw || !are_dicom_files(files))) require_order_that_is_meant(files, words);
   SeriesOptions options;
   options.variable = request.variable;
@@ -353,6 +363,8 @@ SeriesOptions series_options(std::span<const fs::path> files, const SeriesReques
   options.unit = request.time_unit.value_or("");
   options.order = request.sort.value_or(SeriesOrder::given);
   options.raw = request.raw;
+  options.fixed = request.fixed;
+  options.allow_outside_paths = request.allow_outside_paths;
   return options;
 }
 
@@ -384,7 +396,7 @@ ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOption
 OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
   if (files.size() == 1)
-    return {options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], options.variable),
+    return {options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], member_options(options, {})),
             {files[0]}};
   SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
   silent.progress = nullptr;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -54,6 +55,32 @@ class Errors : public ProgramTest {
  private:
   std::string ball_;
 };
+
+TEST_F(Errors, HostileImagesExitWith4) {
+  const std::string meta = "NDims = 2\nBinaryData = True\nDimSize = 2 2\nElementType = MET_UCHAR\n";
+  const std::string nrrd = "NRRD0004\ntype: uchar\ndimension: 2\nsizes: 2 2\n";
+  const auto refused = [&](const std::string& name, const std::string& bytes, const std::string& part) {
+    expect_failure(4, {"info", write(name, bytes)}, {name, part});
+  };
+  refused("name.mha", meta + "Name = " + std::string(300, 'A') + "\nElementDataFile = LOCAL\n1234", "at most 254");
+  refused("labels.nrrd", nrrd + "labels: \"" + std::string(1000, 'a') + "\nencoding: raw\n\n1234", "quotation mark");
+  refused("ascii.nrrd", nrrd + "encoding: ascii\n\n1 2 3 300", "sample 3 is '300'");
+  refused("name.nc",
+          "CDF\5" + std::string(8, '\0') + std::string("\0\0\0\x0a", 4) + std::string(7, '\0') + "\1" +
+              std::string(8, '\xff') + std::string(64, 'z'),
+          "netCDF name of 18446744073709551615 bytes");
+}
+
+TEST_F(Errors, SamplesOutsideOfTheHeadersFolderNeedAnOption) {
+  std::filesystem::create_directory(path("headers"));
+  write("a.raw", "12345678");
+  const std::string file = write("headers/a.nhdr",
+                                 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+                                 "data file: ../a.raw\n");
+  expect_failure(4, {"info", file}, {"a.nhdr", "../a.raw", path("headers"), "--allow-outside-paths"});
+  expect_failure(4, {"contour", file, "--iso", "52", "--stream", "-o", path("o.vtkhdf")}, {"--allow-outside-paths"});
+  EXPECT_EQ(run_tegl({"info", file, "--allow-outside-paths"}).exit, 0);
+}
 
 TEST_F(Errors, WrongUsageExitsWith2) {
   const std::string out = path("out.ply");

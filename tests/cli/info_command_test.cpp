@@ -117,6 +117,39 @@ TEST_F(Info, NamesTheVariablesWhereThereAreSeveral) {
   EXPECT_THAT(unknown.err, HasSubstr("SALT"));
 }
 
+TEST_F(Info, ShowsAVariableOf5AxesAndReadsItAtAFixedIndex) {
+  const Samples values = sample({5, 4, 3, 2, 2}, [](const std::vector<double>& at) { return at[0] + 100 * at[4]; });
+  write_netcdf(path("five.nc"), {"x", "y", "z", "time", "member"},
+               {{0, 1, 2, 3, 4}, {0, 1, 2, 3}, {0, 1, 2}, {0, 1}, {7, 8}}, {{"v", values}});
+  const RunResult list = run_tegl({"info", path("five.nc")});
+  ASSERT_EQ(list.exit, 0) << list.err;
+  for (const char* part : {"a variable of 5 axes", "5 x 4 x 3 x 2 x 2 (x, y, z, time, member)", "--fix member=0"})
+    EXPECT_THAT(list.out, HasSubstr(part));
+  const RunResult json = run_tegl({"info", path("five.nc"), "--json"});
+  EXPECT_THAT(json.json()["dimensions"]["v"], ElementsAre("x", "y", "z", "time", "member"));
+  const RunResult member = run_tegl({"info", path("five.nc"), "--fix", "member=1", "--json"});
+  ASSERT_EQ(member.exit, 0) << member.err;
+  EXPECT_EQ(member.json()["image_dim"], 4);
+  EXPECT_EQ(member.json()["min"], 100);
+  EXPECT_EQ(member.json()["max"], 104);
+  const RunResult contour = run_tegl({"contour", path("five.nc"), "--iso", "2", "-o", path("out.vtkhdf")});
+  EXPECT_EQ(contour.exit, 4);
+  for (const char* part : {"5 x 4 x 3 x 2 x 2", "such as member=0", "--fix"}) EXPECT_THAT(contour.err, HasSubstr(part));
+  const std::vector<std::string> fixed = {"contour", path("five.nc"), "--iso", "102.5", "--fix", "member=1", "-o"};
+  std::vector<std::string> whole = fixed;
+  whole.push_back(path("whole.vtkhdf"));
+  EXPECT_EQ(run_tegl(whole).exit, 0);
+  std::vector<std::string> streamed = fixed;
+  streamed.insert(streamed.end(), {path("streamed.vtkhdf"), "--stream"});
+  EXPECT_EQ(run_tegl(streamed).exit, 0);
+  for (const char* wrong : {"member", "=1", "member=-1", "member=x", "member=0.5"}) {
+    const RunResult run = run_tegl({"info", path("five.nc"), "--fix", wrong});
+    EXPECT_EQ(run.exit, 2) << wrong;
+    EXPECT_THAT(run.err, HasSubstr("--fix is '" + std::string(wrong) + "'; expected"));
+  }
+  EXPECT_EQ(run_tegl({"info", path("five.nc"), "--fix", "member=2"}).exit, 2);
+}
+
 TEST_F(Info, SaysSoWhenThereAreNoValues) {
   const std::string file = write("nan.nrrd", nrrd_bytes(sample({3, 3}, [](auto&) { return NAN; })));
   const RunResult run = run_tegl({"info", file});

@@ -8,6 +8,7 @@
 #include "io_support.hpp"
 #include "layers_support.hpp"
 #include "netcdf_files.hpp"
+#include "nifti_files.hpp"
 
 namespace tegl::test {
 namespace {
@@ -66,6 +67,107 @@ TEST(Layers, OfAWholeFileThatIsCompressedAreRefused) {
   const Error error = error_of([&] { open_layers(dir / "image.nc.gz"); });
   EXPECT_EQ(error.code(), ErrorCode::UnsupportedData);
   EXPECT_THAT(error.what(), AllOf(HasSubstr("image.nc.gz"), HasSubstr("layer by layer")));
+}
+
+TEST(Layers, OfNrrdAreTheImageInEveryEncoding) {
+  const TempDir dir;
+  const auto values = counting<std::int16_t>(120, -50);
+  const std::string raw = bytes_of(values);
+  std::string text;
+  std::string hex;
+  for (const int value : values) text += std::to_string(value) + "\n";
+  for (const char byte : raw)
+    for (const int nibble : {byte >> 4 & 15, byte & 15}) hex += "0123456789abcdef"[nibble];
+  const std::string head =
+      "NRRD0004\ntype: short\ndimension: 4\nsizes: 4 5 6 1\nendian: little\nspace: RAS\n"
+      "space directions: (2,0,0) (0,3,1) (0,0,4) none\nspace origin: (1,2,3)\n";
+  for (const auto& [encoding, bytes] :
+       {std::pair<std::string, std::string>{"raw", raw}, {"gzip", compressed(raw)}, {"ascii", text}, {"hex", hex}}) {
+    SCOPED_TRACE(encoding);
+    write_file(dir / "a.nrrd", head + "encoding: " + encoding + "\n\n" + bytes);
+    expect_same(dir / "a.nrrd");
+    write_file(dir / "b.nhdr", head + "byte skip: 3\nencoding: " + encoding + "\ndata file: b.dat\n");
+    write_file(dir / "b.dat", encoding == "gzip" ? compressed("   " + raw) : "   " + bytes);
+    expect_same(dir / "b.nhdr");
+    write_file(dir / "c.nrrd", head + "encoding: " + encoding + "\n\n" + bytes.substr(0, bytes.size() - 5));
+    EXPECT_EQ(error_of([&] { expect_same(dir / "c.nrrd"); }).code(), ErrorCode::MalformedFile);
+  }
+  write_file(dir / "big.nrrd", "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 5 3\nendian: big\nencoding: raw\n\n" +
+                                   std::string(120, 'x'));
+  expect_same(dir / "big.nrrd");
+}
+
+TEST(Layers, OfListsOfImagesAreTheImageIfTheListIsTheLastAxis) {
+  const TempDir dir;
+  const std::string directions = "(1,0,0) (0,1,0) (0,0,1)";
+  const auto write = [&](const std::string& sizes, const std::string& kinds, const std::string& axes) {
+    write_file(dir / "a.nrrd", "NRRD0004\ntype: uchar\ndimension: 4\nsizes: " + sizes + "\nkinds: " + kinds +
+                                   "\nspace: LPS\nspace directions: " + axes + "\nencoding: raw\n\n" +
+                                   bytes_of(counting<std::uint8_t>(24)));
+  };
+  write("2 2 2 3", "domain domain domain list", directions + " none");
+  expect_same(dir / "a.nrrd");
+  write("3 2 2 2", "list domain domain domain", "none " + directions);
+  expect_error(ErrorCode::UnsupportedData, {"a.nrrd", "list of images along axis 0 of 4", "layer by layer"},
+               [&] { open_layers(dir / "a.nrrd"); });
+}
+
+TEST(Layers, OfMetaImageAreTheImage) {
+  const TempDir dir;
+  const auto values = counting<std::int16_t>(120, -50);
+  const std::string raw = bytes_of(values);
+  std::string text;
+  for (const int value : values) text += std::to_string(value) + " ";
+  const auto write = [&](const std::string& fields, const std::string& bytes) {
+    write_file(dir / "a.mha", "NDims = 3\n" + fields +
+                                  "Offset = 1 2 3\nElementSpacing = 2 3 4\nDimSize = 4 5 6\nElementType = MET_SHORT\n"
+                                  "ElementDataFile = LOCAL\n" +
+                                  bytes);
+    expect_same(dir / "a.mha");
+  };
+  write("BinaryData = True\n", raw);
+  write("BinaryData = True\nBinaryDataByteOrderMSB = True\n", raw);
+  write("BinaryData = True\nCompressedData = True\n", compressed(raw, true));
+  write("BinaryData = False\n", text);
+}
+
+TEST(Layers, OfNiftiAreTheImageScaledAndCompressedToo) {
+  const TempDir dir;
+  const std::string raw = bytes_of(counting<std::int16_t>(120, -50));
+  for (const float slope : {0.0F, 0.5F}) {
+    const std::string file =
+        NiftiHeader({2, 3, 4, 5}, 4, 16).scaling(slope, 3).put<float>(108, 400).bytes() + std::string(48, 'e') + raw;
+    write_file(dir / "a.nii", file);
+    expect_same(dir / "a.nii");
+    write_file(dir / "a.nii.gz", compressed(file));
+    expect_same(dir / "a.nii.gz");
+  }
+}
+
+TEST(Layers, OfCompressedFilesCanBeReadAgain) {
+  const TempDir dir;
+  const auto values = counting<std::uint8_t>(60);
+  write_file(dir / "a.nrrd",
+             "NRRD0004\ntype: uchar\ndimension: 2\nsizes: 6 10\nencoding: gzip\n\n" + compressed(bytes_of(values)));
+  const OpenLayersResult opened = open_layers(dir / "a.nrrd");
+  auto& layers = *std::get<std::unique_ptr<LayerReader<std::uint8_t, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
+  for (const std::size_t k : {std::size_t{2}, std::size_t{7}, std::size_t{3}, std::size_t{9}, std::size_t{0}}) {
+    std::array<std::uint8_t, 6> row{};
+    layers.read(k, row.data());
+    EXPECT_TRUE(std::equal(row.begin(), row.end(), values.begin() + static_cast<std::ptrdiff_t>(6 * k))) << k;
+  }
+}
+
+TEST(Layers, OfDamagedCompressedSamplesAreAnErrorAtTheLastLayer) {
+  const TempDir dir;
+  std::string bytes = compressed(bytes_of(counting<std::uint8_t>(60)));
+  bytes[bytes.size() - 6] ^= 1;  // the checksum
+  write_file(dir / "a.nrrd", "NRRD0004\ntype: uchar\ndimension: 2\nsizes: 6 10\nencoding: gzip\n\n" + bytes);
+  const OpenLayersResult opened = open_layers(dir / "a.nrrd");
+  auto& layers = *std::get<std::unique_ptr<LayerReader<std::uint8_t, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
+  std::array<std::uint8_t, 6> row{};
+  layers.read(0, row.data());
+  expect_error(ErrorCode::MalformedFile, {"a.nrrd", "damaged"}, [&] { layers.read(9, row.data()); });
 }
 
 TEST(Layers, OfRawValuesAreThoseOfTheFile) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // MetaImage: attached and detached data, compression, text, geometry by hand, and broken headers.
+#include <cmath>
+#include <limits>
+
 #include "io_support.hpp"
 
 namespace tegl::test {
@@ -96,7 +99,8 @@ TEST(MetaImage, ShortDataIsAnErrorNotZeros) {
   expect(kBinary + "CompressedData = True\n", compressed(std::string(48, 'x'), true).substr(0, 8), "ends early");
   expect(kBinary + "CompressedData = True\n", "not compressed at all", "damaged");
   expect("BinaryData = False\n", "1 2 3 4", "4 numbers of data; expected 24");
-  expect("BinaryData = False\n", "1 2 three", "expected numbers");
+  expect("BinaryData = False\n", "1 2 three",
+         "sample 2 is 'three'; expected whole numbers from -32768 to 32767 (int16)");
 }
 
 TEST(MetaImage, BrokenHeadersAreNamed) {
@@ -127,6 +131,54 @@ TEST(MetaImage, BrokenHeadersAreNamed) {
          "expected LOCAL or the name of one file");
   write_file(dir / "b.mhd", header(kBinary) + "nowhere.raw\n");
   expect_error(ErrorCode::FileNotFound, {"nowhere.raw"}, [&] { read_image(dir / "b.mhd"); });
+}
+
+TEST(MetaImage, TextMayHaveFractionsExponentsAndPlusSigns) {
+  TempDir dir;
+  std::string text = "1e2 +3 -4.0 32767 -32768";
+  for (int i = 5; i < 24; ++i) text += "\r\n7";
+  write_file(dir / "a.mha", header("BinaryData = False\n") + "LOCAL\n" + text + "\n");
+  const auto values = image_as<std::int16_t, 3>(read_image(dir / "a.mha").image).values;
+  EXPECT_EQ(std::vector<std::int16_t>(values.begin(), values.begin() + 6),
+            (std::vector<std::int16_t>{100, 3, -4, 32767, -32768, 7}));
+  std::string reals = "nan -inf 1e-60 0.1";
+  for (int i = 4; i < 24; ++i) reals += " 0";
+  write_file(dir / "b.mha", header("BinaryData = False\n", "MET_FLOAT") + "LOCAL\n" + reals);
+  const auto floats = image_as<float, 3>(read_image(dir / "b.mha").image).values;
+  EXPECT_TRUE(std::isnan(floats[0]));
+  EXPECT_EQ(floats[1], -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(floats[2], 0.0F);
+  EXPECT_EQ(floats[3], 0.1F);
+}
+
+TEST(MetaImage, SamplesOutsideOfTheFolderAreReadOnlyIfAllowed) {
+  TempDir dir;
+  fs::create_directories(dir / "headers/below");
+  const std::string raw = bytes_of(counting<std::int16_t>(24));
+  const std::string outside = "../outside.raw";
+  const std::string absolute = (dir / "outside.raw").string();
+  write_file(dir / "outside.raw", raw);
+  write_file(dir / "headers/below/inside.raw", raw);
+  fs::create_symlink(dir / "outside.raw", dir / "headers/link.raw");
+  fs::create_symlink("below/inside.raw", dir / "headers/good.raw");
+  const fs::path file = dir / "headers/a.mhd";
+  for (const std::string& name : {outside, absolute, std::string("link.raw"), std::string("below/../../outside.raw"),
+                                  std::string("/etc/passwd")}) {
+    SCOPED_TRACE(name);
+    write_file(file, header(kBinary) + name + "\n");
+    expect_unreadable(ErrorCode::UnsupportedData, file,
+                      {name, "outside of the folder '" + (dir / "headers").string(), "allow_outside_paths"});
+    ReadImageOptions options;
+    options.allow_outside_paths = true;
+    if (name != "/etc/passwd") {
+      EXPECT_EQ((image_as<std::int16_t, 3>(read_image(file, options).image).values), counting<std::int16_t>(24));
+    }
+  }
+  for (const char* name : {"below/inside.raw", "good.raw", "below/../good.raw"}) {
+    SCOPED_TRACE(name);
+    write_file(file, header(kBinary) + name + "\n");
+    EXPECT_EQ((image_as<std::int16_t, 3>(read_image(file).image).values), counting<std::int16_t>(24));
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "io_support.hpp"
+#include "layers_support.hpp"
 
 namespace tegl::test {
 namespace {
@@ -291,9 +292,9 @@ TEST(NetCdf, SeveralVariablesMustBeChosenFrom) {
     file.text(salt, "coordinates", "lat2d");
     file.end();
   }
-  expect_error(ErrorCode::VariableNotFound, {"a.nc", "2 variables", "salt (2 x 3), temp (2 x 3)"},
+  expect_error(ErrorCode::VariableNotFound, {"a.nc", "2 variables", "salt (3 x 2), temp (3 x 2)"},
                [&] { read_image(dir / "a.nc"); });
-  expect_error(ErrorCode::VariableNotFound, {"no variable 'sugar'", "salt (2 x 3), temp (2 x 3)"}, [&] {
+  expect_error(ErrorCode::VariableNotFound, {"no variable 'sugar'", "salt (3 x 2), temp (3 x 2)"}, [&] {
     read_image(dir / "a.nc", {"sugar", {}});
   });
   const auto [any, info] = read_image(dir / "a.nc", {"temp", {}});
@@ -363,7 +364,8 @@ TEST(NetCdf, RankAndSizesOutsideOfImagesAreNamed) {
     for (const char* name : {"a", "b", "c", "d", "e"}) five.push_back(file.dimension(name, 2));
     file.variable("hyper", NC_BYTE, five);
   }
-  expect_error(ErrorCode::UnsupportedData, {"hyper (2 x 2 x 2 x 2 x 2)"}, [&] { read_image(dir / "a.nc"); });
+  expect_error(ErrorCode::UnsupportedData, {"'hyper' is 2 x 2 x 2 x 2 x 2 (e, d, c, b, a)", "such as a=0"},
+               [&] { read_image(dir / "a.nc"); });
   expect_error(ErrorCode::UnsupportedData, {"'hyper'", "expected 2 to 4 axes", "5 only in memory"}, [&] {
     read_image(dir / "a.nc", {"hyper", {}});
   });
@@ -374,12 +376,65 @@ TEST(NetCdf, RankAndSizesOutsideOfImagesAreNamed) {
     const int x = file.dimension("x", 2);
     file.variable("empty", NC_FLOAT, {t, y, x});
   }
-  expect_error(ErrorCode::UnsupportedData, {"empty (0 x 2 x 2)"}, [&] { read_image(dir / "b.nc"); });
-  expect_error(ErrorCode::UnsupportedData, {"'empty' is 0 x 2 x 2; expected at least one sample"}, [&] {
+  expect_error(ErrorCode::UnsupportedData, {"empty (2 x 2 x 0)"}, [&] { read_image(dir / "b.nc"); });
+  expect_error(ErrorCode::UnsupportedData, {"'empty' is 2 x 2 x 0; expected at least one sample"}, [&] {
     read_image(dir / "b.nc", {"empty", {}});
   });
   { NcWriter file(dir / "c.nc"); }
   expect_error(ErrorCode::UnsupportedData, {"it has no variables"}, [&] { read_image(dir / "c.nc"); });
+}
+
+/// v(member 3, t 2, z 4, y 5, x 6) = its number in the file, with coordinates of members 10, 20, 30.
+void write_ensemble(const fs::path& path, int format) {
+  NcWriter file(path, format);
+  std::vector<int> dimensions;
+  for (const auto& [name, size] :
+       std::vector<std::pair<const char*, std::size_t>>{{"member", 3}, {"time", 2}, {"z", 4}, {"y", 5}, {"x", 6}})
+    dimensions.push_back(file.dimension(name, size));
+  const int member = file.variable("member", NC_FLOAT, {dimensions[0]});
+  const int v = file.variable("v", NC_INT, dimensions);
+  file.end();
+  file.values(member, {10, 20, 30});
+  std::vector<double> values(3 * 2 * 4 * 5 * 6);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
+  file.values(v, values);
+}
+
+TEST(NetCdf, AVariableOf5AxesIsListedAndReadAtAFixedIndex) {
+  TempDir dir;
+  for (const int format : {0, NC_NETCDF4}) {
+    write_ensemble(dir / "a.nc", format);
+    const auto list = list_image_variables(dir / "a.nc");
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_THAT(list[0].sizes, ElementsAre(6, 5, 4, 2, 3));
+    EXPECT_THAT(list[0].axes, ElementsAre("x", "y", "z", "time", "member"));
+    expect_error(ErrorCode::UnsupportedData, {"6 x 5 x 4 x 2 x 3 (x, y, z, time, member)", "such as member=0"},
+                 [&] { read_image(dir / "a.nc"); });
+    ReadImageOptions options;
+    options.fixed = {{"member", 2}};
+    const auto image = image_as<std::int32_t, 4>(read_image(dir / "a.nc", options).image);
+    EXPECT_EQ(image.grid.sizes(), (std::array<std::size_t, 4>{6, 5, 4, 2}));
+    for (std::size_t i = 0; i < 240; ++i) ASSERT_EQ(image.values[i], static_cast<int>(480 + i));
+    expect_layers_of(read_image(dir / "a.nc", options).image, open_layers(dir / "a.nc", options).layers);
+    options.fixed = {{"z", 1}, {"member", 1}};
+    const auto plane = image_as<std::int32_t, 3>(read_image(dir / "a.nc", options).image);
+    EXPECT_EQ(plane.grid.sizes(), (std::array<std::size_t, 3>{6, 5, 2}));
+    EXPECT_EQ(plane.values[0], 240 + 30);
+    EXPECT_EQ(plane.values[59], 240 + 120 + 30 + 29);
+    expect_layers_of(read_image(dir / "a.nc", options).image, open_layers(dir / "a.nc", options).layers);
+    const auto refused = [&](const std::vector<FixedIndex>& fixed, const std::string& part) {
+      options.fixed = fixed;
+      expect_error(ErrorCode::InvalidArgument, {"a.nc", part}, [&] { read_image(dir / "a.nc", options); });
+      expect_error(ErrorCode::InvalidArgument, {"a.nc", part}, [&] { open_layers(dir / "a.nc", options); });
+    };
+    refused({{"member", 3}}, "member=3; expected an index from 0 to 2");
+    refused({{"run", 0}}, "no dimension 'run'; expected one of member, time, z, y, x");
+    refused({{"member", 0}, {"member", 1}}, "two indices of the dimension 'member', 0 and 1");
+  }
+  write_file(dir / "a.nrrd", "NRRD0004\ntype: uint8\ndimension: 2\nsizes: 2 2\nencoding: raw\n\nabcd");
+  ReadImageOptions options;
+  options.fixed = {{"member", 0}};
+  expect_error(ErrorCode::InvalidArgument, {"a.nrrd", "'member'"}, [&] { read_image(dir / "a.nrrd", options); });
 }
 
 TEST(NetCdf, TruncatedFilesAreErrorsNotZeros) {

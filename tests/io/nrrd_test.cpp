@@ -144,6 +144,34 @@ TEST(Nrrd, SkipsLinesAndBytes) {
                [&] { read_image(dir / "a.nhdr"); });
 }
 
+TEST(Nrrd, DataFilesOutsideOfTheFolderAreReadOnlyIfAllowed) {
+  TempDir dir;
+  fs::create_directories(dir / "headers/below");
+  write_file(dir / "a.raw", bytes_of(counting<std::uint8_t>(24)));
+  write_file(dir / "headers/below/b.raw", bytes_of(counting<std::uint8_t>(24)));
+  const fs::path file = dir / "headers/a.nhdr";
+  const auto write = [&](const std::string& name) {
+    write_file(file, header(kSmall + "encoding: raw\ndata file: " + name + "\n"));
+  };
+  fs::create_directory_symlink(dir.path(), dir / "headers/up");
+  for (const std::string& name : {std::string("../a.raw"), (dir / "a.raw").string(), std::string("up/a.raw")}) {
+    SCOPED_TRACE(name);
+    write(name);
+    expect_unreadable(ErrorCode::UnsupportedData, file, {name, (dir / "headers").string(), "allow_outside_paths"});
+    expect_error(ErrorCode::UnsupportedData, {"allow_outside_paths"}, [&] { open_layers(file); });
+    ReadImageOptions options;
+    options.allow_outside_paths = true;
+    EXPECT_EQ((image_as<std::uint8_t, 3>(read_image(file, options).image).values), counting<std::uint8_t>(24));
+  }
+  write("/etc/passwd");
+  expect_unreadable(ErrorCode::UnsupportedData, file, {"/etc/passwd"});
+  for (const std::string& name : {std::string("below/b.raw"), (dir / "headers/below/b.raw").string()}) {
+    SCOPED_TRACE(name);
+    write(name);
+    EXPECT_EQ((image_as<std::uint8_t, 3>(read_image(file).image).values), counting<std::uint8_t>(24));
+  }
+}
+
 TEST(Nrrd, MissingDataFileIsNamed) {
   TempDir dir;
   write_file(dir / "a.nhdr", header(kSmall + "encoding: raw\ndata file: nowhere.raw\n"));
@@ -163,7 +191,7 @@ TEST(Nrrd, ShortDataIsAnErrorNotZeros) {
   expect("gzip", compressed(std::string(23, 'x')), "23 bytes of data after decompression; expected 24");
   expect("gzip", zipped.substr(0, zipped.size() - 3), "ends early");
   expect("gzip", "no gzip at all, really", "damaged");
-  expect("ascii", text, "");
+  expect("ascii", text, "23 numbers of data; expected 24 for 2 x 3 x 4 samples of type uint8");
   expect("hex", std::string(47, 'a'), "47 bytes of data; expected 48");
 }
 

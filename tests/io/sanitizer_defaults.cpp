@@ -8,6 +8,6 @@ const char* __lsan_default_suppressions();  // NOLINT
 
 const char* __asan_default_options() { return "allocator_may_return_null=1"; }  // NOLINT
 const char* __lsan_default_suppressions() {                                     // NOLINT
-  return "leak:libhdf5\nleak:libnetcdf\nleak:libITKNrrdIO\nleak:libITKMetaIO\nleak:libassimp\n";
+  return "leak:libhdf5\nleak:libnetcdf\nleak:libassimp\n";
 }
 }

@@ -2,8 +2,8 @@
 //
 // Files in, files out. Link with tegl::io.
 //
-// Nothing here is thread-safe, not even on different files: the libraries behind some formats (netCDF, HDF5, NrrdIO,
-// MetaIO) keep global state. Nothing is printed.
+// Nothing here is thread-safe, not even on different files: the libraries behind some formats (netCDF, HDF5) keep
+// global state. Nothing is printed.
 #pragma once
 
 #include <cstdint>
@@ -55,11 +55,22 @@ struct ReadImageResult {
   ImageInfo info = {};  ///< beyond these
 };
 
+/// One index of a dimension of a netCDF variable.
+struct FixedIndex {
+  std::string dimension = {};  ///< its name in the file
+  std::size_t index = 0;       ///< 0 is the first
+};
+
 /// What to read of a file.
 struct ReadImageOptions {
   std::string variable =
       {};                  ///< netCDF: which; DICOM: which series, by UID, description or number; empty: the only one
   Progress progress = {};  ///< see Progress
+  /// netCDF: only the samples at these indices are read, and the image does not have these dimensions as axes.
+  std::vector<FixedIndex> fixed = {};
+  /// Headers may name a file of samples (NRRD `data file`, MetaImage `ElementDataFile`). It is read if it lies in the
+  /// header's folder or below, with symbolic links resolved; with this option, wherever it lies.
+  bool allow_outside_paths = false;
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
@@ -78,7 +89,9 @@ struct ReadImageOptions {
 /// Errors, all naming the file: FileNotFound, MalformedFile (damaged, cut short or contradicting itself; compressed
 /// data are checked to the last byte), UnsupportedFormat, UnsupportedData (colours, vectors, other than 2 to 4 axes),
 /// VariableNotFound (listing what there is), InvalidGrid (a coordinate variable that is not monotone), InvalidArgument
-/// (a variable asked of a format without names), TooLarge, Cancelled. Memory: up to three times the values.
+/// (a variable or a fixed index for a format without names; a fixed dimension or index that the variable does not
+/// have), TooLarge, Cancelled. A file of samples outside of the header's folder is UnsupportedData. Memory: up to three
+/// times the values; a damaged file takes no more than its bytes can hold.
 ReadImageResult read_image(const std::filesystem::path& path, const ReadImageOptions& options = {});
 
 /// A variable that can be read as an image.
@@ -88,11 +101,12 @@ struct ImageVariable {
       {};                      ///< of its axes longer than 1, as in the image: axis 0, which runs fastest, first
   std::string unit = {};       ///< may be empty
   std::string long_name = {};  ///< may be empty
+  std::vector<std::string> axes = {};  ///< netCDF: names of the dimensions, in the order of `sizes`
 };
 
 /// The variables that ReadImageOptions::variable may name in a netCDF file, or the series in DICOM (the description as
-/// long_name); none for the other formats, whose files hold one image without a name. Reads no values. Errors: those of
-/// read_image.
+/// long_name); none for the other formats, whose files hold one image without a name. Variables of more than 4 axes
+/// need ReadImageOptions::fixed to be read. Reads no values. Errors: those of read_image.
 std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path);
 
 /// The layers of an image of any value type in N dimensions.
@@ -111,12 +125,17 @@ struct OpenLayersResult {
   ImageInfo info = {};    ///< beyond values and grid
 };
 
-/// Opens a variable of a netCDF file, or a dataset of an HDF5 file, to be read layer by layer: what read_image reads
-/// whole, with the same grid and values (uint32, int64 and uint64 as double). DICOM likewise, slice by slice.
-/// `variable` as in ReadImageOptions. The file stays open as long as the layers live. Memory: a layer, or as many as
-/// lie in one compressed block of the file, if these are no more than 256 MiB. Errors: those of read_image, now or by
-/// read(); UnsupportedData for a file that is gzipped as a whole.
-OpenLayersResult open_layers(const std::filesystem::path& path, const std::string& variable = {});
+/// Opens an image to be read layer by layer, with the grid and values that read_image gives (uint32, int64 and uint64
+/// as double): NIfTI, NRRD and MetaImage, compressed or not; variables of netCDF files and datasets of HDF5 files;
+/// DICOM, slice by slice. The file stays open as long as the layers live. Memory: a layer, or as many as lie in one
+/// compressed block of a netCDF-4 or HDF5 file, if these are no more than 256 MiB. NIfTI, NRRD and MetaImage files that
+/// are compressed or text are read in one pass if layers are read in ascending order; a layer before the last one read
+/// starts a new pass. Errors: those of read_image, now or by read() (what is wrong with compressed samples is found
+/// when they are read); UnsupportedData for a netCDF file that is gzipped as a whole, and for an NRRD list of images
+/// whose axis is not the last one in the file.
+OpenLayersResult open_layers(const std::filesystem::path& path, const ReadImageOptions& options = {});
+/// As above; `variable` as in ReadImageOptions.
+OpenLayersResult open_layers(const std::filesystem::path& path, const std::string& variable);
 
 /// Values that lie in a file one after the other, axis 0 fastest.
 struct RawLayout {
@@ -126,8 +145,8 @@ struct RawLayout {
   bool big_endian = false;              ///< the order of a value's bytes
 };
 
-/// The same of a file that holds nothing but values, on a grid of step 1. Errors: FileNotFound; InvalidArgument (the
-/// layout); MalformedFile if the file is shorter than the layout needs.
+/// Opens a file that holds nothing but values to be read layer by layer, on a grid of step 1. Errors: FileNotFound;
+/// InvalidArgument (the layout); MalformedFile if the file is shorter than the layout needs.
 OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
 
 /// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.

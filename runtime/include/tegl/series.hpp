@@ -33,6 +33,8 @@ struct SeriesOptions {
   SeriesOrder order = SeriesOrder::given;  ///< of the files
   std::optional<RawLayout> raw = {};       ///< files of nothing but values: how each one of them is laid out
   Progress progress = {};                  ///< of read_series, over all files
+  std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, of every file
+  bool allow_outside_paths = false;        ///< as in ReadImageOptions
 };
 
 /// An image of several files, which is a ReadImageResult as any other, and those files.
@@ -53,6 +55,8 @@ struct SeriesRequest {
   std::optional<std::string> time_unit = {};      ///< of the new axis
   std::optional<SeriesOrder> sort = {};           ///< of the files
   std::optional<RawLayout> raw = {};              ///< as in SeriesOptions
+  std::vector<FixedIndex> fixed = {};             ///< as in SeriesOptions
+  bool allow_outside_paths = false;               ///< as in SeriesOptions
 };
 
 /// What these are called where they are asked for: "--times" on a command line.
