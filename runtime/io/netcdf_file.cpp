@@ -13,6 +13,7 @@
 
 #include "cdf_header.hpp"
 #include "common.hpp"
+#include "hdf5_links.hpp"
 #include "inflate.hpp"
 
 namespace tegl::io_detail {
@@ -67,7 +68,7 @@ const char* nc_type_name(nc_type type) noexcept {
 
 bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UINT64 && type != NC_CHAR; }
 
-NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
+NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outside_paths) : path_(path) {
   if (is_gzip(path)) content_ = inflate_to_memory(path, progress);
   const auto prefix =
       content_.empty() ? read_bytes(path, 0, 8)
@@ -79,6 +80,9 @@ NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
   else if (!is_hdf5(prefix))
     fail(ErrorCode::MalformedFile, path, "starts with {}; expected netCDF: 'CDF' and 1, 2 or 5, or '\\x89HDF'",
          shown(std::span<const unsigned char>(prefix)));
+  bytes_ = is_hdf5(prefix) ? check_hdf5_links(path, content_, ExternalStorage::in_current_folder, allow_outside_paths)
+           : content_.empty() ? size_of_file(path)
+                              : content_.size();
   // An absolute path cannot be taken for the address of a server.
   const int status = content_.empty()
                          ? nc_open(fs::absolute(path).c_str(), NC_NOWRITE, &id_)
@@ -231,6 +235,27 @@ ValueArray NcFile::numeric_array(const NcVariable& variable) const {
   return array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
 }
 
+void NcFile::require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const {
+  const std::uint64_t bytes = checked_bytes(sizes, item, path_);
+  // No filter of the library compresses better; more is a damaged header, not data.
+  constexpr std::uint64_t kBestRatio = 4096;
+  if (bytes / kBestRatio > bytes_)
+    fail(ErrorCode::MalformedFile, path_,
+         "variable '{}' of {} samples takes {} bytes in a file of {}; expected at most {} times as many", variable.name,
+         shape_text(sizes), bytes, bytes_, kBestRatio);
+  // A chunk is decompressed whole, whatever part of it is read.
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> chunks(std::max<std::size_t>(1, variable.sizes.size()), 1);
+  if (nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) != NC_NOERR || storage != NC_CHUNKED)
+    return;
+  const std::uint64_t chunk_bytes =
+      checked_bytes(std::vector<std::uint64_t>(chunks.begin(), chunks.end()), item, path_);
+  const std::vector<std::uint64_t> all(variable.sizes.begin(), variable.sizes.end());
+  if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(chunk_bytes, whole))
+    fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} bytes in chunks of {} ({} bytes); expected at most {}",
+         variable.name, whole, shape_text(chunks), chunk_bytes, std::max(kMostChunkBytes, 2 * whole));
+}
+
 ValueArray NcFile::values(const NcVariable& variable, std::size_t dimension, std::size_t first,
                           std::size_t count) const {
   ValueArray result = numeric_array(variable);
@@ -241,6 +266,7 @@ ValueArray NcFile::values(const NcVariable& variable, std::size_t dimension, std
   std::visit(
       [&]<class T>(std::vector<T>& values) {
         const std::vector<std::uint64_t> wide(sizes.begin(), sizes.end());
+        require_stored(variable, wide, sizeof(T));
         values.resize(static_cast<std::size_t>(checked_bytes(wide, sizeof(T), path_) / sizeof(T)));
         check(nc_get_vara(variable.group, variable.id, start.data(), sizes.data(), values.data()),
               "reading " + variable.name);
@@ -255,12 +281,7 @@ ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) 
   std::visit(
       [&]<class T>(std::vector<T>& values) {
         const std::uint64_t bytes = checked_bytes(sizes, sizeof(T), path_);
-        // No filter of the library compresses better; more is a damaged header, not data.
-        constexpr std::uint64_t kBestRatio = 4096;
-        const std::uint64_t stored = content_.empty() ? size_of_file(path_) : content_.size();
-        if (bytes / kBestRatio > stored)
-          fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} samples in a file of {} bytes", variable.name,
-               shape_text(sizes), stored);
+        require_stored(variable, sizes, sizeof(T));
         values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
         read_blocks(variable, sizeof(T), values.data(), progress);
       },
