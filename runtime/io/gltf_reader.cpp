@@ -286,6 +286,7 @@ class GltfReader {
 
   /// Numbers that a mesh adds to the result.
   struct MeshSize {
+    std::uint64_t primitives = 0;
     std::uint64_t vertices = 0;
     std::uint64_t corners = 0;
     std::uint64_t bytes = 0;  ///< memory that all of them take, with their attributes and the time for each primitive
@@ -299,13 +300,14 @@ class GltfReader {
     for_each_mesh([&](std::size_t mesh, const Eigen::Affine3d&) {
       const auto [found, is_new] = sizes.try_emplace(mesh);
       if (is_new) found->second = size_of(element("meshes", mesh));
+      add_to(all.primitives, found->second.primitives);
       add_to(all.vertices, found->second.vertices);
       add_to(all.corners, found->second.corners);
       add_to(all.bytes, found->second.bytes);
     });
     limit.add(1, all.bytes,
-              fmt::format("{} vertices and {} corners of simplices, counted in each place of their mesh,", all.vertices,
-                          all.corners));
+              fmt::format("{} primitives with {} vertices and {} corners, counted in each place of their mesh,",
+                          all.primitives, all.vertices, all.corners));
     if (all.vertices > std::numeric_limits<Index>::max())
       fail(ErrorCode::TooLarge, path_, "{} vertices; expected less than 2^32", all.vertices);
     mesh_.coordinates.reserve(static_cast<std::size_t>(3 * all.vertices));
@@ -331,6 +333,7 @@ class GltfReader {
       for (const auto& [semantic, accessor] : attributes.items())
         numbers += semantic.starts_with('_') ? 4 : semantic == "NORMAL" ? 3 : 0;
       // A buffer has a byte or more for each vertex and corner: no product here exceeds 64 bits.
+      ++size.primitives;
       add_to(size.vertices, vertices);
       add_to(size.corners, corners);
       add_to(size.bytes, kPrimitiveBytes + vertices * numbers * sizeof(double) + corners * sizeof(Index));
