@@ -9,13 +9,12 @@ if(PkgConfig_FOUND)
 endif()
 find_package(ZLIB QUIET)
 find_package(nlohmann_json QUIET)
-find_package(assimp QUIET)
 
 # What is missing, each with the Debian package that has it.
 set(tegl_io_missing "")
 foreach(need "netCDF_FOUND|netCDF|libnetcdf-dev" "PkgConfig_FOUND|pkg-config|pkg-config"
     "TEGL_HDF5_FOUND|HDF5 (by pkg-config)|libhdf5-dev" "ZLIB_FOUND|zlib|zlib1g-dev"
-    "nlohmann_json_FOUND|nlohmann_json|nlohmann-json3-dev" "assimp_FOUND|assimp|libassimp-dev")
+    "nlohmann_json_FOUND|nlohmann_json|nlohmann-json3-dev")
   string(REPLACE "|" ";" need "${need}")
   list(POP_FRONT need found name package)
   if(NOT ${found})

@@ -17,7 +17,18 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
     app_->add_option("FILE", files_, file_help)->required();
   app_->parse_complete_callback(
       [this, files] { worked_on_ = files == Files::each ? std::vector{files_.front()} : files_; });
+  app_->add_flag(
+      "--allow-outside-paths", allow_outside_paths_,
+      "read further files that FILE names (glTF buffers, HDF5 links) wherever they lie, not only in its folder "
+      "and below");
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
+}
+
+ReadMeshOptions Command::mesh_options(Progress progress) const {
+  ReadMeshOptions options;
+  options.progress = std::move(progress);
+  options.allow_outside_paths = allow_outside_paths_;
+  return options;
 }
 
 void Command::add_quiet() {

@@ -74,6 +74,8 @@ class Command {
   /// Adds the options that say how FILE is read as an image.
   void add_image_options() { images_.add_to(*app_); }
   [[nodiscard]] const ImageOptions& images() const { return images_; }
+  /// How FILE is read as a mesh, with --allow-outside-paths.
+  [[nodiscard]] ReadMeshOptions mesh_options(Progress progress) const;
   /// Reads the image that FILE and these options name. From then on the files that are worked on stand in the order in
   /// which they follow each other.
   [[nodiscard]] ReadImageResult read(const Progress& progress);
@@ -97,6 +99,7 @@ class Command {
   ImageOptions images_;
   std::vector<std::string> remarks_;
   bool json_ = false;
+  bool allow_outside_paths_ = false;
   bool quiet_ = false;
 };
 

@@ -342,7 +342,7 @@ class SliceCommand final : public Command {
     std::erase(given, "--threads");
     refuse_image_options(files(), given, images(), "--at, --plane, --scale, --threads and --output alone");
     Stopwatch watch;
-    const Mesh mesh = read_saved_contour(file(), bar.stage("read"));
+    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")));
     require_cuts(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
     factors_ = parse_scale(scale_, space);

@@ -139,12 +139,15 @@ void write_any(const AnyContour& contour, const std::string& path, const py::obj
   });
 }
 
-std::unique_ptr<AnyContour> load_any(const std::string& path, const py::object& progress) {
+std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside_paths, const py::object& progress) {
   Call call(progress);
   const Progress tell = call.progress();
   const Mesh mesh = call.run([&] {
     const FileLock lock(tell);
-    return read_mesh(path, tell);
+    ReadMeshOptions options;
+    options.progress = tell;
+    options.allow_outside_paths = allow_outside_paths;
+    return read_mesh(path, options);
   });
   const py::gil_scoped_release release;
   auto result = std::make_unique<AnyContour>();
@@ -168,7 +171,8 @@ void bind_files(py::module_& m) {
         py::arg("time_unit"), py::arg("sort"), py::arg("fixed"), py::arg("allow_outside_paths"), py::arg("progress"),
         doc::read_series);
   m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
-  m.def("load_contour", &load_any, py::arg("path"), py::arg("progress"), doc::read_mesh);
+  m.def("load_contour", &load_any, py::arg("path"), py::arg("allow_outside_paths"), py::arg("progress"),
+        doc::read_mesh);
 }
 
 }  // namespace tegl::python

@@ -278,7 +278,8 @@ class Contour:
         _tegl.write_contour(self._core, os.fspath(path), progress)
 
     @staticmethod
-    def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | None = None) -> Contour:
+    def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bool = False,
+         progress: Progress | None = None) -> Contour:
         """Reads a contour from a file: see `tegl.load`."""
         return load(path, time_axis=time_axis, progress=progress)
 
@@ -319,6 +320,9 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | No
 
     Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;
     with -1 they are x, y, z (, t).
+
+    A file may name further files: buffers of glTF, links and external storage of HDF5. These are read in the folder of
+    `path` and below it; with `allow_outside_paths=True` elsewhere, too.
     """
-    core = _tegl.load_contour(os.fspath(path), progress)
+    core = _tegl.load_contour(os.fspath(path), bool(allow_outside_paths), progress)
     return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))

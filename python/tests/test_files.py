@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files in and out, other programs' structures, and that the program `tegl` gives the same."""
 
+import base64
 import importlib.util
 import json
 import os
@@ -127,6 +128,21 @@ def test_files_that_cannot_be(tmp_path):
     (tmp_path / "broken.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 3\n")
     with pytest.raises(ValueError, match="broken.ply"):
         tegl.load(tmp_path / "broken.ply")
+
+
+def test_files_that_a_file_names(tmp_path):
+    contour = tegl.contour(ball(3), 0.0)
+    (tmp_path / "meshes").mkdir()
+    path = tmp_path / "meshes" / "contour.gltf"
+    contour.save(path)
+    text = json.loads(path.read_text())
+    buffer = text["buffers"][0]
+    (tmp_path / "outside.bin").write_bytes(base64.b64decode(buffer["uri"].split(",")[1]))
+    buffer["uri"] = "../outside.bin"
+    path.write_text(json.dumps(text))
+    with pytest.raises(ValueError, match="outside.bin.*allow_outside_paths"):
+        tegl.load(path)
+    assert tegl.load(path, allow_outside_paths=True).check().is_closed
 
 
 # xarray.

@@ -33,9 +33,11 @@ bool is_color_of_bytes(const Attribute& attribute) {
 }
 
 std::string FileNames::make(const std::string& wished) {
-  std::string name = wished;
-  for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}", wished, i);
-  return name;
+  if (taken_.insert(wished).second) return wished;
+  // Numbers below the next one are taken: many equal names need one step each.
+  std::size_t& next = next_.try_emplace(wished, 2).first->second;
+  for (;;)
+    if (std::string name = fmt::format("{}_{}", wished, next++); taken_.insert(name).second) return name;
 }
 
 std::string as_word(std::string_view text) {

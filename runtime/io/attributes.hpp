@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -38,6 +39,7 @@ class FileNames {
 
  private:
   std::set<std::string> taken_;
+  std::map<std::string, std::size_t> next_;  ///< by wished name: the first number that may be free
 };
 
 /// The text with everything but letters, digits and underscores of ASCII as an underscore; "_" for the empty one.

@@ -27,7 +27,9 @@
 
 #include "common.hpp"
 #include "dicom_frames.hpp"
+#include "dicom_nesting.hpp"
 #include "jpeg2000.hpp"
+#include "named_path.hpp"
 #include "raw_image.hpp"
 
 namespace tegl::io_detail {
@@ -264,6 +266,7 @@ constexpr Uint32 kSmallElement = 4096;  // larger ones stay in the file until th
 /// Reads a file, with its large elements or without; what is wrong with it, if anything is: then what came before that
 /// may have been read.
 std::optional<Error> try_to_load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
+  if (auto fault = nesting_fault(path)) return fault;
   prepare_dcmtk();
   const OFCondition status = file.loadFile(path.c_str(), EXS_Unknown, EGL_noChange, largest, ERM_autoDetect);
   if (status.good() && file.getDataset() != nullptr && file.getDataset()->card() > 0) return {};
@@ -433,6 +436,20 @@ ValueArray read_dicom_values(const DicomFile& file) {
   return values;
 }
 
+namespace {
+
+/// A file that a DICOMDIR names, which lies beside it or below (PS3.10, section 8.5): no option allows others.
+fs::path path_in_directory(const fs::path& directory, const std::string& name) {
+  try {
+    return named_path(directory, name, false);
+  } catch (const Error&) {
+    fail(ErrorCode::MalformedFile, directory, "names the file {}; expected one in its own folder or below it",
+         shown(name));
+  }
+}
+
+}  // namespace
+
 std::vector<fs::path> read_dicomdir(const fs::path& path) {
   DcmFileFormat format;
   load(format, path, DCM_MaxReadLength);
@@ -444,9 +461,10 @@ std::vector<fs::path> read_dicomdir(const fs::path& path) {
     std::string name = text_of(*record, DCM_ReferencedFileID);
     if (name.empty()) continue;
     std::replace(name.begin(), name.end(), '\\', '/');
-    // Discs have names in capitals; what was copied from them often has not.
-    const bool as_is = fs::exists(path.parent_path() / name);
-    files.push_back(path.parent_path() / (as_is ? name : lower(name)));
+    // Discs have names in capitals; copies of them often have small letters.
+    std::error_code error;
+    const bool as_is = fs::exists(path.parent_path() / name, error);
+    files.push_back(path_in_directory(path, as_is ? name : lower(name)));
   }
   return files;
 }

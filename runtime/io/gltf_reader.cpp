@@ -3,11 +3,16 @@
 // Triangles and lines of glTF 2.0 files, of all meshes in the scene, placed by their nodes. Materials, skins, animation
 // and compressed buffers are outside of what is read.
 //
+// A small file can ask for much: text nested deeply, buffers of the same bytes, primitives in many places. So nesting
+// is limited before the text is parsed, buffers are views of one copy, and the mesh is counted before it is made.
+//
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.5 to 3.7 and 4.4.
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <deque>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include <Eigen/Geometry>
@@ -16,6 +21,7 @@
 #include "attributes.hpp"
 #include "common.hpp"
 #include "mesh_formats.hpp"
+#include "named_path.hpp"
 
 namespace tegl::io_detail {
 
@@ -26,7 +32,26 @@ namespace {
 using Json = nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
-constexpr int kDeepest = 64;  ///< of nodes below nodes
+constexpr int kDeepest = 64;          ///< of nodes below nodes
+constexpr std::size_t kNested = 256;  ///< arrays and objects of JSON in each other; extras hold anything
+
+/// Whether brackets and braces outside of strings are nested deeper than `kNested`.
+bool is_nested_too_deeply(std::span<const unsigned char> text) {
+  std::size_t depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned char c = text[i];
+    if (in_string && c == '\\')
+      ++i;
+    else if (c == '"')
+      in_string = !in_string;
+    else if (!in_string && (c == '[' || c == '{') && ++depth > kNested)
+      return true;
+    else if (!in_string && (c == ']' || c == '}') && depth > 0)
+      --depth;
+  }
+  return false;
+}
 
 std::uint32_t word_at(std::span<const unsigned char> bytes, std::size_t offset) {
   std::uint32_t value = 0;
@@ -36,6 +61,7 @@ std::uint32_t word_at(std::span<const unsigned char> bytes, std::size_t offset) 
 
 std::optional<Bytes> decoded_base64(std::string_view text) {
   Bytes bytes;
+  bytes.reserve(text.size() / 4 * 3 + 3);
   std::uint32_t group = 0;
   int bits = 0;
   while (text.ends_with('=')) text.remove_suffix(1);
@@ -56,6 +82,30 @@ std::optional<Bytes> decoded_base64(std::string_view text) {
   return bytes;
 }
 
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+/// A URI with its escapes, such as %20, as the bytes that they stand for; other percent signs stay.
+std::string percent_decoded(std::string_view uri) {
+  std::string result;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
+    result += low >= 0 ? static_cast<char>(high << 4 | low) : uri[i];
+    if (low >= 0) i += 2;
+  }
+  return result;
+}
+
+/// "http" of "http://x": the letters, digits and "+-." before a colon (RFC 3986, section 3.1); empty if there is none.
+std::string_view scheme_of(std::string_view uri) {
+  const std::size_t colon = uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
+  return colon != std::string_view::npos && uri[colon] == ':' ? uri.substr(0, colon) : std::string_view();
+}
+
 /// An accessor's place, checked to lie within its buffer.
 struct View {
   std::span<const unsigned char> bytes;
@@ -66,13 +116,15 @@ struct View {
 
 class GltfReader {
  public:
-  GltfReader(const fs::path& path, ReadProgress& progress) : path_(path), progress_(progress) {}
+  GltfReader(const fs::path& path, ReadProgress& progress, bool allow_outside_paths)
+      : path_(path), progress_(progress), allow_outside_paths_(allow_outside_paths) {}
 
   Mesh run() {
     read_container();
     read_buffers();
     mesh_.space_dim = 3;
     mesh_.dim = 0;
+    count_scene();
     read_scene();
     // Parts without normals leave those of the others without a use.
     if (mesh_.normals.size() != mesh_.coordinates.size()) mesh_.normals.clear();
@@ -89,7 +141,8 @@ class GltfReader {
   }
 
   void read_container() {
-    const Bytes all = read_bytes(path_, 0, static_cast<std::size_t>(size_of_file(path_)));
+    file_ = read_bytes(path_, 0, static_cast<std::size_t>(size_of_file(path_)));
+    const std::span<const unsigned char> all = file_;
     std::span<const unsigned char> text = all;
     if (all.size() >= 4 && std::memcmp(all.data(), "glTF", 4) == 0) {
       if (all.size() < 20 || word_at(all, 4) != 2) malformed("no glTF 2.0: expected version 2 after 'glTF'");
@@ -101,17 +154,30 @@ class GltfReader {
         const std::size_t count = word_at(all, next);
         if (count > all.size() - next - 8)
           malformed("binary part of {} bytes; expected at most {}", count, all.size() - next - 8);
-        binary_.assign(all.begin() + static_cast<std::ptrdiff_t>(next + 8),
-                       all.begin() + static_cast<std::ptrdiff_t>(next + 8 + count));
+        binary_ = all.subspan(next + 8, count);
       }
     }
+    if (is_nested_too_deeply(text)) malformed("JSON nested more than {} deep; expected at most {}", kNested, kNested);
     json_ = Json::parse(text.begin(), text.end(), nullptr, false);
     if (json_.is_discarded() || !json_.is_object()) malformed("no glTF: expected a JSON object");
     if (text_at(member(json_, "asset"), "version").substr(0, 2) != "2.")
       malformed("no glTF 2.0: asset.version missing or other");
-    if (json_.contains("extensionsRequired") && !json_["extensionsRequired"].empty())
-      fail(ErrorCode::UnsupportedData, path_, "needs the extensions {}; expected none",
-           json_["extensionsRequired"].dump(-1, ' ', false, Json::error_handler_t::replace));
+    require_no_extensions();
+  }
+
+  void require_no_extensions() const {
+    const Json& extensions = member(json_, "extensionsRequired");
+    if (extensions.is_null() || (extensions.is_array() && extensions.empty())) return;
+    if (!extensions.is_array()) malformed("'extensionsRequired' is no list; expected names");
+    constexpr std::size_t kShown = 8;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(kShown, extensions.size()); ++i) {
+      constexpr std::size_t kLongest = 64;
+      if (!extensions[i].is_string()) malformed("'extensionsRequired' has an item that is no text; expected names");
+      names += (i == 0 ? "'" : ", '") + extensions[i].get_ref<const std::string&>().substr(0, kLongest) + "'";
+    }
+    fail(ErrorCode::UnsupportedData, path_, "needs {} extensions ({}{}); expected none", extensions.size(), names,
+         extensions.size() > kShown ? ", ..." : "");
   }
 
   /// A member of an object, or null.
@@ -140,27 +206,39 @@ class GltfReader {
 
   void read_buffers() {
     const Json& list = member(json_, "buffers");
+    all_bytes_ = file_.size();
     for (std::size_t i = 0; list.is_array() && i < list.size(); ++i) {
-      const std::string uri = text_at(list[i], "uri");
+      const Json& uri = member(list[i], "uri");
       const std::size_t length = number_at(list[i], "byteLength", std::nullopt);
-      buffers_.push_back(uri.empty() ? binary_ : buffer_of(uri));
+      const bool is_binary = !uri.is_string() || uri.get_ref<const std::string&>().empty();
+      buffers_.push_back(is_binary ? binary_ : buffer_of(uri.get_ref<const std::string&>()));
       if (buffers_.back().size() < length)
         malformed("buffer {} of {} bytes; expected {}", i, buffers_.back().size(), length);
     }
   }
 
-  [[nodiscard]] Bytes buffer_of(const std::string& uri) const {
-    if (!uri.starts_with("data:")) {
-      const fs::path file = path_.parent_path() / uri;
+  /// The bytes of a data URI, or of a file, which is read once for all buffers that name it.
+  [[nodiscard]] std::span<const unsigned char> buffer_of(const std::string& uri) {
+    const std::string_view scheme = scheme_of(uri);
+    if (scheme.empty()) {
+      const fs::path file = named_path(path_, percent_decoded(uri), allow_outside_paths_);
       require_readable_file(file);
-      return read_bytes(file, 0, static_cast<std::size_t>(size_of_file(file)));
+      const auto [found, is_new] = files_.try_emplace(fs::canonical(file));
+      if (is_new) {
+        found->second = read_bytes(file, 0, static_cast<std::size_t>(size_of_file(file)));
+        all_bytes_ += found->second.size();
+      }
+      return found->second;
     }
+    if (lower(scheme) != "data")
+      fail(ErrorCode::UnsupportedData, path_, "buffer at the URI {}; expected a relative path or a data URI",
+           shown(uri));
     constexpr std::string_view kMark = ";base64,";
     const std::size_t mark = uri.find(kMark);
     auto bytes =
         mark == std::string::npos ? std::nullopt : decoded_base64(std::string_view(uri).substr(mark + kMark.size()));
     if (!bytes) malformed("data URI that is no base64");
-    return std::move(*bytes);
+    return decoded_.emplace_back(std::move(*bytes));
   }
 
   [[nodiscard]] View view_of(std::size_t accessor_index, std::size_t components) const {
@@ -185,17 +263,82 @@ class GltfReader {
                                           (view.count - 1) <= (length - start - item) / view.stride);
     if (!fits)
       malformed("accessor {} of {} items does not fit its bufferView of {} bytes", accessor_index, view.count, length);
-    view.bytes = std::span(buffers_[buffer]).subspan(offset + std::min(start, length));
+    view.bytes = buffers_[buffer].subspan(offset + std::min(start, length));
     return view;
   }
 
-  void read_scene() {
+  /// Calls `use` with the meshes of the scene and their places.
+  template <class Use>
+  void for_each_mesh(const Use& use) {
     const Json& scenes = member(json_, "scenes");
     if (!scenes.is_array() || scenes.empty()) malformed("no scene; expected one");
     const Json& scene = element("scenes", number_at(json_, "scene", 0));
     const Json& nodes = member(scene, "nodes");
+    visited_ = 0;
     for (std::size_t i = 0; nodes.is_array() && i < nodes.size(); ++i)
-      read_node(index_in(nodes, i), Eigen::Affine3d::Identity(), 0);
+      visit_node(index_in(nodes, i), Eigen::Affine3d::Identity(), 0, use);
+  }
+
+  void read_scene() {
+    for_each_mesh(
+        [&](std::size_t mesh, const Eigen::Affine3d& place) { read_primitives(element("meshes", mesh), place); });
+  }
+
+  /// Numbers that a mesh adds to the result.
+  struct MeshSize {
+    std::uint64_t primitives = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t corners = 0;
+    std::uint64_t bytes = 0;  ///< memory that all of them take, with their attributes and the time for each primitive
+  };
+
+  /// Counts the vertices and simplices of all instances, before they are made.
+  void count_scene() {
+    std::map<std::size_t, MeshSize> sizes;
+    MeshSize all;
+    CopyLimit limit(path_, all_bytes_);
+    for_each_mesh([&](std::size_t mesh, const Eigen::Affine3d&) {
+      const auto [found, is_new] = sizes.try_emplace(mesh);
+      if (is_new) found->second = size_of(element("meshes", mesh));
+      add_to(all.primitives, found->second.primitives);
+      add_to(all.vertices, found->second.vertices);
+      add_to(all.corners, found->second.corners);
+      add_to(all.bytes, found->second.bytes);
+    });
+    limit.add(1, all.bytes,
+              fmt::format("{} primitives with {} vertices and {} corners, counted in each place of their mesh,",
+                          all.primitives, all.vertices, all.corners));
+    if (all.vertices > std::numeric_limits<Index>::max())
+      fail(ErrorCode::TooLarge, path_, "{} vertices; expected less than 2^32", all.vertices);
+    mesh_.coordinates.reserve(static_cast<std::size_t>(3 * all.vertices));
+    mesh_.simplices.reserve(static_cast<std::size_t>(all.corners));
+  }
+
+  /// a += b, with the largest number for all that are larger.
+  static void add_to(std::uint64_t& a, std::uint64_t b) {
+    if (__builtin_add_overflow(a, b, &a)) a = std::numeric_limits<std::uint64_t>::max();
+  }
+
+  [[nodiscard]] MeshSize size_of(const Json& mesh) const {
+    constexpr std::uint64_t kPrimitiveBytes = 1024;  // for the time that a primitive takes, even if it is empty
+    MeshSize size;
+    const Json& primitives = member(mesh, "primitives");
+    for (std::size_t i = 0; primitives.is_array() && i < primitives.size(); ++i) {
+      const Json& attributes = member(primitives[i], "attributes");
+      const std::uint64_t vertices = view_of(number_at(attributes, "POSITION", std::nullopt), 3).count;
+      const bool indexed = primitives[i].contains("indices");
+      const std::uint64_t corners =
+          indexed ? view_of(number_at(primitives[i], "indices", std::nullopt), 1).count : vertices;
+      std::uint64_t numbers = 3;
+      for (const auto& [semantic, accessor] : attributes.items())
+        numbers += semantic.starts_with('_') ? 4 : semantic == "NORMAL" ? 3 : 0;
+      // A buffer has a byte or more for each vertex and corner: no product here exceeds 64 bits.
+      ++size.primitives;
+      add_to(size.vertices, vertices);
+      add_to(size.corners, corners);
+      add_to(size.bytes, kPrimitiveBytes + vertices * numbers * sizeof(double) + corners * sizeof(Index));
+    }
+    return size;
   }
 
   [[nodiscard]] std::size_t index_in(const Json& list, std::size_t i) const {
@@ -229,16 +372,17 @@ class GltfReader {
     return result;
   }
 
-  void read_node(std::size_t index, const Eigen::Affine3d& parent, int depth) {
+  template <class Use>
+  void visit_node(std::size_t index, const Eigen::Affine3d& parent, int depth, const Use& use) {
     // The specification wants a forest; a cycle or a node in many places would never end.
     const std::size_t nodes = member(json_, "nodes").size();
     if (depth > kDeepest || ++visited_ > nodes) malformed("nodes that are no tree, or deeper than {}", kDeepest);
     const Json& node = element("nodes", index);
     const Eigen::Affine3d here = parent * placement(node);
-    if (node.contains("mesh")) read_primitives(element("meshes", number_at(node, "mesh", std::nullopt)), here);
+    if (node.contains("mesh")) use(number_at(node, "mesh", std::nullopt), here);
     const Json& children = member(node, "children");
     for (std::size_t i = 0; children.is_array() && i < children.size(); ++i)
-      read_node(index_in(children, i), here, depth + 1);
+      visit_node(index_in(children, i), here, depth + 1, use);
   }
 
   void read_primitives(const Json& mesh, const Eigen::Affine3d& place) {
@@ -324,12 +468,9 @@ class GltfReader {
       const auto width = static_cast<std::size_t>(type - kTypes.begin()) + 1;
       const View view = view_of(index, width);
       if (view.count != points) malformed("{} values of {} for {} positions", view.count, semantic, points);
-      const auto known = std::ranges::find(semantics_, semantic);
-      const auto place = static_cast<std::size_t>(known - semantics_.begin());
-      if (known == semantics_.end()) {
-        semantics_.push_back(semantic);
-        attributes_.push_back({semantic.substr(1), "", static_cast<int>(width), {}});
-      }
+      const auto [known, is_new] = semantics_.try_emplace(semantic, attributes_.size());
+      const std::size_t place = known->second;
+      if (is_new) attributes_.push_back({semantic.substr(1), "", static_cast<int>(width), {}});
       if (attributes_[place].width != static_cast<int>(width)) continue;
       for (std::size_t v = 0; v < view.count; ++v) {
         std::array<float, 4> raw;
@@ -343,27 +484,27 @@ class GltfReader {
 
   /// The attributes that all parts have; names, units and order as the writer left them in the first mesh.
   void take_attributes() {
-    std::erase_if(attributes_, [&](Attribute& attribute) {
-      return attribute.values.size() != mesh_.coordinates.size() / 3 * static_cast<std::size_t>(attribute.width);
-    });
+    const auto is_whole = [&](const Attribute& attribute) {
+      return attribute.values.size() == mesh_.coordinates.size() / 3 * static_cast<std::size_t>(attribute.width);
+    };
     FileNames names({});
+    std::vector<bool> taken(attributes_.size(), false);
     const Json& meshes = member(json_, "meshes");
     const Json& first = meshes.is_array() && !meshes.empty() ? meshes[0] : meshes;
     for (const Json& text : member(member(member(first, "extras"), "tegl"), "attributes")) {
-      const std::string semantic = text_at(text, "semantic");
-      const auto found = std::ranges::find_if(
-          attributes_, [&](const Attribute& attribute) { return "_" + attribute.name == semantic; });
-      if (found == attributes_.end()) continue;
-      mesh_.vertex_attributes.push_back(std::move(*found));
-      attributes_.erase(found);
-      Attribute& taken = mesh_.vertex_attributes.back();
-      if (const std::string name = text_at(text, "name"); !name.empty()) taken.name = name;
-      taken.name = names.make(taken.name);
-      taken.unit = text_at(text, "unit");
+      const auto found = semantics_.find(text_at(text, "semantic"));
+      if (found == semantics_.end() || taken[found->second] || !is_whole(attributes_[found->second])) continue;
+      taken[found->second] = true;
+      mesh_.vertex_attributes.push_back(std::move(attributes_[found->second]));
+      Attribute& attribute = mesh_.vertex_attributes.back();
+      if (const std::string name = text_at(text, "name"); !name.empty()) attribute.name = name;
+      attribute.name = names.make(attribute.name);
+      attribute.unit = text_at(text, "unit");
     }
-    for (Attribute& other : attributes_) {
-      other.name = names.make(other.name.empty() ? "_" : other.name);
-      mesh_.vertex_attributes.push_back(std::move(other));
+    for (std::size_t i = 0; i < attributes_.size(); ++i) {
+      if (taken[i] || !is_whole(attributes_[i])) continue;
+      attributes_[i].name = names.make(attributes_[i].name.empty() ? "_" : attributes_[i].name);
+      mesh_.vertex_attributes.push_back(std::move(attributes_[i]));
     }
   }
 
@@ -399,21 +540,30 @@ class GltfReader {
     if (mesh_.dim == 0 && dim.is_number_integer()) mesh_.dim = dim.get<int>() == 1 ? 1 : 2;
     const Json& space_dim = member(extras, "space_dim");
     if (space_dim.is_number_integer() && space_dim.get<int>() == 2) flatten(mesh_, path_);
+    for (auto* const axis_texts : {&mesh_.axis_names, &mesh_.axis_units})
+      if (!axis_texts->empty()) axis_texts->resize(static_cast<std::size_t>(mesh_.space_dim));
   }
 
   fs::path path_;
   ReadProgress& progress_;
+  bool allow_outside_paths_;
   Json json_;
-  Bytes binary_;
-  std::vector<Bytes> buffers_;
+  Bytes file_;
+  std::map<fs::path, Bytes> files_;                      ///< further files that were read
+  std::deque<Bytes> decoded_;                            ///< data URIs
+  std::span<const unsigned char> binary_;                ///< of file_
+  std::vector<std::span<const unsigned char>> buffers_;  ///< of file_, files_ and decoded_
+  std::uint64_t all_bytes_ = 0;                          ///< of this and the further files
   std::size_t visited_ = 0;
-  std::vector<Attribute> attributes_;   ///< of all parts so far, by the names in the file
-  std::vector<std::string> semantics_;  ///< the same with their underscore
+  std::vector<Attribute> attributes_;             ///< of all parts so far, by the names in the file
+  std::map<std::string, std::size_t> semantics_;  ///< the place of each, by the name with its underscore
   Mesh mesh_;
 };
 
 }  // namespace
 
-Mesh read_gltf(const fs::path& path, ReadProgress& progress) { return GltfReader(path, progress).run(); }
+Mesh read_gltf(const fs::path& path, ReadProgress& progress, bool allow_outside_paths) {
+  return GltfReader(path, progress, allow_outside_paths).run();
+}
 
 }  // namespace tegl::io_detail

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "common.hpp"
+#include "hdf5_links.hpp"
 
 namespace tegl::io_detail {
 
@@ -25,6 +26,23 @@ herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* out) {
   auto& reason = *static_cast<Reason*>(out);
   if (reason[0] == '\0' && error->desc != nullptr) std::strncpy(reason.data(), error->desc, reason.size() - 1);
   return 0;
+}
+
+/// The names of a group's links.
+struct Names {
+  std::vector<std::string> names;
+  bool out_of_memory = false;
+};
+
+herr_t add_name(hid_t, const char* name, const H5L_info_t*, void* to) {
+  auto& names = *static_cast<Names*>(to);
+  try {
+    names.names.emplace_back(name);
+    return 0;
+  } catch (const std::bad_alloc&) {
+    names.out_of_memory = true;
+    return -1;
+  }
 }
 
 std::string innermost_reason() {
@@ -76,12 +94,15 @@ H5File H5File::create(const fs::path& where, const fs::path& path) {
   return {path, ErrorCode::WriteFailed, std::move(status), std::move(handle)};
 }
 
-H5File H5File::open(const fs::path& path) {
+H5File H5File::open(const fs::path& path, bool allow_outside_paths) {
+  const std::uint64_t bytes = check_hdf5_links(path, {}, ExternalStorage::beside_file, allow_outside_paths);
   H5Handle handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (handle.id() < 0)
     fail(ErrorCode::MalformedFile, path, "cannot be opened as HDF5 ({}); expected a whole HDF5 file",
          innermost_reason());
-  return {path, ErrorCode::MalformedFile, nullptr, std::move(handle)};
+  H5File file(path, ErrorCode::MalformedFile, nullptr, std::move(handle));
+  file.bytes_ = bytes;
+  return file;
 }
 
 H5Handle H5File::checked(hid_t id, H5Handle::Closer closer, const char* what) const {
@@ -113,23 +134,20 @@ bool H5File::has(hid_t group, const char* name) const {
 }
 
 H5Handle H5File::open_dataset(hid_t group, const char* name) const {
-  return checked(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, "opening a dataset");
+  const H5Handle access = checked(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, "opening a dataset");
+  checked(H5Pset_efile_prefix(access.id(), "${ORIGIN}"), "opening a dataset");  // external storage beside the file
+  return checked(H5Dopen2(group, name, access.id()), H5Dclose, "opening a dataset");
 }
 
 std::vector<std::string> H5File::number_datasets(hid_t group) const {
-  H5G_info_t info{};
-  checked(H5Gget_info(group, &info), "listing a group");
+  // One pass: HDF5 finds a name by its place in linear time.
+  Names links;
+  if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &links) < 0) {
+    if (links.out_of_memory) throw std::bad_alloc();
+    fail(code_, path_, "listing a group failed in HDF5 ({})", innermost_reason());
+  }
   std::vector<std::string> names;
-  for (hsize_t i = 0; i < info.nlinks; ++i) {
-    const auto name_of = [&](char* to, std::size_t size) {
-      return H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, to, size, H5P_DEFAULT);
-    };
-    const ssize_t length = name_of(nullptr, 0);
-    constexpr ssize_t kLongest = 1 << 16;
-    if (length < 0 || length > kLongest) fail(code_, path_, "listing a group failed in HDF5 ({})", innermost_reason());
-    std::string name(static_cast<std::size_t>(length) + 1, '\0');
-    name_of(name.data(), name.size());
-    name.pop_back();
+  for (std::string& name : links.names) {
     if (!has(group, name.c_str())) continue;
     const H5Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
     if (object.id() < 0 || H5Iget_type(object.id()) != H5I_DATASET) continue;
@@ -245,7 +263,101 @@ int H5File::rank(hid_t group, const char* name) const {
   return H5Sget_simple_extent_ndims(space.id());
 }
 
-std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {
+namespace {
+
+constexpr std::uint64_t kBestRatio = 4096;  ///< of a filter whose best one is not known
+
+/// What a dataset is, and how the file holds it.
+struct Stored {
+  std::vector<std::uint64_t> sizes;
+  std::uint64_t bytes = 0;        ///< of all values, as in the file
+  std::uint64_t stored = 0;       ///< of these, in the file
+  std::uint64_t ratio = 1;        ///< filters make at most so many bytes of one
+  std::uint64_t chunk_bytes = 0;  ///< that are decompressed at a time; 0: none
+  bool is_virtual = false;        ///< a view of other datasets
+};
+
+/// How many bytes filters make of one at most: deflate 1032 (zlib, "Technical Details"); others are limited by choice.
+std::uint64_t most_expansion(hid_t properties) {
+  std::uint64_t ratio = 1;
+  for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
+    std::size_t parameters = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(properties, static_cast<unsigned>(i), nullptr, &parameters, nullptr, 0, nullptr, nullptr);
+    const bool keeps_size = filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32;
+    ratio = std::max<std::uint64_t>(ratio, keeps_size ? 1 : filter == H5Z_FILTER_DEFLATE ? 1032 : kBestRatio);
+  }
+  return ratio;
+}
+
+/// The bytes of one chunk; 0 if its sizes are damaged.
+std::uint64_t bytes_of_chunk(hid_t properties, std::size_t rank, std::uint64_t item, const fs::path& path) {
+  std::array<hsize_t, 2> chunk{};
+  if (H5Pget_chunk(properties, static_cast<int>(rank), chunk.data()) != static_cast<int>(rank)) return 0;
+  return checked_bytes(std::vector<std::uint64_t>(chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(rank)),
+                       item, path);
+}
+
+void require_stored(const Stored& dataset, const char* name, const fs::path& path) {
+  // A dataset that is stored in part has zeros for the rest: meshes are written whole.
+  if (dataset.bytes / dataset.ratio > dataset.stored)
+    fail(ErrorCode::MalformedFile, path,
+         "dataset '{}' of {} values takes {} bytes, of which the file stores {}; expected {} or more", name,
+         shape_text(dataset.sizes), dataset.bytes, dataset.stored, dataset.bytes / dataset.ratio);
+  if (is_chunk_too_large(dataset.chunk_bytes, dataset.bytes))
+    fail(ErrorCode::MalformedFile, path, "dataset '{}' of {} bytes in compressed chunks of {}; expected at most {}",
+         name, dataset.bytes, dataset.chunk_bytes, std::max(kMostChunkBytes, 2 * dataset.bytes));
+}
+
+/// `all_bytes`: of the file and those that it leads to.
+Stored stored_of(hid_t dataset, const std::array<hsize_t, 2>& size, std::size_t rank, std::uint64_t all_bytes,
+                 const char* name, const fs::path& path) {
+  Stored result;
+  result.sizes.assign(size.begin(), size.begin() + static_cast<std::ptrdiff_t>(rank));
+  const H5Handle type(H5Dget_type(dataset), H5Tclose);
+  const H5Handle properties(H5Dget_create_plist(dataset), H5Pclose);
+  const std::uint64_t item = type.id() < 0 ? 0 : H5Tget_size(type.id());
+  constexpr std::uint64_t kLargestNumber = 16;
+  if (properties.id() < 0 || item < 1 || item > kLargestNumber)
+    fail(ErrorCode::MalformedFile, path, "dataset '{}' of values of {} bytes; expected numbers of 1 to {}", name, item,
+         kLargestNumber);
+  result.bytes = checked_bytes(result.sizes, item, path);
+  result.stored = H5Dget_storage_size(dataset);
+  const H5D_layout_t layout = H5Pget_layout(properties.id());
+  if (layout == H5D_CHUNKED) {
+    result.ratio = most_expansion(properties.id());
+    const std::uint64_t chunk = bytes_of_chunk(properties.id(), rank, item, path);
+    if (chunk == 0)
+      fail(ErrorCode::MalformedFile, path, "dataset '{}' in chunks of size 0 or of other dimensions; expected {}", name,
+           rank);
+    if (H5Pget_nfilters(properties.id()) > 0) result.chunk_bytes = chunk;
+  } else if (layout == H5D_VIRTUAL) {
+    result.is_virtual = true;
+    result.stored = all_bytes;
+    result.ratio = kBestRatio;  // its sources may be compressed
+  }
+  result.stored = std::min(result.stored, all_bytes);
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const { return stored(group, name).sizes; }
+
+std::vector<std::uint64_t> H5File::claim(hid_t group, const char* name) {
+  const StoredSizes it = stored(group, name);
+  claimed_.bytes += it.bytes;
+  claimed_.stored += it.stored;
+  if (claimed_.stored > bytes_ || claimed_.bytes / kBestRatio > bytes_)
+    fail(
+        code_, path_,
+        "dataset '{}' and those read before it take {} bytes, of which the file stores {}; expected at most {} and {}, "
+        "for a file of {} bytes",
+        name, claimed_.bytes, claimed_.stored, kBestRatio * bytes_, bytes_, bytes_);
+  return it.sizes;
+}
+
+H5File::StoredSizes H5File::stored(hid_t group, const char* name) const {
   if (!has(group, name)) fail(code_, path_, "no dataset '{}'; expected it", name);
   const H5Handle dataset = open_dataset(group, name);
   const H5Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "opening a dataset");
@@ -253,13 +365,9 @@ std::vector<std::uint64_t> H5File::sizes(hid_t group, const char* name) const {
   if (rank < 1 || rank > 2) fail(code_, path_, "dataset '{}' of {} dimensions; expected 1 or 2", name, rank);
   std::array<hsize_t, 2> size{};
   checked(H5Sget_simple_extent_dims(space.id(), size.data(), nullptr), "opening a dataset");
-  const std::vector<std::uint64_t> result(size.begin(), size.begin() + rank);
-  // Compressed data may be larger than the file, but by no more than the filters can do.
-  constexpr std::uint64_t kBestRatio = 4096;
-  if (checked_bytes(result, 1, path_) / kBestRatio > size_of_file(path_))
-    fail(code_, path_, "dataset '{}' of {} values in a file of {} bytes", name, shape_text(result),
-         size_of_file(path_));
-  return result;
+  const Stored found = stored_of(dataset.id(), size, static_cast<std::size_t>(rank), bytes_, name, path_);
+  require_stored(found, name, path_);
+  return {found.sizes, found.bytes, found.is_virtual ? 0 : found.stored};
 }
 
 void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to,
@@ -268,7 +376,8 @@ void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to,
   const H5Handle dataset = open_dataset(group, name);
   const H5Handle space = checked(H5Dget_space(dataset.id()), H5Sclose, "opening a dataset");
   const auto rank = static_cast<int>(size.size());
-  const std::uint64_t row_bytes = H5Tget_size(memory_type) * (rank == 2 ? std::max<std::uint64_t>(1, size[1]) : 1);
+  const std::uint64_t row_bytes =
+      checked_bytes(std::array{rank == 2 ? std::max<std::uint64_t>(1, size[1]) : 1}, H5Tget_size(memory_type), path_);
   // Whole chunks: a part of one would be inflated anew for each part.
   const H5Handle layout = checked(H5Dget_create_plist(dataset.id()), H5Pclose, "opening a dataset");
   std::array<hsize_t, 2> chunk{1, 1};

@@ -83,7 +83,8 @@ class H5File {
  public:
   /// Creates the file at `where`.
   static H5File create(const std::filesystem::path& where, const std::filesystem::path& path);
-  static H5File open(const std::filesystem::path& path);
+  /// Opens a file to be read, after a check of the files that it leads to (hdf5_links.hpp).
+  static H5File open(const std::filesystem::path& path, bool allow_outside_paths);
 
   /// Writes what is buffered and closes; a full disk may show only here.
   void close();
@@ -108,8 +109,12 @@ class H5File {
 
   /// How many dimensions a dataset has.
   [[nodiscard]] int rank(hid_t group, const char* name) const;
-  /// The sizes of a dataset, checked to be no larger than the file can hold; MalformedFile if it is not there.
+  /// The sizes of a dataset, checked to be no larger than what the file stores of it, and not in larger chunks than can
+  /// be read in about its own memory; MalformedFile if it is not there.
   [[nodiscard]] std::vector<std::uint64_t> sizes(hid_t group, const char* name) const;
+  /// The same for a dataset that memory is taken for: what the file stores of all of them together cannot be more than
+  /// the file and those that it leads to.
+  std::vector<std::uint64_t> claim(hid_t group, const char* name);
   /// Reads a whole dataset, of one or two dimensions, as `memory_type` into room for all its values: some rows at a
   /// time, after which `done` is called with the number of bytes in memory that they take.
   void read(hid_t group, const char* name, hid_t memory_type, void* to,
@@ -120,12 +125,26 @@ class H5File {
       : path_(std::move(path)), code_(code), status_(std::move(status)), file_(std::move(handle)) {}
   H5Handle checked(hid_t id, H5Handle::Closer closer, const char* what) const;
   void checked(herr_t status, const char* what) const;
+  struct StoredSizes {
+    std::vector<std::uint64_t> sizes;
+    std::uint64_t bytes = 0;   ///< of all values
+    std::uint64_t stored = 0;  ///< of these, in the file; 0 for a view of other datasets
+  };
+  [[nodiscard]] StoredSizes stored(hid_t group, const char* name) const;
 
   std::filesystem::path path_;
   ErrorCode code_;
   std::shared_ptr<const H5WriteStatus>
       status_;  ///< null for files that are read; outlives the file, which reports to it
   H5Handle file_;
+  std::uint64_t bytes_ = 0;  ///< of a file that is read and of those that it leads to
+  StoredSizes claimed_;      ///< sums over the datasets that are read
 };
+
+/// Memory that a chunk of a dataset takes, which is decompressed whole: at most twice that of the dataset, or 32 MiB.
+inline constexpr std::uint64_t kMostChunkBytes = std::uint64_t{1} << 25;
+[[nodiscard]] inline bool is_chunk_too_large(std::uint64_t chunk_bytes, std::uint64_t dataset_bytes) {
+  return chunk_bytes > kMostChunkBytes && chunk_bytes / 2 > dataset_bytes;
+}
 
 }  // namespace tegl::io_detail

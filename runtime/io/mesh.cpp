@@ -88,6 +88,16 @@ void ReadProgress::add(std::uint64_t bytes) {
   tick(progress_, static_cast<double>(done_) / static_cast<double>(size_), path_);
 }
 
+void CopyLimit::add(std::uint64_t count, std::uint64_t bytes, std::string_view what) {
+  std::uint64_t all = 0;
+  if (__builtin_mul_overflow(count, bytes, &all) || __builtin_add_overflow(all, taken_, &all))
+    all = std::numeric_limits<std::uint64_t>::max();
+  taken_ = all;
+  if (taken_ > most_)
+    fail(ErrorCode::TooLarge, path_, "{} take {} bytes or more; expected at most {}, 64 times the file and 64 MiB",
+         what, taken_, most_);
+}
+
 std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const fs::path& path) {
   std::array<float, 3> result{};
   const auto point = position(mesh, vertex);
@@ -203,18 +213,24 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress
     write_vtkhdf(mesh, path, progress);
 }
 
-Mesh read_mesh(const fs::path& path, const Progress& progress) {
+Mesh read_mesh(const fs::path& path, const ReadMeshOptions& options) {
   require_readable_file(path);
   const MeshFileFormat& format = format_of(path);
-  ReadProgress read(progress, path);
+  ReadProgress read(options.progress, path);
   Mesh mesh = format.extension == ".ply"      ? read_ply(path, read)
-              : format.extension == ".vtkhdf" ? read_vtkhdf(path, read)
-              : is_gltf(format)               ? read_gltf(path, read)
+              : format.extension == ".vtkhdf" ? read_vtkhdf(path, read, options.allow_outside_paths)
+              : is_gltf(format)               ? read_gltf(path, read, options.allow_outside_paths)
               : format.extension == ".obj"    ? read_obj(path, read)
                                               : read_stl(path, read);
   check_indices(mesh, path);
-  tick(progress, 1.0, path);
+  tick(options.progress, 1.0, path);
   return mesh;
+}
+
+Mesh read_mesh(const fs::path& path, const Progress& progress) {
+  ReadMeshOptions options;
+  options.progress = progress;
+  return read_mesh(path, options);
 }
 
 template Mesh to_mesh(const Contour<2, float>&);

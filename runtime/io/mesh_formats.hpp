@@ -38,10 +38,12 @@ void write_ply(const Mesh& mesh, const std::filesystem::path& path, const Progre
 Mesh read_ply(const std::filesystem::path& path, ReadProgress& progress);
 
 void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress);
+/// `allow_outside_paths`: see ReadMeshOptions.
+Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
 
 void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress);
+/// `allow_outside_paths`: see ReadMeshOptions.
+Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
 
 void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
 /// The number as the file has it; TooLarge beyond 2^32 - 1.
@@ -83,6 +85,22 @@ std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const 
 /// Makes a mesh that was read with space_dim 3 planar, as the file says that it was written from the plane (`space_dim`
 /// 2); MalformedFile if it is not in the plane z = 0.
 void flatten(Mesh& mesh, const std::filesystem::path& path);
+
+/// Limits how much memory the copies of a file's numbers take: instances of a mesh, attributes repeated for the
+/// triangles of a polygon. A small file can ask for any number of them.
+class CopyLimit {
+ public:
+  /// For a file of so many bytes, with those of the buffers it names.
+  CopyLimit(const std::filesystem::path& path, std::uint64_t file_bytes)
+      : path_(path), most_((std::uint64_t{1} << 26) + 64 * std::min(file_bytes, std::uint64_t{1} << 50)) {}
+  /// `count` more copies of `bytes` each. Throws TooLarge: so many bytes for `what`, and the limit.
+  void add(std::uint64_t count, std::uint64_t bytes, std::string_view what);
+
+ private:
+  const std::filesystem::path& path_;
+  std::uint64_t most_;
+  std::uint64_t taken_ = 0;
+};
 
 /// Throws MalformedFile if a simplex names a vertex that does not exist.
 void check_indices(const Mesh& mesh, const std::filesystem::path& path);

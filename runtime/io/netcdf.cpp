@@ -409,7 +409,7 @@ NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::siz
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
-  const NcFile file(path, options.progress);
+  const NcFile file(path, options.progress, options.allow_outside_paths);
   Found found = find_variable(file, options);
   VariableGrid grid = read_grid(file, found.variable, found.slab);
   found.info.axis_directions = std::move(grid.directions);
@@ -424,7 +424,7 @@ RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const Rea
 }
 
 RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageOptions& options) {
-  const auto file = std::make_shared<const NcFile>(path, options.progress);
+  const auto file = std::make_shared<const NcFile>(path, options.progress, options.allow_outside_paths);
   if (file->is_compressed())
     fail(ErrorCode::UnsupportedData, path,
          "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");

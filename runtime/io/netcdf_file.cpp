@@ -14,6 +14,7 @@
 
 #include "cdf_header.hpp"
 #include "common.hpp"
+#include "hdf5_links.hpp"
 #include "inflate.hpp"
 
 namespace tegl::io_detail {
@@ -116,7 +117,7 @@ const char* nc_type_name(nc_type type) noexcept {
 
 bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UINT64 && type != NC_CHAR; }
 
-NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
+NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outside_paths) : path_(path) {
   if (is_gzip(path)) content_ = inflate_netcdf(path, progress);
   const std::vector<unsigned char> start = content_.empty() ? read_bytes(path, 0, 8) : std::vector<unsigned char>();
   const auto all = std::span<const unsigned char>(content_.empty() ? start : content_);
@@ -127,6 +128,9 @@ NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
     fail(ErrorCode::MalformedFile, path, "starts with {}; expected netCDF: 'CDF' and 1, 2 or 5, or '\\x89HDF'",
          shown(prefix));
   }
+  bytes_ = is_hdf5(prefix) ? check_hdf5_links(path, content_, ExternalStorage::in_current_folder, allow_outside_paths)
+           : content_.empty() ? size_of_file(path)
+                              : content_.size();
   // An absolute path cannot be taken for the address of a server.
   const int status = content_.empty()
                          ? nc_open(fs::absolute(path).c_str(), NC_NOWRITE, &id_)
@@ -284,22 +288,34 @@ ValueArray NcFile::numeric_array(const NcVariable& variable) const {
   return array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
 }
 
+void NcFile::require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const {
+  const std::uint64_t bytes = checked_bytes(sizes, item, path_);
+  // No filter of the library compresses better; more is a damaged header, not data.
+  constexpr std::uint64_t kBestRatio = 4096;
+  if (bytes / kBestRatio > bytes_)
+    fail(ErrorCode::MalformedFile, path_,
+         "variable '{}' of {} samples takes {} bytes in a file of {}; expected at most {} times as many", variable.name,
+         shape_text(sizes), bytes, bytes_, kBestRatio);
+  // A chunk is decompressed whole, whatever part of it is read.
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> chunks(std::max<std::size_t>(1, variable.sizes.size()), 1);
+  if (nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) != NC_NOERR || storage != NC_CHUNKED)
+    return;
+  const std::uint64_t chunk_bytes =
+      checked_bytes(std::vector<std::uint64_t>(chunks.begin(), chunks.end()), item, path_);
+  const std::vector<std::uint64_t> all(variable.sizes.begin(), variable.sizes.end());
+  if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(chunk_bytes, whole))
+    fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} bytes in chunks of {} ({} bytes); expected at most {}",
+         variable.name, whole, shape_text(chunks), chunk_bytes, std::max(kMostChunkBytes, 2 * whole));
+}
+
 ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const Progress& progress) const {
   ValueArray result = numeric_array(variable);
-  const auto bytes_of = [&](const std::vector<std::size_t>& sizes, std::size_t item) {
-    return checked_bytes(std::vector<std::uint64_t>(sizes.begin(), sizes.end()), item, path_);
-  };
+  const std::vector<std::uint64_t> sizes(slab.count.begin(), slab.count.end());
   std::visit(
       [&]<class T>(std::vector<T>& values) {
-        // No filter of the library compresses better; more is a damaged header, not data.
-        constexpr std::uint64_t kBestRatio = 4096;
-        const std::uint64_t stored = content_.empty() ? size_of_file(path_) : content_.size();
-        const std::uint64_t bytes = bytes_of(slab.count, sizeof(T));
-        if (bytes / kBestRatio > stored)
-          fail(ErrorCode::MalformedFile, path_,
-               "{} samples of variable '{}' in a file of {} bytes; expected at most {} bytes of samples",
-               shape_text(slab.count), variable.name, stored, stored * kBestRatio);
-        values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
+        require_stored(variable, sizes, sizeof(T));
+        values.resize(static_cast<std::size_t>(checked_bytes(sizes, sizeof(T), path_) / sizeof(T)));
         if (!values.empty()) read_blocks(variable, slab, sizeof(T), values.data(), progress);
       },
       result);

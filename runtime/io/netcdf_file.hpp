@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,10 @@ NcSlab whole(const NcVariable& variable);
 
 class NcFile {
  public:
-  /// Opens classic and netCDF-4 files, gzipped as a whole too (then in memory). Errors: MalformedFile.
-  NcFile(const std::filesystem::path& path, const Progress& progress);
+  /// Opens classic and netCDF-4 files, gzipped as a whole too (then in memory). HDF5 files are refused if they lead to
+  /// others outside of their folder, unless `allow_outside_paths` (see hdf5_links.hpp). Errors: MalformedFile,
+  /// UnsupportedData.
+  NcFile(const std::filesystem::path& path, const Progress& progress, bool allow_outside_paths = false);
   ~NcFile();
   NcFile(const NcFile&) = delete;
   NcFile& operator=(const NcFile&) = delete;
@@ -65,11 +68,13 @@ class NcFile {
   void collect(int group, const std::string& prefix, int depth, std::vector<NcVariable>& out) const;
   [[nodiscard]] NcVariable describe(int group, int id, const std::string& prefix) const;
   [[nodiscard]] ValueArray numeric_array(const NcVariable& variable) const;
+  void require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const;
   void read_blocks(const NcVariable& variable, const NcSlab& slab, std::size_t item, void* to,
                    const Progress& progress) const;
 
   std::filesystem::path path_;
   std::vector<unsigned char> content_;  ///< of a compressed file; the library reads from here
+  std::uint64_t bytes_ = 0;             ///< of the file, and of those that it leads to
   int id_ = -1;
 };
 

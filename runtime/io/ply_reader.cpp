@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "attributes.hpp"
 #include "common.hpp"
@@ -104,6 +105,12 @@ class AttributeColumns {
     }
   }
   std::vector<Attribute> take() { return std::move(attributes_); }
+  /// Memory that the numbers of one item take.
+  [[nodiscard]] std::uint64_t bytes() const {
+    std::uint64_t numbers = 0;
+    for (const Attribute& attribute : attributes_) numbers += static_cast<std::uint64_t>(attribute.width);
+    return numbers * sizeof(double);
+  }
 
  private:
   std::vector<std::size_t> columns_;  ///< the first of each
@@ -161,8 +168,7 @@ class PlyReader {
         read_format(parts[1]);
         has_format = true;
       } else if (parts[0] == "element" && parts.size() == 3) {
-        elements_.push_back({std::string(parts[1]), 0, {}});
-        if (!parse_number(parts[2], elements_.back().count)) bad_line(line);
+        read_element_line(line, parts);
       } else if (parts[0] == "property" && !elements_.empty()) {
         read_property(line, parts);
       } else {
@@ -170,6 +176,15 @@ class PlyReader {
       }
     }
     if (!has_format) fail(ErrorCode::MalformedFile, path_, "PLY header without a format line");
+  }
+
+  void read_element_line(std::string_view line, const std::vector<std::string_view>& parts) {
+    Element element{std::string(parts[1]), 0, {}};
+    if (!parse_number(parts[2], element.count)) bad_line(line);
+    if (!element_names_.insert(element.name).second)
+      fail(ErrorCode::MalformedFile, path_, "two elements {}; expected each name once", shown(element.name));
+    elements_.push_back(std::move(element));
+    property_names_.clear();
   }
 
   [[noreturn]] void bad_line(std::string_view line) const {
@@ -224,6 +239,9 @@ class PlyReader {
     if (list) property.count_type = scalar_of(parts[2]);
     if (!type || (list && !property.count_type)) bad_line(line);
     property.type = *type;
+    if (!property_names_.insert(property.name).second)
+      fail(ErrorCode::MalformedFile, path_, "two properties {} of element {}; expected each name once",
+           shown(property.name), shown(elements_.back().name));
     elements_.back().properties.push_back(std::move(property));
   }
 
@@ -378,12 +396,17 @@ class PlyReader {
     if (!face) others[first] = others[second] = false;
     AttributeColumns attributes(element, others, of_simplices_);
     Item item;
-    mesh_.simplices.reserve(static_cast<std::size_t>(element.count) * (face ? 3 : 2));
+    // Each face has three numbers in its list: a count that the file has no room for gets no memory.
+    const std::uint64_t simplices = face ? std::min<std::uint64_t>(element.count, left() / 3) : element.count;
+    mesh_.simplices.reserve(static_cast<std::size_t>(simplices) * (face ? 3 : 2));
+    CopyLimit limit(path_, bytes_.size());
+    const std::uint64_t copied = attributes.bytes();
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_item(element, list, item);
       if (!face) item.list = {item.scalars[first], item.scalars[second]};
       if (face && item.list.size() < 3)
         fail(ErrorCode::MalformedFile, path_, "face {} of {} vertices; expected 3 or more", i, item.list.size());
+      if (item.list.size() > 3) limit.add(item.list.size() - 3, copied, "attributes of the triangles of polygons");
       for (std::size_t corner = face ? 2 : 1; corner < item.list.size(); ++corner) {
         mesh_.simplices.push_back(vertex_number(item.list[0]));
         if (face) mesh_.simplices.push_back(vertex_number(item.list[corner - 1]));
@@ -400,6 +423,8 @@ class PlyReader {
   std::size_t at_ = 0;
   Encoding encoding_ = Encoding::Ascii;
   std::vector<Element> elements_;
+  std::set<std::string> element_names_;
+  std::set<std::string> property_names_;  ///< of the last element
   AttributeTexts of_vertices_, of_simplices_;
   Mesh mesh_;
   bool planar_ = false;

@@ -37,8 +37,11 @@ std::vector<std::string> split(const std::string& text, std::size_t count) {
 /// The simplices of cells that are all of one type.
 class Reader {
  public:
-  Reader(const fs::path& path, ReadProgress& progress)
-      : path_(path), progress_(progress), file_(H5File::open(path)), group_(open_root(file_, path)) {}
+  Reader(const fs::path& path, ReadProgress& progress, bool allow_outside_paths)
+      : path_(path),
+        progress_(progress),
+        file_(H5File::open(path, allow_outside_paths)),
+        group_(open_root(file_, path)) {}
 
   Mesh run() {
     mesh_.space_dim = 3;
@@ -84,7 +87,8 @@ class Reader {
   }
 
   template <class T>
-  [[nodiscard]] std::vector<T> numbers(const char* name, hid_t type) const {
+  [[nodiscard]] std::vector<T> numbers(const char* name, hid_t type) {
+    file_.claim(group_.id(), name);
     std::vector<T> values(static_cast<std::size_t>(length(group_.id(), name)));
     if (!values.empty()) read(group_.id(), name, type, values.data());
     return values;
@@ -120,7 +124,7 @@ class Reader {
   }
 
   void read_points() {
-    const auto size = file_.sizes(group_.id(), "Points");
+    const auto size = file_.claim(group_.id(), "Points");
     if (size.size() != 2 || size[1] != 3)
       fail(ErrorCode::MalformedFile, path_, "points of shape {}; expected rows of 3", shape_text(size));
     mesh_.coordinates.resize(static_cast<std::size_t>(size[0] * 3));
@@ -140,8 +144,9 @@ class Reader {
   }
 
   /// Rows of three get a fourth column.
-  void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) const {
+  void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) {
     const std::size_t count = rows.size() / 3;
+    file_.claim(point_data.id(), name);
     std::vector<double> fourth(count);
     if (count > 0) read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
     Buffer<double> all(4 * count);
@@ -162,6 +167,7 @@ class Reader {
     };
     if (vertices == 0 || !has(kNormals, {vertices, 3})) return;
     if (mesh_.space_dim == 4 && !has(kNormalTimes, {vertices})) return;
+    file_.claim(point_data.id(), kNormals);
     mesh_.normals.resize(static_cast<std::size_t>(3 * vertices));
     read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
@@ -181,7 +187,7 @@ class Reader {
 
   /// The arrays of a group that have a row for each vertex or simplex, those of the writer first and in its order.
   [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
-                                                  const std::set<std::string>& taken) const {
+                                                  const std::set<std::string>& taken) {
     std::vector<Attribute> result;
     if (!file_.has(group_.id(), group_name)) return result;
     const H5Handle group = file_.open_group((std::string("VTKHDF/") + group_name).c_str());
@@ -195,7 +201,7 @@ class Reader {
     std::sort(found.begin(), found.end());
     FileNames names({});
     for (const auto& [order, name] : found) {
-      const auto size = file_.sizes(group.id(), name.c_str());
+      const auto size = file_.claim(group.id(), name.c_str());
       const H5Handle dataset = file_.open_dataset(group.id(), name.c_str());
       const std::string own_name = file_.get_text(dataset.id(), kAttributeName);
       Attribute& attribute = result.emplace_back();
@@ -263,9 +269,9 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   writer.commit();
 }
 
-Mesh read_vtkhdf(const fs::path& path, ReadProgress& progress) {
+Mesh read_vtkhdf(const fs::path& path, ReadProgress& progress, bool allow_outside_paths) {
   const H5Quiet quiet;
-  return Reader(path, progress).run();
+  return Reader(path, progress, allow_outside_paths).run();
 }
 
 }  // namespace tegl::io_detail

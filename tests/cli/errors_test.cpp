@@ -288,6 +288,32 @@ TEST_F(Errors, AnInfiniteCoordinateOfAModelIsNamedAsSuch) {
   expect_failure(4, {"check", file}, {file, "a coordinate of vertex 3 is inf", "0 others"});
 }
 
+TEST_F(Errors, AMeshWithBytesInAnotherFolderNeedsAnOption) {
+  std::filesystem::create_directories(path("meshes"));
+  const std::vector<float> points = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const std::vector<unsigned char> corners = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  const std::string bytes = std::string(reinterpret_cast<const char*>(points.data()), 48) +
+                            std::string(reinterpret_cast<const char*>(corners.data()), 12);
+  write("outside.bin", bytes);
+  const std::string file =
+      write("meshes/a.gltf",
+            R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{)"
+            R"("attributes":{"POSITION":0},"indices":1}]}],"bufferViews":[{"buffer":0,"byteLength":48},)"
+            R"({"buffer":0,"byteOffset":48,"byteLength":12}],"accessors":[{"bufferView":0,"componentType":5126,)"
+            R"("count":4,"type":"VEC3"},{"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}],)"
+            R"("buffers":[{"byteLength":60,"uri":"../outside.bin"}]})");
+  auto all = all_of_saved_contours(file, path("out.ply"));
+  all.push_back({"check", file});
+  for (const auto& arguments : all) {
+    SCOPED_TRACE(arguments[0]);
+    expect_failure(4, arguments, {file, "outside.bin", "--allow-outside-paths"});
+  }
+  for (const char* const command : {"check", "measure"}) {
+    const RunResult run = run_tegl({command, file, "--allow-outside-paths"});
+    EXPECT_EQ(run.exit, 0) << run.err;
+  }
+}
+
 TEST_F(Errors, ASavedContourWithoutSimplicesExitsWith5) {
   const std::string file = write("empty.ply",
                                  "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"

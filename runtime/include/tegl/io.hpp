@@ -239,6 +239,14 @@ class ContourFile final : public ContourSink<N, Real> {
   std::unique_ptr<Parts> parts_;
 };
 
+/// How to read a mesh.
+struct ReadMeshOptions {
+  Progress progress = {};  ///< see Progress
+  /// Also reads files that the mesh's file names outside of its own folder and the folders below it: buffers of glTF,
+  /// external links, external storage and virtual datasets of HDF5. Otherwise these are refused with UnsupportedData.
+  bool allow_outside_paths = false;
+};
+
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
 /// triangles; glTF: nodes applied). Of .stl come triangles with coordinates as float, where vertices with equal
 /// coordinates become one, and nothing else. Of .obj come the vertices as they are numbered, with all digits, and
@@ -248,7 +256,13 @@ class ContourFile final : public ContourSink<N, Real> {
 /// programs any numbers by a name of their own (PLY: scalar properties; VTKHDF: arrays of one or two dimensions; glTF:
 /// _NAME as float). What write_mesh wrote to these comes back with the same numbering, names, units and isovalue; to
 /// .obj with the same numbering.
-/// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge, Cancelled.
+/// Counts and sizes of a file are checked before memory is taken for them. A small file may still describe a large
+/// mesh (glTF: nodes that share a mesh; VTKHDF: compressed arrays): instances are limited to 64 times the file's bytes
+/// plus 64 MiB, arrays to 4096 times the bytes that the file stores for them.
+/// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData (also a further file outside of the folder,
+/// see ReadMeshOptions), TooLarge, Cancelled.
+Mesh read_mesh(const std::filesystem::path& path, const ReadMeshOptions& options);
+/// Reads a mesh with the default options and this progress.
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace tegl
