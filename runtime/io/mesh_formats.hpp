@@ -40,7 +40,8 @@ Mesh read_ply(const std::filesystem::path& path, ReadProgress& progress);
 void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
 Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress);
 
-void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress,
+                  Compression compression);
 Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress);
 
 void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
