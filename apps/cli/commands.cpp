@@ -24,6 +24,11 @@ void Command::add_quiet() {
   app_->add_flag("-q,--quiet", quiet_, "no report and no progress bar")->excludes(json_option_);
 }
 
+unsigned Command::threads_wanted() const {
+  const CLI::Option* const option = app_->get_option_no_throw("--threads");
+  return option == nullptr || option->count() == 0 ? 0 : option->as<unsigned>();
+}
+
 ReadImageResult Command::read(const Progress& progress) {
   ReadSeriesResult result = images_.read(worked_on_, progress);
   take_order(result.files);

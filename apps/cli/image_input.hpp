@@ -14,7 +14,7 @@
 
 namespace tegl::cli {
 
-/// --var, --series, --times, --time-step, --time-unit, --sort, --raw and what belongs to it.
+/// --var, --series, --times, --time-step, --time-unit, --sort, --raw and the options of its layout.
 class ImageOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
@@ -44,6 +44,9 @@ class ImageOptions {
   /// --var is not for DICOM, nor --series for anything else.
   void require_fitting_choice(const std::vector<std::string>& files) const;
   [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
+  void add_raw_to(CLI::App& app);
+  /// Throws InvalidArgument.
+  [[nodiscard]] RawLayout raw_layout() const;
   /// Keeps the remarks on what was read.
   template <class Result>
   Result remembered(Result result) const {
@@ -51,7 +54,8 @@ class ImageOptions {
     return result;
   }
 
-  std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
+  std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_, spacing_, origin_,
+      axis_names_, axis_units_;
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
   CLI::Option* raw_option_ = nullptr;
