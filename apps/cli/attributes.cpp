@@ -40,8 +40,14 @@ void AttributeOptions::add_to(CLI::App& app) {
       ->type_name("FILE[:VAR]");
 }
 
+std::vector<std::string> AttributeOptions::files() const {
+  std::vector<std::string> files;
+  for (const std::string& text : texts_) files.push_back(parse_file_and_variable(text).file);
+  return files;
+}
+
 void AttributeOptions::require_inputs() const {
-  for (const std::string& text : texts_) require_input(parse_file_and_variable(text).file, Folders::allowed);
+  for (const std::string& file : files()) require_input(file, Folders::allowed);
 }
 
 ReadImageResult AttributeOptions::read(const FileAndVariable& from, const Progress& progress) const {

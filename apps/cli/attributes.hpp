@@ -29,6 +29,9 @@ class AttributeOptions {
 
   [[nodiscard]] bool wanted() const { return !texts_.empty(); }
 
+  /// The files that are read.
+  [[nodiscard]] std::vector<std::string> files() const;
+
   /// Throws FileNotFound if one of the files is not there: before the long work.
   void require_inputs() const;
 

@@ -17,22 +17,27 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
     app_->add_option("FILE", files_, file_help)->required();
   app_->parse_complete_callback(
       [this, files] { worked_on_ = files == Files::each ? std::vector{files_.front()} : files_; });
-  app_->add_flag(
-      "--allow-outside-paths", allow_outside_paths_,
-      "read further files that FILE names (glTF buffers, HDF5 links) wherever they lie, not only in its folder "
-      "and below");
+  app_->add_flag("--allow-outside-paths", images_.allow_outside_paths(),
+                 "read further files that FILE names (samples of NRRD and MetaImage headers, glTF buffers, HDF5 links) "
+                 "wherever they "
+                 "lie, not only in its folder and below");
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
 }
 
 ReadMeshOptions Command::mesh_options(Progress progress) const {
   ReadMeshOptions options;
   options.progress = std::move(progress);
-  options.allow_outside_paths = allow_outside_paths_;
+  options.allow_outside_paths = images_.allow_outside_paths();
   return options;
 }
 
 void Command::add_quiet() {
   app_->add_flag("-q,--quiet", quiet_, "no report and no progress bar")->excludes(json_option_);
+}
+
+unsigned Command::threads_wanted() const {
+  const CLI::Option* const option = app_->get_option_no_throw("--threads");
+  return option == nullptr || option->count() == 0 ? 0 : option->as<unsigned>();
 }
 
 ReadImageResult Command::read(const Progress& progress) {

@@ -48,6 +48,11 @@ class Command {
   /// What is worked on: FILE, or all that are one image.
   [[nodiscard]] InputFiles inputs() const { return {worked_on_}; }
   [[nodiscard]] bool json() const { return json_; }
+  [[nodiscard]] bool quiet() const { return quiet_; }
+  /// Files that are read besides.
+  [[nodiscard]] const std::vector<std::string>& other_inputs() const { return other_inputs_; }
+  /// --threads; 0 for all that the machine has, and without that option.
+  [[nodiscard]] unsigned threads_wanted() const;
   /// What there is to say of the images that were read and of what was written, unless silence is asked for.
   [[nodiscard]] std::vector<std::string> remarks() const {
     if (quiet_) return {};
@@ -58,7 +63,7 @@ class Command {
 
  protected:
   [[nodiscard]] CLI::App& app() { return *app_; }
-  [[nodiscard]] bool quiet() const { return quiet_; }
+  [[nodiscard]] const CLI::App& app() const { return *app_; }
   /// Progress bars are for people who wait.
   [[nodiscard]] bool wants_progress() const { return !json_ && !quiet_; }
   /// The files that are worked on: FILE, or all that are one image.
@@ -83,6 +88,10 @@ class Command {
   [[nodiscard]] OpenLayersResult open();
   /// Throws FileNotFound unless the files that are worked on can be read.
   void require_inputs() const;
+  /// Errors that name one of these files are not taken for errors of FILE.
+  void also_read(const std::vector<std::string>& files) {
+    other_inputs_.insert(other_inputs_.end(), files.begin(), files.end());
+  }
   /// Keeps a remark for the end; an empty one is none.
   void remark(std::string text) {
     if (!text.empty()) remarks_.push_back(std::move(text));
@@ -95,11 +104,11 @@ class Command {
   CLI::Option* json_option_;
   std::vector<std::string> files_ = {""};
   std::vector<std::string> worked_on_ = {""};
+  std::vector<std::string> other_inputs_;
   Files files_kind_;
   ImageOptions images_;
   std::vector<std::string> remarks_;
   bool json_ = false;
-  bool allow_outside_paths_ = false;
   bool quiet_ = false;
 };
 

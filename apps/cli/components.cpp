@@ -81,6 +81,7 @@ class ComponentsCommand final : public ContourInputCommand {
         .add_option("-o,--output", output_,
                     fmt::format("one file with the components chosen, their labels as attribute: {}", kContourFiles))
         ->type_name("FILE");
+    compress_.add_to(app());
     app().add_option("--split", split_, "a file for each; {label} in the name stands for its label")->type_name("FILE");
     app().add_option("--csv", csv_, "the table as CSV")->type_name("FILE");
     app()
@@ -111,9 +112,11 @@ class ComponentsCommand final : public ContourInputCommand {
 
  private:
   void require_outputs() const {
+    compress_.require_file(!output_.empty() || !split_.empty());
     if (!output_.empty()) {
       require_output(output_, files());
       require_output_keeps(output_, normals(), true);
+      compress_.require_known(output_);
     }
     if (!csv_.empty()) require_text_output(csv_, files());
     std::vector<std::string> outputs;
@@ -126,6 +129,7 @@ class ComponentsCommand final : public ContourInputCommand {
                   fmt::format("--split is '{}'; expected {{label}} in it, for the label of each component", split_));
     require_output(split_name(0), files());
     require_output_keeps(split_name(0), normals(), false);
+    compress_.require_known(split_name(0));
   }
 
   void require_outputs_hold(int dim) const {
@@ -156,7 +160,7 @@ class ComponentsCommand final : public ContourInputCommand {
       add_component_attribute(contour, labels);
       const Mesh mesh = mesh_of(select_components(contour, labels, found.chosen, bar.stage("select")), input);
       const Progress progress = bar.stage("write");
-      written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress); });
+      written.write(output_, [&](const auto& file) { write_mesh(mesh, file, progress, compress_.compression()); });
       lost_ = lost_vertices(mesh, output_);
       remark(lost_.remark(output_));
     }
@@ -177,7 +181,7 @@ class ComponentsCommand final : public ContourInputCommand {
       found.chosen.push_back(
           std::all_of(conditions.begin(), conditions.end(), [&](const auto& condition) { return condition(facts); }));
     std::vector<std::size_t> order = by_size(found);
-    if (order.empty())
+    if (order.empty() && !found.facts.empty())
       throw Error(ErrorCode::EmptyResult, fmt::format("none of the {} fulfils the condition; expected one at least",
                                                       counted(found.facts.size(), "component", "components")));
     for (std::size_t i = largest_; largest_ > 0 && i < order.size(); ++i) found.chosen[order[i]] = false;
@@ -213,7 +217,7 @@ class ComponentsCommand final : public ContourInputCommand {
       require_output(name, files());
       if (!progress(static_cast<double>(done++) / static_cast<double>(count))) InterruptHandler::throw_if_requested();
       const Mesh mesh = mesh_of(parts[label], input);
-      written.write(name, [&](const auto& file) { write_mesh(mesh, file); });
+      written.write(name, [&](const auto& file) { write_mesh(mesh, file, {}, compress_.compression()); });
       lost += lost_vertices(mesh, name);
     }
     return lost;
@@ -334,6 +338,7 @@ class ComponentsCommand final : public ContourInputCommand {
   std::string output_;
   std::string split_;
   std::string csv_;
+  CompressOption compress_;
   std::size_t rows_ = 20;
   std::vector<std::string> axes_;
   LostVertices lost_;  ///< in the files

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "numbers.hpp"
+#include "printable.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::cli {
@@ -45,12 +46,14 @@ int Console::height() const {
 
 void Console::write(std::string_view text) const {
   const bool written = std::fwrite(text.data(), 1, text.size(), stream_) == text.size() && std::fflush(stream_) == 0;
-  if (!written && stream_ == stdout)
-    throw Error(ErrorCode::WriteFailed, fmt::format("standard output cannot be written ({})", std::strerror(errno)));
+  if (written || stream_ != stdout) return;
+  if (errno == EPIPE) throw BrokenPipe();
+  throw Error(ErrorCode::WriteFailed, fmt::format("standard output cannot be written ({})", std::strerror(errno)));
 }
 
 std::string Console::styled(std::string_view code, std::string_view text) const {
-  return colours_ ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : std::string(text);
+  const std::string shown = printable(text);
+  return colours_ ? fmt::format("\x1b[{}m{}\x1b[0m", code, shown) : shown;
 }
 
 }  // namespace tegl::cli

@@ -10,6 +10,14 @@
 
 namespace tegl::cli {
 
+/// A text with the escapes of a terminal's colours.
+struct Styled {
+  std::string text;
+};
+
+/// Whoever read from standard output reads no more. The shell expects an end by SIGPIPE.
+struct BrokenPipe {};
+
 /// One stream of the program and what can be shown on it.
 class Console {
  public:
@@ -24,12 +32,15 @@ class Console {
   /// Lines of the terminal now; 24 elsewhere.
   [[nodiscard]] int height() const;
 
-  /// The text in bold, or in red, if the stream shows colours; else unchanged.
+  /// Whether texts are shown in colours.
+  [[nodiscard]] bool has_colours() const noexcept { return colours_; }
+  /// The text, made printable, in bold, or in red, if the stream shows colours.
   [[nodiscard]] std::string bold(std::string_view text) const { return styled("1", text); }
-  [[nodiscard]] std::string red(std::string_view text) const { return styled("31;1", text); }
-  [[nodiscard]] std::string green(std::string_view text) const { return styled("32", text); }
+  [[nodiscard]] Styled red(std::string_view text) const { return {styled("31;1", text)}; }
+  [[nodiscard]] Styled green(std::string_view text) const { return {styled("32", text)}; }
 
-  /// Writes the text at once.
+  /// Writes the text at once. What comes from files or the command line has to be printable (printable.hpp). Throws
+  /// WriteFailed, or BrokenPipe, if standard output cannot be written.
   void write(std::string_view text) const;
 
  private:

@@ -101,6 +101,7 @@ class ContourCommand final : public Command {
             "the image's axes")
         ->type_name("X,Y,Z[,T]");
     attributes_.add_to(app());
+    compress_.add_to(app());
     app().add_flag("--stream", stream_,
                    "read layer by layer and write as it comes, with little memory: one FILE of any format, --raw, or "
                    "several FILEs, "
@@ -125,12 +126,15 @@ class ContourCommand final : public Command {
     for (const std::string& output : outputs) {
       require_output(output, files());
       require_output_keeps(output, options_.normals(), attributes_.wanted() || one_file_);
+      compress_.require_known(output);
     }
     if (!index_.empty()) {
+      also_read({index_});
       require_input(index_);
       if (is_streamed())
-        throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream and no --raw");
+        throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream");
     }
+    also_read(attributes_.files());
     attributes_.require_inputs();
 
     ProgressBar bar(streams.err, wants_progress());
@@ -139,6 +143,7 @@ class ContourCommand final : public Command {
       if (!point.empty()) results[i].picked = Picked{point, {}, 0, 0, 0};
       results[i].output = outputs[i];
       results[i].isovalue = isovalues[i].value;
+      results[i].compression = compress_.compression();
     }
     if (is_streamed())
       stream(options, bar, results);
@@ -157,7 +162,7 @@ class ContourCommand final : public Command {
     if (is_streamed() || facets_)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--one-file with {}; expected a file for each isovalue, as in -o 'out_{{iso}}.vtkhdf'",
-                              facets_ ? "--facets" : "--stream or --raw"));
+                              facets_ ? "--facets" : "--stream"));
     for (const char* const place : {"{iso}", "{n}"})
       if (output_.find(place) != std::string::npos)
         throw Error(ErrorCode::InvalidArgument,
@@ -189,13 +194,13 @@ class ContourCommand final : public Command {
       result.input = inputs();
       result.variable = input.info.variable;
       result.image_dim = image_dim(input.image);
-      require_contour(input, *result.isovalue);
+      require_contour(input, *result.isovalue, options_.allows_empty());
     }
     results.front().seconds.read = watch.lap();  // once for all
     WrittenFiles written;
     const auto finished = [&](ContourResult& result) {
       if (result.stats) result.seconds.add(*result.stats);
-      if (result.mesh.simplices.empty()) fail_without_contour(*result.isovalue);
+      if (result.mesh.simplices.empty()) remark(remark_without_contour(input.image, *result.isovalue));
       if (one_file_) return;
       if (&result == &results.back()) input.image = AnyImage();  // its memory is of more use to the check
       check_and_write(result, bar, written);
@@ -230,8 +235,9 @@ class ContourCommand final : public Command {
     if (result.picked) return pick(image, options, bar, result);
     ExtractStats& stats = result.stats.emplace();
     if (const auto method = options_.polygon_triangulation()) {
-      auto polygons = triangulated_polygons(image, {*result.isovalue, options, options_.single_precision(), no_check_},
-                                            *method, bar, stats);
+      auto polygons = triangulated_polygons(
+          image, {*result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()}, *method,
+          bar, stats);
       result.mesh =
           std::visit([&](auto& contour) { return with_additions(std::move(contour), options.threads, bar); }, polygons);
       return;
@@ -262,16 +268,23 @@ class ContourCommand final : public Command {
     return all;
   }
 
-  /// Whether layers come in and the contour goes out as it comes.
-  [[nodiscard]] bool is_streamed() const { return stream_ || images().raw(); }
+  /// Whether layers come in and the contour goes out as it comes: if that is requested, and of raw values wherever it
+  /// can be done.
+  [[nodiscard]] bool is_streamed() const {
+    if (stream_ || !images().raw()) return stream_;
+    const bool needs_memory = !index_.empty() || facets_ || one_file_ || app().count("--pick") > 0 ||
+                              options_.wants_shape_normals() || attributes_.wanted() ||
+                              options_.polygon_triangulation();
+    return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
+  }
 
   /// --pick as numbers; none without.
-  [[nodiscard]] std::vector<double> picked_point() {
+  [[nodiscard]] std::vector<double> picked_point() const {
     std::vector<double> point;
     if (app().count("--pick") == 0) return point;
     if (is_streamed() || !index_.empty() || facets_)
       throw Error(ErrorCode::InvalidArgument,
-                  "--pick finds tiles from its point, in memory; expected no --index, --facets, --stream or --raw");
+                  "--pick finds tiles from its point, in memory; expected no --index, --facets or --stream");
     for (std::size_t at = 0; at <= pick_.size();) {
       const std::size_t comma = std::min(pick_.find(',', at), pick_.size());
       point.push_back(parse_finite("--pick", std::string_view(pick_).substr(at, comma - at)));
@@ -343,13 +356,16 @@ class ContourCommand final : public Command {
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}; expected one of the two: facets are in memory and not triangulated",
-                              is_streamed() ? "--stream or --raw" : "--triangulation"));
+                              is_streamed() ? "--stream" : "--triangulation"));
     if (options_.wants_shape_normals() || attributes_.wanted())
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--facets with {}, which is for simplices; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "none" : "--normals gradient or sobel"));
-    for (const std::string& output : outputs) require_facets_output(output, files());
+    for (const std::string& output : outputs) {
+      require_facets_output(output, files());
+      compress_.require_known(output, true);
+    }
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
@@ -362,15 +378,18 @@ class ContourCommand final : public Command {
       result.image_dim = image_dim(input.image);
       result.isovalue = isovalues[i].value;
       require_output_holds_facets(result.output, result.image_dim);
-      require_contour(input, result.isovalue);
+      require_contour(input, result.isovalue, options_.allows_empty());
     }
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)
-      write_image_facets(input.image, {result.isovalue, options, options_.single_precision(), no_check_}, bar, result,
-                         written);
+      write_image_facets(input.image,
+                         {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()},
+                         bar, result, written);
     written.keep();
     bar.clear();
+    for (const FacetsResult& result : results)
+      if (result.facets[0] == 0) remark(remark_without_contour(input.image, result.isovalue));
     return tell(streams, results);
   }
 
@@ -388,7 +407,9 @@ class ContourCommand final : public Command {
       result.variable = input.info.variable;
     }
     options.progress = bar.stage("stream");
-    stream_contours(input, options, options_.single_precision(), results);
+    const StreamOptions streaming{options, options_.single_precision(), options_.allows_empty(),
+                                  compress_.compression()};
+    for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));
     for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);
   }
 
@@ -401,6 +422,7 @@ class ContourCommand final : public Command {
 
   ExtractionOptions options_;
   AttributeOptions attributes_;
+  CompressOption compress_;
   std::string output_;
   std::string index_;
   bool stream_ = false;

@@ -53,10 +53,11 @@ Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
                           std::isnan(*first) ? std::abs(*first) : *first, others));  // the sign of nan means nothing
 }
 
-Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options) {
+Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty) {
   Mesh mesh = read_finite_mesh(file, options);
-  if (mesh.simplices.empty())
-    throw Error(ErrorCode::EmptyResult, "the saved contour is empty; expected one with simplices");
+  if (mesh.simplices.empty() && !allow_empty)
+    throw Error(ErrorCode::EmptyResult,
+                "the saved contour is empty; expected one with simplices (--allow-empty: an empty result)");
   return mesh;
 }
 
@@ -156,7 +157,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
     refuse_image_options(files(), given, images(), "none of the options for images but --threads");
-    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")));
+    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), allows_empty());
     result.contour = to_any_contour(mesh);
     result.isovalue = mesh.isovalue;
     result.seconds.read = watch.lap();
@@ -167,7 +168,9 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   ReadImageResult input = read(bar.stage("read"));
   result.file = inputs();
   result.variable = input.info.variable;
-  require_contour(input, *result.isovalue);
+  require_contour(input, *result.isovalue, allows_empty());
+  result.last_axis = space_of(input.image).axes.back();
+  result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.progress = bar.stage("contour");
   result.contour = extract_any<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
@@ -175,7 +178,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
                                              options_.add_shape_normals(contour);
                                              return AnyContour(widened(std::move(contour)));
                                            });
-  if (result.size().simplices == 0) fail_without_contour(*result.isovalue);
+  if (result.size().simplices == 0) remark(remark_without_contour(input.image, *result.isovalue));
   result.seconds.add(*result.stats);
   if (keep_image) result.image = std::move(input);
   return result;

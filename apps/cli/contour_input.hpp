@@ -29,8 +29,8 @@ AnyContour to_any_contour(const Mesh& mesh);
 /// `read_mesh` throws.
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 
-/// The same of a contour with simplices. Throws EmptyResult if there are none.
-Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options);
+/// The same of a contour with simplices. Throws EmptyResult if there are none, unless `allow_empty`.
+Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty);
 
 /// A contour to work on, and where it came from.
 struct ContourInput {
@@ -40,6 +40,8 @@ struct ContourInput {
   std::optional<double> isovalue;        ///< none for a saved contour that does not say
   std::optional<ExtractStats> stats;     ///< none for a saved contour
   std::optional<ReadImageResult> image;  ///< where it was asked for, and FILE is one
+  std::optional<CutAxis> last_axis;      ///< its extent in an image; none for a saved contour
+  bool single_precision = false;         ///< all coordinates are those of --precision float
   StageSeconds seconds;                  ///< of reading and contouring
 
   /// 2, 3 or 4: the dimension of the space that the contour lies in.
@@ -60,11 +62,12 @@ void add_input_keys(Json& json, const ContourInput& input);
 /// The lines of a report on the input: the file, the isovalue if it has one, the size of the contour.
 std::string input_text(const ContourInput& input);
 
-/// The mesh of a contour that was made of the input's, with its isovalue.
+/// The mesh of a contour that has vertices of the input's and no others, with its isovalue.
 template <int N, class Real>
 Mesh mesh_of(const Contour<N, Real>& contour, const ContourInput& input) {
   Mesh mesh = to_mesh(contour);
   mesh.isovalue = input.isovalue;
+  mesh.single_precision = input.single_precision;
   return mesh;
 }
 
@@ -81,10 +84,12 @@ class ContourInputCommand : public Command {
 
   /// The kind that --normals asks for; empty: none.
   [[nodiscard]] const std::string& normals() const { return options_.normals(); }
+  /// Whether a value outside of the data gives an empty result (--allow-empty).
+  [[nodiscard]] bool allows_empty() const { return options_.allows_empty(); }
 
   /// Reads FILE, and contours it if it is an image, which is kept if `keep_image`. Throws InvalidArgument if --iso is
-  /// missing for an image, or options of images are given with a saved contour; EmptyResult if there is no contour; and
-  /// what the readers throw.
+  /// missing for an image, or options of images are given with a saved contour; EmptyResult if the isovalue is outside
+  /// of the data or the saved contour empty, unless --allow-empty is given; and what the readers throw.
   [[nodiscard]] ContourInput read_contour(ProgressBar& bar, bool keep_image = false);
 
  private:

@@ -16,17 +16,6 @@ namespace tegl::cli {
 
 namespace {
 
-/// The parts of a text between separators.
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t at = text.find(separator); at != std::string_view::npos; at = text.find(separator)) {
-    parts.push_back(text.substr(0, at));
-    text.remove_prefix(at + 1);
-  }
-  parts.push_back(text);
-  return parts;
-}
-
 /// "NAME=VALUES", in two.
 std::pair<std::string, std::string_view> halves(std::string_view option, const std::string& argument,
                                                 std::string_view expected) {
@@ -36,8 +25,8 @@ std::pair<std::string, std::string_view> halves(std::string_view option, const s
   return {argument.substr(0, equals), std::string_view(argument).substr(equals + 1)};
 }
 
-/// `count` numbers from `first` to `last`, these two as they are. Those between them that are meant to have few digits, such as 0.3 or 5, have them: a last
-/// bit more or less would be another side of the samples that equal the isovalue.
+/// `count` numbers from `first` to `last`, these two as they are. Those between them that are meant to have few digits,
+/// such as 0.3 or 5, have them: a last bit more or less would be another side of the samples that equal the isovalue.
 std::vector<double> even_numbers(double first, double last, std::size_t count) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(first), std::abs(last));
   std::vector<double> numbers = {first};
@@ -118,6 +107,18 @@ std::string formula(const std::vector<double>& normal, const CutSpace& space) {
   return text;
 }
 
+/// What a cut is of, along its normal: the values from the lowest to the highest corner of the space's box.
+CutAxis range_of(const Cut& cut, const CutSpace& space) {
+  CutAxis range{cut.axis, 0.0, 0.0};
+  for (std::size_t a = 0; a < space.axes.size(); ++a) {
+    if (cut.normal[a] == 0.0) continue;
+    const auto [low, high] = std::minmax({cut.normal[a] * space.axes[a].first, cut.normal[a] * space.axes[a].last});
+    range.first += low;
+    range.last += high;
+  }
+  return range;
+}
+
 std::vector<std::string> labels_of(const CutSpace& space) {
   std::vector<std::string> labels;
   for (const CutAxis& axis : space.axes) labels.push_back(axis.name);
@@ -158,7 +159,7 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
   for (const std::string& argument : at) {
     const auto [axis, values] = halves("--at", argument, "an axis and a number, as in t=7.3");
     for (const auto& [value, text] : numbers_of(fmt::format("--at {}", argument), values))
-      cuts.push_back({axis, value, text, {}, {}, {}, {}});
+      cuts.push_back({axis, value, text, {}, {}, {}, {}, false});
   }
   return cuts;
 }
@@ -178,7 +179,7 @@ std::vector<Cut> parse_planes(const std::vector<std::string>& planes) {
     const auto [numbers, values] = halves("--plane", argument, "a normal and an offset, as in 1,0,0,0.5=3");
     const std::vector<double> normal = parse_normal(fmt::format("--plane {}", argument), numbers);
     for (const auto& [value, text] : numbers_of(fmt::format("--plane {}", argument), values))
-      cuts.push_back({numbers, value, text, normal, {}, {}, {}});
+      cuts.push_back({numbers, value, text, normal, {}, {}, {}, false});
   }
   return cuts;
 }
@@ -221,6 +222,7 @@ CutSpace space_of(const Mesh& mesh) {
 
 std::vector<double> parse_scale(const std::vector<std::string>& scale, const CutSpace& space) {
   std::vector<double> factors(space.axes.size(), 1.0);
+  std::vector<bool> is_given(space.axes.size(), false);
   for (const std::string& argument : scale)
     for (const std::string_view part : split(argument, ',')) {
       const std::string text(part);
@@ -229,6 +231,10 @@ std::vector<double> parse_scale(const std::vector<std::string>& scale, const Cut
       if (axis == space.axes.size())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("--scale {} names no axis; expected one of {}", text, axis_names(space)));
+      if (is_given[axis])
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--scale has the axis {} twice; expected it once", space.axes[axis].name));
+      is_given[axis] = true;
       factors[axis] = parse_finite(fmt::format("--scale {}", text), value);
       if (!(factors[axis] > 0.0))
         throw Error(ErrorCode::InvalidArgument, fmt::format("--scale {}; expected a factor above 0", text));
@@ -260,7 +266,15 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
   return values;
 }
 
-std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
+Error outside_error(const Cut& cut, const CutAxis& axis, std::string_view of) {
+  const auto texts = numbers_apart({axis.first, axis.last, cut.level.value_or(cut.value)});
+  return {
+      ErrorCode::EmptyResult,
+      fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {} (--allow-empty: an empty cut)",
+                  cut.axis, cut.text, of, texts[0], axis.name, texts[1])};
+}
+
+std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty) {
   for (Cut& cut : cuts) {
     if (!cut.normal.empty()) {
       if (cut.normal.size() != space.axes.size())
@@ -280,15 +294,11 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space) {
     cut.normal[a] = 1.0;
   }
   find_levels(cuts, space);
-  for (const Cut& cut : cuts) {
-    if (!cut.across) continue;
-    const CutAxis& axis = space.axes[static_cast<std::size_t>(*cut.across)];
+  for (Cut& cut : cuts) {
+    const CutAxis axis = range_of(cut, space);
     const double level = cut.level.value_or(cut.value);
-    if (level >= axis.first && level <= axis.last) continue;
-    const auto texts = numbers_apart({axis.first, axis.last, level});
-    throw Error(ErrorCode::EmptyResult,
-                fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {}", axis.name, cut.text,
-                            space.of, texts[0], axis.name, texts[1]));
+    cut.is_outside = !(level >= axis.first && level <= axis.last);
+    if (cut.is_outside && !allow_empty) throw outside_error(cut, axis, space.of);
   }
   return cuts;
 }

@@ -61,16 +61,20 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
                                   std::size_t axis);
 
 /// The cuts with the axes' own names and, in all cases, normals; and levels where values mean vertices. Throws
-/// InvalidArgument for axes and normals that the space has not, EmptyResult outside of an axis's range.
-std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space);
+/// InvalidArgument for axes and normals that the space has not, EmptyResult for a cut outside of the space's extent
+/// unless `allow_empty`.
+std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty);
+
+/// The error of a cut outside of an axis's range, EmptyResult. `of`: what the range is of.
+Error outside_error(const Cut& cut, const CutAxis& axis, std::string_view of);
 
 /// The output of each cut: `pattern` with "{t}" or "{at}", or the axis as it was typed in braces, replaced by the
 /// number as it was typed, "{axis}" by that axis, and "{n}" by the cut's place, 1 for the first, with as many digits as
 /// the last one has. Throws InvalidArgument if two cuts had the same file.
 std::vector<std::string> cut_outputs(const std::string& pattern, const std::vector<Cut>& cuts);
 
-/// The output of each isovalue: `pattern` with "{iso}" replaced by the number as it was typed, and "{n}" by its place as
-/// above; if there are several and neither is in it, with _NUMBER before its extension.
+/// The output of each isovalue: `pattern` with "{iso}" replaced by the number as it was typed, and "{n}" by its place
+/// as above; if there are several and neither is in it, with _NUMBER before its extension.
 std::vector<std::string> isovalue_outputs(const std::string& pattern, const std::vector<SpelledNumber>& isovalues);
 
 }  // namespace tegl::cli

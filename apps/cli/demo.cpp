@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "numbers.hpp"
+#include "printable.hpp"
 #include "progress.hpp"
 #include "result.hpp"
 #include "tegl/extract.hpp"
@@ -65,8 +66,6 @@ bool knows_unicode() {
   }
   return false;
 }
-
-bool shows_colours(const Console& console) { return console.bold("x") != "x"; }
 
 /// A picture of the world: for each pixel how deep the surface lies, or what there is instead.
 struct Map {
@@ -256,7 +255,7 @@ class DemoCommand final : public Command {
       const Console& console;
     };
     const HiddenCursor hidden(console);
-    const bool in_colour = shows_colours(console) && knows_unicode();
+    const bool in_colour = console.has_colours() && knows_unicode();
     const Axis& time = image.grid.axes[3];
     int lines = 0;
     for (std::size_t i = 0; i < frames_; ++i) {
@@ -317,7 +316,7 @@ class DemoCommand final : public Command {
                           kLeastWidth + 1);
     } else if (with_map) {
       const Map map = draw_world(*width, image, slice(contour, kTimes[2]));
-      text += shows_colours(console) && knows_unicode() ? coloured(map) : plain(map);
+      text += console.has_colours() && knows_unicode() ? coloured(map) : plain(map);
       text += fmt::format("How deep the water is 20 degrees warm or more, at t = {} ({})\n\n", kTimes[2],
                           month_text(kTimes[2]));
     }
@@ -335,7 +334,7 @@ class DemoCommand final : public Command {
     text += fmt::format(
         "\nTime is an axis like the others: the data have 12 months, the film as many moments as you like.\n\n{}\n",
         console.bold("What next"));
-    text += "  DATA=" + data.string() + "\n";
+    text += "  DATA=" + printable(data.string()) + "\n";
     for (const char* const command : {"tegl info $DATA", "tegl contour $DATA --iso 20 -o ocean.vtkhdf",
                                       "tegl slice ocean.vtkhdf --at t=7.3 -o july.ply",
                                       "tegl view $DATA --iso 20 -o ocean.html", "tegl contour --help"})

@@ -89,6 +89,7 @@ class ElementsCommand final : public ContourInputCommand {
   ExitCode run(const Streams& streams) override {
     require_inputs();
     require_element_output();
+    also_read(attributes_.files());
     attributes_.require_inputs();
     if (per_ == "cell" && find_mesh_file_format(file()) != nullptr)
       throw Error(ErrorCode::InvalidArgument,
@@ -193,6 +194,20 @@ class ElementsCommand final : public ContourInputCommand {
     return json;
   }
 
+  /// Whether the elements close up, as all that a contour encloses does.
+  [[nodiscard]] static std::string sum_text(const ElementReport& report) {
+    std::string sum;
+    for (std::size_t a = 0; a < report.axes.size(); ++a)
+      sum += fmt::format("{}{} {}", a == 0 ? "" : ", ", report.axes[a], number(report.sum[a]));
+    return report_line("sum", sum) +
+           report_line(
+               "",
+               report.closure_error < 1e-9
+                   ? fmt::format("0 up to rounding ({:.1e} of the whole): it closes up (Gauss)", report.closure_error)
+                   : fmt::format("the contour is open: {:.3g} % of what there is along one axis is not balanced",
+                                 100.0 * report.closure_error));
+  }
+
   [[nodiscard]] std::string to_text(const Console& console, const ContourInput& input,
                                     const ElementReport& report) const {
     std::string text =
@@ -200,15 +215,7 @@ class ElementsCommand final : public ContourInputCommand {
     text += input_text(input);
     text += report_line("elements", fmt::format("{}, one per {}", grouped(report.count),
                                                 per_ == "cell" ? "piece in a cell" : "simplex"));
-    std::string sum;
-    for (std::size_t a = 0; a < report.axes.size(); ++a)
-      sum += fmt::format("{}{} {}", a == 0 ? "" : ", ", report.axes[a], number(report.sum[a]));
-    text += report_line("sum", sum);
-    text += report_line(
-        "", report.closure_error < 1e-9
-                ? fmt::format("0 up to rounding ({:.1e} of the whole): it closes up (Gauss)", report.closure_error)
-                : fmt::format("the contour is open: {:.3g} % of what there is along one axis is not balanced",
-                              100.0 * report.closure_error));
+    if (report.count > 0) text += sum_text(report);
     text += report_line("measure", number(report.measure));
     for (const auto& range : report.attributes) {
       std::string values =

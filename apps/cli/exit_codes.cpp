@@ -37,7 +37,7 @@ std::string exit_code_help() {
          "  5    nothing to contour: isovalue or cut outside of the data, all missing, no tiles\n"
          "  6    the output cannot be written, or its format cannot hold the result\n"
          "  70   internal error, or out of memory\n"
-         "  130  cancelled (Ctrl-C)\n"
+         "  130  cancelled (Ctrl-C); 129, 141, 143: ended by SIGHUP, SIGPIPE, SIGTERM\n"
          "Whatever fails, no half-written file is left behind.\n";
 }
 

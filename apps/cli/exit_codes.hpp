@@ -19,7 +19,7 @@ enum class ExitCode : int {
   Nothing = 5,        ///< nothing to contour: isovalue or cut outside of the data, no data, no tiles
   OutputFailed = 6,   ///< the output has an unknown extension, or cannot hold the result, or be written
   Internal = 70,      ///< a bug, or memory ran out
-  Cancelled = 130,    ///< Ctrl-C (SIGINT), SIGTERM or SIGHUP
+  Cancelled = 130,    ///< Ctrl-C (SIGINT); by other signals the process ends with 128 + signal, as shells have it
 };
 
 /// The exit status for an error of the library.

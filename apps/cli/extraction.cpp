@@ -58,6 +58,7 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
           ->capture_default_str(),
   };
   options_.front()->required(of_images_alone);
+  app.add_flag("--allow-empty", allow_empty_, "a value outside of the data gives an empty result, not an error");
 }
 
 std::vector<std::string> ExtractionOptions::given() const {
@@ -103,7 +104,7 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
   if (polygon_triangulation() && !knows_polygons)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--triangulation {} is for the polygons of 3D images in memory, by 'tegl contour' without "
-                            "--raw, --stream, --index and --pick; expected compact or barycentric",
+                            "--stream, --index and --pick; expected compact or barycentric",
                             triangulation_));
   ExtractOptions options;
   options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
@@ -142,7 +143,26 @@ template void ExtractionOptions::add_shape_normals(Contour<4, double>&) const;
 
 int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
 
-void require_contour(const ReadImageResult& input, double isovalue) {
+bool is_outside(double isovalue, const ValueRange& range) { return !(isovalue > range.min && isovalue <= range.max); }
+
+Error outside_error(double isovalue, const ValueRange& range, const std::string& unit) {
+  constexpr const char* kAllow = "(--allow-empty: an empty result)";
+  if (std::isnan(range.min))
+    return {ErrorCode::EmptyResult,
+            fmt::format("all samples are missing; a contour needs values on both sides of it {}", kAllow)};
+  if (range.min == range.max) {
+    const auto texts = numbers_apart({range.min, isovalue});
+    return {ErrorCode::EmptyResult,
+            fmt::format("all values are {}; a contour needs values on both sides of the isovalue {} {}", texts[0],
+                        texts[1], kAllow)};
+  }
+  const auto texts = numbers_apart({isovalue, range.min, range.max});
+  return {ErrorCode::EmptyResult, fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
+                                              "expected {1} < isovalue <= {2} {4}",
+                                              texts[0], texts[1], texts[2], unit.empty() ? "" : " " + unit, kAllow)};
+}
+
+void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
   const auto require_tiles = [](const auto& owned) {
     for (std::size_t a = 0; a < owned.grid.axes.size(); ++a) {
       if (owned.grid.axes[a].size() > 1) continue;
@@ -152,28 +172,17 @@ void require_contour(const ReadImageResult& input, double isovalue) {
     }
   };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
+  if (allow_empty) return;
   const ValueRange range = value_range(input.image);
-  if (std::isnan(range.min)) {
-    throw Error(ErrorCode::EmptyResult, "all samples are missing; a contour needs values on both sides of it");
-  }
-  if (isovalue > range.min && isovalue <= range.max) return;
-  if (range.min == range.max) {
-    const auto texts = numbers_apart({range.min, isovalue});
-    throw Error(
-        ErrorCode::EmptyResult,
-        fmt::format("all values are {}; a contour needs values on both sides of the isovalue {}", texts[0], texts[1]));
-  }
-  const std::string unit = input.info.value_unit.empty() ? "" : " " + input.info.value_unit;
-  const auto texts = numbers_apart({isovalue, range.min, range.max});
-  throw Error(ErrorCode::EmptyResult,
-              fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
-                          "expected {1} < isovalue <= {2}",
-                          texts[0], texts[1], texts[2], unit));
+  if (is_outside(isovalue, range)) throw outside_error(isovalue, range, input.info.value_unit);
 }
 
-void fail_without_contour(double isovalue) {
-  throw Error(ErrorCode::EmptyResult,
-              fmt::format("no contour at {}: every tile that it passes touches a missing sample", number(isovalue)));
+std::string remark_without_contour(const AnyImage& image, double isovalue) {
+  return is_outside(isovalue, value_range(image)) ? std::string() : remark_on_missing(isovalue);
+}
+
+std::string remark_on_missing(double isovalue) {
+  return fmt::format("no contour at {}: every tile that it passes touches a missing sample", number(isovalue));
 }
 
 void check_result(ContourResult& result, ProgressBar& bar) {
@@ -192,8 +201,8 @@ void write_result(ContourResult& result, ProgressBar& bar, WrittenFiles& written
   const Progress progress = bar.stage("write");
   Stopwatch watch;
   result.mesh.isovalue = result.isovalue;
-  result.output_bytes =
-      written.write(result.output, [&](const auto& file) { write_mesh(result.mesh, file, progress); });
+  result.output_bytes = written.write(
+      result.output, [&](const auto& file) { write_mesh(result.mesh, file, progress, result.compression); });
   result.lost = lost_vertices(result.mesh, result.output);
   result.seconds.write = watch.lap();
 }

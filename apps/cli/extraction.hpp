@@ -13,13 +13,16 @@
 #include "output.hpp"
 #include "progress.hpp"
 #include "result.hpp"
+#include "statistics.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
 #include "tegl/polygons.hpp"
 
 namespace tegl::cli {
 
-/// --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads, --precision.
+/// --iso, --triangulation, --ambiguity, --close, --normals, --gradient-direction, --epsilon, --threads, --precision,
+/// and
+/// --allow-empty, which saved contours take, too.
 class ExtractionOptions {
  public:
   /// Adds the options to a command: one that contours images and nothing else needs --iso, and may triangulate
@@ -34,6 +37,8 @@ class ExtractionOptions {
   /// The numbers of --iso, which may be several, and may be given several times. Throws InvalidArgument if there is
   /// none, or one twice.
   [[nodiscard]] std::vector<SpelledNumber> isovalues() const;
+  /// Whether a value outside of the data gives an empty result (--allow-empty).
+  [[nodiscard]] bool allows_empty() const { return allow_empty_; }
   /// --threads: 0 for all that the machine has.
   [[nodiscard]] unsigned threads() const { return threads_; }
   /// True for --precision float.
@@ -60,6 +65,7 @@ class ExtractionOptions {
   std::string epsilon_ = "0";
   std::string precision_ = "double";
   bool close_ = false;
+  bool allow_empty_ = false;
   std::string normals_;
   unsigned threads_ = 0;
 };
@@ -67,12 +73,22 @@ class ExtractionOptions {
 /// The dimension of the image.
 int image_dim(const AnyImage& image);
 
-/// Throws EmptyResult, saying why, unless a contour of the isovalue can exist: two samples along every axis,
-/// and samples on both sides of the isovalue.
-void require_contour(const ReadImageResult& input, double isovalue);
+/// Whether an isovalue lies outside of values in this range (of NaN if there are none): no sample is at or above it, or
+/// every one is.
+bool is_outside(double isovalue, const ValueRange& range);
 
-/// Throws EmptyResult for an extraction that gave nothing though samples lie on both sides of the isovalue.
-[[noreturn]] void fail_without_contour(double isovalue);
+/// The error of an isovalue that does, EmptyResult. `unit`: of the values; may be empty.
+Error outside_error(double isovalue, const ValueRange& range, const std::string& unit);
+
+/// Throws EmptyResult, saying why, unless a contour of the isovalue can exist: two samples along every axis, and
+/// samples on both sides of the isovalue. Without the latter there is none, which is no error if `allow_empty`.
+void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
+
+/// What to say of an extraction that gave nothing: empty if the isovalue is outside of the values, which was allowed
+/// then; else that missing samples are in the way.
+std::string remark_without_contour(const AnyImage& image, double isovalue);
+/// The latter.
+std::string remark_on_missing(double isovalue);
 
 /// What `use` makes of the contour, a Contour<N, float> or Contour<N, double>, of an image of any type.
 template <class Result, class Use>

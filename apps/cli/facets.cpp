@@ -74,7 +74,6 @@ Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const E
 template <int N, class Real>
 void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& work, ProgressBar& bar,
                      FacetsResult& result, WrittenFiles& written) {
-  if (facets.count(N - 1) == 0) fail_without_contour(work.isovalue);
   for (int k = 0; k < N; ++k) result.facets.at(static_cast<std::size_t>(k)) = facets.count(k);
   Stopwatch watch;
   if (!work.no_check) {
@@ -84,7 +83,8 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
     result.seconds.check = watch.lap();
   }
   const Progress progress = bar.stage("write");
-  result.output_bytes = written.write(result.output, [&](const auto& file) { write_facets(facets, file, progress); });
+  result.output_bytes =
+      written.write(result.output, [&](const auto& file) { write_facets(facets, file, progress, work.compression); });
   result.seconds.write = watch.lap();
 }
 

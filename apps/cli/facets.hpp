@@ -49,10 +49,11 @@ struct FacetsWork {
   ExtractOptions options;
   bool single_precision = false;
   bool no_check = false;
+  Compression compression = Compression::none;
 };
 
 /// Makes the facets of an image, checks them and writes them to result.output, one of the files written; fills the rest
-/// of the result. Throws EmptyResult if there are none.
+/// of the result.
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written);
 

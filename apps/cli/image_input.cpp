@@ -113,11 +113,12 @@ void ImageOptions::add_to(CLI::App& app) {
                      "for variables of more than 4 axes")
           ->allow_extra_args(false)
           ->type_name("DIM=INDEX"),
-      app.add_flag(
-          "--allow-outside-paths", allow_outside_paths_,
-          "reads the file of samples that a header names (NRRD, MetaImage) also outside of the header's folder"),
   };
   options_[1]->excludes(options_[0]);
+  add_raw_to(app);
+}
+
+void ImageOptions::add_raw_to(CLI::App& app) {
   raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
                     ->type_name("XxYxZ[xT]");
   CLI::Option* const type = app.add_option("--raw-type", raw_type_, "their type")
@@ -133,6 +134,15 @@ void ImageOptions::add_to(CLI::App& app) {
                          ->capture_default_str());
   options_.push_back(
       app.add_flag("--raw-big-endian", raw_big_endian_, "the values' first byte is the highest")->needs(raw_option_));
+  const auto add_of_axes = [&](const char* name, std::string& text, const char* type_name, const char* help) {
+    options_.push_back(app.add_option(name, text, help)->needs(raw_option_)->type_name(type_name));
+  };
+  add_of_axes("--spacing,--step", spacing_, "NUMBERS",
+              "of --raw: distance of neighbouring samples, a number for each axis or one for all: 0.8,0.8,3");
+  add_of_axes("--origin", origin_, "NUMBERS",
+              "of --raw: coordinates of the first sample, a number for each axis or one for all");
+  add_of_axes("--axis-names", axis_names_, "NAMES", "of --raw: a name for each axis, as lon,lat,depth,month");
+  add_of_axes("--axis-units", axis_units_, "UNITS", "of --raw: a unit for each axis, as mm,mm,mm,s; nothing for none");
 }
 
 std::vector<std::string> ImageOptions::given() const {
@@ -177,8 +187,44 @@ SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files
                                      : SeriesOrder::given;
   request.fixed = parse_fixed(fixed_);
   request.allow_outside_paths = allow_outside_paths_;
-  if (raw()) request.raw = RawLayout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_};
+  if (raw()) request.raw = raw_layout();
   return tegl::series_options(paths_of(files), request, kWords);
+}
+
+RawLayout ImageOptions::raw_layout() const {
+  RawLayout layout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_, {}, {}, {}, {}};
+  const std::size_t axes = layout.sizes.size();
+  const auto require_axes = [&](const char* option, const std::string& text, std::size_t count) {
+    if (count != axes)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("{} {} has {}; expected {}, one for each axis of --raw {}",
+                                                          option, text, counted(count, "part", "parts"), axes, raw_));
+  };
+  const auto numbers = [&](const char* option, const std::string& text) {
+    if (text.empty()) return std::vector<double>();
+    std::vector<double> values;
+    for (const std::string_view part : split(text, ',')) values.push_back(parse_finite(option, part));
+    if (values.size() == 1) values.resize(axes, values.front());
+    require_axes(option, text, values.size());
+    return values;
+  };
+  const auto words = [&](const char* option, const std::string& text) {
+    if (text.empty()) return std::vector<std::string>();
+    const std::vector<std::string_view> parts = split(text, ',');
+    require_axes(option, text, parts.size());
+    return std::vector<std::string>(parts.begin(), parts.end());
+  };
+  layout.spacing = numbers("--spacing", spacing_);
+  layout.origin = numbers("--origin", origin_);
+  layout.axis_names = words("--axis-names", axis_names_);
+  layout.axis_units = words("--axis-units", axis_units_);
+  for (const double step : layout.spacing)
+    if (step == 0.0) throw Error(ErrorCode::InvalidArgument, fmt::format("--spacing is '{}'; expected no 0", spacing_));
+  for (std::size_t a = 0; a < layout.axis_names.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (!layout.axis_names[a].empty() && equal_ignoring_case(layout.axis_names[a], layout.axis_names[b]))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--axis-names has the axis {} twice; expected it once", layout.axis_names[a]));
+  return layout;
 }
 
 ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {

@@ -17,12 +17,15 @@ namespace tegl::cli {
 /// The message of an error of the library's readers with the names of the program's options.
 std::string with_option_names(std::string message);
 
-/// --var, --series, --times, --time-step, --time-unit, --sort, --fix, --allow-outside-paths, --raw and what belongs to
-/// it.
+/// --var, --series, --times, --time-step, --time-unit, --sort, --fix, --raw and the options of its layout.
 class ImageOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
   void add_to(CLI::App& app);
+
+  /// Of --allow-outside-paths, which every command has, for meshes too: Command adds it.
+  [[nodiscard]] bool& allow_outside_paths() { return allow_outside_paths_; }
+  [[nodiscard]] bool allow_outside_paths() const { return allow_outside_paths_; }
 
   /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that contradict each other
   /// or the files, and for files in an order that only a shell would choose.
@@ -50,6 +53,9 @@ class ImageOptions {
   /// --var is not for DICOM, nor --series for anything else.
   void require_fitting_choice(const std::vector<std::string>& files) const;
   [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
+  void add_raw_to(CLI::App& app);
+  /// Throws InvalidArgument.
+  [[nodiscard]] RawLayout raw_layout() const;
   /// Keeps the remarks on what was read.
   template <class Result>
   Result remembered(Result result) const {
@@ -57,7 +63,8 @@ class ImageOptions {
     return result;
   }
 
-  std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
+  std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_, spacing_, origin_,
+      axis_names_, axis_units_;
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
   bool allow_outside_paths_ = false;

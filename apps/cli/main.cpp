@@ -16,9 +16,12 @@
 #include <system_error>
 #include <vector>
 
+#include "interrupt.hpp"
+#include "printable.hpp"
 #include "program.hpp"
-#include "progress.hpp"
 #include "result.hpp"
+#include "suggestions.hpp"
+#include "thread_limit.hpp"
 
 namespace {
 
@@ -26,60 +29,79 @@ using tegl::cli::Command;
 using tegl::cli::ExitCode;
 using tegl::cli::Streams;
 
-/// Writes the one message of a failed run, as text or as JSON, to standard error.
+/// The one message of a failed run, as text or as JSON.
+std::string error_text(const Streams& streams, bool json, ExitCode exit, std::string_view code,
+                       std::string_view message) {
+  if (!json) return fmt::format("{} {}\n", streams.err.red("tegl:").text, tegl::cli::printable(message));
+  tegl::cli::Json document;
+  document["error"] = {{"code", code}, {"exit", static_cast<int>(exit)}, {"message", message}};
+  return tegl::cli::dump(document);
+}
+
+/// Writes it to standard error.
 ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_view code, std::string_view message) {
-  if (json) {
-    tegl::cli::Json document;
-    document["error"] = {{"code", code}, {"exit", static_cast<int>(exit)}, {"message", message}};
-    streams.err.write(tegl::cli::dump(document));
-  } else {
-    streams.err.write(fmt::format("{} {}\n", streams.err.red("tegl:"), message));
-  }
+  streams.err.write(error_text(streams, json, exit, code, message));
   return exit;
 }
 
-/// The message with the input's name in front where the library did not know it. To who pressed Ctrl-C it is no matter
-/// which callback was told so, and where.
-std::string with_file(const tegl::Error& error, const tegl::cli::InputFiles& input) {
+constexpr std::string_view kCancelled = "cancelled";
+
+/// The message, with the input's name in front if the library did not know it.
+std::string with_file(const tegl::Error& error, const Command& command) {
   using tegl::ErrorCode;
   constexpr std::array kAboutInput = {
       ErrorCode::InvalidGrid,     ErrorCode::EmptyResult,      ErrorCode::FileNotFound, ErrorCode::MalformedFile,
       ErrorCode::UnsupportedData, ErrorCode::VariableNotFound, ErrorCode::TooLarge,     ErrorCode::UnsupportedFormat,
   };
-  if (error.code() == ErrorCode::Cancelled) return "cancelled";
   const std::string message = error.what();
   const bool about_input = std::find(kAboutInput.begin(), kAboutInput.end(), error.code()) != kAboutInput.end();
-  const bool named = std::any_of(input.names.begin(), input.names.end(),
-                                 [&](const std::string& file) { return message.find(file) != std::string::npos; });
-  return !about_input || named ? message : fmt::format("{}: {}", input.text(), message);
+  const auto names_one_of = [&](const std::vector<std::string>& files) {
+    return std::any_of(files.begin(), files.end(),
+                       [&](const std::string& file) { return message.find(file) != std::string::npos; });
+  };
+  const tegl::cli::InputFiles input = command.inputs();
+  const bool is_named = names_one_of(input.names) || names_one_of(command.other_inputs());
+  return !about_input || is_named ? message : fmt::format("{}: {}", input.text(), message);
 }
 
+/// Runs the command with signals handled, and reports its error.
 ExitCode run(Command& command, const Streams& streams) {
-  const auto fail = [&](ExitCode exit, std::string_view code, std::string_view message) {
-    return report(streams, command.json(), exit, code, message);
+  const auto text = [&](ExitCode exit, std::string_view code, std::string_view message) {
+    return error_text(streams, command.json(), exit, code, message);
   };
-  try {
-    const tegl::cli::InterruptHandler handler;
-    const ExitCode exit = command.run(streams);
-    for (const std::string& remark : command.remarks()) streams.err.write(fmt::format("tegl: {}\n", remark));
+  const auto fail = [&](ExitCode exit, std::string_view code, std::string_view message) {
+    // Whatever a cancelled stage failed with, the reason is the signal.
+    if (tegl::cli::InterruptHandler::requested()) {
+      exit = ExitCode::Cancelled;
+      code = tegl::error_name(tegl::ErrorCode::Cancelled);
+      message = kCancelled;
+    }
+    streams.err.write(text(exit, code, message));
     return exit;
+  };
+  // What a progress bar, or the film of the demo, leaves on a terminal.
+  const std::string cleared = streams.err.moves_its_cursor() ? "\r\x1b[0m\x1b[K\x1b[?25h" : "";
+  const tegl::cli::InterruptHandler handler(
+      cleared + text(ExitCode::Cancelled, tegl::error_name(tegl::ErrorCode::Cancelled), kCancelled));
+  try {
+    const tegl::cli::ThreadLimit threads(command.threads_wanted());
+    const ExitCode exit = command.run(streams);
+    if (!command.quiet() && !threads.remark().empty())
+      streams.err.write(fmt::format("tegl: {}\n", tegl::cli::printable(threads.remark())));
+    for (const std::string& remark : command.remarks())
+      streams.err.write(fmt::format("tegl: {}\n", tegl::cli::printable(remark)));
+    return exit;
+  } catch (const tegl::cli::BrokenPipe&) {
+    tegl::cli::end_by_signal(SIGPIPE);
   } catch (const tegl::Error& error) {
-    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command.inputs()));
+    return fail(tegl::cli::exit_code(error.code()), tegl::error_name(error.code()), with_file(error, command));
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::Internal, "OutOfMemory", fmt::format("{}: memory ran out", command.inputs().text()));
   } catch (const std::exception& error) {
+    if (tegl::cli::is_of_threads(error)) return fail(ExitCode::Internal, "Threads", tegl::cli::thread_message());
     return fail(ExitCode::Internal, "Internal",
                 fmt::format("{}: internal error: {}", command.inputs().text(), error.what()));
   }
-}
-
-/// "info, contour or check".
-std::string command_names(const CLI::App& program) {
-  std::string names;
-  const std::vector<const CLI::App*> commands = program.get_subcommands([](const CLI::App*) { return true; });
-  for (std::size_t i = 0; i < commands.size(); ++i)
-    names += (i == 0 ? "" : i + 1 == commands.size() ? " or " : ", ") + commands[i]->get_name();
-  return names;
 }
 
 std::string unknown_normals(std::string_view kind) {
@@ -89,13 +111,17 @@ std::string unknown_normals(std::string_view kind) {
 /// A command line that CLI11 refused, or a request for help.
 /// `normals_of`: what follows --normals, if it is neither a kind of normals nor an option.
 ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json,
-                std::string_view first_word, std::string_view normals_of) {
+                const std::vector<std::string>& arguments, std::string_view normals_of) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     program.exit(error);  // prints the help or the version to standard output
     return ExitCode::Ok;
   }
   std::string help = "tegl";
-  for (const CLI::App* command : program.get_subcommands()) help += " " + command->get_name();
+  const CLI::App* named = &program;
+  for (const CLI::App* command : program.get_subcommands()) {
+    help += " " + command->get_name();
+    named = command;
+  }
   std::string what = error.what();
   if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
     what = what.substr(0, what.find(':')) + " is given more than once; expected it once";
@@ -103,9 +129,11 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !normals_of.empty() &&
       !std::filesystem::exists(normals_of, ignored))
     what = unknown_normals(normals_of);
-  if (help == "tegl" && !first_word.empty() && first_word.front() != '-') {
-    what = fmt::format("there is no command '{}'; expected {}", first_word, command_names(program));
-  }
+  const std::string_view first_word = arguments.empty() ? std::string_view() : arguments.front();
+  if (named == &program && !first_word.empty() && first_word.front() != '-')
+    what = tegl::cli::unknown_command_text(program, first_word);
+  else if (const auto unknown = tegl::cli::unknown_option(*named, arguments))
+    what = tegl::cli::unknown_option_text(*named, *unknown);
   const std::string message = fmt::format("{} (see {} --help)", what, help);
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
 }
@@ -163,6 +191,7 @@ std::optional<ExitCode> write_reference(const CLI::App& program, int argc, char*
 }  // namespace
 
 int main(int argc, char** argv) {
+  tegl::cli::occupy_closed_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond its limit is a failed write, which leaves nothing behind
   const Streams streams;
   CLI::App program("", "tegl");
@@ -174,8 +203,8 @@ int main(int argc, char** argv) {
   try {
     program.parse(joined_arguments(argc, argv));
   } catch (const CLI::ParseError& error) {
-    return static_cast<int>(
-        refuse(program, error, streams, asks_for_json, argc > 1 ? argv[1] : "", after_normals(argc, argv)));
+    const std::vector<std::string> arguments(argv + std::min(1, argc), argv + argc);
+    return static_cast<int>(refuse(program, error, streams, asks_for_json, arguments, after_normals(argc, argv)));
   }
   // FILE may be several, so that what is meant as a kind of normals is one of them.
   std::error_code ignored;
@@ -184,5 +213,8 @@ int main(int argc, char** argv) {
                                    fmt::format("{} (see tegl {} --help)", unknown_normals(kind), argv[1])));
   const auto named =
       std::find_if(commands.begin(), commands.end(), [](const auto& command) { return command->named(); });
-  return static_cast<int>(run(**named, streams));
+  const ExitCode exit = run(**named, streams);
+  if (exit == ExitCode::Cancelled && tegl::cli::InterruptHandler::signal() != 0)
+    tegl::cli::end_by_signal(tegl::cli::InterruptHandler::signal());
+  return static_cast<int>(exit);
 }

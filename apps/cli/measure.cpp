@@ -70,7 +70,8 @@ class MeasureCommand final : public ContourInputCommand {
     const ContourInput input = read_contour(bar);
     require_axis(cuts, input);
     Stopwatch watch;
-    const Found found = std::visit([&](const auto& contour) { return measured(contour, cuts, bar); }, input.contour);
+    const Found found =
+        std::visit([&](const auto& contour) { return measured(contour, input, cuts, bar); }, input.contour);
     const double seconds = watch.lap();
     if (!csv_.empty()) write_text(table(input, found, &exact_number).to_csv(), csv_);
     bar.clear();
@@ -96,7 +97,8 @@ class MeasureCommand final : public ContourInputCommand {
   }
 
   template <int N>
-  Found measured(const Contour<N, double>& contour, const std::vector<Cut>& cuts, ProgressBar& bar) const {
+  Found measured(const Contour<N, double>& contour, const ContourInput& input, const std::vector<Cut>& cuts,
+                 ProgressBar& bar) const {
     const Measures<N> whole = tegl::measure(contour, {threads(), bar.stage("measure")});
     Found found{whole.size,
                 whole.content,
@@ -111,30 +113,29 @@ class MeasureCommand final : public ContourInputCommand {
       const double first = whole.lowest[N - 1];
       const double last = whole.highest[N - 1];
       for (const Cut& cut : cuts) {
-        require_within(cut, first, last, contour.axis_names[N - 1]);
+        if (!allows_empty()) require_within(cut, first, last, input);
         at.push_back(cut.value);
       }
-      for (std::size_t i = 0; i < samples_; ++i)
+      for (std::size_t i = 0; i < samples_ && !contour.simplices.empty(); ++i)
         at.push_back(i + 1 == samples_
                          ? last
                          : first + (last - first) * static_cast<double>(i) / static_cast<double>(samples_ - 1));
       if (at.empty()) return found;
-      const std::span<const double> vertices(contour.vertices.data()->data(), contour.vertices.size() * N);
+      const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
+                                             contour.vertices.size() * N);
       found.cuts = measure_cuts(contour, meet_vertices(at, vertices, N, N - 1), {threads(), bar.stage("cuts")});
       for (std::size_t i = 0; i < at.size(); ++i) found.cuts[i].at = at[i];
     }
     return found;
   }
 
-  /// A time outside of the contour is more likely a mistake than a question. (A contour may come from a file of
-  /// floats.)
-  static void require_within(const Cut& cut, double first, double last, const std::string& axis) {
-    const auto value = static_cast<float>(cut.value);
-    if (value >= static_cast<float>(first) && value <= static_cast<float>(last)) return;
-    const auto texts = numbers_apart({first, last, cut.value});
-    throw Error(ErrorCode::EmptyResult,
-                fmt::format("the cut at {} = {} lies outside of the contour; expected {} <= {} <= {}", cut.axis,
-                            cut.text, texts[0], axis.empty() ? cut.axis : axis, texts[1]));
+  /// Of an image the cut has to lie within its last axis; of a saved contour within that contour, from `first` to
+  /// `last`, which may come from a file of floats.
+  static void require_within(const Cut& cut, double first, double last, const ContourInput& input) {
+    const CutAxis axis = input.last_axis.value_or(CutAxis{input.axis_name(input.space_dim() - 1), first, last});
+    const auto single = [](double x) { return static_cast<float>(x); };
+    if (single(cut.value) >= single(axis.first) && single(cut.value) <= single(axis.last)) return;
+    throw outside_error(cut, axis, input.last_axis ? "image" : "saved contour");
   }
 
   static std::vector<std::string> units(const ContourInput& input, int count) {
@@ -196,9 +197,11 @@ class MeasureCommand final : public ContourInputCommand {
     else
       text += report_line("encloses", fmt::format("not defined: its orientations do not agree at {}",
                                                   counted_simplices(dim - 1, found.open)));
-    text += report_line("centroid", position(found.centroid));
-    text += report_line("from", position(found.lowest));
-    text += report_line("to", position(found.highest));
+    if (input.size().simplices > 0) {
+      text += report_line("centroid", position(found.centroid));
+      text += report_line("from", position(found.lowest));
+      text += report_line("to", position(found.highest));
+    }
     if (!found.cuts.empty()) text += cuts_text(input, found);
     text +=
         report_line("seconds", fmt::format("read and contour {:.3f} + measure {:.3f}", input.seconds.total(), seconds));

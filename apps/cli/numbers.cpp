@@ -24,6 +24,16 @@ std::optional<double> parse_number(std::string_view text) {
   return value;
 }
 
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t at = text.find(separator); at != std::string_view::npos; at = text.find(separator)) {
+    parts.push_back(text.substr(0, at));
+    text.remove_prefix(at + 1);
+  }
+  parts.push_back(text);
+  return parts;
+}
+
 double parse_finite(std::string_view option, std::string_view text) {
   const std::optional<double> value = parse_number(text);
   if (!value) {

@@ -15,6 +15,9 @@ namespace tegl::cli {
 /// The number that `text` spells, all of it: "7.3", "-4e2", "+1", "nan", "inf"; nothing else.
 std::optional<double> parse_number(std::string_view text);
 
+/// The parts of a text between separators.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
 /// The value of the option `option`, a finite number. Throws InvalidArgument that quotes `text`.
 double parse_finite(std::string_view option, std::string_view text);
 

@@ -11,6 +11,9 @@
 #include <string_view>
 #include <system_error>
 
+#include "interrupt.hpp"
+#include "numbers.hpp"
+
 namespace tegl::cli {
 
 namespace {
@@ -101,6 +104,23 @@ void require_output_keeps(const fs::path& output, std::string_view normals, bool
                            normals == "flat" ? "" : ", .obj, .gltf or .glb", normals));
 }
 
+void CompressOption::add_to(CLI::App& app) {
+  app.add_flag("--compress", compress_, ".vtkhdf (and .vtu): compressed without loss; takes longer to write");
+}
+
+void CompressOption::require_known(const fs::path& output, bool facets) const {
+  const std::string extension = output.extension().string();
+  if (!compress_ || equal_ignoring_case(extension, ".vtkhdf") || (facets && equal_ignoring_case(extension, ".vtu")))
+    return;
+  fail(output, fmt::format("'{}' has no compression; expected .vtkhdf{}, or no --compress", extension,
+                           facets ? " or .vtu" : ""));
+}
+
+void CompressOption::require_file(bool any) const {
+  if (compress_ && !any)
+    throw Error(ErrorCode::InvalidArgument, "--compress without a contour's file; expected one, as in -o part.vtkhdf");
+}
+
 void require_different_outputs(const std::vector<std::string>& outputs) {
   std::map<fs::path, fs::path> targets;
   for (const std::string& output : outputs) require_new(targets, place_of(output), output);
@@ -149,6 +169,7 @@ std::uint64_t WrittenFiles::write(const fs::path& target, const std::function<vo
 }
 
 void WrittenFiles::keep() {
+  const InterruptHandler::Undivided all_or_none;
   try {
     for (PendingPath& staged : staged_) staged.commit_reversibly();
   } catch (const Error&) {

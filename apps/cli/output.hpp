@@ -3,6 +3,7 @@
 // The files that a command line names, looked at before the long work starts, and the writing of results.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -39,6 +40,21 @@ void require_output_keeps(const std::filesystem::path& output, std::string_view 
 
 /// Throws WriteFailed unless `output` can be expected to be written as a text file, of any extension.
 void require_text_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
+
+/// --compress, of commands that write contours.
+class CompressOption {
+ public:
+  /// Adds the option to a command. This must outlive the parse.
+  void add_to(CLI::App& app);
+  [[nodiscard]] Compression compression() const { return compress_ ? Compression::deflate : Compression::none; }
+  /// Throws WriteFailed if it is given and the format of `output` has no compression. `facets`: of files of facets.
+  void require_known(const std::filesystem::path& output, bool facets = false) const;
+  /// Throws InvalidArgument if it is given and no contour is written.
+  void require_file(bool any) const;
+
+ private:
+  bool compress_ = false;
+};
 
 /// Throws InvalidArgument if two outputs are one file, by whatever names.
 void require_different_outputs(const std::vector<std::string>& outputs);

@@ -4,48 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
+#include <string>
+#include <utility>
 
 namespace tegl::cli {
-
-namespace {
-
-// A signal handler can reach static storage only; lock-free, so safe inside of it and from any thread.
-std::atomic<bool> interrupt_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-extern "C" void request_interrupt(int /*signal*/) { interrupt_requested.store(true); }
-
-void handle(int signal, void (*handler)(int)) {
-  struct sigaction action {};
-  action.sa_handler = handler;
-  sigemptyset(&action.sa_mask);
-  // The second signal finds the default action: a way out if a stage never asks.
-  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-  sigaction(signal, &action, nullptr);
-}
-
-}  // namespace
-
-InterruptHandler::InterruptHandler() {
-  interrupt_requested.store(false);
-  handle(SIGINT, request_interrupt);
-  handle(SIGTERM, request_interrupt);
-  handle(SIGHUP, request_interrupt);
-}
-
-InterruptHandler::~InterruptHandler() {
-  handle(SIGINT, SIG_DFL);
-  handle(SIGTERM, SIG_DFL);
-  handle(SIGHUP, SIG_DFL);
-}
-
-bool InterruptHandler::requested() noexcept { return interrupt_requested.load(); }
-
-void InterruptHandler::throw_if_requested() {
-  if (requested()) throw Error(ErrorCode::Cancelled, "cancelled; nothing was written");
-}
 
 Progress ProgressBar::stage(std::string name) {
   InterruptHandler::throw_if_requested();

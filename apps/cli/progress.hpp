@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Progress on a terminal, and Ctrl-C: the two halves of the callback that every long operation takes.
+// Progress on a terminal: with interrupt.hpp the callback that every long operation takes.
 #pragma once
 
 #include <chrono>
@@ -8,24 +8,10 @@
 #include <string>
 
 #include "console.hpp"
+#include "interrupt.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::cli {
-
-/// While one of these lives, the first SIGINT, SIGTERM or SIGHUP asks the program to stop, which it does at the
-/// next progress call, with its files cleaned up; the second one ends it at once. One at a time.
-class InterruptHandler {
- public:
-  InterruptHandler();
-  ~InterruptHandler();
-  InterruptHandler(const InterruptHandler&) = delete;
-  InterruptHandler& operator=(const InterruptHandler&) = delete;
-
-  /// Whether a signal has arrived since the handler was made. Safe from any thread.
-  [[nodiscard]] static bool requested() noexcept;
-  /// Throws Cancelled if one has.
-  static void throw_if_requested();
-};
 
 /// A bar on a terminal, one stage of the work after the other; draws nothing elsewhere, nor where a terminal cannot
 /// write over it. In narrow windows it is a number, or nothing.

@@ -120,6 +120,7 @@ class ProjectCommand final : public ContourInputCommand {
         ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    compress_.add_to(app());
     attributes_.add_to(app());
     app().footer(kExamples);
   }
@@ -128,8 +129,10 @@ class ProjectCommand final : public ContourInputCommand {
     const Projection projection = projection_from_options();
     require_inputs();
     require_output(output_, files());
+    compress_.require_known(output_);
     require_output_holds(output_, kind_ == "tetrahedra" ? 3 : 2);
     require_output_keeps(output_, normals(), attributes_.wanted());
+    also_read(attributes_.files());
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
@@ -139,12 +142,13 @@ class ProjectCommand final : public ContourInputCommand {
                   fmt::format("{} has a contour in {}D; expected a 4D one", file(), input.space_dim()));
     ContourResult result = input.to_result();
     result.output = output_;
+    result.compression = compress_.compression();
     result.wording = wording();
     attributes_.sample_to(*contour, threads(), bar);
     Stopwatch watch;
     result.mesh = project_as_asked(*contour, projection, bar);
     result.seconds.slice = watch.lap();
-    if (result.mesh.simplices.empty())
+    if (result.mesh.simplices.empty() && !contour->simplices.empty())
       throw Error(ErrorCode::EmptyResult,
                   "nothing has an outline along this direction: it stands still; expected "
                   "something that moves (or --as cuts)");
@@ -205,6 +209,7 @@ class ProjectCommand final : public ContourInputCommand {
   [[nodiscard]] Mesh cuts(const Contour<4, double>& contour, const Projection& projection,
                           const Progress& progress) const {
     const Attribute heights = project(contour, projection).vertex_attributes.back();
+    if (heights.values.empty()) return tegl::to_mesh(outline(contour, projection, {threads(), progress}));
     const auto [least, most] = std::minmax_element(heights.values.begin(), heights.values.end());
     std::vector<double> offsets;
     for (int i = 0; i < count_; ++i)
@@ -230,6 +235,7 @@ class ProjectCommand final : public ContourInputCommand {
   std::string along_, eye_, output_;
   int count_ = 8;
   bool no_check_ = false;
+  CompressOption compress_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "numbers.hpp"
+#include "printable.hpp"
 
 namespace tegl::cli {
 
@@ -52,7 +53,11 @@ std::string fault_text(const MeshReport& report) {
 }  // namespace
 
 std::string report_line(std::string_view label, std::string_view value) {
-  return fmt::format("  {:<12} {}\n", label, value);
+  return report_line(label, Styled{printable(value)});
+}
+
+std::string report_line(std::string_view label, const Styled& value) {
+  return fmt::format("  {:<12} {}\n", printable(label), value.text);
 }
 
 std::string InputFiles::text() const {
@@ -77,7 +82,9 @@ std::size_t axis_called(const std::string& name, const std::vector<std::string>&
   return std::min(name.size() == 1 ? kLetters.find(name[0]) : std::string_view::npos, labels.size());
 }
 
-std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string dump(const Json& json) {
+  return printable_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
 
 MeshSize size_of(const Mesh& mesh) {
   return {mesh.dim, mesh.coordinates.size() / static_cast<std::size_t>(mesh.space_dim),

@@ -21,8 +21,9 @@ namespace tegl::cli {
 /// JSON whose keys stay in the order in which they are set.
 using Json = nlohmann::ordered_json;
 
-/// A line of a report: "  label        value".
+/// A line of a report, made printable: "  label        value".
 std::string report_line(std::string_view label, std::string_view value);
+std::string report_line(std::string_view label, const Styled& value);
 
 /// The name of an axis, or the customary letter x, y, z, t for one without.
 std::string axis_label(const std::string& name, std::size_t axis);
@@ -30,7 +31,8 @@ std::string axis_label(const std::string& name, std::size_t axis);
 /// Which of the axes has that name (any case), or that customary letter if none has it; labels.size() if none.
 std::size_t axis_called(const std::string& name, const std::vector<std::string>& labels);
 
-/// The document as text with a newline at its end. Bytes that are no UTF-8 (units in old files) are replaced.
+/// The document as text with a newline at its end. Bytes that are no UTF-8 (units in old files) are replaced; control
+/// characters, and those that change the direction of text, are escaped.
 std::string dump(const Json& json);
 
 /// The file that a result was made of, or the files that were read as one image.
@@ -94,6 +96,7 @@ struct Cut {
   std::optional<int> across;      ///< the axis, if it is one
   std::optional<CutFrame> frame;  ///< of others, where it is known
   std::optional<double> level;    ///< where to cut instead of at `value`: where the vertices are that it means
+  bool is_outside = false;        ///< of what is cut
 };
 
 /// What --pick found.
@@ -134,8 +137,9 @@ struct ContourResult {
   std::optional<ExtractStats> stats;  ///< none for cuts of a saved contour, and for picks
   std::optional<MeshReport> report;   ///< none with --no-check
   Mesh mesh;
-  std::optional<MeshSize> streamed;  ///< for what went to the file without being in memory
-  LostVertices lost;                 ///< in the file
+  std::optional<MeshSize> streamed;             ///< for what went to the file without being in memory
+  LostVertices lost;                            ///< in the file
+  Compression compression = Compression::none;  ///< of the file
   StageSeconds seconds;
   Wording wording;
 

@@ -78,12 +78,14 @@ class SimplifyCommand final : public ContourInputCommand {
         ->type_name("FILE")
         ->required();
     app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    compress_.add_to(app());
     app().footer(kExamples);
   }
 
   ExitCode run(const Streams& streams) override {
     require_inputs();
     require_output(output_, files());
+    compress_.require_known(output_);
     require_output_keeps(output_, normals(), false);
     require_goal();
     ProgressBar bar(streams.err, wants_progress());
@@ -92,6 +94,7 @@ class SimplifyCommand final : public ContourInputCommand {
     SimplifyStats stats;
     ContourResult result = input.to_result();
     result.output = output_;
+    result.compression = compress_.compression();
     std::visit([&](const auto& contour) { result.mesh = to_mesh(simplified(contour, input, stats, bar)); },
                input.contour);
     input.contour = AnyContour();
@@ -151,6 +154,7 @@ class SimplifyCommand final : public ContourInputCommand {
   template <int N>
   Contour<N, double> simplified(const Contour<N, double>& contour, const ContourInput& input, SimplifyStats& stats,
                                 ProgressBar& bar) {
+    if (contour.simplices.empty()) return contour;
     SimplifyOptions<N> options;
     options.method = kMethods.at(method_);
     options.border = kBorders.at(border_);
@@ -299,6 +303,7 @@ class SimplifyCommand final : public ContourInputCommand {
   bool no_bound_ = false;
   bool allow_nonmanifold_ = false;
   bool no_check_ = false;
+  CompressOption compress_;
 };
 
 }  // namespace

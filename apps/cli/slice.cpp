@@ -46,12 +46,6 @@ void require_cuttable(int dim, std::string_view what) {
   throw Error(ErrorCode::UnsupportedData, fmt::format("holds a {}D {}; expected a 4D one (or a 3D one)", dim, what));
 }
 
-void require_cut(const ContourResult& result) {
-  if (!result.mesh.simplices.empty()) return;
-  throw Error(ErrorCode::EmptyResult,
-              fmt::format("the cut at {} = {} is empty; expected a contour there", result.cut->axis, result.cut->text));
-}
-
 /// The hyperplane of a cut where axis a is stretched by factors[a].
 template <int N>
 Hyperplane<N> hyperplane_of(const Cut& cut, const std::vector<double>& factors) {
@@ -104,7 +98,6 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
       own.add_shape_normals(cut);
       result.mesh = to_mesh(cut);
       result.cut->frame = frame_for_report<N>(*result.cut, factors);
-      require_cut(result);
     }
     // What one of them took of the pass is anyone's guess: an equal part.
     const double seconds = watch.lap() / static_cast<double>(offsets.size());
@@ -123,11 +116,25 @@ bool is_apart(const AnyImage& image, int axis) {
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
+/// A cut outside of an image, with names and units of its axes.
+template <int N, class Real>
+Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
+  Contour<N, Real> cut;
+  for (int a = 0, b = 0; a <= N; ++a) {
+    if (a == across) continue;
+    cut.axis_names[static_cast<std::size_t>(b)] = grid.axes[static_cast<std::size_t>(a)].name;
+    cut.axis_units[static_cast<std::size_t>(b++)] = grid.axes[static_cast<std::size_t>(a)].unit;
+  }
+  return cut;
+}
+
 template <class Real>
 Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
                 const ExtractionOptions& own, const ExtractOptions& options, ExtractStats& stats) {
   const auto of_owned = [&](const auto& owned) -> Mesh {
-    if constexpr (std::tuple_size_v<decltype(owned.grid.axes)> >= 3) {
+    constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
+    if constexpr (kDim >= 3) {
+      if (cut.is_outside) return to_mesh(empty_cut<kDim - 1, Real>(owned.grid, *cut.across));
       auto contour = slice_image_across<Real>(owned.view(), isovalue, *cut.across, cut.value, options, &stats);
       std::vector<double> others = factors;
       others.erase(others.begin() + *cut.across);
@@ -199,6 +206,7 @@ class SliceCommand final : public Command {
         ->type_name("AXIS=FACTOR");
     options_.add_to(app(), false);
     attributes_.add_to(app());
+    compress_.add_to(app());
     app()
         .add_option("-o,--output", output_,
                     std::string("the result: ") + kContourFiles +
@@ -223,8 +231,10 @@ class SliceCommand final : public Command {
     for (const std::string& output : outputs_) {
       require_output(output, files());
       require_output_keeps(output, options_.normals(), attributes_.wanted());
+      compress_.require_known(output);
     }
     require_different_outputs(outputs_);
+    also_read(attributes_.files());
     attributes_.require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
@@ -236,6 +246,7 @@ class SliceCommand final : public Command {
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
       results[i].output = outputs_[i];
+      results[i].compression = compress_.compression();
       if (!no_check_) check_result(results[i], bar);
     }
     write_all(results, bar);
@@ -267,9 +278,10 @@ class SliceCommand final : public Command {
   }
 
   /// A result for each cut, with what is known before it is made.
-  static std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) {
+  [[nodiscard]] std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) const {
     std::vector<ContourResult> results;
-    for (Cut& cut : resolve(std::move(cuts), space)) results.emplace_back().cut = std::move(cut);
+    for (Cut& cut : resolve(std::move(cuts), space, options_.allows_empty()))
+      results.emplace_back().cut = std::move(cut);
     return results;
   }
 
@@ -278,7 +290,7 @@ class SliceCommand final : public Command {
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
     require_cuts(image_dim(input.image), "image");
-    require_contour(input, isovalue);
+    require_contour(input, isovalue, options_.allows_empty());
     const CutSpace space = space_of(input.image);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
@@ -313,7 +325,6 @@ class SliceCommand final : public Command {
                       ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors_, options_, options, stats)
                       : slice_mesh<double>(image, *result.isovalue, *result.cut, factors_, options_, options, stats);
     const double seconds = watch.lap();
-    require_cut(result);
     result.seconds.add(stats);
     // The slab's extraction is a part of it; what is left is the cut proper.
     result.seconds.slice = std::max(0.0, seconds - (result.seconds.total() - result.seconds.read));
@@ -340,9 +351,10 @@ class SliceCommand final : public Command {
   std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
-    refuse_image_options(files(), given, images(), "--at, --plane, --scale, --threads and --output alone");
+    refuse_image_options(files(), given, images(),
+                         "--at, --plane, --scale, --threads, --allow-empty and --output alone");
     Stopwatch watch;
-    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")));
+    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), options_.allows_empty());
     require_cuts(mesh.space_dim, "contour");
     const CutSpace space = space_of(mesh);
     factors_ = parse_scale(scale_, space);
@@ -368,6 +380,7 @@ class SliceCommand final : public Command {
 
   ExtractionOptions options_;
   AttributeOptions attributes_;
+  CompressOption compress_;
   std::vector<double> factors_;  ///< of --scale, by axis
   std::vector<std::string> at_, planes_, scale_;
   std::string output_;                ///< with placeholders

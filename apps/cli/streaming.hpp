@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "result.hpp"
@@ -16,9 +17,18 @@ namespace tegl::cli {
 /// it lets a program ask for more than it has, it is asked.
 void require_open_files(std::size_t contours);
 
+/// How contours are streamed.
+struct StreamOptions {
+  ExtractOptions extract;
+  bool single_precision = false;
+  bool allow_empty = false;
+  Compression compression = Compression::none;
+};
+
 /// Streams the contours at result.isovalue of each result to its output, in one pass; fills their sizes, counts and
-/// seconds. Throws EmptyResult, and leaves no file, where nothing comes out for one.
-void stream_contours(OpenLayersResult& input, const ExtractOptions& options, bool single_precision,
-                     std::vector<ContourResult>& results);
+/// seconds. Throws EmptyResult, and leaves no file, if an isovalue lies outside of the values, unless `allow_empty`.
+/// Returns a remark for each contour that is empty though its isovalue lies within them.
+std::vector<std::string> stream_contours(OpenLayersResult& input, const StreamOptions& options,
+                                         std::vector<ContourResult>& results);
 
 }  // namespace tegl::cli

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "printable.hpp"
+
 namespace tegl::cli {
 
 namespace {
@@ -27,19 +29,20 @@ std::string csv_cell(const std::string& cell) {
 std::string exact_number(double value) { return fmt::format("{}", value); }
 
 std::string Table::to_text(std::size_t most) const {
-  std::vector<std::size_t> widths;
-  for (const std::string& heading : headings) widths.push_back(characters(heading));
-  const std::size_t count = std::min(most, rows.size());
-  for (std::size_t r = 0; r < count; ++r)
-    for (std::size_t c = 0; c < widths.size(); ++c) widths[c] = std::max(widths[c], characters(rows[r][c]));
+  std::vector<std::vector<std::string>> lines = {headings};
+  for (std::size_t r = 0; r < std::min(most, rows.size()); ++r) lines.push_back(rows[r]);
+  std::vector<std::size_t> widths(headings.size(), 0);
+  for (auto& cells : lines)
+    for (std::size_t c = 0; c < widths.size(); ++c) {
+      cells[c] = printable(cells[c]);
+      widths[c] = std::max(widths[c], characters(cells[c]));
+    }
   std::string text;
-  const auto add = [&](const std::vector<std::string>& cells) {
+  for (const auto& cells : lines) {
     for (std::size_t c = 0; c < widths.size(); ++c)
       text += std::string(2 + widths[c] - characters(cells[c]), ' ') + cells[c];
     text += '\n';
-  };
-  add(headings);
-  for (std::size_t r = 0; r < count; ++r) add(rows[r]);
+  }
   return text;
 }
 

@@ -16,7 +16,8 @@ struct Table {
   std::vector<std::string> headings;
   std::vector<std::vector<std::string>> rows;  ///< each as many cells as there are headings
 
-  /// Columns aligned to the right, two spaces between them, indented by two; the first `most` rows.
+  /// Columns aligned to the right, two spaces between them, indented by two; the first `most` rows. Cells are made
+  /// printable.
   [[nodiscard]] std::string to_text(std::size_t most) const;
   /// Lines of cells with commas between them (RFC 4180: quotes where a cell needs them), headings first.
   [[nodiscard]] std::string to_csv() const;

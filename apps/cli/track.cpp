@@ -117,6 +117,7 @@ class TrackCommand final : public ContourInputCommand {
         ->check(whole_number(1))
         ->type_name("COUNT")
         ->excludes(longest);
+    compress_.add_to(app());
     app().footer(kExamples);
   }
 
@@ -155,6 +156,8 @@ class TrackCommand final : public ContourInputCommand {
     }
     if (largest_ && samples_ == 0)
       throw Error(ErrorCode::InvalidArgument, "--largest needs samples to measure by; expected --samples above 0");
+    compress_.require_file(
+        !std::all_of(outputs_.begin(), outputs_.end(), [](const auto& output) { return is_track_file(output); }));
     for (const std::string& output : outputs_) {
       if (is_track_file(output))
         require_text_output(output, files());
@@ -174,6 +177,7 @@ class TrackCommand final : public ContourInputCommand {
   void require_mesh_output(const std::string& output) const {
     require_output(output, files());
     require_output_keeps(output, normals(), true);
+    compress_.require_known(output);
   }
 
   template <int N>
@@ -213,7 +217,7 @@ class TrackCommand final : public ContourInputCommand {
       const auto write_labelled = [&](auto& contour) {
         add_labels(contour, graph);
         const Mesh mesh = mesh_of(contour, input);
-        written.write(output, [&](const auto& file) { write_mesh(mesh, file, writing); });
+        written.write(output, [&](const auto& file) { write_mesh(mesh, file, writing, compress_.compression()); });
         const LostVertices lost = lost_vertices(mesh, output);
         remark(lost.remark(output));
         lost_ += lost;
@@ -323,6 +327,7 @@ class TrackCommand final : public ContourInputCommand {
   std::string csv_;
   std::string min_lifetime_ = "0";
   std::size_t samples_ = 100;
+  CompressOption compress_;
   std::optional<std::size_t> longest_;
   std::optional<std::size_t> largest_;
   LostVertices lost_;  ///< in the files

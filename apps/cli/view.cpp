@@ -18,6 +18,7 @@
 #include "contour_input.hpp"
 #include "numbers.hpp"
 #include "output.hpp"
+#include "printable.hpp"
 #include "view_page.hpp"
 
 namespace tegl::cli {
@@ -55,8 +56,10 @@ class ViewCommand final : public ContourInputCommand {
                    "several FILEs are one image with an axis more, as other commands take them, not one contour each");
     app().add_option("--title", title_, "what stands above; by default the names of the files")->type_name("TEXT");
     app()
-        .add_option("--limit", limit_,
-                    "most simplices that are shown of a file: of a larger one, the largest components; 0: no limit")
+        .add_option(
+            "--limit", limit_,
+            "most simplices that are shown of a file: of a larger one, the largest components; 0: no limit. Without "
+            "this option the largest component is shown even if it has more")
         ->check(whole_number(0, std::numeric_limits<std::uint32_t>::max()))
         ->type_name("COUNT")
         ->capture_default_str();
@@ -139,6 +142,9 @@ class ViewCommand final : public ContourInputCommand {
 
   Json add_file(PageNumbers& numbers, ProgressBar& bar, std::vector<Shown>& shown) {
     ContourInput input = read_contour(bar, true);
+    if (input.size().simplices == 0)
+      throw Error(ErrorCode::EmptyResult,
+                  "the contour is empty; expected one with simplices, as a page shows something");
     std::optional<double> first, last;
     ImageInfo info;
     if (input.image) {
@@ -153,12 +159,13 @@ class ViewCommand final : public ContourInputCommand {
     here.input_text = input_text(input);
     add_input_keys(here.keys, input);
     const auto add = [&]<int N>(Contour<N, double>& contour) {
-      here.thinned = thin(contour, limit_, {threads(), bar.stage("components")});
+      here.thinned = thin(contour, view_limit(), {threads(), bar.stage("components")});
       std::optional<PageTracks> tracks;
       if constexpr (N == 4) tracks = page_tracks(contour, first, last, tracks_, {threads(), bar.stage("track")});
       return describe_layer(contour, input, here.thinned, tracks, numbers, {threads(), bar.stage("prepare")});
     };
     Json layer = std::visit([&](auto& contour) { return add(contour); }, input.contour);
+    remark_on_size(here);
     layer["unit"] = info.value_unit;
     layer["world"] = world.empty() ? Json(nullptr) : Json(world);
     for (std::size_t a = 0; a < down.size(); ++a) layer["axes"][a]["down"] = down[a];
@@ -236,10 +243,26 @@ class ViewCommand final : public ContourInputCommand {
                        grouped(limit_));
   }
 
+  /// Without --limit a contour that is one large component is shown, with a remark, as far as browsers hold it.
+  [[nodiscard]] ViewLimit view_limit() const {
+    const bool is_given = app().count("--limit") > 0;
+    return {limit_, is_given ? limit_ : kMostByDefault};
+  }
+
+  /// That a page may be slow, and what makes it faster.
+  void remark_on_size(const Shown& shown) {
+    if (limit_ == 0 || shown.thinned.simplices <= limit_) return;
+    remark(
+        fmt::format("{}: {} are shown, more than {}: the page may be slow ('tegl simplify --count {}' makes a smaller "
+                    "contour; --limit {} shows all without this remark)",
+                    file(), counted_simplices(shown.dim - 1, shown.thinned.simplices), grouped(limit_), limit_,
+                    shown.thinned.simplices));
+  }
+
   void warn(const Console& console, const std::vector<Shown>& shown) const {
     for (std::size_t i = 0; i < shown.size(); ++i)
       if (const std::string text = left_out(shown[i]); !text.empty())
-        console.write(fmt::format("tegl: {}: shown are {}\n", all_files()[i], text));
+        console.write(fmt::format("tegl: {}: shown are {}\n", printable(all_files()[i]), text));
   }
 
   [[nodiscard]] Json document(const std::vector<Shown>& shown, std::uint64_t bytes, double seconds) const {
@@ -273,6 +296,7 @@ class ViewCommand final : public ContourInputCommand {
   }
 
   static constexpr std::uint64_t kDefaultLimit = 2000000;
+  static constexpr std::uint64_t kMostByDefault = 10000000;
 
   std::string version_;
   std::string output_;

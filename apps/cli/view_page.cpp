@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "numbers.hpp"
+#include "printable.hpp"
 #include "tegl/normals.hpp"
 #include "tegl/track_io.hpp"
 #include "view_assets.hpp"
@@ -150,6 +151,14 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+/// The same document with all strings printable: names and units of files may hold anything.
+Json with_printable_strings(Json json) {
+  if (json.is_string()) return printable(json.get_ref<const std::string&>());
+  if (json.is_structured())
+    for (Json& item : json) item = with_printable_strings(std::move(item));
+  return json;
+}
+
 /// JSON that may stand in a <script>: without "<".
 std::string script_json(const Json& json) {
   std::string result;
@@ -221,24 +230,25 @@ std::string PageNumbers::packed(const Progress& progress) const {
 }
 
 template <int N>
-Thinned thin(Contour<N, double>& contour, std::uint64_t limit, const WorkOptions& options) {
+Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOptions& options) {
   const ComponentLabels labels = label_components(contour, options);
   Thinned result{labels.count, labels.count, contour.simplices.size(), contour.simplices.size()};
-  if (limit == 0 || result.simplices <= limit) return result;
+  if (limit.of_all == 0 || result.simplices <= limit.of_all) return result;
   std::vector<std::uint64_t> sizes(labels.count, 0);
   for (const Index label : labels.simplices) ++sizes[label];
   std::vector<Index> order(labels.count);
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return sizes[a] > sizes[b]; });
-  if (sizes[order[0]] > limit)
+  if (sizes[order[0]] > limit.of_largest)
     throw Error(ErrorCode::TooLarge,
-                fmt::format("the largest component has {}; expected at most {} (a higher --limit, 0 for none, shows it "
-                            "nevertheless; 'tegl simplify' makes it smaller)",
-                            counted_simplices(N - 1, sizes[order[0]]), grouped(limit)));
+                fmt::format("the largest component has {}; expected at most {}: --limit {} shows it, 'tegl simplify "
+                            "--count {}' makes a smaller one",
+                            counted_simplices(N - 1, sizes[order[0]]), grouped(limit.of_largest), sizes[order[0]],
+                            limit.of_all));
   std::vector<bool> keep(labels.count, false);
   result.components = result.simplices = 0;
   for (const Index label : order) {
-    if (result.simplices + sizes[label] > limit) break;
+    if (result.components > 0 && result.simplices + sizes[label] > limit.of_all) break;
     keep[label] = true;
     result.simplices += sizes[label];
     ++result.components;
@@ -341,9 +351,10 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
       "style-src 'unsafe-inline'; img-src data: blob:\">\n";
   page += kEndCheck;
   page += "<link rel=\"icon\" href=\"data:,\">\n";
-  page += fmt::format("<title>{}</title>\n<!--\n{}-->\n<style>\n{}</style>\n</head>\n<body>\n{}", escaped(title),
-                      kViewerNotice, kViewerStyle, kViewerMarkup);
-  page += fmt::format("<script type=\"application/json\" id=\"scene\">{}</script>\n", script_json(scene));
+  page += fmt::format("<title>{}</title>\n<!--\n{}-->\n<style>\n{}</style>\n</head>\n<body>\n{}",
+                      escaped(printable(title)), kViewerNotice, kViewerStyle, kViewerMarkup);
+  page += fmt::format("<script type=\"application/json\" id=\"scene\">{}</script>\n",
+                      script_json(with_printable_strings(scene)));
   page += "<script type=\"text/plain\" id=\"numbers\">";
   page += base64(packed);
   page += "</script>\n<script>\n";
@@ -353,7 +364,7 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
 }
 
 #define TEGL_INSTANTIATE_VIEW(N)                                                               \
-  template Thinned thin(Contour<N, double>&, std::uint64_t, const WorkOptions&);               \
+  template Thinned thin(Contour<N, double>&, const ViewLimit&, const WorkOptions&);            \
   template Json describe_layer(const Contour<N, double>&, const ContourInput&, const Thinned&, \
                                const std::optional<PageTracks>&, PageNumbers&, const WorkOptions&);
 TEGL_INSTANTIATE_VIEW(2)

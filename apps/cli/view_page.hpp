@@ -53,10 +53,16 @@ struct Thinned {
   [[nodiscard]] bool left_out() const noexcept { return components < of_components; }
 };
 
-/// Leaves out all but the largest components, by simplices, as many as have no more than `limit` simplices together (0:
-/// no limit). Throws TooLarge if the largest alone has more.
+/// How many simplices of a contour a page shows.
+struct ViewLimit {
+  std::uint64_t of_all = 0;      ///< of several components together; 0: no limit
+  std::uint64_t of_largest = 0;  ///< of the largest component, which is shown even if it has more than `of_all`
+};
+
+/// Leaves out all but the largest components, by simplices, as many as the limit lets in. Throws TooLarge if the
+/// largest component is beyond it.
 template <int N>
-Thinned thin(Contour<N, double>& contour, std::uint64_t limit, const WorkOptions& options);
+Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOptions& options);
 
 /// A contour's graph of tracks as a page shows it.
 struct PageTracks {

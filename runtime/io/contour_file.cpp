@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Streamed contours to VTKHDF.
+#include <type_traits>
+
 #include "common.hpp"
 #include "tegl/io.hpp"
 #include "vtkhdf.hpp"
@@ -15,7 +17,8 @@ using namespace io_detail;
 namespace {
 
 template <int N>
-VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue) {
+VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue, bool single_precision,
+                       Compression compression) {
   const MeshFileFormat* const format = find_mesh_file_format(path);
   if (format == nullptr || format->extension != ".vtkhdf")
     fail(ErrorCode::UnsupportedFormat, path, "'{}' cannot grow; expected .vtkhdf", path.extension().string());
@@ -23,6 +26,8 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<
   layout.dim = N - 1;
   layout.space_dim = N;
   layout.isovalue = isovalue;
+  layout.single_precision = single_precision;
+  layout.compression = compression;
   for (const Axis& axis : grid.axes) {
     layout.axis_names.push_back(axis.name);
     layout.axis_units.push_back(axis.unit);
@@ -35,8 +40,8 @@ VtkhdfLayout layout_of(const fs::path& path, const Grid<N>& grid, std::optional<
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 struct ContourFile<N, Real>::Parts {
-  Parts(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue)
-      : writer(path, layout_of(path, grid, isovalue)) {}
+  Parts(const fs::path& path, const Grid<N>& grid, std::optional<double> isovalue, Compression compression)
+      : writer(path, layout_of(path, grid, isovalue, std::is_same_v<Real, float>, compression)) {}
 
   using Vertex = typename ContourSink<N, Real>::Vertex;
   /// Hands rows on as double, a block at a time.
@@ -56,8 +61,9 @@ struct ContourFile<N, Real>::Parts {
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> ContourFile<N, Real>::ContourFile(const fs::path& path, const Grid<N>& grid,
-                                                                     std::optional<double> isovalue)
-    : parts_(std::make_unique<Parts>(path, grid, isovalue)) {}
+                                                                     std::optional<double> isovalue,
+                                                                     Compression compression)
+    : parts_(std::make_unique<Parts>(path, grid, isovalue, compression)) {}
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4> ContourFile<N, Real>::~ContourFile() = default;

@@ -3,6 +3,8 @@
 // Contours as segments, polygons and polyhedra, into VTU and VTKHDF.
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <type_traits>
 
 #include "common.hpp"
 #include "tegl/io.hpp"
@@ -67,56 +69,71 @@ class FacetCells {
   std::uint64_t points_ = 0;
 };
 
-/// The three coordinates that VTK has, and the fourth.
+/// The three coordinates that VTK has.
 template <int N, class Real>
-std::array<double, 3> first_three(const std::array<Real, N>& row) noexcept {
-  std::array<double, 3> result{};
-  for (std::size_t a = 0; a < std::min<std::size_t>(N, 3); ++a) result[a] = static_cast<double>(row[a]);
+std::array<Real, 3> first_three(const std::array<Real, N>& row) noexcept {
+  std::array<Real, 3> result{};
+  std::copy_n(row.begin(), std::min(N, 3), result.begin());
   return result;
 }
 
 template <int N, class Real>
 void add_rows(const Buffer<std::array<Real, N>>& rows, const char* name, const char* fourth, VtuArray& three,
               std::vector<VtuArray>& arrays) {
-  three = {name, "Float64", 3, rows.size(), sizeof(double), rows.size(), [&rows](ByteSink& sink, std::size_t v) {
-             for (const double x : first_three<N, Real>(rows[v])) sink.put(x);
+  constexpr const char* kType = std::is_same_v<Real, float> ? "Float32" : "Float64";
+  three = {name, kType, 3, rows.size(), sizeof(Real), rows.size(), [&rows](ByteSink& sink, std::size_t v) {
+             for (const Real x : first_three<N, Real>(rows[v])) sink.put(x);
            }};
   if constexpr (N == 4)
-    arrays.push_back({fourth, "Float64", 1, rows.size(), sizeof(double), rows.size(),
-                      [&rows](ByteSink& sink, std::size_t v) { sink.put(static_cast<double>(rows[v][3])); }});
+    arrays.push_back({fourth, kType, 1, rows.size(), sizeof(Real), rows.size(),
+                      [&rows](ByteSink& sink, std::size_t v) { sink.put(rows[v][3]); }});
 }
 
-template <int N, class Real>
+/// The arrays of vertex numbers, of the type `Id`.
+template <class Id, int N, class Real>
 std::vector<VtuArray> topology_of(const FacetCells<N, Real>& cells) {
   const std::size_t count = cells.count();
-  constexpr unsigned kLong = sizeof(std::int64_t);
+  constexpr const char* kType = sizeof(Id) == sizeof(std::int32_t) ? "Int32" : "Int64";
   std::vector<VtuArray> arrays;
   arrays.push_back(
-      {"connectivity", "Int64", 1, cells.point_numbers(), kLong, count, [&cells](ByteSink& sink, std::size_t f) {
-         for (const Index point : cells.points(f)) sink.put(std::int64_t{point});
+      {"connectivity", kType, 1, cells.point_numbers(), sizeof(Id), count, [&cells](ByteSink& sink, std::size_t f) {
+         for (const Index point : cells.points(f)) sink.put(static_cast<Id>(point));
        }});
-  arrays.push_back({"offsets", "Int64", 1, count, kLong, count,
+  arrays.push_back({"offsets", kType, 1, count, sizeof(Id), count,
                     [&cells, end = std::int64_t{0}](ByteSink& sink, std::size_t f) mutable {
-                      sink.put(end += cells.point_count(f));
+                      sink.put(static_cast<Id>(end += cells.point_count(f)));
                     }});
   arrays.push_back(
       {"types", "UInt8", 1, count, 1, count, [](ByteSink& sink, std::size_t) { sink.put(kFacetTypes[N - 1]); }});
   if constexpr (N == 4) {
     std::uint64_t size = 0;
     for (std::size_t f = 0; f < count; ++f) size += cells.polygons_size(f);
-    arrays.push_back({"faces", "Int64", 1, size, kLong, count, [&cells](ByteSink& sink, std::size_t f) {
-                        for (const Index number : cells.polygons(f)) sink.put(std::int64_t{number});
+    arrays.push_back({"faces", kType, 1, size, sizeof(Id), count, [&cells](ByteSink& sink, std::size_t f) {
+                        for (const Index number : cells.polygons(f)) sink.put(static_cast<Id>(number));
                       }});
-    arrays.push_back({"faceoffsets", "Int64", 1, count, kLong, count,
+    arrays.push_back({"faceoffsets", kType, 1, count, sizeof(Id), count,
                       [&cells, end = std::int64_t{0}](ByteSink& sink, std::size_t f) mutable {
-                        sink.put(end += static_cast<std::int64_t>(cells.polygons_size(f)));
+                        sink.put(static_cast<Id>(end += static_cast<std::int64_t>(cells.polygons_size(f))));
                       }});
   }
   return arrays;
 }
 
+/// Whether numbers of points, and the longest array of them, fit into 32 bits.
 template <int N, class Real>
-void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress) {
+bool fits_int32(const FacetHierarchy<N, Real>& facets, const FacetCells<N, Real>& cells) {
+  std::uint64_t most = std::max<std::uint64_t>(facets.vertices.size(), cells.point_numbers());
+  if constexpr (N == 4) {
+    std::uint64_t faces = 0;
+    for (std::size_t f = 0; f < cells.count(); ++f) faces += cells.polygons_size(f);
+    most = std::max(most, faces);
+  }
+  return most <= static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
+}
+
+template <int N, class Real>
+void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
+                      Compression compression) {
   const FacetCells<N, Real> cells(facets);
   io_detail::VtuGrid grid;
   grid.points = facets.vertices.size();
@@ -140,14 +157,19 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& pat
                  [&places](ByteSink& sink, std::size_t f) { sink.put(std::int32_t{places[f].signature}); });
   add_cell_array("cap", "UInt8", 1,
                  [&places](ByteSink& sink, std::size_t f) { sink.put(std::uint8_t{places[f].is_cap}); });
-  grid.topology = topology_of(cells);
-  io_detail::write_vtu(grid, path, progress);
+  const bool narrow = std::is_same_v<Real, float> && fits_int32(facets, cells);
+  grid.topology = narrow ? topology_of<std::int32_t>(cells) : topology_of<std::int64_t>(cells);
+  io_detail::write_vtu(grid, path, progress, compression);
 }
 
 template <int N, class Real>
-void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress) {
+void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
+                         Compression compression) {
   const FacetCells<N, Real> cells(facets);
-  io_detail::VtkhdfLayout layout{N - 1, N, {}, {}, facets.vertices.size(), cells.count(), {}};
+  constexpr bool kSingle = std::is_same_v<Real, float>;
+  io_detail::VtkhdfLayout layout{
+      N - 1,      N, {}, {}, facets.vertices.size(), cells.count(), {}, kSingle, kSingle && fits_int32(facets, cells),
+      compression};
   layout.axis_names.assign(facets.axis_names.begin(), facets.axis_names.end());
   layout.axis_units.assign(facets.axis_units.begin(), facets.axis_units.end());
   io_detail::VtkhdfWriter writer(path, layout);
@@ -206,9 +228,10 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& 
 }  // namespace
 
 template <int N, class Real>
-void write_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress) {
+void write_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, const Progress& progress,
+                  Compression compression) {
   const std::string extension = io_detail::lower(path.extension().string());
-  if (extension == ".vtu") return write_vtu_facets(facets, path, progress);
+  if (extension == ".vtu") return write_vtu_facets(facets, path, progress, compression);
   if (extension != ".vtkhdf")
     io_detail::fail(ErrorCode::UnsupportedFormat, path,
                     "'{}' cannot hold a contour without triangulation; expected .vtu, or in 2D and 3D .vtkhdf",
@@ -217,11 +240,11 @@ void write_facets(const FacetHierarchy<N, Real>& facets, const fs::path& path, c
     io_detail::fail(ErrorCode::UnsupportedFormat, path,
                     "VTKHDF files that VTK 9.1 reads cannot hold polyhedra; expected .vtu");
   else
-    write_vtkhdf_facets(facets, path, progress);
+    write_vtkhdf_facets(facets, path, progress, compression);
 }
 
 #define TEGL_INSTANTIATE(N, Real) \
-  template void write_facets<N, Real>(const FacetHierarchy<N, Real>&, const fs::path&, const Progress&);
+  template void write_facets<N, Real>(const FacetHierarchy<N, Real>&, const fs::path&, const Progress&, Compression);
 TEGL_INSTANTIATE(2, float)
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, float)

@@ -15,6 +15,7 @@
 
 #include "hdf5_driver.hpp"
 #include "tegl/error.hpp"
+#include "tegl/io.hpp"
 
 namespace tegl::io_detail {
 
@@ -105,7 +106,7 @@ class H5File {
   /// An empty dataset of rows of `columns` values (0: one-dimensional), to be appended to: `expected` rows, or however
   /// many. Must not outlive the file.
   [[nodiscard]] H5Table create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
-                                     std::uint64_t expected) const;
+                                     std::uint64_t expected, Compression compression = Compression::none) const;
 
   /// How many dimensions a dataset has.
   [[nodiscard]] int rank(hid_t group, const char* name) const;

@@ -3,6 +3,7 @@
 // Images that are read layer by layer.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -92,6 +93,44 @@ std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
   return *found;
 }
 
+/// A list of a layout that has an item for each axis, or none.
+template <class Item>
+const Item& item_of(const std::vector<Item>& items, std::size_t axis, const Item& other) {
+  return items.empty() ? other : items[axis];
+}
+
+/// The axes of a layout. Throws InvalidArgument.
+std::vector<Axis> raw_axes(const RawLayout& layout, const fs::path& path) {
+  const auto require_count = [&](std::size_t count, const char* what) {
+    if (count != 0 && count != layout.sizes.size())
+      fail(ErrorCode::InvalidArgument, path, "{} of {} axes, and sizes of {}; expected one for each axis", what, count,
+           layout.sizes.size());
+  };
+  require_count(layout.spacing.size(), "spacings");
+  require_count(layout.origin.size(), "origins");
+  require_count(layout.axis_names.size(), "names");
+  require_count(layout.axis_units.size(), "units");
+  std::vector<Axis> axes;
+  for (std::size_t a = 0; a < layout.sizes.size(); ++a) {
+    const std::size_t size = layout.sizes[a];
+    const double step = item_of(layout.spacing, a, 1.0);
+    const double first = item_of(layout.origin, a, 0.0);
+    if (size == 0) fail(ErrorCode::InvalidArgument, path, "sizes {}; expected no 0", shape_text(layout.sizes));
+    if (!std::isfinite(step) || step == 0.0)
+      fail(ErrorCode::InvalidArgument, path, "a spacing of {}; expected a finite number other than 0", step);
+    const double last = first + step * static_cast<double>(size - 1);
+    if (!std::isfinite(first) || !std::isfinite(last) || first + step == first || last + step == last)
+      fail(ErrorCode::InvalidArgument, path,
+           "an axis from {} in {} steps of {}; expected coordinates that are finite "
+           "and differ",
+           first, size - 1, step);
+    axes.push_back(Axis::uniform(size, first, step));
+    axes.back().name = item_of(layout.axis_names, a, std::string());
+    axes.back().unit = item_of(layout.axis_units, a, std::string());
+  }
+  return axes;
+}
+
 }  // namespace
 
 OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& path) {
@@ -122,10 +161,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   require_readable_file(path);
   const std::string_view type = stored_name(layout, path);
   RawLayers source;
-  for (const std::size_t size : layout.sizes) {
-    if (size == 0) fail(ErrorCode::InvalidArgument, path, "sizes {}; expected no 0", shape_text(layout.sizes));
-    source.grid.axes.push_back(Axis::uniform(size));
-  }
+  source.grid.axes = raw_axes(layout, path);
   if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
     fail(ErrorCode::InvalidArgument, path, "{} sizes; expected those of 2, 3 or 4 axes", layout.sizes.size());
   const auto n = static_cast<Eigen::Index>(layout.sizes.size());

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "attributes.hpp"
 #include "common.hpp"
@@ -148,6 +149,7 @@ requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour)
   mesh.simplices.resize(contour.simplices.size() * N);
   for (std::size_t s = 0; s < contour.simplices.size(); ++s)
     for (std::size_t c = 0; c < N; ++c) mesh.simplices[s * N + c] = contour.simplices[s][c];
+  mesh.single_precision = std::is_same_v<Real, float>;
   mesh.axis_names = as_vector(contour.axis_names);
   mesh.axis_units = as_vector(contour.axis_units);
   mesh.vertex_attributes = contour.vertex_attributes;
@@ -196,8 +198,10 @@ const MeshFileFormat* find_mesh_file_format(const fs::path& path) {
   return found == kFormats.end() ? nullptr : found;
 }
 
-void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress) {
+void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress, Compression compression) {
   const MeshFileFormat& format = format_of(path);
+  if (compression != Compression::none && format.extension != ".vtkhdf")
+    fail(ErrorCode::UnsupportedFormat, path, "'{}' has no compression; expected .vtkhdf", path.extension().string());
   check_mesh(mesh, path);
   check_combination(mesh, format, path);
   tick(progress, 0.0, path);
@@ -210,7 +214,7 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress
   else if (format.extension == ".obj")
     write_obj(mesh, path, progress);
   else
-    write_vtkhdf(mesh, path, progress);
+    write_vtkhdf(mesh, path, progress, compression);
 }
 
 Mesh read_mesh(const fs::path& path, const ReadMeshOptions& options) {

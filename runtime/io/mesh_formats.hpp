@@ -41,7 +41,8 @@ void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progr
 /// `allow_outside_paths`: see ReadMeshOptions.
 Mesh read_gltf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
 
-void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
+void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress,
+                  Compression compression);
 /// `allow_outside_paths`: see ReadMeshOptions.
 Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
 

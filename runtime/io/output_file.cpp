@@ -4,10 +4,13 @@
 #include "output_file.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
@@ -34,7 +37,59 @@ bool exchange(const fs::path& a, const fs::path& b) noexcept {
 #endif
 }
 
+// The list of pending files, as remove_pending_files() needs it in a signal handler, which must not wait for a lock
+// that the interrupted thread holds. So whoever changes the list blocks all signals of its thread while it has the
+// lock.
+std::atomic_flag list_locked = ATOMIC_FLAG_INIT;
+PendingPath* first_pending = nullptr;
+
+void lock_list() noexcept {
+  while (list_locked.test_and_set(std::memory_order_acquire)) sched_yield();
+}
+
+class LockedList {
+ public:
+  LockedList() noexcept {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before_);
+    lock_list();
+  }
+  ~LockedList() {
+    list_locked.clear(std::memory_order_release);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  LockedList(const LockedList&) = delete;
+  LockedList& operator=(const LockedList&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
 }  // namespace
+
+int PendingPath::create(unsigned mode) noexcept {
+  const LockedList lock;
+  const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
+  if (file < 0) return file;
+  after_ = first_pending;
+  if (after_ != nullptr) after_->before_ = this;
+  first_pending = this;
+  return file;
+}
+
+void PendingPath::delist() noexcept {
+  const LockedList lock;
+  if (first_pending == this) first_pending = after_;
+  if (before_ != nullptr) before_->after_ = after_;
+  if (after_ != nullptr) after_->before_ = before_;
+  before_ = after_ = nullptr;
+}
+
+void remove_pending_files() noexcept {
+  lock_list();  // for good: nobody changes the list of a process that ends
+  for (const PendingPath* each = first_pending; each != nullptr; each = each->after_) unlink(each->pending_.c_str());
+}
 
 fs::path place_of(const fs::path& path) {
   constexpr int kMostLinks = 40;  // as the kernel has it
@@ -66,7 +121,7 @@ PendingPath::PendingPath(const fs::path& target) : named_(target), place_(place_
     // With the target's extension, by which formats are chosen.
     pending_ = place_.parent_path() /
                fmt::format(".{}-{}.{}", static_cast<long>(getpid()), attempt, place_.filename().string());
-    const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
+    const int file = create(mode);
     if (file >= 0) {
       // The umask has its say on new files alone.
       if (fs::exists(status)) static_cast<void>(fchmod(file, mode));
@@ -81,6 +136,7 @@ PendingPath::PendingPath(const fs::path& target) : named_(target), place_(place_
 PendingPath::~PendingPath() {
   std::error_code ignored;
   if (state_ == State::pending || state_ == State::exchanged) fs::remove(pending_, ignored);
+  delist();
 }
 
 void PendingPath::commit() {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// PLY, binary little-endian, with coordinates, normals and attributes as double: lossless. Segments become an `edge`
-// element. Attributes become properties after the usual ones, with comments that say their names and units. Colours of
-// whole 255ths become bytes.
+// PLY, binary little-endian, with coordinates, normals and attributes as double: lossless. Of a mesh in single
+// precision, coordinates and normals are float. Segments become an `edge` element. Attributes become properties after
+// the usual ones, with comments that say their names and units. Colours of whole 255ths become bytes.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
@@ -80,9 +80,10 @@ class PlyWriter {
     if (mesh_.isovalue) text += fmt::format("comment tegl isovalue {}\n", *mesh_.isovalue);
     text += comments("vertex", of_vertices_) + comments("simplex", of_simplices_);
     text += fmt::format("element vertex {}\n", vertex_count(mesh_));
-    for (const char* const name : {"x", "y", "z"}) text += fmt::format("property double {}\n", name);
+    const char* const real = mesh_.single_precision ? "float" : "double";
+    for (const char* const name : {"x", "y", "z"}) text += fmt::format("property {} {}\n", real, name);
     if (!mesh_.normals.empty())
-      for (const char* const name : {"nx", "ny", "nz"}) text += fmt::format("property double {}\n", name);
+      for (const char* const name : {"nx", "ny", "nz"}) text += fmt::format("property {} {}\n", real, name);
     text += declarations(of_vertices_);
     text += mesh_.dim == 1
                 ? fmt::format("element edge {}\nproperty uint vertex1\nproperty uint vertex2\n", simplex_count(mesh_))
@@ -123,9 +124,16 @@ class PlyWriter {
     }
   }
 
+  void put_row(const std::array<double, 3>& row) {
+    if (!mesh_.single_precision) return out_.put(row.data(), 3);
+    const std::array<float, 3> single = {static_cast<float>(row[0]), static_cast<float>(row[1]),
+                                         static_cast<float>(row[2])};
+    out_.put(single.data(), 3);
+  }
+
   void put_vertex(std::size_t v) {
-    out_.put(position(mesh_, v).data(), 3);
-    if (!mesh_.normals.empty()) out_.put(normal(mesh_, v).data(), 3);
+    put_row(position(mesh_, v));
+    if (!mesh_.normals.empty()) put_row(normal(mesh_, v));
     put_attributes(of_vertices_, v);
   }
 

@@ -232,9 +232,14 @@ class Reader {
 
 }  // namespace
 
-void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress) {
-  VtkhdfWriter writer(path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh),
-                             simplex_count(mesh), mesh.isovalue});
+void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress, Compression compression) {
+  // Offsets go up to the count of vertex numbers.
+  const std::size_t largest_id = std::max(vertex_count(mesh), mesh.simplices.size());
+  VtkhdfWriter writer(
+      path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh),
+             mesh.isovalue, mesh.single_precision,
+             mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
+             compression});
   std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
     for (const Attribute& attribute : *attributes) all += attribute.values.size();

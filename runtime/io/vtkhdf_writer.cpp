@@ -2,8 +2,9 @@
 //
 // VTKHDF, unstructured grids, written: triangles, segments, or tetrahedra whose vertices carry the time as the point
 // array "t". Normals are the point array "Normals", with the fourth component in "normal_t", and attributes are point
-// and cell arrays; the isovalue is a field array. All of these are double: lossless. Axis names and units are
-// attributes of the group, those of arrays of the arrays; VTK does not look at them.
+// and cell arrays; the isovalue is a field array. All of these are double: lossless. Of a mesh in single precision,
+// points and normals are float. Axis names and units are attributes of the group, names and units of arrays attributes
+// of the arrays, which VTK ignores.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
 #include "vtkhdf_writer.hpp"
@@ -39,6 +40,10 @@ H5Handle create_root(const H5File& file, const VtkhdfLayout& layout) {
   return group;
 }
 
+hid_t real_type(const VtkhdfLayout& layout) { return layout.single_precision ? H5T_IEEE_F32LE : H5T_IEEE_F64LE; }
+
+hid_t id_type(const VtkhdfLayout& layout) { return layout.narrow_ids ? H5T_STD_I32LE : H5T_STD_I64LE; }
+
 std::set<std::string> reserved_point_names(int space_dim) {
   if (space_dim == 4) return {kNormals, kNormalTimes, kTimes};
   return {kNormals};
@@ -47,17 +52,20 @@ std::set<std::string> reserved_point_names(int space_dim) {
 }  // namespace
 
 VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout& layout)
-    : points(file.create_table(group, "Points", H5T_IEEE_F64LE, 3, layout.expected_vertices)),
-      connectivity(file.create_table(group, "Connectivity", H5T_STD_I64LE, 0,
+    : points(file.create_table(group, "Points", real_type(layout), 3, layout.expected_vertices, layout.compression)),
+      connectivity(file.create_table(group, "Connectivity", id_type(layout), 0,
                                      layout.expected_simplices > (1u << 24)
                                          ? ~std::uint64_t{0}
-                                         : layout.expected_simplices * (static_cast<unsigned>(layout.dim) + 1))),
-      offsets(file.create_table(group, "Offsets", H5T_STD_I64LE, 0,
-                                layout.expected_simplices + (layout.expected_simplices == ~std::uint64_t{0} ? 0 : 1))),
-      types(file.create_table(group, "Types", H5T_STD_U8LE, 0, layout.expected_simplices)) {
+                                         : layout.expected_simplices * (static_cast<unsigned>(layout.dim) + 1),
+                                     layout.compression)),
+      offsets(file.create_table(group, "Offsets", id_type(layout), 0,
+                                layout.expected_simplices + (layout.expected_simplices == ~std::uint64_t{0} ? 0 : 1),
+                                layout.compression)),
+      types(file.create_table(group, "Types", H5T_STD_U8LE, 0, layout.expected_simplices, layout.compression)) {
   const H5Handle point_data = file.create_group("VTKHDF/PointData");
   if (layout.space_dim == 4)
-    times.emplace(file.create_table(point_data.id(), kTimes, H5T_IEEE_F64LE, 0, layout.expected_vertices));
+    times.emplace(
+        file.create_table(point_data.id(), kTimes, real_type(layout), 0, layout.expected_vertices, layout.compression));
 }
 
 VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
@@ -65,6 +73,8 @@ VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
       corners_(static_cast<std::uint64_t>(layout.dim) + 1),
       space_dim_(static_cast<std::size_t>(layout.space_dim)),
       expected_vertices_(layout.expected_vertices),
+      compression_(layout.compression),
+      real_(real_type(layout)),
       file_(H5File::create(pending_.path(), target)),
       group_(create_root(file_, layout)),
       point_names_(reserved_point_names(layout.space_dim)) {
@@ -81,10 +91,10 @@ void VtkhdfWriter::append_vertices(std::span<const double> coordinates) {
 void VtkhdfWriter::append_normals(std::span<const double> normals) {
   if (!tables_->normals) {
     const H5Handle point_data = file_.open_group("VTKHDF/PointData");
-    tables_->normals.emplace(file_.create_table(point_data.id(), kNormals, H5T_IEEE_F64LE, 3, expected_vertices_));
+    tables_->normals.emplace(file_.create_table(point_data.id(), kNormals, real_, 3, expected_vertices_, compression_));
     if (space_dim_ == 4)
       tables_->normal_times.emplace(
-          file_.create_table(point_data.id(), kNormalTimes, H5T_IEEE_F64LE, 0, expected_vertices_));
+          file_.create_table(point_data.id(), kNormalTimes, real_, 0, expected_vertices_, compression_));
   }
   append_rows(normals, *tables_->normals, tables_->normal_times ? &*tables_->normal_times : nullptr);
 }
@@ -135,8 +145,8 @@ H5Table VtkhdfWriter::attribute_table(const char* group, const Attribute& attrib
   std::replace(wished.begin(), wished.end(), '/', '_');
   const std::string name = (of_points ? point_names_ : cell_names_).make(wished);
   const auto columns = static_cast<std::uint64_t>(attribute.width);
-  H5Table table =
-      file_.create_table(data.id(), name.c_str(), H5T_IEEE_F64LE, columns == 1 ? 0 : columns, row_count(attribute));
+  H5Table table = file_.create_table(data.id(), name.c_str(), H5T_IEEE_F64LE, columns == 1 ? 0 : columns,
+                                     row_count(attribute), compression_);
   const std::array<std::int64_t, 1> place = {static_cast<std::int64_t>(order)};
   file_.put_numbers(table.id(), kAttributeOrder, place);
   if (name != attribute.name) file_.put_text(table.id(), kAttributeName, attribute.name);

@@ -26,6 +26,9 @@ struct VtkhdfLayout {
   std::uint64_t expected_vertices = ~std::uint64_t{0};
   std::uint64_t expected_simplices = ~std::uint64_t{0};
   std::optional<double> isovalue;  ///< to the field array "isovalue"
+  bool single_precision = false;   ///< points, times and normals are float
+  bool narrow_ids = false;         ///< vertex numbers and offsets are int32: only if all of them fit
+  Compression compression = Compression::none;
 };
 
 /// Nothing is at the target before commit(). Errors: WriteFailed, naming the target. Memory: a few MiB.
@@ -68,6 +71,8 @@ class VtkhdfWriter {
   std::uint64_t corners_;
   std::size_t space_dim_;
   std::uint64_t expected_vertices_;
+  Compression compression_;
+  hid_t real_;  ///< the file's type of coordinates and normals
   H5File file_;
   std::optional<H5Handle> group_;
   std::optional<Tables> tables_;

@@ -9,33 +9,37 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "output_file.hpp"
+#include "tegl/io.hpp"
 
 namespace tegl::io_detail {
 
-/// Values on their way into a file.
+/// Values on their way into a file, which `write` gets a block of bytes at a time.
 class ByteSink {
  public:
-  explicit ByteSink(OutputFile& file) : file_(file) { buffer_.reserve(kBlock); }
+  static constexpr std::size_t kBlock = std::size_t{1} << 16;
+  using Write = std::function<void(const void*, std::size_t)>;
+
+  explicit ByteSink(Write write) : write_(std::move(write)) { buffer_.reserve(kBlock); }
   template <class T>
   void put(T value) {
-    if (buffer_.size() + sizeof value > kBlock) flush();
+    static_assert(kBlock % sizeof value == 0);  // so that all blocks but the last are full
+    if (buffer_.size() == kBlock) flush();
     const auto* const bytes = reinterpret_cast<const char*>(&value);
     buffer_.insert(buffer_.end(), bytes, bytes + sizeof value);
     bytes_ += sizeof value;
   }
   void flush() {
-    file_.write(buffer_.data(), buffer_.size());
+    if (!buffer_.empty()) write_(buffer_.data(), buffer_.size());
     buffer_.clear();
   }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
 
  private:
-  static constexpr std::size_t kBlock = std::size_t{1} << 16;
-
-  OutputFile& file_;
+  Write write_;
   std::vector<char> buffer_;
   std::uint64_t bytes_ = 0;
 };
@@ -43,7 +47,7 @@ class ByteSink {
 /// An array of a VTU file.
 struct VtuArray {
   std::string name;
-  std::string type;    ///< "Float64", "Int64", "Int32", "UInt8"
+  std::string type;    ///< "Float64", "Float32", "Int64", "Int32", "UInt8"
   unsigned columns;    ///< 1: no columns
   std::uint64_t rows;  ///< as they are announced; `put` writes as many
   unsigned bytes;      ///< of a value
@@ -61,7 +65,8 @@ struct VtuGrid {
   std::vector<std::string> axis_names, axis_units;
 };
 
-/// Errors: WriteFailed, Cancelled.
-void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress);
+/// With compression the file's arrays are in memory, compressed. Errors: WriteFailed, Cancelled.
+void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress,
+               Compression compression);
 
 }  // namespace tegl::io_detail

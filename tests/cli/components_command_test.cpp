@@ -201,7 +201,7 @@ TEST_F(MeasureCommand, OfAnOpenContourSaysSo) {
 TEST_F(MeasureCommand, OfATimeOutsideIsRefused) {
   const RunResult run = run_tegl({"measure", file_, "--iso", "0", "--at", "z=-1"});
   EXPECT_EQ(run.exit, 5);
-  EXPECT_THAT(run.err, HasSubstr("the cut at z = -1 lies outside of the contour; expected "));
+  EXPECT_THAT(run.err, HasSubstr("the cut at z = -1 lies outside of the image; expected "));
 }
 
 TEST_F(MeasureCommand, OverTimeIsThatOfTheCuts) {

@@ -2,7 +2,9 @@
 //
 // Loaded before a program (LD_PRELOAD), sends it SIGINT at a point that is known, whatever the machine's speed: when
 // all events of TEGL_INTERRUPT_AT have come, one after the other ("out_1|frame_5"). An event is a file opened whose
-// path has the text, or such a text on standard error. The call that is the last event comes after the signal.
+// path has the text, or such a text on standard error. The call that is the last event comes after the signal, and
+// after TEGL_STALL seconds, as if the program were in a library that knows no progress. With TEGL_SIGNALS it sends so
+// many signals.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/types.h>
@@ -12,11 +14,23 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <mutex>
 #include <string>
 #include <string_view>
 
 namespace {
+
+int setting(const char* name, int other) {
+  const char* const text = std::getenv(name);
+  return text == nullptr ? other : std::atoi(text);
+}
+
+void interrupt() {
+  for (int i = 0; i < setting("TEGL_SIGNALS", 1); ++i) kill(getpid(), SIGINT);
+  const std::time_t end = std::time(nullptr) + setting("TEGL_STALL", 0);
+  while (std::time(nullptr) < end) usleep(10000);
+}
 
 /// The events that are still to come.
 void note(std::string_view event) {
@@ -27,7 +41,7 @@ void note(std::string_view event) {
   const std::size_t end = left.find('|');
   if (event.find(left.substr(0, end)) == std::string_view::npos) return;
   left = end == std::string::npos ? "" : left.substr(end + 1);
-  if (left.empty()) kill(getpid(), SIGINT);
+  if (left.empty()) interrupt();
 }
 
 /// The function of that name that this one stands before.

@@ -4,6 +4,7 @@
 // signal comes at a known call of the program (interrupt_at.cpp), not after some time.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <fstream>
 #include <iterator>
 
@@ -91,6 +92,30 @@ TEST_F(Interrupt, WhileTheSecondOfSeveralContoursForOneFileIsMadeLeavesAllAsItWa
 TEST_F(Interrupt, InTheMidstOfAStreamLeavesAllAsItWas) {
   expect_untouched("out_2.vtkhdf|frame_15", frames_, {"--stream", "-o", path("out.vtkhdf")},
                    {"out_0.vtkhdf", "out_1.vtkhdf", "out_2.vtkhdf"});
+}
+
+// A stage that reports no progress, as those in other libraries, does not keep the program from ending.
+TEST_F(Interrupt, InAStageWithoutProgressEndsTheProgramAtOnce) {
+  for (const std::string extension : {".ply", ".vtkhdf"}) {
+    const auto before = files();
+    const auto start = std::chrono::steady_clock::now();
+    const RunResult run = run_tegl_on_terminal({"contour", ball_, "--iso", "0,1,2", "-o", path("out" + extension)},
+                                               {"LD_PRELOAD=" TEGL_INTERRUPT_AT_LIBRARY, "TEGL_STALL=30",
+                                                "TEGL_INTERRUPT_AT=out_0" + extension + "|out_1" + extension});
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(15));
+    EXPECT_EQ(run.exit, 128 + SIGINT) << run.out;
+    EXPECT_THAT(run.out, HasSubstr("tegl: cancelled"));
+    EXPECT_EQ(files(), before) << "pending outputs are removed";
+  }
+}
+
+TEST_F(Interrupt, ByASecondSignalEndsTheProgramAtOnceAndLeavesNothing) {
+  const auto before = files();
+  const RunResult run = run_tegl_on_terminal(
+      {"contour", ball_, "--iso", "0,1,2", "-o", path("out.ply")},
+      {"LD_PRELOAD=" TEGL_INTERRUPT_AT_LIBRARY, "TEGL_SIGNALS=2", "TEGL_INTERRUPT_AT=out_0.ply|out_1.ply"});
+  EXPECT_EQ(run.exit, 128 + SIGINT) << run.out;
+  EXPECT_EQ(files(), before);
 }
 
 }  // namespace

@@ -18,8 +18,12 @@
 #include "exit_codes.hpp"
 #include "numbers.hpp"
 #include "output.hpp"
+#include "printable.hpp"
 #include "progress.hpp"
 #include "result.hpp"
+#include "suggestions.hpp"
+#include "table.hpp"
+#include "view_page.hpp"
 
 namespace tegl::cli {
 namespace {
@@ -299,6 +303,79 @@ TEST(ExitCodes, AreAsDocumented) {
   for (const char* code : {"0 ", "1 ", "2 ", "3 ", "4 ", "5 ", "6 ", "70 ", "130 "}) {
     EXPECT_THAT(exit_code_help(), HasSubstr(std::string("\n  ") + code));
   }
+}
+
+TEST(Printable, LeavesTextAloneAndEscapesWhatIsNoneInIt) {
+  for (const char* const text : {"", "plain text", "C:\\x1b",
+                                 "\xc2\xb0"
+                                 "C",
+                                 "\xe6\xb5\xb7", "\xf0\x9f\x8c\x8a", "\xc2\xa0", "\xef\xbf\xbd", "\xf4\x8f\xbf\xbf"})
+    EXPECT_EQ(printable(text), text);
+  EXPECT_EQ(printable(std::string_view("\0\t\n\r\x1b\x7f", 6)), "\\x00\\x09\\x0a\\x0d\\x1b\\x7f");
+  // C1 control characters as UTF-8, and as bytes of Latin-1.
+  EXPECT_EQ(printable("\xc2\x80\xc2\x9b\xc2\x9f"), "\\u0080\\u009b\\u009f");
+  EXPECT_EQ(printable("\x9b"
+                      "31m\xb0"),
+            "\\x9b31m\\xb0");
+  // Directions, separators of lines and paragraphs.
+  EXPECT_EQ(
+      printable(
+          "\xd8\x9c\xe2\x80\x8e\xe2\x80\x8f\xe2\x80\xa8\xe2\x80\xa9\xe2\x80\xaa\xe2\x80\xae\xe2\x81\xa6\xe2\x81\xa9"),
+      "\\u061c\\u200e\\u200f\\u2028\\u2029\\u202a\\u202e\\u2066\\u2069");
+  // Overlong, a surrogate, beyond Unicode, cut short, a byte that only goes on.
+  EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");
+  EXPECT_EQ(printable("\xe0\x80\x9b"), "\\xe0\\x80\\x9b");
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");
+  EXPECT_EQ(printable("a\xe6\xb5"), "a\\xe6\\xb5");
+  EXPECT_EQ(printable("\x80"), "\\x80");
+}
+
+TEST(Printable, JsonIsAsJsonHasItAndReadsBackTheSame) {
+  Json json;
+  json["text"] = "\x1b\x7f\xc2\x9b\xe2\x80\xae\n\xe6\xb5\xb7";
+  const std::string text = dump(json);
+  EXPECT_THAT(text, HasSubstr("\\u001b\\u007f\\u009b\\u202e\\n\xe6\xb5\xb7"));
+  EXPECT_EQ(Json::parse(text), json);
+}
+
+TEST(Printable, IsWhatReportsAndTablesShow) {
+  EXPECT_EQ(report_line("a\x1b", "b\n\x9b"), "  a\\x1b        b\\x0a\\x9b\n");
+  const Table table{{"x\x1b", "y"}, {{"1", "\x07"}}};
+  EXPECT_EQ(table.to_text(1), "  x\\x1b     y\n      1  \\x07\n");
+  EXPECT_EQ(Console(stderr).bold("\x1b"), "\\x1b");
+}
+
+TEST(Suggestions, AreTheNearestWords) {
+  const std::vector<std::string> words = {"--iso", "--output", "-o", "--triangulation", "--precision", "--threads"};
+  EXPECT_EQ(nearest_word("--isovalue", words), "--iso");
+  EXPECT_EQ(nearest_word("--thread", words), "--threads");
+  EXPECT_EQ(nearest_word("--otuput", words), "--output");
+  EXPECT_EQ(nearest_word("--triangluation", words), "--triangulation");
+  EXPECT_EQ(nearest_word("--precison", words), "--precision");
+  EXPECT_EQ(nearest_word("--x", words), std::nullopt);
+  EXPECT_EQ(nearest_word("--colour", words), std::nullopt);
+}
+
+TEST(ViewLimit, LetsALargeComponentInWithoutTheOthers) {
+  // Two components: fans of 5 and of 2 triangles.
+  Contour<3, double> fans;
+  for (Index v = 0; v < 20; ++v) fans.vertices.push_back({double(v), double(v * v % 7), 1.0});
+  for (Index v = 1; v < 6; ++v) fans.simplices.push_back({0, v, v + 1});
+  for (Index v = 11; v < 13; ++v) fans.simplices.push_back({10, v, v + 1});
+  const auto kept = [&](const ViewLimit& limit) {
+    Contour<3, double> contour = fans;
+    const Thinned thinned = thin(contour, limit, WorkOptions{});
+    EXPECT_EQ(contour.simplices.size(), thinned.simplices);
+    return thinned.simplices;
+  };
+  EXPECT_EQ(kept({7, 7}), 7U);
+  EXPECT_EQ(kept({6, 6}), 5U);
+  EXPECT_EQ(kept({3, 100}), 5U) << "the largest one, beyond what several may have";
+  EXPECT_EQ(kept({0, 0}), 7U);
+  const Error error = error_of([&] { kept({3, 4}); });
+  EXPECT_EQ(error.code(), ErrorCode::TooLarge);
+  EXPECT_THAT(error.what(), HasSubstr("5 triangles; expected at most 4: --limit 5 shows it"));
 }
 
 TEST(Interrupt, StopsProgressAtTheNextCall) {

@@ -139,7 +139,7 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
     require(nc_def_var(file, variable.name.c_str(), NC_FLOAT, rank, slow_first.data(), &ids.emplace_back()));
     const float missing = -999;
     require(nc_put_att_float(file, ids.back(), "_FillValue", NC_FLOAT, 1, &missing));
-    require(nc_put_att_text(file, ids.back(), "units", 4, "degC"));
+    require(nc_put_att_text(file, ids.back(), "units", variable.unit.size(), variable.unit.c_str()));
   }
   require(nc_enddef(file));
   for (std::size_t a = 0; a < names.size(); ++a) require(nc_put_var_double(file, axes[a], coordinates[a].data()));

@@ -44,6 +44,7 @@ std::string metaimage_bytes(const Samples& samples);
 struct NetcdfVariable {
   std::string name;
   Samples samples;
+  std::string unit = "degC";
 };
 /// What a netCDF file says of an axis.
 struct NetcdfAttribute {

@@ -190,19 +190,6 @@ TEST_F(Slice, OutsideOfTheTimesIsRefusedWithTheirRange) {
   EXPECT_THAT(files(), ElementsAre("balls.nii"));
 }
 
-TEST_F(Slice, ThatIsEmptyLeavesNoFile) {
-  // A ball that exists around t = 1 only; cut at t = 3.
-  const Samples flash = sample({7, 7, 7, 5}, [](const std::vector<double>& x) {
-    return 2.2 - std::hypot(x[0] - 3, x[1] - 3, x[2] - 3) - 3 * std::abs(x[3] - 1);
-  });
-  const std::string flash_file = write("flash.nrrd", nrrd_bytes(flash));
-  const RunResult run = run_tegl({"slice", flash_file, "--iso", "0", "--at", "t=1,3", "-o", path("{t}.ply")});
-  EXPECT_EQ(run.exit, 5);
-  EXPECT_THAT(run.err, HasSubstr("t = 3"));
-  EXPECT_THAT(run.err, HasSubstr("empty"));
-  EXPECT_THAT(files(), ElementsAre("balls.nii", "flash.nrrd"));
-}
-
 TEST_F(Slice, OfASavedContourTakesNoOptionsOfTheExtraction) {
   ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
   for (const std::vector<std::string>& more :

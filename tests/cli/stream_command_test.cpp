@@ -195,9 +195,10 @@ TEST_F(Stream, LeavesNoFileWhenItFails) {
   expect_failure(2, {"contour", raw, "--raw", "10x0", "--raw-type", "uint8", "--iso", "1", "-o", out}, "10x0");
   expect_failure(2, {"contour", raw, "--raw-type", "uint8", "--iso", "1", "-o", out}, "--raw");
   expect_failure(5, {"contour", raw, "--raw", "10x10x10", "--raw-type", "uint8", "--iso", "1", "-o", out},
-                 "no contour");
-  expect_failure(6, {"contour", raw, "--raw", "10x10x10", "--raw-type", "uint8", "--iso", "1", "-o", path("out.ply")},
-                 ".vtkhdf");
+                 "all values are 0");
+  expect_failure(
+      6, {"contour", raw, "--raw", "10x10x10", "--raw-type", "uint8", "--iso", "1", "--stream", "-o", path("out.ply")},
+      ".vtkhdf");
   const std::string list = "kinds: list domain domain domain\n";
   expect_failure(4, {"contour", write("a.nrrd", nrrd_bytes(balls, list)), "--stream", "--iso", "0", "-o", out},
                  "expected the list along the last axis");

@@ -111,7 +111,7 @@ bool has_terminals() {
 }
 
 RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
-                               const std::string& interrupt_at) {
+                               const std::string& interrupt_at, int signal) {
   RunResult result;
   const auto [terminal, other_side] = open_terminal();
   if (terminal < 0) return result;
@@ -136,7 +136,7 @@ RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const 
   for (ssize_t got = 0; (got = read(terminal, buffer.data(), buffer.size())) > 0;) {
     result.out.append(buffer.data(), static_cast<std::size_t>(got));
     if (!interrupted && result.out.find(interrupt_at) != std::string::npos) {
-      kill(child, SIGINT);
+      kill(child, signal);
       interrupted = true;
     }
   }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -30,9 +31,9 @@ RunResult run_tegl(const std::vector<std::string>& arguments, const std::functio
 bool has_terminals();
 
 /// A run on a pseudo terminal (TERM=xterm; 80 x 24, or COLUMNS x LINES), with `environment` added ("NAME=value").
-/// If `interrupt_at` is not empty, sends SIGINT as soon as that text appeared. All that was shown is in `out`.
+/// If `interrupt_at` is not empty, sends the signal as soon as that text appeared. All that was shown is in `out`.
 RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
-                               const std::string& interrupt_at = "");
+                               const std::string& interrupt_at = "", int signal = SIGINT);
 
 /// A test with an empty folder of its own, removed afterwards.
 class ProgramTest : public testing::Test {

@@ -89,5 +89,18 @@ TEST_F(Terminal, InterruptStopsTheWorkAndLeavesNoFile) {
   EXPECT_THAT(files(), ElementsAre("ball.nrrd", "noise.nrrd"));
 }
 
+TEST_F(Terminal, EveryEndingSignalLeavesNoFileAndEndsAsTheShellExpects) {
+  const std::string file = write("noise.nrrd", nrrd_bytes_uint8(noise({40, 40, 40, 12}, 9)));
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+    SCOPED_TRACE(signal);
+    const RunResult run = run_tegl_on_terminal(
+        {"contour", file, "--iso", "128", "--triangulation", "barycentric", "-o", path("noise.vtkhdf")}, {}, "check ",
+        signal);
+    EXPECT_EQ(run.exit, 128 + signal) << run.out;
+    EXPECT_THAT(run.out, HasSubstr("cancelled"));
+    EXPECT_THAT(files(), ElementsAre("ball.nrrd", "noise.nrrd"));
+  }
+}
+
 }  // namespace
 }  // namespace tegl::test

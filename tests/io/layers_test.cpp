@@ -210,6 +210,39 @@ TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
   EXPECT_EQ(error({{100}, "uint8"}).code(), ErrorCode::InvalidArgument);
   EXPECT_EQ(error({{2, 2, 5, 5, 1}, "uint8"}).code(), ErrorCode::InvalidArgument);
   EXPECT_THAT(error({{5, 5}, "float16"}).what(), AllOf(HasSubstr("float16"), HasSubstr("uint16")));
+  RawLayout layout{{5, 5}, "uint8"};
+  layout.spacing = {1.0};
+  EXPECT_THAT(error(layout).what(), HasSubstr("spacings of 1 axes, and sizes of 2"));
+  layout.spacing = {1.0, 0.0};
+  EXPECT_THAT(error(layout).what(), HasSubstr("a spacing of 0"));
+  layout.spacing = {1.0, 1e308};
+  layout.origin = {0.0, 1e308};
+  EXPECT_THAT(error(layout).what(), HasSubstr("expected coordinates that are finite and differ"));
+  layout.spacing = {1.0, 1.0};
+  layout.origin = {0.0, 1e30};
+  EXPECT_THAT(error(layout).what(), HasSubstr("expected coordinates that are finite and differ"));
+  layout.origin = {};
+  layout.axis_units = {"mm"};
+  EXPECT_THAT(error(layout).what(), HasSubstr("units of 1 axes"));
+}
+
+TEST(Layers, OfRawValuesHaveTheAxesOfTheirLayout) {
+  const TempDir dir;
+  write_file(dir / "values.raw", std::string(100, 'x'));
+  RawLayout layout{{10, 10}, "uint8"};
+  layout.spacing = {0.5, -2.0};
+  layout.origin = {3.0, 4.0};
+  layout.axis_names = {"a", ""};
+  layout.axis_units = {"mm", "s"};
+  const OpenLayersResult opened = open_raw_layers(dir / "values.raw", layout);
+  const auto& layers = std::get<std::unique_ptr<LayerReader<std::uint8_t, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
+  const Grid<2>& grid = layers->grid();
+  EXPECT_EQ(grid.axes[0][9], 7.5);
+  EXPECT_EQ(grid.axes[1][9], -14.0);
+  EXPECT_EQ(grid.axes[0].name, "a");
+  EXPECT_EQ(grid.axes[1].name, "y");
+  EXPECT_EQ(grid.axes[0].unit, "mm");
+  EXPECT_EQ(grid.axes[1].unit, "s");
 }
 
 }  // namespace

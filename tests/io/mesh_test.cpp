@@ -44,6 +44,43 @@ TEST(Mesh, PlyAndVtkhdfAreLossless) {
       }
 }
 
+TEST(Mesh, InSinglePrecisionComesBackFromSmallerFiles) {
+  for (const char* name : {"a.ply", "a.obj", "a.vtkhdf"})
+    for (const auto& [dim, space_dim] : {std::pair(1, 2), std::pair(2, 3)}) {
+      SCOPED_TRACE(testing::Message() << name << " dim " << dim);
+      Mesh mesh = as_floats(random_mesh(dim, space_dim, 3000, 6000, 5));
+      mesh.vertex_attributes.clear();
+      mesh.simplex_attributes.clear();
+      TempDir dir_of_files;
+      write_mesh(mesh, dir_of_files / (std::string("double_") + name));
+      mesh.single_precision = true;
+      write_mesh(mesh, dir_of_files / name);
+      const Mesh back = read_mesh(dir_of_files / name);
+      EXPECT_EQ(back.coordinates.size() / static_cast<std::size_t>(back.space_dim), 3000U);
+      EXPECT_EQ(back.simplices, mesh.simplices);
+      EXPECT_LT(std::filesystem::file_size(dir_of_files / name),
+                9 * std::filesystem::file_size(dir_of_files / (std::string("double_") + name)) / 10);
+      if (back.space_dim == space_dim) {
+        EXPECT_EQ(back.coordinates, mesh.coordinates);
+      }
+    }
+}
+
+TEST(Mesh, CompressionIsForVtkhdfAndChangesNothing) {
+  for (const bool single : {false, true}) {
+    Mesh mesh = as_floats(random_mesh(3, 4, 3000, 9000, 5));
+    mesh.single_precision = single;
+    TempDir dir;
+    write_mesh(mesh, dir / "plain.vtkhdf");
+    write_mesh(mesh, dir / "packed.vtkhdf", {}, Compression::deflate);
+    expect_same(read_mesh(dir / "packed.vtkhdf"), read_mesh(dir / "plain.vtkhdf"));
+    EXPECT_LT(std::filesystem::file_size(dir / "packed.vtkhdf"), std::filesystem::file_size(dir / "plain.vtkhdf"));
+    EXPECT_EQ(
+        error_of([&] { write_mesh(random_mesh(2, 3, 10, 10, 1), dir / "a.ply", {}, Compression::deflate); }).code(),
+        ErrorCode::UnsupportedFormat);
+  }
+}
+
 TEST(Mesh, FourDimensionalContoursGoThroughVtkhdf) {
   for (const std::size_t simplices : {0U, 1U, 150000U}) {
     const Mesh mesh = random_mesh(3, 4, simplices + 4, simplices, simplices);

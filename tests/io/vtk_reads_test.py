@@ -126,4 +126,33 @@ for i in range(polyhedra.GetNumberOfCells()):
 
 nothing = read(vtkXMLUnstructuredGridReader(), folder / "nothing.vtu")
 expect("cells of nothing", nothing.GetNumberOfCells(), 0)
-print("VTK reads 10 files as written")
+# Single precision: float coordinates and vertex numbers of 32 bits; and compressed arrays.
+FLOAT = 10  # VTK_FLOAT
+surface_float = read(vtkHDFReader(), folder / "surface_float.vtkhdf")
+expect("cells of surface_float", cells(surface_float), cells(surface))
+expect("type of its points", surface_float.GetPoints().GetDataType(), FLOAT)
+expect("point of surface_float", round(surface_float.GetPoint(3)[2], 6), 0.1)
+expect("normals of surface_float", surface_float.GetPointData().GetArray("Normals").GetTuple(1), (1.0, 0.0, 0.0))
+expect("flow of surface_float", surface_float.GetPointData().GetArray("flow").GetTuple(3), (1.0, 2.0, 3.0))
+ply_float = read(vtkPLYReader(), folder / "surface_float.ply")
+expect("cells of ply_float", cells(ply_float), cells(ply))
+contour4_float = read(vtkHDFReader(), folder / "contour4_float.vtkhdf")
+expect("cells of contour4_float", cells(contour4_float), cells(contour4))
+times = contour4_float.GetPointData().GetArray("t")
+expect("times of contour4_float", [times.GetValue(i) for i in range(4)], [7.0, 7.5, 8.0, 9.0])
+polygons_float = read(vtkHDFReader(), folder / "polygons_float.vtkhdf")
+expect("cells of polygons_float", cells(polygons_float), cells(polygons))
+
+packed = read(vtkXMLUnstructuredGridReader(), folder / "polyhedra_packed.vtu")
+expect("cells of polyhedra_packed", cells(packed), cells(polyhedra))
+expect("points of polyhedra_packed", [packed.GetPoint(i) for i in range(packed.GetNumberOfPoints())],
+       [polyhedra.GetPoint(i) for i in range(polyhedra.GetNumberOfPoints())])
+for name in ("polyhedra_float", "polyhedra_float_packed"):
+    single = read(vtkXMLUnstructuredGridReader(), folder / f"{name}.vtu")
+    expect(f"cells of {name}", cells(single), cells(polyhedra))
+    expect(f"faces of {name}", [single.GetCell(i).GetNumberOfFaces() for i in range(single.GetNumberOfCells())],
+           [polyhedra.GetCell(i).GetNumberOfFaces() for i in range(polyhedra.GetNumberOfCells())])
+    expect(f"type of points of {name}", single.GetPoints().GetDataType(), FLOAT)
+nothing = read(vtkXMLUnstructuredGridReader(), folder / "nothing_packed.vtu")
+expect("cells of nothing_packed", nothing.GetNumberOfCells(), 0)
+print("VTK reads 20 files as written")

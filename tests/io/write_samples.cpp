@@ -22,8 +22,8 @@ tegl::Mesh mesh_of(int dim, int space_dim, const std::vector<double>& coordinate
 }
 
 /// The facets of the hyperplane x_last = 0.37 + 0.4 x + 0.3 y + 0.2 z over 4^(N-1) unit cells, with normals.
-template <int N>
-tegl::FacetHierarchy<N, double> facets_of_plane() {
+template <int N, class Real = double>
+tegl::FacetHierarchy<N, Real> facets_of_plane() {
   constexpr std::array<double, 3> kSlopes = {0.4, 0.3, 0.2};
   std::array<std::size_t, N> sizes;
   sizes.fill(5);
@@ -40,7 +40,7 @@ tegl::FacetHierarchy<N, double> facets_of_plane() {
   }
   tegl::ExtractOptions options;
   options.normals = true;
-  return tegl::extract_facets<double>(image.view(), 0.0, options);
+  return tegl::extract_facets<Real>(image.view(), 0.0, options);
 }
 
 /// A closed surface of noise, many components and tunnels, with normals. No sample is near the isovalue.
@@ -76,6 +76,10 @@ int main(int argc, char** argv) {
     tegl::write_mesh(surface, folder / "surface.vtkhdf");
     tegl::write_mesh(surface, folder / "surface.ply");
     tegl::write_mesh(contour4, folder / "contour4.vtkhdf");
+    for (auto* const mesh : {&surface, &contour4}) mesh->single_precision = true;
+    tegl::write_mesh(surface, folder / "surface_float.vtkhdf", {}, tegl::Compression::deflate);
+    tegl::write_mesh(surface, folder / "surface_float.ply");
+    tegl::write_mesh(contour4, folder / "contour4_float.vtkhdf");
     tegl::write_mesh(mesh_of(2, 3, {}, {}), folder / "empty.vtkhdf");
     for (const char* const name : {"noise.ply", "noise.stl", "noise.obj"})
       tegl::write_mesh(tegl::to_mesh(closed_noise()), folder / name);
@@ -85,7 +89,13 @@ int main(int argc, char** argv) {
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtu");
     tegl::write_facets(facets_of_plane<3>(), folder / "polygons.vtkhdf");
     tegl::write_facets(facets_of_plane<4>(), folder / "polyhedra.vtu");
+    tegl::write_facets(facets_of_plane<4>(), folder / "polyhedra_packed.vtu", {}, tegl::Compression::deflate);
+    tegl::write_facets(facets_of_plane<3, float>(), folder / "polygons_float.vtkhdf", {}, tegl::Compression::deflate);
+    tegl::write_facets(facets_of_plane<4, float>(), folder / "polyhedra_float.vtu");
+    tegl::write_facets(facets_of_plane<4, float>(), folder / "polyhedra_float_packed.vtu", {},
+                       tegl::Compression::deflate);
     tegl::write_facets(tegl::FacetHierarchy<4, float>(), folder / "nothing.vtu");
+    tegl::write_facets(tegl::FacetHierarchy<4, float>(), folder / "nothing_packed.vtu", {}, tegl::Compression::deflate);
   } catch (const tegl::Error& error) {
     std::cerr << error.what() << "\n";
     return 1;

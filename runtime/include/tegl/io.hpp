@@ -139,14 +139,19 @@ OpenLayersResult open_layers(const std::filesystem::path& path, const std::strin
 
 /// Values that lie in a file one after the other, axis 0 fastest.
 struct RawLayout {
-  std::vector<std::size_t> sizes = {};  ///< of 2 to 4 axes
-  std::string type = {};                ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
-  std::uint64_t offset = 0;             ///< bytes before the first value
-  bool big_endian = false;              ///< the order of a value's bytes
+  std::vector<std::size_t> sizes = {};       ///< of 2 to 4 axes
+  std::string type = {};                     ///< "uint8", "int8", "uint16", "int16", "int32", "float" or "double"
+  std::uint64_t offset = 0;                  ///< bytes before the first value
+  bool big_endian = false;                   ///< the order of a value's bytes
+  std::vector<double> spacing = {};          ///< distance of neighbouring samples along each axis, not 0; empty: 1
+  std::vector<double> origin = {};           ///< coordinates of the first sample; empty: 0
+  std::vector<std::string> axis_names = {};  ///< empty: x, y, z, t
+  std::vector<std::string> axis_units = {};  ///< empty: none
 };
 
-/// Opens a file that holds nothing but values to be read layer by layer, on a grid of step 1. Errors: FileNotFound;
-/// InvalidArgument (the layout); MalformedFile if the file is shorter than the layout needs.
+/// Opens a file that holds nothing but values, to be read layer by layer. Errors: FileNotFound; InvalidArgument (the
+/// layout: a size, a spacing or an origin that cannot be, or lists of another length than `sizes`); MalformedFile if
+/// the file is shorter than the layout needs.
 OpenLayersResult open_raw_layers(const std::filesystem::path& path, const RawLayout& layout);
 
 /// A mesh as files hold it: d-simplices in space_dim-space. A 4D contour: d = 3, space_dim = 4.
@@ -161,7 +166,13 @@ struct Mesh {
   std::vector<Attribute> vertex_attributes = {};   ///< rows as many as vertices; names not empty and different
   std::vector<Attribute> simplex_attributes = {};  ///< likewise, as many as simplices
   std::optional<double> isovalue = {};             ///< of the contour, where it is known; finite
+  /// Coordinates and normals hold no more than single precision: files get them as float if their format has both
+  /// types, and vertex numbers of 32 bits. Coordinates that float does not represent are rounded then.
+  bool single_precision = false;
 };
+
+/// Whether a file's arrays are compressed: by deflate, without loss, in formats whose readers all know that.
+enum class Compression : std::uint8_t { none, deflate };
 
 /// What a file with a certain extension holds.
 struct MeshFileFormat {
@@ -176,7 +187,8 @@ std::span<const MeshFileFormat> mesh_file_formats() noexcept;
 /// The format that a file's extension tells, in upper or lower case; null if it tells none.
 const MeshFileFormat* find_mesh_file_format(const std::filesystem::path& path);
 
-/// The contour as files hold it, with names, units, normals and attributes. Copies all of them.
+/// The contour as files hold it, with names, units, normals and attributes; `single_precision` for Real = float. Copies
+/// all of them.
 template <int N, class Real>
 requires DimensionBetween<N, 2, 4> Mesh to_mesh(const Contour<N, Real>& contour);
 /// The contour of a mesh with dim = N - 1 and space_dim = N (planar meshes read back from 3D files:
@@ -197,7 +209,8 @@ requires DimensionBetween<N, 2, 4> Contour<N, double> to_contour(const Mesh& mes
 /// Errors: UnsupportedFormat (the extension, or one that cannot hold this mesh), InvalidArgument (a mesh that
 /// contradicts itself), UnsupportedData (.gltf, .stl: coordinates or attributes beyond float; .obj: not finite),
 /// TooLarge (.glb beyond 4 GiB, .stl beyond 2^32 - 1 triangles), WriteFailed, Cancelled.
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {},
+                Compression compression = Compression::none);
 
 /// Writes bytes as they are: tables and graphs as text. Under another name first, so never half a file. Errors:
 /// WriteFailed.
@@ -207,17 +220,18 @@ void write_text(std::string_view text, const std::filesystem::path& path);
 /// 2D contours (VTK_LINE), the polygons of 3D ones (VTK_POLYGON) and the polyhedra of 4D ones (VTK_POLYHEDRON, with t
 /// as a point array); .vtkhdf the first two, as its polyhedra came after the versions that VTK 9.1 reads. Points, and
 /// what else is lossless, as write_mesh does it. Polygons of a polyhedron are oriented as parts of its boundary. Cell
-/// arrays: `sample` and `signature`, as in FacetPlace, and `cap`, 1 for parts of the border. Never half a file. Memory:
-/// that of a few numbers per facet. Errors: UnsupportedFormat, WriteFailed, Cancelled. read_mesh does not read polygons
-/// and polyhedra.
+/// arrays: `sample` and `signature`, as in FacetPlace, and `cap`, 1 for parts of the border. Points and normals are
+/// float for Real = float, and vertex numbers have 32 bits then. Never half a file. Memory: that of a few numbers per
+/// facet, and in .vtu with compression that of the file. Errors: UnsupportedFormat, WriteFailed, Cancelled. read_mesh
+/// does not read polygons and polyhedra.
 template <int N, class Real>
 void write_facets(const FacetHierarchy<N, Real>& facets, const std::filesystem::path& path,
-                  const Progress& progress = {});
+                  const Progress& progress = {}, Compression compression = Compression::none);
 
 /// A VTKHDF file (.vtkhdf) that a streamed contour goes to as it comes: what write_mesh would write of the whole
-/// contour, the same datasets with the same bytes. Written under another name beside the target: nothing is at the
-/// target before `commit`, nor ever if that is not called. Memory: a few MiB. Errors, of all functions: WriteFailed;
-/// UnsupportedFormat for another extension.
+/// contour, the same datasets with the same bytes (for Real = float, vertex numbers have 64 bits here). Written under
+/// another name beside the target: nothing is at the target before `commit`, nor ever if that is not called. Memory: a
+/// few MiB. Errors, of all functions: WriteFailed; UnsupportedFormat for another extension.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 class ContourFile final : public ContourSink<N, Real> {
@@ -225,7 +239,8 @@ class ContourFile final : public ContourSink<N, Real> {
   using typename ContourSink<N, Real>::Vertex;
   using typename ContourSink<N, Real>::Simplex;
   /// The grid gives names and units of the axes; the isovalue is written as in Mesh.
-  ContourFile(const std::filesystem::path& path, const Grid<N>& grid, std::optional<double> isovalue = {});
+  ContourFile(const std::filesystem::path& path, const Grid<N>& grid, std::optional<double> isovalue = {},
+              Compression compression = Compression::none);
   ~ContourFile() override;
   void add_vertices(std::span<const Vertex> vertices) override;
   void add_normals(std::span<const Vertex> normals) override;

@@ -13,8 +13,8 @@ std::filesystem::path place_of(const std::filesystem::path& path);
 
 /// A name beside a target, with its extension: claimed on construction by an empty file, removed on destruction unless
 /// committed. Symbolic links are followed, also those that lead to no file yet: what they lead to is written, and they
-/// stay. A target that is there keeps its permissions, which the new file has from the beginning.
-/// Errors of all members: WriteFailed, naming the target and the reason.
+/// stay. A target that is there keeps its permissions, which the new file has from the beginning. Safe to use from
+/// several threads, each with its own objects. Errors of all members: WriteFailed, naming the target and the reason.
 class PendingPath {
  public:
   /// Claims a name beside the target. Errors also where the target is there and no file, or cannot be overwritten.
@@ -43,11 +43,26 @@ class PendingPath {
   void roll_back() noexcept;
 
  private:
+  friend void remove_pending_files() noexcept;
   enum class State { pending, placed, exchanged, replaced };
+  /// Creates the pending file and enters the list of files that remove_pending_files() removes. Returns its descriptor,
+  /// or -1.
+  int create(unsigned mode) noexcept;
+  /// Leaves the list.
+  void delist() noexcept;
+
   std::filesystem::path named_;
   std::filesystem::path place_;
   std::filesystem::path pending_;
   State state_ = State::pending;
+  // Neighbours in the list; null at its ends, and for files that are not in it.
+  PendingPath* before_ = nullptr;
+  PendingPath* after_ = nullptr;
 };
+
+/// Removes the files that all PendingPaths of this process still hold. For handlers of signals that end the program:
+/// async-signal-safe, and to be called once, by a process that ends right after it. Any thread that creates, commits or
+/// destroys a PendingPath afterwards waits forever.
+void remove_pending_files() noexcept;
 
 }  // namespace tegl

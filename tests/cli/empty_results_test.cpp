@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Values outside of the data, in all commands: an error that names the value and the range, or with --allow-empty the
+// empty result. A value within the data with no contour there gives an empty result, which is no error.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sample_files.hpp"
+#include "tegl/io.hpp"
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class EmptyResults : public ProgramTest {
+ protected:
+  void SetUp() override {
+    ProgramTest::SetUp();
+    balls_ = write("balls.nrrd", nrrd_bytes(merging_balls(12, 4)));  // values from -12 to 3, t from 0 to 3
+  }
+  /// Expects exit 5 and these texts; with --allow-empty exit 0, and returns that run.
+  static RunResult expect_outside(std::vector<std::string> arguments, const std::string& text) {
+    SCOPED_TRACE(arguments[0]);
+    const RunResult refused = run_tegl(arguments);
+    EXPECT_EQ(refused.exit, 5) << refused.err;
+    EXPECT_THAT(refused.err, AllOf(HasSubstr(text), HasSubstr("--allow-empty")));
+    arguments.emplace_back("--allow-empty");
+    RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    return run;
+  }
+  void expect_empty_mesh(const std::string& name, int dim) const {
+    const Mesh mesh = read_mesh(path(name));
+    EXPECT_EQ(mesh.simplices.size(), 0U) << name;
+    if (name.ends_with(".vtkhdf")) {
+      EXPECT_EQ(mesh.dim, dim) << name;
+    }
+  }
+
+  std::string balls_;
+};
+
+TEST_F(EmptyResults, OfAnIsovalueOutsideOfTheValuesAreErrorsUnlessAllowed) {
+  const std::string out = path("out.vtkhdf");
+  const char* const range = "the isovalue 99 lies outside of the values";
+  const std::vector<std::vector<std::string>> commands = {
+      {"contour", balls_, "--iso", "99", "-o", out},
+      {"contour", balls_, "--iso", "99", "--stream", "-o", out},
+      {"contour", balls_, "--iso", "99,0", "--one-file", "-o", out},
+      {"contour", balls_, "--iso", "99", "--pick", "1,2,3,1", "-o", out},
+      {"contour", balls_, "--iso", "99", "--facets", "-o", path("out.vtu")},
+      {"slice", balls_, "--iso", "99", "--at", "t=1.5", "-o", path("cut.ply")},
+      {"slice", balls_, "--iso", "99", "--plane", "1,0,0,1=5", "-o", path("cut.ply")},
+      {"project", balls_, "--iso", "99", "-o", path("sweep.ply")},
+      {"project", balls_, "--iso", "99", "--as", "cuts", "-o", path("sweep.ply")},
+      {"components", balls_, "--iso", "99", "-o", out, "--csv", path("table.csv")},
+      {"measure", balls_, "--iso", "99", "--at", "t=1.5", "--samples", "3"},
+      {"elements", balls_, "--iso", "99", "-o", path("e.dat")},
+      {"track", balls_, "--iso", "99", "-o", path("graph.json"), "-o", out},
+      {"simplify", balls_, "--iso", "99", "--ratio", "0.5", "-o", out}};
+  for (std::vector<std::string> command : commands) {
+    std::filesystem::remove(out);
+    const bool streamed = std::find(command.begin(), command.end(), "--stream") != command.end();
+    if (streamed) {  // no single NRRD is streamed
+      const Samples balls = merging_balls(12, 4);
+      command[1] =
+          write("balls.raw", {reinterpret_cast<const char*>(balls.values.data()), balls.values.size() * sizeof(float)});
+      command.insert(command.end(), {"--raw", "12x12x12x4", "--raw-type", "float"});
+    }
+    SCOPED_TRACE(testing::PrintToString(command));
+    expect_outside(command, range);
+    const bool two = std::find(command.begin(), command.end(), "99,0") != command.end();
+    if (std::find(command.begin(), command.end(), out) == command.end()) continue;
+    if (two)
+      EXPECT_GT(read_mesh(out).simplices.size(), 0U);
+    else
+      expect_empty_mesh("out.vtkhdf", 3);
+  }
+  expect_empty_mesh("cut.ply", 2);
+  EXPECT_EQ(run_tegl({"view", balls_, "--iso", "99", "-o", path("page.html")}).exit, 5);
+}
+
+TEST_F(EmptyResults, OfImagesWithoutValuesAndWithOneValueAreErrorsUnlessAllowed) {
+  const std::string nan = write("nan.nrrd", nrrd_bytes(sample({4, 4, 4}, [](auto&) { return NAN; })));
+  expect_outside({"contour", nan, "--iso", "0", "-o", path("out.ply")}, "all samples are missing");
+  const std::string flat = write("flat.nrrd", nrrd_bytes(sample({4, 4, 4}, [](auto&) { return 5.0; })));
+  expect_outside({"contour", flat, "--iso", "5", "-o", path("out.ply")}, "all values are 5");
+  expect_empty_mesh("out.ply", 2);
+}
+
+TEST_F(EmptyResults, OfAnIsovalueWithinValuesThatNeverMeetAreNone) {
+  // Both sides of the isovalue, but missing samples between them.
+  const Samples split = sample({5, 4, 4}, [](auto& x) { return x[0] == 2 ? static_cast<double>(NAN) : x[0]; });
+  const std::string file = write("split.nrrd", nrrd_bytes(split));
+  const RunResult run = run_tegl({"contour", file, "--iso", "2", "-o", path("out.ply")});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("no contour at 2: every tile that it passes touches a missing sample"));
+  expect_empty_mesh("out.ply", 2);
+  const std::string raw =
+      write("split.raw", {reinterpret_cast<const char*>(split.values.data()), split.values.size() * sizeof(float)});
+  const RunResult streamed =
+      run_tegl({"contour", raw, "--raw", "5x4x4", "--raw-type", "float", "--iso", "2", "-o", path("out.vtkhdf")});
+  EXPECT_EQ(streamed.exit, 0) << streamed.err;
+  EXPECT_THAT(streamed.err, HasSubstr("no contour at 2"));
+  expect_empty_mesh("out.vtkhdf", 2);
+  const RunResult measured = run_tegl({"measure", file, "--iso", "2", "--json"});
+  EXPECT_EQ(measured.json()["size"], 0);
+}
+
+TEST_F(EmptyResults, OfCutsOutsideOfTheExtentAreErrorsUnlessAllowed) {
+  ASSERT_EQ(run_tegl({"contour", balls_, "--iso", "0", "-o", path("saved.vtkhdf")}).exit, 0);
+  const std::string saved = path("saved.vtkhdf");
+  for (const std::string& at : {std::string("t=-0.5"), std::string("t=3.5"), std::string("x=99")}) {
+    expect_outside({"slice", balls_, "--iso", "0", "--at", at, "-o", path("cut.ply")}, "lies outside of the image");
+    expect_empty_mesh("cut.ply", 2);
+    expect_outside({"slice", saved, "--at", at, "-o", path("cut.ply")}, "lies outside of the saved contour");
+    expect_empty_mesh("cut.ply", 2);
+  }
+  expect_outside({"slice", balls_, "--iso", "0", "--plane", "1,0,0,1=99", "-o", path("cut.ply")},
+                 "the cut at x + t = 99 lies outside of the image; expected 0 <= x + t <= 14");
+  expect_outside({"slice", saved, "--plane", "1,0,0,1=99", "-o", path("cut.ply")}, "lies outside of the saved contour");
+  const RunResult image = expect_outside({"measure", balls_, "--iso", "0", "--at", "t=3.5", "--json"},
+                                         "the cut at t = 3.5 lies outside of the image; expected 0 <= t <= 3");
+  EXPECT_EQ(image.json()["cuts"][0]["size"], 0);
+  expect_outside({"measure", saved, "--at", "t=3.5"}, "lies outside of the saved contour");
+}
+
+TEST_F(EmptyResults, OfCutsWithinTheExtentWhereNothingIsAreNone) {
+  // A ball that exists around t = 1 only.
+  const Samples flash = sample({7, 7, 7, 5}, [](const std::vector<double>& x) {
+    return 2.2 - std::hypot(x[0] - 3, x[1] - 3, x[2] - 3) - 3 * std::abs(x[3] - 1);
+  });
+  const std::string file = write("flash.nrrd", nrrd_bytes(flash));
+  const RunResult run = run_tegl({"slice", file, "--iso", "0", "--at", "t=1,3", "-o", path("{t}.ply"), "--json"});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_GT(run.json()[0]["simplices"], 0);
+  EXPECT_EQ(run.json()[1]["simplices"], 0);
+  expect_empty_mesh("3.ply", 2);
+  const RunResult measured = run_tegl({"measure", file, "--iso", "0", "--at", "t=1,3", "--json"});
+  EXPECT_EQ(measured.exit, 0) << measured.err;
+  EXPECT_GT(measured.json()["cuts"][0]["size"], 0);
+  EXPECT_EQ(measured.json()["cuts"][1]["size"], 0);
+}
+
+TEST_F(EmptyResults, AreReadAgainByEveryCommandThatAllowsThem) {
+  ASSERT_EQ(run_tegl({"contour", balls_, "--iso", "99", "--allow-empty", "-o", path("none.vtkhdf")}).exit, 0);
+  const std::string none = path("none.vtkhdf");
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"slice", none, "--at", "t=1", "-o", path("cut.ply")},
+           {"project", none, "-o", path("sweep.ply")},
+           {"components", none},
+           {"measure", none},
+           {"elements", none, "-o", path("e.dat")},
+           {"track", none},
+           {"simplify", none, "--ratio", "0.5", "-o", path("less.vtkhdf")},
+           {"simplify", none, "--max-error", "0.5", "--scale", "auto", "-o", path("less.vtkhdf")}})
+    expect_outside(command, "the saved contour is empty");
+}
+
+TEST_F(EmptyResults, DoNotExcuseAnAxisScaledTwice) {
+  for (const std::vector<std::string>& scale :
+       std::vector<std::vector<std::string>>{{"--scale", "t=1,t=2"}, {"--scale", "t=1", "--scale", "T=2"}}) {
+    std::vector<std::string> arguments = {"slice", balls_, "--iso", "0", "--at", "t=1", "-o", path("cut.ply")};
+    arguments.insert(arguments.end(), scale.begin(), scale.end());
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 2);
+    EXPECT_THAT(run.err, HasSubstr("--scale has the axis t twice"));
+  }
+  EXPECT_EQ(run_tegl({"index", balls_, "--method", "seed-set", "--scan-order", "0,0,1,2"}).exit, 2);
+}
+
+}  // namespace
+}  // namespace tegl::test
