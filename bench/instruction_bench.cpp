@@ -48,7 +48,10 @@ void count_extract(const Image<T, N>& image, double isovalue, const ExtractOptio
   ExtractStats stats;
   std::size_t simplices = 0;
   // What estimators make once per program is no part of a contour's cost.
-  if (options.ambiguity != Ambiguity::low) count(view_of(make_field<N>("noise", 4)), 0.0, options);
+  if (options.ambiguity != Ambiguity::low) {
+    const OwnedImage<float, N> noise = make_field<N>("noise", 4);
+    count(noise.view(), 0.0, options);
+  }
   measured([&] { simplices = extract(image, isovalue, options, &stats).simplices.size(); });
   std::size_t samples = 1;
   for (int a = 0; a < N; ++a) samples *= image.size(a);
@@ -58,8 +61,10 @@ void count_extract(const Image<T, N>& image, double isovalue, const ExtractOptio
 template <int N>
 NamedCase extract_case(const std::string& field, std::size_t samples, const std::string& suffix = "",
                        const ExtractOptions& options = {}) {
-  return {"extract " + field + " " + std::to_string(samples) + "^" + std::to_string(N) + suffix,
-          [=] { count_extract(view_of(make_field<N>(field, samples)), 0.0, options); }};
+  return {"extract " + field + " " + std::to_string(samples) + "^" + std::to_string(N) + suffix, [=] {
+            const OwnedImage<float, N> image = make_field<N>(field, samples);
+            count_extract(image.view(), 0.0, options);
+          }};
 }
 
 /// Integers of 8 bits: classification at its narrowest.

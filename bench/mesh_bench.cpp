@@ -16,7 +16,8 @@ namespace {
 
 template <int N>
 auto contour_of(const std::string& field, std::size_t samples) {
-  return extract(view_of(make_field<N>(field, samples)), 0.0);
+  const OwnedImage<float, N> image = make_field<N>(field, samples);
+  return extract(image.view(), 0.0);
 }
 
 template <int N>

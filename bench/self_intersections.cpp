@@ -109,7 +109,8 @@ void measure(std::size_t count, Ambiguity ambiguity, Triangulation triangulation
     options.ambiguity = ambiguity;
     options.triangulation = triangulation;
     options.threads = 1;
-    const Surface contour = extract<double>(view_of(image_of<float>(field)), 0.0, options);
+    const auto image = image_of<float>(field);
+    const Surface contour = extract<double>(image.view(), 0.0, options);
     const auto found = intersecting_pairs(contour);
     triangles += contour.simplices.size();
     pairs += found.size();

@@ -8,20 +8,21 @@ there is not, whose first error has to name the constraint.
 """
 import concurrent.futures
 import pathlib
+import re
 import subprocess
 import sys
 
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 
-# (program, what the compiler has to say): the constraint, with the dimensions that there are.
+# (program, what the compiler has to say, as a regular expression): the constraint, with the dimensions that there are.
 REFUSED = [
-    ("#include \"tegl/image.hpp\"\ntegl::Image<float, 1>* image;\n", "DimensionBetween<N, 2, 5>"),
-    ("#include \"tegl/image.hpp\"\ntegl::Image<float, 6>* image;\n", "DimensionBetween<N, 2, 5>"),
-    ("#include \"tegl/image.hpp\"\ntegl::Image<long double, 3>* image;\n", "Value<"),
+    ("#include \"tegl/image.hpp\"\nconst tegl::Image<float, 1>* image;\n", "DimensionBetween<\\w+, 2, 5>"),
+    ("#include \"tegl/image.hpp\"\nconst tegl::Image<float, 6>* image;\n", "DimensionBetween<\\w+, 2, 5>"),
+    ("#include \"tegl/image.hpp\"\nconst tegl::Image<long double, 3>* image;\n", "\\bValue\\b"),
     ("#include \"tegl/slice.hpp\"\nauto f(const tegl::Contour<5>& c) { return tegl::slice(c, 1.0); }\n",
-     "DimensionBetween<N, 3, 4>"),
+     "DimensionBetween<\\w+, 3, 4>"),
     ("#include \"tegl/slice.hpp\"\nauto f(const tegl::Contour<2>& c) { return tegl::slice(c, 1.0); }\n",
-     "DimensionBetween<N, 3, 4>"),
+     "DimensionBetween<\\w+, 3, 4>"),
 ]
 
 
@@ -56,7 +57,7 @@ def main(source, eigen, compilers):
         for (text, words, compiler), (status, messages) in zip(refused, refused_results):
             # The error and the notes that belong to it.
             first = messages.split("error:", 2)[1] if "error:" in messages else ""
-            if status == 0 or words not in first:
+            if status == 0 or not re.search(words, first):
                 faults.append(f"{compiler}, status {status}: the first error does not name {words}:\n{text}{messages[:3000]}")
     if faults:
         sys.exit("\n".join(faults))

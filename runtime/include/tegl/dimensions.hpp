@@ -10,7 +10,7 @@ namespace tegl {
 
 /// The dimensions kLeast to kMost. Types and functions that do not exist in all dimensions are constrained by it.
 template <int N, int kLeast, int kMost>
-concept DimensionBetween = N >= kLeast&& N <= kMost;
+concept DimensionBetween = (N >= kLeast) && (N <= kMost);
 
 /// The types that coordinates of contours have: float or double.
 template <class R>
