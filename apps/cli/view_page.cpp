@@ -171,6 +171,16 @@ std::string script_json(const Json& json) {
   return result;
 }
 
+/// The graph of the tracks that are shown; its events also have the numbers of parts in the graph of all tracks.
+Json graph_of(const PageTracks& tracks) {
+  Json graph = Json::parse(track_json(tracks.graph));
+  for (std::size_t i = 0; i < tracks.event_parts.size(); ++i) {
+    graph["events"][i]["parts_in"] = tracks.event_parts[i].in;
+    graph["events"][i]["parts_out"] = tracks.event_parts[i].out;
+  }
+  return graph;
+}
+
 }  // namespace
 
 bool has_viewer() noexcept { return !kViewerProgram.empty(); }
@@ -305,7 +315,8 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   json["vertex_attributes"] = describe_attributes(contour.vertex_attributes, numbers);
   json["simplex_attributes"] = describe_attributes(contour.simplex_attributes, numbers);
   json["tracks_found"] = tracks ? tracks->found : 0;
-  json["graph"] = tracks ? Json::parse(track_json(tracks->graph)) : Json(nullptr);
+  json["events_found"] = tracks ? tracks->events_found : 0;
+  json["graph"] = tracks ? graph_of(*tracks) : Json(nullptr);
   return json;
 }
 

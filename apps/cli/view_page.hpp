@@ -66,8 +66,15 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
 
 /// A contour's graph of tracks as a page shows it.
 struct PageTracks {
-  TrackGraph graph;       ///< of the tracks that are shown
-  std::size_t found = 0;  ///< how many there are
+  /// Parts that end and start at an event, in the graph of all tracks.
+  struct EventParts {
+    std::size_t in = 0;
+    std::size_t out = 0;
+  };
+  TrackGraph graph;                     ///< of the tracks that are shown
+  std::vector<EventParts> event_parts;  ///< by event of `graph`
+  std::size_t found = 0;                ///< number of all tracks
+  std::size_t events_found = 0;         ///< number of all events
   // Of all of them, to colour each simplex by the part that it is in at any time. #S: the segment that it first appears
   // in, and the one after the first split that it passes. And of each segment its end, whether it splits there (1; else
   // 0), the segment that goes on after it, and the place of its track when ordered by how long they live, the longest

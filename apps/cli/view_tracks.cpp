@@ -147,6 +147,12 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
     result.next.push_back(next_segment(graph, segment));
     result.tracks.push_back(place[segment.track]);
   }
+  result.events_found = graph.events.size();
+  const auto is_shown = [&](Index s) { return static_cast<bool>(keep[graph.segments[s].track]); };
+  for (const TrackEvent& event : graph.events)  // those that select_tracks keeps, in its order
+    if (std::any_of(event.in.begin(), event.in.end(), is_shown) ||
+        std::any_of(event.out.begin(), event.out.end(), is_shown))
+      result.event_parts.push_back({event.in.size(), event.out.size()});
   result.graph = select_tracks(graph, keep);
   result.graph.simplex_segments.clear();
   return result;

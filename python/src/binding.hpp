@@ -152,9 +152,13 @@ py::array owned(Buffer<std::array<T, Width>>&& buffer) {
 /// name -> (values, unit) of attributes that `owner` holds.
 py::dict attribute_arrays(const std::vector<Attribute>& attributes, py::handle owner);
 
-/// What to extract, as Python says it: triangulation, ambiguity, direction, close, epsilon, normals (False or True),
-/// gradient, threads; all of them. The call gives progress.
+/// Options of an extraction from Python's arguments: triangulation, ambiguity, direction, close, epsilon, normals (a
+/// kind, or "" for none), threads; all of them are required. The call gives progress.
 ExtractOptions extract_options(const py::dict& arguments, Call& call);
+
+/// Adds the normals that a contour has from its own shape, if the argument `normals` is "geometric" or "flat"; the
+/// latter as the simplex attribute "normal". Throws UnsupportedData for 5D contours.
+void add_shape_normals(AnyContour& contour, const std::string& kind, const ExtractOptions& options);
 
 /// Python's floats of the library's arrays.
 template <std::size_t N>
@@ -186,5 +190,6 @@ void bind_elements(py::module_& m);
 void bind_track(py::module_& m);
 void bind_index(py::module_& m);
 void bind_files(py::module_& m);
+void bind_marching_cubes(py::module_& m);
 
 }  // namespace tegl::python

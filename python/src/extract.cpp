@@ -5,15 +5,34 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "binding.hpp"
 #include "docs.hpp"
+#include "tegl/normals.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl::python {
+
+void add_shape_normals(AnyContour& contour, const std::string& kind, const ExtractOptions& options) {
+  if (kind != "geometric" && kind != "flat") return;
+  std::visit(
+      [&]<int N, class Real>(Contour<N, Real>& c) {
+        if constexpr (N <= 4) {
+          // The extraction has reported its progress up to the end.
+          const WorkOptions work{options.threads, [&](double) { return !options.progress || options.progress(1.0); }};
+          if (kind == "geometric") {
+            c.normals = geometric_normals(c, NormalWeights::angle, work);
+            return;
+          }
+          Attribute attribute{"normal", "", N, {}};
+          for (const auto& normal : flat_normals(c, work))
+            attribute.values.insert(attribute.values.end(), normal.begin(), normal.end());
+          c.simplex_attributes.push_back(std::move(attribute));
+        } else {
+          throw_dimension("normals 'geometric' and 'flat'", N, "2 to 4 dimensions, or normals='gradient'");
+        }
+      },
+      contour.contour);
+}
 
 namespace {
 
@@ -104,9 +123,12 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
                                         const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
   return call.run([&] {
-    return std::make_unique<AnyContour>(is_double ? contour_of<double>(image, level, options)
-                                                  : contour_of<float>(image, level, options));
+    auto result = std::make_unique<AnyContour>(is_double ? contour_of<double>(image, level, options)
+                                                         : contour_of<float>(image, level, options));
+    add_shape_normals(*result, normals, options);
+    return result;
   });
 }
 
@@ -135,62 +157,13 @@ std::unique_ptr<AnyContour> cut_any(const AnyImage& image, double level, int axi
                                     const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
   return call.run([&] {
-    return std::make_unique<AnyContour>(is_double ? cut_of<double>(image, level, axis, at, options)
-                                                  : cut_of<float>(image, level, axis, at, options));
+    auto result = std::make_unique<AnyContour>(is_double ? cut_of<double>(image, level, axis, at, options)
+                                                         : cut_of<float>(image, level, axis, at, options));
+    add_shape_normals(*result, normals, options);
+    return result;
   });
-}
-
-/// The least and the greatest sample around a tile.
-template <class T>
-std::pair<double, double> range_of(const Image<T, 3>& image, const std::array<std::size_t, 3>& tile) {
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = -least;
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const auto value =
-        static_cast<double>(image({tile[0] + (corner & 1), tile[1] + (corner >> 1 & 1), tile[2] + (corner >> 2)}));
-    least = std::min(least, value);
-    greatest = std::max(greatest, value);
-  }
-  return {least, greatest};
-}
-
-/// The largest range of samples of the tiles that a point lies in or on the border of; in steps of the grid.
-template <class T>
-float range_around(const Image<T, 3>& image, const std::array<float, 3>& point) {
-  std::array<std::size_t, 3> first;
-  std::array<std::size_t, 3> count;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto last_tile = static_cast<double>(image.size(static_cast<int>(a)) - 2);
-    const auto at = static_cast<double>(point[a]);
-    const double low = std::clamp(std::ceil(at) - 1.0, 0.0, last_tile);
-    first[a] = static_cast<std::size_t>(low);
-    count[a] = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, last_tile) - low) + 1;
-  }
-  double result = 0.0;
-  for (std::size_t k = 0; k < count[2]; ++k)
-    for (std::size_t j = 0; j < count[1]; ++j)
-      for (std::size_t i = 0; i < count[0]; ++i) {
-        const auto [least, greatest] = range_of(image, {first[0] + i, first[1] + j, first[2] + k});
-        if (greatest - least > result) result = greatest - least;
-      }
-  return static_cast<float>(result);
-}
-
-py::array ranges_around(const AnyImage& image, const AnyContour& contour) {
-  const auto* vertices = std::get_if<Contour<3, float>>(&contour.contour);
-  if (vertices == nullptr || image.view.index() != 1)
-    throw Error(ErrorCode::UnsupportedData, "ranges around vertices are for 3D contours of single precision");
-  Buffer<float> result(vertices->vertices.size());
-  {
-    const py::gil_scoped_release release;
-    std::visit(
-        [&](const auto& view) {
-          for (std::size_t v = 0; v < result.size(); ++v) result[v] = range_around(view, vertices->vertices[v]);
-        },
-        std::get<1>(image.view));
-  }
-  return owned(std::move(result));
 }
 
 }  // namespace
@@ -213,8 +186,6 @@ void bind_extract(py::module_& m) {
   m.def("count", &count_any, py::arg("image"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   m.def("slice_image", &cut_any, py::arg("image"), py::arg("level"), py::arg("axis"), py::arg("at"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::slice_image);
-  m.def("ranges_around", &ranges_around, py::arg("image"), py::arg("contour"),
-        "For each vertex the largest range of samples of a tile that it lies in; the vertices in steps of the grid.");
 }
 
 }  // namespace tegl::python

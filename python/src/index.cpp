@@ -94,7 +94,12 @@ std::unique_ptr<AnyContour> contour_of(const AnyIndex& index, double level, bool
                                        const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
-  return call.run([&] { return std::make_unique<AnyContour>(index.contour(level, is_double, options)); });
+  const auto normals = py::cast<std::string>(arguments["normals"]);
+  return call.run([&] {
+    auto result = std::make_unique<AnyContour>(index.contour(level, is_double, options));
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
 }
 
 py::array find(const AnyIndex& index, double level) {
@@ -112,27 +117,16 @@ void save(const AnyIndex& index, const std::string& path) {
   index.save(path);
 }
 
-using TileNumbers = py::array_t<TileNumber, py::array::c_style | py::array::forcecast>;
-
-/// The contour in these tiles alone, as if all others had a missing corner.
-std::unique_ptr<AnyContour> extract_tiles(const AnyImage& image, const TileNumbers& numbers, double level,
-                                          bool is_double, const py::dict& arguments, const py::object& progress) {
-  std::vector<TileNumber> tiles(numbers.data(), numbers.data() + numbers.size());
-  Call call(progress);
-  const ExtractOptions options = extract_options(arguments, call);
-  return call.run([&] {
-    const auto chosen = index_of(image, [&](const auto& view) { return choose_tiles(view, std::move(tiles)); });
-    return std::make_unique<AnyContour>(chosen->contour(level, is_double, options));
-  });
-}
-
 template <class Real, class T, int N>
 py::tuple picked(const Image<T, N>& image, double level, const std::type_identity_t<std::array<double, N>>& point,
-                 const ExtractOptions& options, Call& call) {
+                 const ExtractOptions& options, const std::string& normals, Call& call) {
   PickReport<N> report;
-  auto contour = std::make_unique<AnyContour>(call.run([&] {
-    return AnyContour{extract_component<Real>(image, level, point, options, &report), level};
-  }));
+  auto contour = call.run([&] {
+    auto result = std::make_unique<AnyContour>();
+    *result = {extract_component<Real>(image, level, point, options, &report), level};
+    add_shape_normals(*result, normals, options);
+    return result;
+  });
   py::dict result;
   put(result, "found", report.found);
   put(result, "tile", std::vector<std::size_t>(report.at.begin(), report.at.end()));
@@ -146,9 +140,11 @@ py::tuple pick(const AnyImage& image, double level, const std::vector<double>& p
                const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
+  const auto normals = py::cast<std::string>(arguments["normals"]);
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) {
     const auto at = to_array<N>("the point", point);
-    return is_double ? picked<double>(view, level, at, options, call) : picked<float>(view, level, at, options, call);
+    return is_double ? picked<double>(view, level, at, options, normals, call)
+                     : picked<float>(view, level, at, options, normals, call);
   });
 }
 
@@ -166,8 +162,6 @@ void bind_index(py::module_& m) {
         py::arg("progress"), doc::build_active_tiles);
   m.def("load_index", &load, py::keep_alive<0, 2>(), py::arg("path"), py::arg("image"), py::arg("threads"),
         py::arg("progress"), doc::read_active_tiles);
-  m.def("extract_tiles", &extract_tiles, py::arg("image"), py::arg("tiles"), py::arg("level"), py::arg("double"),
-        py::arg("options"), py::arg("progress"), doc::choose_tiles);
   m.def("extract_component", &pick, py::arg("image"), py::arg("level"), py::arg("point"), py::arg("double"),
         py::arg("options"), py::arg("progress"), doc::extract_component);
 }

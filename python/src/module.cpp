@@ -87,10 +87,10 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
       "ambiguity", text("ambiguity"),
       {{"low", Ambiguity::low}, {"high", Ambiguity::high}, {"mean", Ambiguity::mean}, {"saddle", Ambiguity::saddle}});
   result.direction = named<GradientDirection>("direction", text("direction"), gradient_directions());
-  result.gradient = named<GradientKind>("gradient", text("gradient"),
-                                        {{"differences", GradientKind::differences}, {"sobel", GradientKind::sobel}});
+  const std::string normals = text("normals");
+  result.normals = normals == "gradient" || normals == "sobel";
+  result.gradient = normals == "sobel" ? GradientKind::sobel : GradientKind::differences;
   result.close = py::cast<bool>(arguments["close"]);
-  result.normals = py::cast<bool>(arguments["normals"]);
   result.epsilon = py::cast<double>(arguments["epsilon"]);
   result.threads = py::cast<unsigned>(arguments["threads"]);
   result.progress = call.progress();
@@ -146,4 +146,5 @@ PYBIND11_MODULE(_tegl, m) {
   bind_track(m);
   bind_index(m);
   bind_files(m);
+  bind_marching_cubes(m);
 }

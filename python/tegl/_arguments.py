@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _dates, _tegl
+from . import _dates, _kinds, _tegl
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
@@ -97,7 +97,8 @@ class Prepared:
     is_reversed: bool
     names: tuple[str, ...]
     units: tuple[str, ...]
-    reach: list[float]  #: how far from 0 coordinates in the world are, at most
+    value_unit: str
+    extent: np.ndarray  #: 2 x N: the lowest and the highest coordinates in the world, in the array's order
 
     @property
     def ndim(self) -> int:
@@ -132,7 +133,7 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
 
 def turn_around(time_axis: int, ndim: int) -> bool:
     """Whether the library's axes are the array's from the last to the first."""
-    if time_axis not in (0, -1, ndim - 1):
+    if as_whole("time_axis", time_axis) not in (0, -1, ndim - 1):
         raise ValueError(f"time_axis is {time_axis!r}; expected 0 or -1, the array's first or last axis; numpy.moveaxis "
                          "gives a view with another axis first")
     return time_axis == 0
@@ -154,16 +155,21 @@ def number_on_axis(at: object, unit: str) -> float:
 
 
 def as_number(name: str, value: object) -> float:
-    """A real number, by the name that the caller knows it by."""
-    try:
-        return float(typing.cast(float, value))
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {value!r}; expected a number") from None
+    """A real number, by the name that the caller knows it by. Text, truth values, dates and complex numbers are none,
+    although float() takes some of them."""
+    kind = getattr(getattr(value, "dtype", None), "kind", "")
+    if not isinstance(value, (str, bytes, bytearray, bool)) and kind not in ("b", "c", "m", "M", "S", "U") and \
+            not (kind and np.ndim(typing.cast(float, value))):
+        with contextlib.suppress(TypeError, ValueError):
+            return float(typing.cast(float, value))
+    raise TypeError(f"{name} is {value!r}; expected a number") from None
 
 
 def as_whole(name: str, value: object, least: int | None = None) -> int:
     """A whole number, not below `least`."""
     try:
+        if isinstance(value, (bool, np.bool_)):
+            raise TypeError
         number = operator.index(typing.cast(int, value))
     except TypeError:
         raise TypeError(f"{name} is {value!r}; expected a whole number") from None
@@ -178,6 +184,13 @@ def threads_of(threads: object) -> int:
     if number < 0:
         raise ValueError(f"threads is {number}; expected 0 (all) or more")
     return min(number, 2**31 - 1)  # more than the machine has are as many
+
+
+def as_bool(name: str, value: object) -> bool:
+    """A truth value, Python's or NumPy's, and nothing that merely counts as one, such as text."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} is {value!r}; expected True or False")
+    return bool(value)
 
 
 def or_none(check: typing.Callable[..., typing.Any], name: str, value: object, *more: int) -> typing.Any:
@@ -205,7 +218,7 @@ def as_list(name: str, value: object, expected: str) -> list:
 def _per_axis(value, ndim: int, name: str, default: float) -> list[float]:
     if value is None:
         return [default] * ndim
-    if isinstance(value, str) or np.ndim(value) == 0:
+    if isinstance(value, (str, bytes)) or np.ndim(value) == 0:
         return [as_number(name, value)] * ndim
     result = as_numbers(name, value)
     if len(result) != ndim:
@@ -213,15 +226,22 @@ def _per_axis(value, ndim: int, name: str, default: float) -> list[float]:
     return result
 
 
+def _reals(what_is: str, values: object, expected: str) -> np.ndarray:
+    """Numbers in double precision; neither text nor dates, which NumPy makes numbers of as well."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind in "iuf" or (array.dtype.kind == "O" and not any(isinstance(v, str) for v in array.flat)):
+            return array.astype(np.float64)
+    except (TypeError, ValueError):
+        pass
+    raise TypeError(f"{what_is} {values!r}; expected {expected}") from None
+
+
 def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
     """Uniform if that is exact to the last bit; else all coordinates. `axis` is what errors call it."""
     if isinstance(coordinates, UniformAxis):
         return coordinates
-    try:
-        values = np.asarray(coordinates, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"the coordinates of {axis} are {coordinates!r}; expected numbers, ascending or "
-                        "descending") from None
+    values = _reals(f"the coordinates of {axis} are", coordinates, "numbers, ascending or descending")
     if values.ndim != 1:
         raise ValueError(f"the coordinates of {axis} have {values.ndim} dimensions; expected 1")
     if len(values) != size:
@@ -246,10 +266,7 @@ def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
 def _affine(affine, ndim: int) -> np.ndarray | None:
     if affine is None:
         return None
-    try:
-        matrix = np.asarray(affine, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"affine is {affine!r}; expected {ndim} x {ndim + 1} or {ndim + 1} x {ndim + 1} numbers") from None
+    matrix = _reals("affine is", affine, f"{ndim} x {ndim + 1} or {ndim + 1} x {ndim + 1} numbers")
     if matrix.shape not in ((ndim, ndim + 1), (ndim + 1, ndim + 1)):
         raise ValueError(f"affine has the shape {matrix.shape}; expected {(ndim, ndim + 1)} or {(ndim + 1, ndim + 1)}")
     if len(matrix) > ndim and not np.array_equal(matrix[ndim], [0.0] * ndim + [1.0]):
@@ -257,8 +274,8 @@ def _affine(affine, ndim: int) -> np.ndarray | None:
     return matrix[:ndim]
 
 
-def _from_xarray(data) -> tuple[list, list[str], list[str], int | None]:
-    """Coordinates (None where there are none), names, units, and the axis of the time, if there is one."""
+def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
+    """Coordinates (None where there are none), names, units, the axis of the time, if there is one, and the values' unit."""
     coordinates: list = []
     units: list[str] = []
     time_axis = None
@@ -280,7 +297,7 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None]:
             time_axis = number
         coordinates.append(values)
         units.append(unit)
-    return coordinates, [str(dim) for dim in data.dims], units, time_axis
+    return coordinates, [str(dim) for dim in data.dims], units, time_axis, str(data.attrs.get("units", ""))
 
 
 def _values(array: np.ndarray) -> np.ndarray:
@@ -320,9 +337,11 @@ def _in_order(mask, data):
     return mask.transpose(*data.dims)
 
 
-def _booleans(mask) -> np.ndarray:
+def booleans(mask) -> np.ndarray:
     """A mask as True and False."""
     mask = np.asarray(mask)
+    if mask.dtype.kind not in "biuf":
+        raise TypeError(f"mask is of type {mask.dtype}; expected True or False for each sample")
     if mask.dtype.kind == "f" and np.isnan(mask).any():
         raise ValueError("mask has NaN, which is neither True nor False; expected one of these for each sample (xarray's "
                          "where leaves NaN: use mask.fillna(False))")
@@ -331,7 +350,7 @@ def _booleans(mask) -> np.ndarray:
 
 def _masked(array: np.ndarray, mask) -> np.ndarray:
     """Where the mask is False, values are missing: NaN, in a copy."""
-    mask = _booleans(mask)
+    mask = booleans(mask)
     if mask.shape != array.shape:
         raise ValueError(f"mask has the shape {mask.shape}; expected {array.shape}, that of the array")
     if mask.all():
@@ -351,13 +370,14 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
     units: Sequence[str] | None = None
     known: Sequence | None = None
     labelled = None
+    value_unit = ""
     if hasattr(data, "__tegl_image__"):
-        known, names, units, own_affine, own_axis, data = data.__tegl_image__()
+        known, names, units, own_affine, own_axis, value_unit, data = data.__tegl_image__()
         affine = own_affine if affine is None else affine
         time_axis = own_axis if time_axis is None else time_axis
     elif is_xarray(data):
         labelled = data
-        known, names, units, found_axis = _from_xarray(data)
+        known, names, units, found_axis, value_unit = _from_xarray(data)
         if time_axis is None:
             if found_axis not in (None, 0, data.ndim - 1):
                 time = data.dims[found_axis]
@@ -368,7 +388,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         data = data.data if isinstance(data.data, np.ndarray) else data.values
     if isinstance(data, np.ma.MaskedArray):
         if np.ma.getmask(data) is not np.ma.nomask:
-            mask = ~np.ma.getmaskarray(data) if mask is None else ~np.ma.getmaskarray(data) & _booleans(mask)
+            mask = ~np.ma.getmaskarray(data) if mask is None else ~np.ma.getmaskarray(data) & booleans(mask)
         data = data.data
     array = np.asarray(data)
     ndim = array.ndim
@@ -400,7 +420,8 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         axes.append(_axis(given, called, size))
     is_reversed = turn_around(0 if time_axis is None else time_axis, ndim)
     matrix = _affine(affine, ndim)
-    reach = _reach(axes, array.shape, matrix)
+    with np.errstate(over="ignore", invalid="ignore"):
+        extent = _extent_of(axes, array.shape, matrix)
     if not is_reversed:
         image = _tegl.Image(array, axes, None if matrix is None else matrix.tolist(), list(names), list(units))
     else:
@@ -408,7 +429,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             matrix = np.column_stack([matrix[::-1, ndim - 1::-1], matrix[::-1, ndim]])
         image = _tegl.Image(array.T, axes[::-1], None if matrix is None else matrix.tolist(), list(names)[::-1],
                             list(units)[::-1])
-    return Prepared(image, is_reversed, names, units, reach)
+    return Prepared(image, is_reversed, names, units, value_unit, extent)
 
 
 def real(name: str, values: object) -> np.ndarray:
@@ -426,7 +447,7 @@ def labels_of(name: str, labels: object, ndim: int) -> tuple[str, ...]:
     listed = list(labels) if isinstance(labels, str) else as_list(name, labels, f"a list of text, one for each of {ndim} axes")
     if len(listed) != ndim:
         raise ValueError(f"{name} has {len(listed)} entries; expected one for each of {ndim} axes")
-    return tuple(str(label) for label in listed)
+    return tuple(as_text(f"{name}[{number}]", label) for number, label in enumerate(listed))
 
 
 def require_different(name: str, labels: Sequence[str]) -> None:
@@ -435,39 +456,64 @@ def require_different(name: str, labels: Sequence[str]) -> None:
         raise ValueError(f"{name} has '{twice[0]}' more than once; expected different names")
 
 
-def _reach(axes: Sequence[UniformAxis | list[float]], sizes: Sequence[int], affine: np.ndarray | None) -> list[float]:
-    """How far from 0 coordinates in the world are, at most, by axis."""
-    with np.errstate(over="ignore"):
-        reach = np.array([np.abs(axis.origin + np.array([0.0, size - 1]) * axis.step).max()
-                          if isinstance(axis, UniformAxis) else np.abs([axis[0], axis[-1]]).max()
-                          for axis, size in zip(axes, sizes)])
-        if affine is not None:
-            reach = np.abs(affine[:, :-1]) @ reach + np.abs(affine[:, -1])
-    return [float(one) for one in reach]
+def _extent_of(axes: Sequence[UniformAxis | list[float]], sizes: Sequence[int], affine: np.ndarray | None) -> np.ndarray:
+    """2 x N: the lowest and the highest coordinates in the world."""
+    ends = np.array([[axis.origin, axis.origin + (size - 1) * axis.step] if isinstance(axis, UniformAxis)
+                     else [axis[0], axis[-1]] for axis, size in zip(axes, sizes)]).T
+    if affine is None:
+        return np.sort(ends, axis=0)
+    products = ends[:, None, :] * affine[:, :-1]  # end, row, column
+    products[:, affine[:, :-1] == 0] = 0  # also where the end is infinite
+    return np.stack([np.minimum(*products).sum(axis=1), np.maximum(*products).sum(axis=1)]) + affine[:, -1]
 
 
 def is_double(dtype, prepared: Prepared) -> bool:
     """Whether coordinates are to be of double precision. Those of the array have to fit into what they are."""
     try:
-        kind = np.dtype(dtype)
+        kind = None if dtype is None else np.dtype(dtype)  # None would be float64
     except TypeError:
-        raise TypeError(f"dtype is {dtype!r}; expected float32 or float64") from None
+        kind = None
+    if kind is None:
+        raise TypeError(f"dtype is {dtype!r}; expected float32 or float64")
     if kind not in (np.dtype(np.float32), np.dtype(np.float64)):
         raise ValueError(f"dtype is {kind}; expected float32 or float64")
     least, most = np.finfo(kind).tiny, np.finfo(kind).max
-    for axis, reach in enumerate(prepared.reach):
+    for axis, reach in enumerate(np.abs(prepared.extent).max(axis=0)):
         if reach != 0 and not least <= reach <= most:
             raise ValueError(f"coordinates along axis {axis} reach {reach:g}; expected {least:.3g} to {most:.3g}, as {kind} "
                              "holds" + (", or dtype=numpy.float64" if kind == np.dtype(np.float32) else ""))
     return kind == np.dtype(np.float64)
 
 
+def normals_kind(normals: object, gradient: object) -> str:
+    """Which normals `_tegl.extract` is to make: "" for none."""
+    kinds = typing.get_args(_kinds.Normals)
+    if isinstance(normals, str) and normals in kinds:
+        kind = normals
+    elif isinstance(normals, (bool, np.bool_)):
+        kind = "gradient" if normals else ""
+    else:
+        raise (ValueError if isinstance(normals, str) else TypeError)(
+            f"normals is {normals!r}; expected True, False or one of {', '.join(map(repr, kinds))}")
+    if gradient != "sobel":
+        return kind
+    if kind in ("geometric", "flat"):
+        raise ValueError(f"normals is {kind!r} and gradient 'sobel'; expected normals from gradients, True or 'gradient'")
+    return "sobel" if kind else ""
+
+
+EXTRACT_OPTIONS = ("triangulation", "ambiguity", "direction", "close", "epsilon", "normals", "gradient", "threads")
+
+
 def extract_options(*, triangulation="compact", ambiguity="low", direction="descent", close=False, epsilon=0.0,
                     normals=False, gradient="differences", threads=0, **unknown) -> dict:
     """What `_tegl.extract` takes."""
     if unknown:
-        known = [name for name in inspect.signature(extract_options).parameters if name != "unknown"]
-        raise TypeError(f"no argument is named '{next(iter(unknown))}'; expected one of {', '.join(known)}")
+        raise TypeError(f"no argument is named '{next(iter(unknown))}'; expected one of {', '.join(EXTRACT_OPTIONS)}")
+    gradients = typing.get_args(_kinds.Gradient)
+    if as_text("gradient", gradient) not in gradients:
+        raise ValueError(f"gradient is {gradient!r}; expected one of {', '.join(map(repr, gradients))}")
     return {"triangulation": as_text("triangulation", triangulation), "ambiguity": as_text("ambiguity", ambiguity),
-            "direction": as_text("direction", direction), "close": bool(close), "epsilon": as_number("epsilon", epsilon),
-            "normals": bool(normals), "gradient": as_text("gradient", gradient), "threads": threads_of(threads)}
+            "direction": as_text("direction", direction), "close": as_bool("close", close),
+            "epsilon": as_number("epsilon", epsilon), "normals": normals_kind(normals, gradient),
+            "threads": threads_of(threads)}

@@ -10,10 +10,10 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _tegl
+from . import _arguments, _kinds, _tegl
 
 if typing.TYPE_CHECKING:
-    from ._operations import Components, Elements, Measures, MeshReport, SimplifyStats
+    from ._operations import Components, CutMeasures, Elements, Measures, MeshReport, SimplifyStats
     from ._track import TrackGraph
 
 Progress = Callable[[float], object]
@@ -46,9 +46,11 @@ class Contour:
     _core: _tegl.Contour
     _is_reversed: bool
     _grid: _tegl.Grid | None
+    _extent: np.ndarray | None  #: that of the image, 2 x N in the order of the columns of `vertices`; None: not known
 
     def __init__(self, vertices, simplices, *, normals=None, axis_names: Sequence[str] | None = None,
-                 axis_units: Sequence[str] | None = None, direction: str = "descent", isovalue: float | None = None,
+                 axis_units: Sequence[str] | None = None, direction: _kinds.Direction = "descent",
+                 isovalue: float | None = None,
                  vertex_attributes: Mapping[str, typing.Any] | None = None,
                  simplex_attributes: Mapping[str, typing.Any] | None = None, time_axis: int = 0) -> None:
         """A contour from arrays (any mesh of simplices), which are copied. Attributes: name -> numbers, a row each."""
@@ -82,11 +84,13 @@ class Contour:
         def attributes(of: str, given: Mapping[str, typing.Any] | None) -> list[tuple[str, str, np.ndarray]]:
             if given is not None and not isinstance(given, Mapping):
                 raise TypeError(f"{of} is {given!r}; expected a dict of names and numbers")
-            return [(_arguments.as_text(f"a name of {of}", name), "",
-                     _arguments.real(f"{of}[{name!r}]", values).astype(np.float64))
-                    for name, values in (given or {}).items()]
+            found = [(_arguments.as_text(f"a name of {of}", name), "",
+                      _arguments.real(f"{of}[{name!r}]", values).astype(np.float64))
+                     for name, values in (given or {}).items()]
+            return [(name, unit, self._turned(values) if _is_flat_normal(of, name, values) else values)
+                    for name, unit, values in found]
 
-        self._grid = None
+        self._grid = self._extent = None
         self._core = _tegl.Contour.from_arrays(
             vertices[:, turn], simplices.reshape(-1, ndim)[:, turn], None if normals is None else normals[:, turn],
             list(names[turn]), list(units[turn]), _arguments.as_text("direction", direction),
@@ -94,9 +98,10 @@ class Contour:
             attributes("vertex_attributes", vertex_attributes), attributes("simplex_attributes", simplex_attributes))
 
     @classmethod
-    def _of(cls, core: _tegl.Contour, is_reversed: bool, grid: _tegl.Grid | None = None) -> Contour:
+    def _of(cls, core: _tegl.Contour, is_reversed: bool, extent: np.ndarray | None = None,
+            grid: _tegl.Grid | None = None) -> Contour:
         self = cls.__new__(cls)
-        self._core, self._is_reversed, self._grid = core, is_reversed, grid
+        self._core, self._is_reversed, self._extent, self._grid = core, is_reversed, extent, grid
         return self
 
     def _turned(self, rows: np.ndarray) -> np.ndarray:
@@ -136,8 +141,10 @@ class Contour:
 
     @property
     def simplex_attributes(self) -> dict[str, np.ndarray]:
-        """Numbers of every simplex: name -> #S, or #S x width, in double precision."""
-        return {name: values for name, (values, _) in self._core.simplex_attributes.items()}
+        """Numbers of every simplex: name -> #S, or #S x width, in double precision. The columns of `normal`, which
+        `normals="flat"` makes, are in the order of those of `vertices`."""
+        return {name: self._turned(values) if _is_flat_normal("simplex_attributes", name, values) else values
+                for name, (values, _) in self._core.simplex_attributes.items()}
 
     @property
     def attribute_units(self) -> dict[str, str]:
@@ -161,7 +168,7 @@ class Contour:
         return 0 if self._is_reversed else self.ndim - 1
 
     @property
-    def direction(self) -> str:
+    def direction(self) -> _kinds.Direction:
         """Which way the orientation and the normals point: "descent" (towards low) or "ascent"."""
         return self._core.direction
 
@@ -175,11 +182,12 @@ class Contour:
             return [(name, unit, np.array(values)) for name, (values, unit) in of.items()]
 
         core = self._core
-        own = {name: value for name, value in self.__dict__.items() if name not in ("_core", "_is_reversed", "_grid")}
+        own = {name: value for name, value in self.__dict__.items()
+               if name not in ("_core", "_is_reversed", "_grid", "_extent")}
         return _restored, (type(self), np.array(core.vertices), np.array(core.simplices),
                            None if core.normals is None else np.array(core.normals), core.axis_names, core.axis_units,
                            core.direction, core.isovalue, attributes(core.vertex_attributes),
-                           attributes(core.simplex_attributes), self._is_reversed), own or None
+                           attributes(core.simplex_attributes), self._is_reversed, self._extent), own or None
 
     def __repr__(self) -> str:
         what = {2: "segments", 3: "triangles", 4: "tetrahedra", 5: "4-simplices"}[self.ndim]
@@ -190,36 +198,47 @@ class Contour:
 
     @typing.overload
     def slice(self, at: Place | None = None, *, axis: int | str | None = None,
-              normal: Sequence[float] | np.ndarray | None = None, offset: float | None = None, threads: int = 0,
-              progress: Progress | None = None, **coordinate: Place) -> Contour: ...
+              normal: Sequence[float] | np.ndarray | None = None, offset: float | None = None,
+              allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+              **coordinate: Place) -> Contour: ...
 
     @typing.overload
-    def slice(self, at: Places, *, axis: int | str | None = None, threads: int = 0,
+    def slice(self, at: Places, *, axis: int | str | None = None, allow_empty: bool = False, threads: int = 0,
               progress: Progress | None = None) -> list[Contour]: ...
 
     @typing.overload
-    def slice(self, at: Labelled, *, axis: int | str | None = None, threads: int = 0,
+    def slice(self, at: Labelled, *, axis: int | str | None = None, allow_empty: bool = False, threads: int = 0,
               progress: Progress | None = None) -> Contour | list[Contour]: ...
 
     @typing.overload
-    def slice(self, at: None = None, *, axis: None = None, normal: None = None, offset: None = None, threads: int = 0,
-              progress: Progress | None = None, **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
+    def slice(self, at: None = None, *, axis: None = None, normal: None = None, offset: None = None,
+              allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+              **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
 
-    def slice(self, at=None, *, axis: int | str | None = None, normal=None, offset=None, threads: int = 0,
-              progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
+    def slice(self, at=None, *, axis: int | str | None = None, normal=None, offset=None, allow_empty: bool = False,
+              threads: int = 0, progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
         """The cut by a hyperplane: see `tegl.slice`."""
         from . import _operations
-        return _operations._cut(self, at, axis, normal, offset, threads, progress, coordinate)
+        return _operations._cut(self, at, axis, normal, offset, allow_empty, threads, progress, coordinate)
 
     def components(self, *, threads: int = 0, progress: Progress | None = None) -> Components:
         """The connected pieces: see `tegl.components`."""
         from . import _operations
         return _operations.components(self, threads=threads, progress=progress)
 
-    def measure(self, *, threads: int = 0, progress: Progress | None = None) -> Measures:
-        """Size, content, centroid: see `tegl.measure`."""
+    @typing.overload
+    def measure(self, *, at: None = None, allow_empty: bool = False, threads: int = 0,
+                progress: Progress | None = None) -> Measures: ...
+
+    @typing.overload
+    def measure(self, *, at: Place | Places | Labelled, allow_empty: bool = False, threads: int = 0,
+                progress: Progress | None = None) -> CutMeasures: ...
+
+    def measure(self, *, at=None, allow_empty: bool = False, threads: int = 0,
+                progress: Progress | None = None) -> Measures | CutMeasures:
+        """Size, content, centroid; with `at`, sizes and contents of cuts: see `tegl.measure`."""
         from . import _operations
-        return _operations.measure(self, threads=threads, progress=progress)
+        return _operations.measure(self, at=at, allow_empty=allow_empty, threads=threads, progress=progress)
 
     def check(self, *, progress: Progress | None = None) -> MeshReport:
         """Is it a manifold? See `tegl.check`."""
@@ -227,26 +246,44 @@ class Contour:
         return _operations.check(self, progress=progress)
 
     @typing.overload
-    def simplify(self, *, return_stats: typing.Literal[False] = False, **options: typing.Any) -> Contour: ...
+    def simplify(self, ratio: float | None = None, *, count: int | None = None,
+                 max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
+                 border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
+                 scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
+                 allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+                 return_stats: typing.Literal[False] = False) -> Contour: ...
 
     @typing.overload
-    def simplify(self, *, return_stats: typing.Literal[True],
-                 **options: typing.Any) -> tuple[Contour, SimplifyStats]: ...
+    def simplify(self, ratio: float | None = None, *, count: int | None = None,
+                 max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
+                 border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
+                 scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
+                 allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+                 return_stats: typing.Literal[True]) -> tuple[Contour, SimplifyStats]: ...
 
-    def simplify(self, **options) -> Contour | tuple[Contour, SimplifyStats]:
+    def simplify(self, ratio: float | None = None, *, count: int | None = None,
+                 max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
+                 border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
+                 scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
+                 allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+                 return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
         """Fewer simplices, the same manifold: see `tegl.simplify`."""
         from . import _operations
-        return _operations.simplify(self, **options)
+        return _operations._simplify(self, ratio, count, max_error, method, border, max_curvature, scale, measure,
+                                     allow_nonmanifold, threads, progress, return_stats)
 
     def elements(self, *, by_cell: bool = False, threads: int = 0, progress: Progress | None = None) -> Elements:
         """Hypersurface elements: see `tegl.elements`."""
         from . import _operations
         return _operations.elements(self, by_cell=by_cell, threads=threads, progress=progress)
 
-    def track(self, **options: typing.Any) -> TrackGraph:
+    def track(self, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
+              first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
+              allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
         """What becomes of the parts: see `tegl.track`."""
         from . import _track
-        return _track.track(self, **options)
+        return _track.track(self, min_lifetime=min_lifetime, times=times, first=first, last=last, handles=handles,
+                            label_simplices=label_simplices, allow_empty=allow_empty, threads=threads, progress=progress)
 
     @_arguments.documents("sample")
     def sample(self, array, name: str, unit: str = "", *, threads: int = 0, progress: Progress | None = None,
@@ -309,9 +346,14 @@ class Contour:
         return _export.to_pyvista(self)
 
 
-def _restored(of: type[Contour], *arrays) -> Contour:
-    """What was pickled, or copied: of the grid of its image it knows nothing more."""
-    return of._of(_tegl.Contour.from_arrays(*arrays[:-1]), arrays[-1])
+def _is_flat_normal(of: str, name: str, values: np.ndarray) -> bool:
+    """Whether an attribute is the normals of simplices: the one whose columns go by the axes."""
+    return of == "simplex_attributes" and name == "normal" and values.ndim == 2
+
+
+def _restored(of: type[Contour], *parts) -> Contour:
+    """What was pickled, or copied: of its image it knows the extent, and no more of the grid."""
+    return of._of(_tegl.Contour.from_arrays(*parts[:-2]), *parts[-2:])
 
 
 @_arguments.documents("read_mesh")

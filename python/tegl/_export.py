@@ -40,6 +40,11 @@ def _normals(contour: Contour) -> np.ndarray | None:
     return normals if contour.ndim == 3 else np.column_stack([normals, np.zeros(len(normals), normals.dtype)])
 
 
+def _of_cells(contour: Contour) -> dict[str, np.ndarray]:
+    """Attributes of simplices, vectors among them in the order of the points' coordinates."""
+    return {name: values for name, (values, _) in contour._core.simplex_attributes.items()}
+
+
 def to_meshio(contour: Contour):
     meshio = _imported("meshio", "to_meshio", "meshio")
     _, cells = contour.points_and_cells()
@@ -49,7 +54,7 @@ def to_meshio(contour: Contour):
     if normals is not None:
         data["Normals"] = normals
     return meshio.Mesh(points, [(kind, np.asarray(rows, dtype=np.int64)) for kind, rows in cells], point_data=data,
-                       cell_data={name: [values] for name, values in contour.simplex_attributes.items()})
+                       cell_data={name: [values] for name, values in _of_cells(contour).items()})
 
 
 def _cells(contour: Contour):
@@ -78,7 +83,7 @@ def to_vtk(contour: Contour):
         mesh.SetPoints(points)
         mesh.SetPolys(cells) if contour.ndim == 3 else mesh.SetLines(cells)
     for data, arrays in ((mesh.GetPointData(), {**extra, **contour.vertex_attributes}),
-                         (mesh.GetCellData(), contour.simplex_attributes)):
+                         (mesh.GetCellData(), _of_cells(contour))):
         for name, values in arrays.items():
             data.AddArray(_named(support, values, name))
     normals = _normals(contour)

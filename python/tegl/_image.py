@@ -10,17 +10,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _tegl
+from . import _arguments, _kinds, _outside, _tegl
 from ._contour import Contour, Progress
 
 
 @_arguments.documents("extract", "ExtractOptions", "Ambiguity")
 def contour(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
             axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
-            time_axis: int | None = None, triangulation: str = "compact", ambiguity: str = "low",
-            direction: str = "descent", close: bool = False, epsilon: float = 0.0, normals: bool = False,
-            gradient: str = "differences", dtype=np.float32, threads: int = 0,
-            progress: Progress | None = None) -> Contour:
+            time_axis: int | None = None, triangulation: _kinds.Triangulation = "compact",
+            ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
+            epsilon: float = 0.0, normals: bool | _kinds.Normals = False, gradient: _kinds.Gradient = "differences",
+            dtype=np.float32, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Contour:
     """The contour {value = level} of an array of 2 to 5 axes: what separates samples >= level from the others.
 
     array
@@ -53,9 +53,14 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     epsilon
         How far, as a share of an edge, vertices stay away from samples: above 0 no simplex is flat that need not be.
     normals, gradient
-        Whether to have normals, from the gradients of the values: by "differences", or by the "sobel" kernel.
+        Whether to have normals: True, or one of "gradient" (the same: from the gradients of the values), "sobel" (the
+        same, from gradients by the Sobel kernel, as gradient="sobel" says, too), "geometric" (from the simplices around
+        each vertex) and "flat" (of simplices: the attribute `normal` in `simplex_attributes`). See docs/normals.md.
     dtype
         Of the vertices: float32 or float64.
+    allow_empty
+        Whether a level that no sample is above or below gives an empty contour. Otherwise it is a ValueError that names
+        the range of the values.
     threads
         How many work; 0: all that there are. The result is the same.
     progress
@@ -70,9 +75,12 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis)
     is_double = _arguments.is_double(dtype, prepared)
+    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     with prepared.terms():
-        core = _tegl.extract(prepared.image, _arguments.as_number("level", level), is_double, options, progress)
-    return Contour._of(core, prepared.is_reversed, prepared.image.grid)
+        core = _tegl.extract(prepared.image, level, is_double, options, progress)
+    if not allow_empty and not len(core.simplices):
+        _outside.require_level(prepared, level)
+    return Contour._of(core, prepared.is_reversed, prepared.extent, prepared.image.grid)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -92,11 +100,32 @@ class Image:
     variables: tuple[str, ...]  #: all that can be read as an image
     world_frame: str  #: such as "RAS"; "" where there is none
     #: where the coordinates of each axis grow to, as far as the file says so: "up", "down" (depths, pressures) or "unknown"
-    axis_directions: tuple[str, ...]
+    axis_directions: tuple[_kinds.AxisDirection, ...]
     _axes: tuple = dataclasses.field(repr=False, default=())
 
+    def __repr__(self) -> str:
+        """Three lines: the values, the axes, and where it comes from."""
+        def shown(text: str) -> str:  # as it is, but for what a terminal would take as more than text
+            return text if text.isprintable() else repr(text)[1:-1]
+
+        def along(axis: int) -> str:
+            unit = f" {shown(self.axis_units[axis])}" if self.axis_units[axis] else ""
+            coords = self.coords[axis]
+            ends = f"{coords[0]:g} to {coords[-1]:g}" if len(coords) > 1 else "".join(f"{one:g}" for one in coords)
+            return f"{shown(self.axis_names[axis]) or f'axis {axis}'} {ends}{unit}"
+
+        name = f" {shown(self.variable or self.value_name)}" if self.variable or self.value_name else ""
+        unit = f" in {shown(self.value_unit)}" if self.value_unit else ""
+        world = f", world {shown(self.world_frame)}" if self.world_frame else ""
+        affine = ", with an affine map" if self.affine is not None else ""
+        others = len(self.variables) - 1
+        more = f", one of {others + 1} variables" if others > 0 else ""
+        return (f"<tegl.Image{name}{unit}: {' x '.join(map(str, self.array.shape))} {self.array.dtype}\n"
+                f"  axes: {'; '.join(map(along, range(self.array.ndim)))}\n"
+                f"  time_axis {self.time_axis}{affine}{world}, read from {self.format}{more}>")
+
     def __tegl_image__(self):
-        return self._axes, self.axis_names, self.axis_units, self.affine, self.time_axis, self.array
+        return (self._axes, self.axis_names, self.axis_units, self.affine, self.time_axis, self.value_unit, self.array)
 
     def contour(self, level: float, **options: typing.Any) -> Contour:
         """`tegl.contour` of it."""
@@ -126,8 +155,8 @@ Path = typing.Union[str, "os.PathLike[str]"]
 
 @_arguments.documents("read_image", "read_series")
 def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None = None, times=None,
-         time_step: float | None = None, time_unit: str | None = None, sort: str | None = None, time_axis: int = 0,
-         fix: Mapping[str, int] | None = None, allow_outside_paths: bool = False,
+         time_step: float | None = None, time_unit: str | None = None, sort: _kinds.SeriesOrder | None = None,
+         time_axis: int = 0, fix: Mapping[str, int] | None = None, allow_outside_paths: bool = False,
          progress: Progress | None = None) -> Image:
     """Reads an image: NIfTI, NRRD, MetaImage, netCDF, DICOM. The values are not copied from the library's memory.
 

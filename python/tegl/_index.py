@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from . import _arguments, _tegl
+from . import _arguments, _kinds, _outside, _tegl
 from ._contour import Contour, Progress
 
 
@@ -32,7 +32,7 @@ class Index:
     """
 
     @_arguments.documents("build_active_tiles", "ActiveMethod")
-    def __init__(self, array, method: str = "interval-tree", *, spacing=None, origin=None, coords=None, affine=None,
+    def __init__(self, array, method: _kinds.IndexMethod = "interval-tree", *, spacing=None, origin=None, coords=None, affine=None,
                  mask=None, axis_names=None, axis_units=None, time_axis: int | None = None, threads: int = 0,
                  progress: Progress | None = None) -> None:
         """Builds an index. Arguments as of `tegl.contour`; methods: "interval-tree", "span-space", "min-max-tree",
@@ -62,7 +62,7 @@ class Index:
         self._core.save(os.fspath(path))
 
     @property
-    def method(self) -> str:
+    def method(self) -> _kinds.IndexMethod:
         """How active tiles are found, as given."""
         return self._core.method
 
@@ -75,16 +75,20 @@ class Index:
         shape = self._prepared.image.array.shape
         return f"<tegl.Index {self.method} of {' x '.join(map(str, self._prepared.turned(shape)))}: {self.memory} bytes>"
 
-    def contour(self, level: float, *, dtype=np.float32, progress: Progress | None = None,
+    def contour(self, level: float, *, dtype=np.float32, allow_empty: bool = False, progress: Progress | None = None,
                 **options: typing.Any) -> Contour:
         """What `tegl.contour` of the array gives, byte by byte. Options as there: triangulation, normals, ..."""
         is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)
+        level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
         with self._prepared.terms():
-            core = self._core.contour(_arguments.as_number("level", level), is_double, chosen, progress)
-        return Contour._of(core, self._prepared.is_reversed, self._prepared.image.grid)
+            core = self._core.contour(level, is_double, chosen, progress)
+        if not allow_empty and not len(core.simplices):
+            _outside.require_level(self._prepared, level)
+        return Contour._of(core, self._prepared.is_reversed, self._prepared.extent, self._prepared.image.grid)
 
     def active_tiles(self, level: float) -> np.ndarray:
-        """The lowest corners of the tiles that the contour passes: #T x N indices, in the order of the array's axes."""
+        """The lowest corners of the tiles that the contour passes: #T x N indices, in the order of the array's axes. None
+        for a level outside of the array's values."""
         sizes = [size - 1 for size in self._prepared.image.array.shape]
         found = self._core.find(_arguments.as_number("level", level))
         corners = np.column_stack(np.unravel_index(found, sizes, order="F")) if len(found) else \
@@ -93,27 +97,30 @@ class Index:
 
     @typing.overload
     def pick(self, point: Sequence[float] | np.ndarray, level: float, *, dtype: typing.Any = ...,
-             return_report: typing.Literal[False] = False, progress: Progress | None = None,
+             allow_empty: bool = False, return_report: typing.Literal[False] = False, progress: Progress | None = None,
              **options: typing.Any) -> Contour: ...
 
     @typing.overload
     def pick(self, point: Sequence[float] | np.ndarray, level: float, *, dtype: typing.Any = ...,
-             return_report: typing.Literal[True], progress: Progress | None = None,
+             allow_empty: bool = False, return_report: typing.Literal[True], progress: Progress | None = None,
              **options: typing.Any) -> tuple[Contour, PickReport]: ...
 
     @_arguments.documents("extract_component")
-    def pick(self, point, level: float, *, dtype=np.float32, return_report: bool = False,
-             progress: Progress | None = None,
-             **options: typing.Any) -> Contour | tuple[Contour, PickReport]:
+    def pick(self, point, level: float, *, dtype=np.float32, allow_empty: bool = False, return_report: bool = False,
+             progress: Progress | None = None, **options: typing.Any) -> Contour | tuple[Contour, PickReport]:
         """The one component of the contour that is nearest to a point, in the array's coordinates.
 
         It is found from the point, without the index. With `return_report`: (contour, PickReport).
         """
         numbers = _arguments.as_numbers("point", point, "its coordinates along the array's axes")
         is_double, chosen = _arguments.is_double(dtype, self._prepared), _arguments.extract_options(**options)
+        level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+        is_reported = _arguments.as_bool("return_report", return_report)
         with self._prepared.terms():
-            core, report = _tegl.extract_component(self._prepared.image, _arguments.as_number("level", level),
-                                                   self._prepared.turned(numbers), is_double, chosen, progress)
-        result = Contour._of(core, self._prepared.is_reversed, self._prepared.image.grid)
+            core, report = _tegl.extract_component(self._prepared.image, level, self._prepared.turned(numbers), is_double,
+                                                   chosen, progress)
+        if not allow_empty and not report["found"]:
+            _outside.require_level(self._prepared, level)
+        result = Contour._of(core, self._prepared.is_reversed, self._prepared.extent, self._prepared.image.grid)
         report["tile"] = tuple(self._prepared.turned(report["tile"]))
-        return (result, PickReport(**report)) if return_report else result
+        return (result, PickReport(**report)) if is_reported else result

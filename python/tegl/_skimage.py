@@ -33,6 +33,7 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     mask
         True where cubes are looked at, by their corner of the highest indices (as scikit-image does).
     """
+    is_whole = _arguments.as_bool("allow_degenerate", allow_degenerate)
     data, level, step = _checked(volume, level, spacing, step_size, method, mask)
     if gradient_direction not in ("descent", "ascent"):
         raise ValueError(f"Incorrect input {gradient_direction} in `gradient_direction`, see docstring.")
@@ -43,8 +44,8 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     if mask is None:
         core = _tegl.extract(prepared.image, above, False, options, None)
     else:
-        tiles = np.flatnonzero(np.asarray(mask, dtype=bool)[::step, ::step, ::step][1:, 1:, 1:])
-        core = _tegl.extract_tiles(prepared.image, tiles, above, False, options, None)
+        cubes = _arguments.booleans(mask)[::step, ::step, ::step].T
+        core = _tegl.extract_masked(prepared.image, cubes, above, options)
     if not len(core.vertices):
         raise RuntimeError("No surface found at the given iso value.")
     values = _tegl.ranges_around(prepared.image, core)
@@ -58,9 +59,10 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
         verts = verts * verts.dtype.type(step)
     if not np.array_equal(spacing, (1, 1, 1)):
         verts = verts * np.asarray(spacing, dtype=np.float64)
-    if allow_degenerate:
-        return verts, faces, normals, values
-    return _without_degenerate(verts, faces, normals, values)
+    if not is_whole:
+        kept, faces = _tegl.weld(verts, faces)
+        verts, normals, values = verts[kept], normals[kept], values[kept]
+    return verts, faces, normals, values
 
 
 def _checked(volume, level, spacing, step_size, method, mask) -> tuple[np.ndarray, float, int]:
@@ -77,24 +79,13 @@ def _checked(volume, level, spacing, step_size, method, mask) -> tuple[np.ndarra
     if level is None:
         level = 0.5 * (float(least) + float(greatest))
     else:
-        level = float(level)
+        level = _arguments.as_number("level", level)
         if not least <= level <= greatest:
             raise ValueError("Surface level must be within volume data range.")
     if len(spacing) != 3:
         raise ValueError("`spacing` must consist of three floats.")
-    if int(step_size) < 1:
+    if int(_arguments.as_number("step_size", step_size)) < 1:
         raise ValueError("step_size must be at least one.")
     if mask is not None and np.shape(mask) != volume.shape:
         raise ValueError("volume and mask must have the same shape.")
     return volume, level, int(step_size)
-
-
-def _without_degenerate(verts, faces, normals, values):
-    places, first, number = np.unique(verts, axis=0, return_index=True, return_inverse=True)
-    faces = number.reshape(-1)[faces]
-    proper = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
-    faces = faces[proper]
-    used = np.zeros(len(places), dtype=bool)
-    used[faces.ravel()] = True
-    renumbered = np.cumsum(used) - 1
-    return places[used], renumbered[faces].astype(np.int32), normals[first][used], values[first][used]

@@ -10,15 +10,15 @@ import typing
 
 import numpy as np
 
-from . import _arguments, _tegl
-from ._contour import Contour, Progress
+from . import _arguments, _kinds, _outside, _tegl
+from ._contour import Contour, Labelled, Place, Places, Progress
 
 
 @dataclasses.dataclass(frozen=True)
 class TrackEvent:
     """Parts appear, meet, part or vanish."""
 
-    kind: str  #: "begin", "birth", "enter", "end", "death", "leave", "merge", "split" or "exchange"
+    kind: _kinds.EventKind
     time: float
     place: np.ndarray  #: the other coordinates, in the order of the array's axes
     vertex: int
@@ -157,14 +157,17 @@ class TrackGraph:
 
 
 @_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
-def track(contour: Contour, *, min_lifetime: float = 0.0, times=None, first: float | None = None,
-          last: float | None = None, handles: bool = True, label_simplices: bool = False, threads: int = 0,
-          progress: Progress | None = None) -> TrackGraph:
+def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
+          first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
+          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
     """Follows the parts of a contour along its time axis: births, merges, splits, deaths.
 
-    times: when to measure the parts, ascending; a whole number: at so many even times.
+    times
+        When to measure the parts, ascending; a whole number: at so many even times. Times outside of the image are a
+        ValueError, as in `tegl.slice`, unless `allow_empty` is True: there are no parts then.
     """
     core = _arguments.core_of(contour)
+    allow_empty = _arguments.as_bool("allow_empty", allow_empty)
     unit = contour.axis_units[contour.time_axis]
     if times is None:
         places: list[float] = []
@@ -173,10 +176,13 @@ def track(contour: Contour, *, min_lifetime: float = 0.0, times=None, first: flo
         along = contour.vertices[:, contour.time_axis]
         places = _tegl.even_times(float(along.min()), float(along.max()), count) if len(along) else []
     else:
-        places = [_arguments.number_on_axis(time, unit)
-                  for time in _arguments.as_list("times", times, "a list of times, or a whole number of even ones")]
+        given = _arguments.as_list("times", times, "a list of times, or a whole number of even ones")
+        places = [_arguments.number_on_axis(time, unit) for time in given]
+        if not allow_empty:
+            _outside.require_places(contour, contour.time_axis, places, given)
     found = _tegl.track(core, _arguments.as_number("min_lifetime", min_lifetime), places,
                         None if first is None else _arguments.number_on_axis(first, unit),
-                        None if last is None else _arguments.number_on_axis(last, unit), bool(handles),
-                        bool(label_simplices), _arguments.threads_of(threads), progress)
+                        None if last is None else _arguments.number_on_axis(last, unit),
+                        _arguments.as_bool("handles", handles), _arguments.as_bool("label_simplices", label_simplices),
+                        _arguments.threads_of(threads), progress)
     return TrackGraph(found, contour._is_reversed, unit)

@@ -2,6 +2,9 @@
 """What is wrong is said by name, with what was expected, and with axes as the array has them: never in the words of the
 binding, nor in the library's order of axes."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 import tegl
@@ -12,6 +15,8 @@ CONTOUR = tegl.contour(VOLUME, 0.1)
 MOVING = tegl.contour(noise((5, 6, 7, 8), 0), 0.1)
 INDEX = tegl.Index(VOLUME)
 CORNERS, FACE = np.eye(3), [[0, 1, 2]]
+OUTSIDE = ("the place along %s is 30.0; expected one between 0.0 and %s, the ends of the image, or allow_empty=True for an "
+           "empty cut")
 THREADS = "threads is -1; expected 0 (all) or more"
 
 
@@ -21,10 +26,10 @@ def contour(**arguments):
 
 @pytest.mark.parametrize("call, error, text", [
     # Axes by the array's numbers.
-    (lambda: tegl.slice(VOLUME, 0.1, at=30), ValueError, "between 0 and 6, the ends of axis 0"),
-    (lambda: tegl.slice(VOLUME, 0.1, at=30, axis=2), ValueError, "between 0 and 8, the ends of axis 2"),
-    (lambda: tegl.slice(VOLUME, 0.1, at=30, time_axis=-1), ValueError, "between 0 and 8, the ends of axis 2"),
-    (lambda: tegl.slice(VOLUME, 0.1, z=30, axis_names=["z", "y", "x"]), ValueError, "the ends of axis 0 (z)"),
+    (lambda: tegl.slice(VOLUME, 0.1, at=30), ValueError, OUTSIDE % ("axis 0", "6.0")),
+    (lambda: tegl.slice(VOLUME, 0.1, at=30, axis=2), ValueError, OUTSIDE % ("axis 2", "8.0")),
+    (lambda: tegl.slice(VOLUME, 0.1, at=30, time_axis=-1), ValueError, OUTSIDE % ("axis 2", "8.0")),
+    (lambda: tegl.slice(VOLUME, 0.1, z=30, axis_names=["z", "y", "x"]), ValueError, OUTSIDE % ("axis 0 ('z')", "6.0")),
     (lambda: tegl.slice(VOLUME, 0.1, at=1, affine=np.array([[1, 1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]])), ValueError,
      "mixes axis 0 with others; expected a row 0 and a column 0"),
     (lambda: INDEX.pick((300, 3, 4), 0.1), ValueError,
@@ -74,6 +79,61 @@ def contour(**arguments):
     (lambda: contour(spacing=(1, "a", 2)), TypeError, "spacing[1] is 'a'; expected a number"),
     (lambda: contour(affine="a"), TypeError, "affine is 'a'; expected 3 x 4 or 4 x 4 numbers"),
     (lambda: contour(epsilon="a"), TypeError, "epsilon is 'a'; expected a number"),
+    # Numbers are numbers, truth values truth values: nothing that merely can be made one of these.
+    (lambda: contour(level="0.1"), TypeError, "level is '0.1'; expected a number"),
+    (lambda: contour(level=True), TypeError, "level is True; expected a number"),
+    (lambda: contour(level=np.bool_(True)), TypeError, "level is True; expected a number"),
+    (lambda: contour(level=1j), TypeError, "level is 1j; expected a number"),
+    (lambda: contour(level=np.complex128(1)), TypeError, "level is (1+0j); expected a number"),
+    (lambda: contour(level=np.timedelta64(1, "h")), TypeError, "expected a number"),
+    (lambda: contour(level=[0.1]), TypeError, "level is [0.1]; expected a number"),
+    (lambda: contour(level=np.array([0.1])), TypeError, "level is array([0.1]); expected a number"),
+    (lambda: contour(epsilon="0.1"), TypeError, "epsilon is '0.1'; expected a number"),
+    (lambda: contour(spacing="2"), TypeError, "spacing is '2'; expected a number"),
+    (lambda: contour(spacing=("1", 1, 1)), TypeError, "spacing[0] is '1'; expected a number"),
+    (lambda: contour(origin=b"2"), TypeError, "origin is b'2'; expected a number"),
+    (lambda: contour(coords=[["0", "1", "2", "3", "4", "5", "6"], None, None]), TypeError,
+     "the coordinates of axis 0 are ['0', '1', '2', '3', '4', '5', '6']; expected numbers"),
+    (lambda: contour(coords=[np.arange("2000-01-01", "2000-01-08", dtype="M8[D]"), None, None]), TypeError,
+     "expected numbers, ascending or descending"),
+    (lambda: contour(affine=np.eye(4).astype(str)), TypeError, "expected 3 x 4 or 4 x 4 numbers"),
+    (lambda: contour(mask=np.full(VOLUME.shape, "no")), TypeError, "mask is of type <U2; expected True or False"),
+    (lambda: contour(dtype=None), TypeError, "dtype is None; expected float32 or float64"),
+    (lambda: contour(axis_names=["z", None, "x"]), TypeError, "axis_names[1] is None; expected text"),
+    (lambda: contour(axis_units=[1, 2, 3]), TypeError, "axis_units[0] is 1; expected text"),
+    (lambda: contour(time_axis="0"), TypeError, "time_axis is '0'; expected a whole number"),
+    (lambda: contour(time_axis=False), TypeError, "time_axis is False; expected a whole number"),
+    (lambda: contour(threads=True), TypeError, "threads is True; expected a whole number"),
+    (lambda: contour(close="no"), TypeError, "close is 'no'; expected True or False"),
+    (lambda: contour(close=1), TypeError, "close is 1; expected True or False"),
+    (lambda: contour(close=None), TypeError, "close is None; expected True or False"),
+    (lambda: contour(allow_empty="no"), TypeError, "allow_empty is 'no'; expected True or False"),
+    (lambda: contour(normals="no"), ValueError,
+     "normals is 'no'; expected True, False or one of 'gradient', 'sobel', 'geometric', 'flat'"),
+    (lambda: contour(normals=1), TypeError, "normals is 1; expected True, False or one of 'gradient', "),
+    (lambda: contour(normals=None), TypeError, "normals is None; expected True, False or one of 'gradient', "),
+    (lambda: contour(normals="flat", gradient="sobel"), ValueError, "normals is 'flat' and gradient 'sobel'; expected"),
+    (lambda: INDEX.contour(0.1, normals="yes"), ValueError, "normals is 'yes'; expected True, False or one of"),
+    (lambda: tegl.slice(VOLUME, 0.1, at=2, normals="yes"), ValueError, "normals is 'yes'; expected True, False or one of"),
+    (lambda: tegl.contour(ball(5, 4), 0.0, normals="flat"), ValueError, "5D contour; expected 2 to 4 dimensions, or "),
+    (lambda: CONTOUR.slice(3, allow_empty=1), TypeError, "allow_empty is 1; expected True or False"),
+    (lambda: CONTOUR.slice(True), TypeError, "the coordinate is True; expected a number"),
+    (lambda: CONTOUR.slice(3, axis=True), TypeError, "axis is True; expected a whole number"),
+    (lambda: CONTOUR.slice(normal=(True, 0, 0), offset=3), TypeError, "normal[0] is True; expected a number"),
+    (lambda: CONTOUR.elements(by_cell="no"), TypeError, "by_cell is 'no'; expected True or False"),
+    (lambda: CONTOUR.elements().save("a.dat", header="no"), TypeError, "header is 'no'; expected True or False"),
+    (lambda: CONTOUR.track(handles="no"), TypeError, "handles is 'no'; expected True or False"),
+    (lambda: CONTOUR.track(label_simplices=1), TypeError, "label_simplices is 1; expected True or False"),
+    (lambda: CONTOUR.track(times=True), TypeError, "times is True; expected a whole number"),
+    (lambda: CONTOUR.simplify(0.5, measure="no"), TypeError, "measure is 'no'; expected True or False"),
+    (lambda: CONTOUR.simplify(0.5, allow_nonmanifold="no"), TypeError, "allow_nonmanifold is 'no'; expected True or"),
+    (lambda: CONTOUR.simplify(0.5, return_stats="no"), TypeError, "return_stats is 'no'; expected True or False"),
+    (lambda: CONTOUR.simplify("0.5"), TypeError, "ratio is '0.5'; expected a number"),
+    (lambda: CONTOUR.simplify(100), ValueError, "ratio is 100; expected 0 to 1, the share of the simplices that are left, "
+     "or count= with their number"),
+    (lambda: INDEX.pick((1, 2, 3), 0.1, return_report="no"), TypeError, "return_report is 'no'; expected True or False"),
+    (lambda: tegl.marching_cubes(VOLUME, "0.1"), TypeError, "level is '0.1'; expected a number"),
+    (lambda: tegl.marching_cubes(VOLUME, 0.1, allow_degenerate="no"), TypeError, "allow_degenerate is 'no'; expected True"),
     (lambda: contour(triangulation=3), TypeError, "triangulation is 3; expected text"),
     (lambda: contour(dtype="nonsense"), TypeError, "dtype is 'nonsense'; expected float32 or float64"),
     (lambda: contour(progress=3), TypeError, "progress is 3; expected a function that takes a fraction, or None"),
@@ -165,10 +225,10 @@ def test_what_is_not_false_goes_on(other):
 
 @pytest.mark.parametrize("ndim", [2, 3, 4])
 def test_an_empty_contour_encloses_nothing(ndim):
-    empty = tegl.contour(ball(ndim), 100.0)
+    empty = tegl.contour(ball(ndim), 100.0, allow_empty=True)
     assert empty.check().is_closed and empty.measure().content == 0 and empty.measure().size == 0
     if ndim > 2:
-        assert tegl.measure(tegl.contour(ball(ndim), 0.0), at=-99).content[0] == 0
+        assert tegl.measure(tegl.contour(ball(ndim), 0.0), at=-99, allow_empty=True).content[0] == 0
 
 
 def test_extremes_that_fit_are_taken():
@@ -176,3 +236,133 @@ def test_extremes_that_fit_are_taken():
     assert np.isfinite(far.vertices).all() and np.allclose(far.vertices / 1e300, contour(dtype=np.float64).vertices)
     assert np.isfinite(contour(spacing=1e37).vertices).all()
     assert tegl.contour(VOLUME[:1], 0.1).vertices.shape == (0, 3), "an axis of one sample at 0"
+
+
+# Levels and places outside of the data: an error that names the value, the range and its unit, unless empty results are
+# allowed. What is empty within the data is no error.
+
+HOURLY = noise((6, 7, 8, 9), 3)
+
+
+def hourly():
+    xarray = pytest.importorskip("xarray")
+    times = np.datetime64("2020-01-01", "ns") + np.arange(6) * np.timedelta64(1, "h")
+    return xarray.DataArray(HOURLY, dims=("time", "z", "y", "x"), coords={"time": times}, attrs={"units": "K"})
+
+
+def said(call):
+    with pytest.raises(ValueError) as raised:
+        call()
+    return str(raised.value)
+
+
+def test_a_level_outside_of_the_values_is_an_error_that_names_them():
+    least, most = VOLUME.min(), VOLUME.max()
+    expected = (f"expected one above {least} and up to {most}, the lowest and the highest value of the array, or "
+                "allow_empty=True for an empty contour")
+    above, below = float(most) + 1, float(least)
+    assert said(lambda: contour(level=above)) == f"level is {above}; {expected}"
+    assert said(lambda: contour(level=below)) == f"level is {below}; {expected}", "all samples are at or above it"
+    assert said(lambda: INDEX.contour(above)) == f"level is {above}; {expected}"
+    assert said(lambda: INDEX.pick((1, 2, 3), above)) == f"level is {above}; {expected}"
+    cut = expected.replace("empty contour", "empty cut")
+    assert said(lambda: tegl.slice(VOLUME, above, at=2)) == f"level is {above}; {cut}"
+    assert said(lambda: tegl.slice(VOLUME, above, at=[2, 3])) == f"level is {above}; {cut}"
+    assert said(lambda: tegl.slice(VOLUME, above, normal=(1, 1, 0), offset=5)) == f"level is {above}; {expected}"
+    assert "up to 200, the lowest" in said(lambda: tegl.contour(np.array([[7, 200], [9, 8]], np.uint8), 300))
+    assert len(contour(level=float(most)).simplices) > 0, "the highest sample is at the level"
+    for level in (above, below):
+        assert len(contour(level=level, allow_empty=True).simplices) == 0
+        assert len(INDEX.contour(level, allow_empty=True).simplices) == 0
+        assert len(INDEX.pick((1, 2, 3), level, allow_empty=True).simplices) == 0
+        assert len(tegl.slice(VOLUME, level, at=2, allow_empty=True).simplices) == 0
+        assert INDEX.active_tiles(level).shape == (0, 3)
+    assert len(contour(level=below, close=True).simplices) > 0, "what is high everywhere is closed at the border"
+    assert " K, the lowest and the highest" in said(lambda: tegl.contour(hourly(), 99))
+
+
+def test_a_level_is_outside_of_values_that_are_all_alike_or_missing():
+    flat, none = np.full((3, 4, 5), 7.0), np.full((3, 4, 5), np.nan)
+    assert said(lambda: tegl.contour(flat, 7)) == ("level is 7.0, and all values of the array are 7.0; expected a level between "
+                                                   "two values, or allow_empty=True for an empty contour")
+    missing = ("level is 7.0, and all values of the array are missing (NaN or masked); expected some, or allow_empty=True for an "
+               "empty contour")
+    assert said(lambda: tegl.contour(none, 7)) == missing
+    assert said(lambda: tegl.contour(flat, 7, mask=np.zeros(flat.shape, bool))) == missing
+    assert said(lambda: tegl.contour(np.ma.masked_all((3, 4, 5)), 7)) == missing
+    assert said(lambda: tegl.Index(none).contour(7)) == missing
+    assert len(tegl.contour(none, 7, allow_empty=True).simplices) == 0
+    apart = none.copy()
+    apart[0, 0, 0], apart[2, 3, 4] = 0, 9
+    assert len(tegl.contour(apart, 7).simplices) == 0, "the level lies between values, which no tile has"
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_a_place_outside_of_the_image_is_an_error_with_its_unit(dtype):
+    moving = tegl.contour(hourly(), 0.1, dtype=dtype)
+    most = moving.vertices.dtype.type(5 / 24)
+    text = (f"the place along axis 0 ('time') is 31.25; expected one between 0.0 and {most} days since 2020-01-01T00:00:00, the "
+            "ends of the image, or allow_empty=True for an empty cut")
+    calls = {"slice": lambda **more: moving.slice(31.25, **more), "slices": lambda **more: moving.slice([0.1, 31.25], **more),
+             "name": lambda **more: moving.slice(time=31.25, **more), "measure": lambda **more: moving.measure(at=31.25, **more),
+             "measures": lambda **more: tegl.measure(moving, at=[0.1, 31.25], **more),
+             "track": lambda **more: moving.track(times=[0.1, 31.25], **more),
+             "direct": lambda **more: tegl.slice(hourly(), 0.1, at=31.25, dtype=dtype, **more)}
+    for name, call in calls.items():
+        assert said(call) == text, name
+        call(allow_empty=True)
+    assert "is 366.0 (2021-01-01); expected one between 0.0 and" in said(lambda: moving.slice("2021-01-01"))
+    empty = moving.slice(31.25, allow_empty=True)
+    direct = calls["direct"](allow_empty=True)
+    for cut in (empty, direct):
+        assert len(cut.simplices) == 0 and cut.isovalue == 0.1 and cut.vertices.dtype == dtype
+        assert cut.axis_names == ("z", "y", "x") and cut.direction == "descent"
+    several = tegl.slice(hourly(), 0.1, at=[0.1, 31.25], allow_empty=True)
+    assert [len(cut.simplices) > 0 for cut in several] == [True, False]
+    assert calls["measures"](allow_empty=True).size[1] == 0
+    assert calls["measures"](allow_empty=True).content[1] == 0
+    assert len(moving.slice(5 / 24).simplices) > 0 and len(moving.slice(float(most)).simplices) > 0, "the ends belong to it"
+
+
+def test_oblique_planes_outside_of_the_image_are_an_error():
+    moving = contour()
+    assert said(lambda: moving.slice(normal=(1, 1, 0), offset=99)) == (
+        "offset is 99.0; expected one between 0 and 13, the ends of the image along this normal, or allow_empty=True for an "
+        "empty cut")
+    assert "is -1.0; expected one between -7 and 6" not in said(lambda: moving.slice(normal=(1, -1, 0), offset=[-1, 8]))
+    assert len(moving.slice(normal=(1, 1, 0), offset=99, allow_empty=True).simplices) == 0
+    moving.slice(normal=(1, 1, 0), offset=13.0)
+
+
+def test_places_are_in_the_image_that_a_contour_is_of():
+    """Where no contour is, but the image, a cut is empty without a word: so too for what was made of the contour."""
+    array = ball(4, 9, 0.3)  # from 0 to 8, in the middle
+    whole = tegl.contour(array, 0.0, spacing=(1, 2, 2, 2))
+    assert whole.vertices[:, 0].min() > 2
+    made = {"contour": whole, "pickled": pickle.loads(pickle.dumps(whole)), "copied": copy.deepcopy(whole),
+            "part": whole.components().largest(), "split": whole.components().split()[0],
+            "simplified": whole.simplify(0.5), "index": tegl.Index(array, spacing=(1, 2, 2, 2)).contour(0.0)}
+    for name, one in made.items():
+        assert len(one.slice(1).simplices) == 0, name
+        assert "between 0.0 and 8.0, the ends of the image" in said(lambda: one.slice(8.5)), name
+        assert "axis 2 is 16.5; expected one between 0.0 and 16.0" in said(lambda: one.slice(16.5, axis=2)), name
+    cut = whole.slice(4)
+    assert len(cut.slice(0.5).simplices) == 0 and "between 0.0 and 16.0" in said(lambda: cut.slice(16.5))
+    direct = tegl.slice(array, 0.0, at=4, spacing=(1, 2, 2, 2))
+    assert len(direct.slice(0.5).simplices) == 0 and "between 0.0 and 16.0" in said(lambda: direct.slice(16.5))
+    alone = tegl.Contour(whole.vertices, whole.simplices)
+    low, high = alone.vertices[:, 0].min(), alone.vertices[:, 0].max()
+    assert f"is 1.0; expected one between {low} and {high}, the ends of the contour" in said(lambda: alone.slice(1))
+    assert len(tegl.Contour(np.empty((0, 3)), np.empty((0, 3), int)).slice(1).simplices) == 0
+    falling = tegl.contour(array, 0.0, coords=[np.arange(9.0)[::-1] ** 2, None, None, None])
+    assert "between 0.0 and 64.0" in said(lambda: falling.slice(65))
+    shifted = np.column_stack([np.diag([-1.0, 2, 2, 2]), [5.0, 0, 0, 0]])
+    assert "between -3.0 and 5.0" in said(lambda: tegl.contour(array, 0.0, affine=shifted).slice(5.5))
+
+
+def test_an_axis_without_a_name_is_cut_by_its_number():
+    text = ("no axis is named 'x', as the axes have no names; expected at=2 and axis= with a number from 0 to 2, or names for "
+            "the axes: tegl.contour(array, level, axis_names=...)")
+    assert said(lambda: CONTOUR.slice(x=2)) == text
+    assert said(lambda: tegl.slice(CONTOUR, x=2)) == text
+    assert said(lambda: tegl.slice(VOLUME, 0.1, x=2)) == text

@@ -159,6 +159,79 @@ def test_masked_cubes_are_left_out():
             assert area(*mine[:2]) == pytest.approx(area(*theirs[:2]), rel=1e-3)
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64, np.uint8, np.int16, np.int32])
+@pytest.mark.parametrize("step", [1, 2, 3, 40])
+def test_masked_cubes_are_those_of_the_mask_whatever_the_strides(dtype, step):
+    """Against every cube by itself: triangles lie in the cubes of the mask that the surface passes, and each of these has
+    some. The shape is none that words of 8 cubes divide."""
+    field = (noise((9, 12, 37), 5, np.float64) * 40 + 100).astype(dtype)
+    mask = np.random.default_rng(6).random(field.shape) < 0.3
+    if field.dtype.kind == "f":
+        field[3, 4, 5] = np.nan
+    found = None
+    for volume, chosen in ((field, mask), (np.asfortranarray(field), mask[::-1][::-1]), (field, np.asfortranarray(mask)),
+                           (field, mask.astype(float))):
+        if step == 40:
+            with pytest.raises(RuntimeError):
+                tegl.marching_cubes(volume, 100, mask=chosen, step_size=step)
+            continue
+        result = tegl.marching_cubes(volume, 100, mask=chosen, step_size=step)
+        found = found or result
+        assert all(np.array_equal(one, other) for one, other in zip(found, result))
+    if step == 40:
+        return
+    coarse, cubes = field[::step, ::step, ::step].astype(float), mask[::step, ::step, ::step][1:, 1:, 1:]
+    corners = np.stack([coarse[i:i + cubes.shape[0], j:j + cubes.shape[1], k:k + cubes.shape[2]]
+                        for i, j, k in itertools.product((0, 1), repeat=3)])
+    active = (corners.min(axis=0) <= 100) & (corners.max(axis=0) > 100) & cubes  # NaN is neither
+    middles = found[0][found[1]].mean(axis=1) / step
+    inside = np.zeros_like(active)
+    at = np.floor(middles).astype(int)
+    strictly = (np.abs(middles - np.round(middles)) > 1e-3).all(axis=1)  # others lie in a face of a cube
+    inside[tuple(at[strictly].T)] = True
+    assert not (inside & ~active).any()
+    if field.dtype.kind == "f":
+        assert (inside == active).all()
+
+
+def test_the_values_are_the_largest_ranges_of_the_cubes_around():
+    field = noise((6, 7, 9), 4)
+    field[2, 3, 4] = np.nan
+    verts, _, _, values = tegl.marching_cubes(field, 0.1)
+    ranges = np.stack([field[i:5 + i, j:6 + j, k:8 + k] for i, j, k in itertools.product((0, 1), repeat=3)])
+    ranges = np.fmax.reduce(ranges, axis=0) - np.fmin.reduce(ranges, axis=0)
+    for vert, value in zip(verts, values):
+        low = np.clip(np.ceil(vert) - 1, 0, np.array(ranges.shape) - 1).astype(int)
+        high = np.clip(np.floor(vert), 0, np.array(ranges.shape) - 1).astype(int) + 1
+        assert value == np.nanmax(ranges[tuple(slice(a, b) for a, b in zip(low, high))])
+
+
+def without_degenerate(verts, faces, normals, values):
+    """What allow_degenerate=False leaves, from all: places as a set, and triangles as places of their corners."""
+    places, number = np.unique(verts, axis=0, return_inverse=True)
+    corners = number.reshape(-1)[faces]
+    proper = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
+    return places[np.unique(corners[proper])], places[corners[proper]]
+
+
+@pytest.mark.parametrize("arguments", [{}, dict(spacing=(1, 2, 0.3)), dict(step_size=2), dict(gradient_direction="ascent")])
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_left_without_degenerate_triangles(seed, arguments):
+    field = np.round(noise((11, 12, 13), seed) * 2)
+    mask = np.random.default_rng(seed).random(field.shape) < 0.5
+    for more in ({}, dict(mask=mask)):
+        whole = tegl.marching_cubes(field, 0.0, **arguments, **more)
+        clean = tegl.marching_cubes(field, 0.0, allow_degenerate=False, **arguments, **more)
+        places, triangles = without_degenerate(*whole)
+        assert np.array_equal(np.unique(clean[0], axis=0), places) and len(clean[0]) == len(places) < len(whole[0])
+        assert np.array_equal(clean[0][clean[1]], triangles)
+        first = {tuple(place): i for i, place in reversed(list(enumerate(whole[0].tolist())))}
+        kept = [first[tuple(place)] for place in clean[0].tolist()]
+        assert kept == sorted(kept), "vertices stay in their order"
+        assert np.array_equal(clean[2], whole[2][kept]) and np.array_equal(clean[3], whole[3][kept])
+        assert clean[0].dtype == whole[0].dtype and clean[1].dtype == np.int32
+
+
 def test_degenerate_triangles_can_be_left_out():
     field = np.round(noise((8, 8, 8), 2) * 2)
     verts, faces, _, _ = tegl.marching_cubes(field, 0.0)

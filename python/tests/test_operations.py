@@ -3,6 +3,7 @@
 
 import copy
 import datetime
+import inspect
 import itertools
 import json
 import math
@@ -143,6 +144,9 @@ def test_measures_are_those_of_a_ball(ndim):
 def test_measures_of_cuts_are_those_of_the_cuts_that_slice_makes(balls):
     times = [0.5, 3.3, 5.0]
     measures = tegl.measure(balls, at=times)
+    for name in ("at", "size", "content"):
+        assert np.array_equal(getattr(balls.measure(at=times), name), getattr(measures, name))
+    assert balls.measure(at=3.3).size[0] == measures.size[1]
     for time, size, content in zip(times, measures.size, measures.content):
         cut = balls.slice(time).measure()
         assert size == pytest.approx(cut.size) and content == pytest.approx(cut.content)
@@ -220,7 +224,82 @@ def test_other_fields_are_sampled_at_the_vertices(moving_balls):
         contour.sample(z[0], "other")
 
 
+# Normals, by the name of their kind.
+
+@pytest.mark.parametrize("ndim", [2, 3, 4])
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_normals_are_of_the_kind_that_is_named(ndim, time_axis):
+    array = ball(ndim, {2: 41, 3: 21, 4: 13}[ndim])
+    options = dict(spacing=(1.0, 2.0, 3.0, 1.5)[:ndim], time_axis=time_axis, dtype=np.float64)
+    plain, gradient = tegl.contour(array, 0.0, **options), tegl.contour(array, 0.0, normals=True, **options)
+    assert plain.normals is None and tegl.contour(array, 0.0, normals=False, **options).normals is None
+    assert np.array_equal(tegl.contour(array, 0.0, normals="gradient", **options).normals, gradient.normals)
+    sobel = tegl.contour(array, 0.0, normals=True, gradient="sobel", **options).normals
+    assert not np.array_equal(sobel, gradient.normals)
+    for more in (dict(normals="sobel"), dict(normals="sobel", gradient="sobel"), dict(normals="gradient", gradient="sobel")):
+        assert np.array_equal(tegl.contour(array, 0.0, **more, **options).normals, sobel)
+    index = tegl.Index(array, spacing=options["spacing"], time_axis=time_axis)
+    assert np.array_equal(index.contour(0.0, normals="sobel", dtype=np.float64).normals, sobel)
+
+    # From the contour's own shape: across the simplices, towards what is low.
+    flat = tegl.contour(array, 0.0, normals="flat", **options)
+    assert_same(flat, plain)
+    assert flat.normals is None
+    normal = flat.simplex_attributes["normal"]
+    assert normal.shape == flat.simplices.shape and np.linalg.norm(normal, axis=1) == pytest.approx(1)
+    corners = flat.vertices[flat.simplices]
+    for side in range(1, ndim):
+        assert np.abs(((corners[:, side] - corners[:, 0]) * normal).sum(axis=1)).max() < 1e-9
+    middle = (np.array(array.shape) - 1) / 2 * options["spacing"]
+    assert ((corners.mean(axis=1) - middle) * normal / np.square(options["spacing"])).sum(axis=1).min() > 0
+    geometric = tegl.contour(array, 0.0, normals="geometric", **options)
+    assert_same(geometric, plain)
+    assert not np.array_equal(geometric.normals, gradient.normals)
+    cosines = (geometric.normals * gradient.normals).sum(axis=1)
+    assert np.median(cosines) > 0.98
+    for one in (index.contour(0.0, normals="geometric", dtype=np.float64),
+                index.pick(middle, 0.0, normals="geometric", dtype=np.float64)):
+        assert np.array_equal(one.normals, geometric.normals)
+
+
+def test_normals_of_simplices_have_the_columns_of_vertices_wherever_they_go(tmp_path):
+    flat = tegl.contour(ball(3, 15)[:, :-2], 0.0, normals="flat", spacing=(1, 2, 3), dtype=np.float64)
+    normal = flat.simplex_attributes["normal"]
+    flat.save(tmp_path / "flat.vtkhdf")
+    for other in (pickle.loads(pickle.dumps(flat)), tegl.load(tmp_path / "flat.vtkhdf"), flat.components().split()[0],
+                  tegl.Contour(flat.vertices, flat.simplices, simplex_attributes={"normal": normal})):
+        assert np.array_equal(other.simplex_attributes["normal"], normal)
+    turned = tegl.load(tmp_path / "flat.vtkhdf", time_axis=-1)
+    assert np.array_equal(turned.simplex_attributes["normal"], normal[:, ::-1])
+    assert np.array_equal(flat.elements().attributes["normal"], normal)
+    dsigma = flat.elements()
+    assert np.allclose(dsigma.normals / dsigma.measures[:, None], normal)
+    direct = tegl.slice(ball(3, 15), 0.0, at=7.0, normals="flat", dtype=np.float64)
+    along = direct.vertices[direct.simplices[:, 1]] - direct.vertices[direct.simplices[:, 0]]
+    assert np.abs((along * direct.simplex_attributes["normal"]).sum(axis=1)).max() < 1e-9
+    assert tegl.slice(ball(4, 9), 0.0, at=4.0, normals="geometric").normals.shape[1] == 3
+
+
 # Simplification.
+
+def test_simplification_takes_the_ratio_first():
+    contour = tegl.contour(ball(3, 31), 0.0, dtype=np.float64)
+    for call in (lambda **more: contour.simplify(0.1, **more), lambda **more: tegl.simplify(contour, 0.1, **more)):
+        assert_same(call(), contour.simplify(ratio=0.1))
+        assert call(return_stats=True)[1].simplices_after <= 0.1 * len(contour.simplices)
+    with pytest.raises(TypeError):
+        contour.simplify(0.1, 0.2)
+
+
+@pytest.mark.parametrize("function, method", [(tegl.simplify, tegl.Contour.simplify), (tegl.track, tegl.Contour.track),
+                                              (tegl.measure, tegl.Contour.measure)])
+def test_methods_have_the_options_of_the_functions_by_name(function, method):
+    of_function, of_method = (list(inspect.signature(one).parameters.values())[1:] for one in (function, method))
+    assert of_function == of_method
+    assert not any(one.kind in (one.VAR_KEYWORD, one.VAR_POSITIONAL) for one in of_method)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'ratios'"):
+        method(tegl.contour(ball(3), 0.0), ratios=0.5)
+
 
 def test_simplified_contours_keep_their_topology_and_their_bound():
     contour = tegl.contour(ball(3, 31), 0.0, dtype=np.float64)

@@ -3,13 +3,15 @@
 
 import ast
 import inspect
+import os
 import pathlib
 import re
 import typing
 
+import numpy as np
 import pytest
 import tegl
-from tegl import _tegl
+from tegl import _kinds, _tegl
 
 STUB = ast.parse((pathlib.Path(tegl.__file__).parent / "_tegl.pyi").read_text(encoding="utf-8"))
 
@@ -71,6 +73,39 @@ def test_the_package_has_type_hints(name):
     for function in functions:
         hints = typing.get_type_hints(function, {**vars(tegl), **function.__globals__})
         assert "return" in hints, function
+
+
+def refused(call):
+    with pytest.raises(ValueError) as raised:
+        call()
+    return re.findall(r"'([\w-]+)'", str(raised.value).partition("expected one of ")[2])
+
+
+def test_the_names_of_options_are_the_librarys():
+    volume = np.random.default_rng(1).normal(size=(5, 6, 7))
+    contour = tegl.contour(volume, 0.0)
+    calls = {"Triangulation": lambda: tegl.contour(volume, 0.0, triangulation="?"),
+             "Ambiguity": lambda: tegl.contour(volume, 0.0, ambiguity="?"),
+             "Direction": lambda: tegl.contour(volume, 0.0, direction="?"),
+             "Gradient": lambda: tegl.contour(volume, 0.0, gradient="?"),
+             "SimplifyMethod": lambda: contour.simplify(0.5, method="?"),
+             "SimplifyBorder": lambda: contour.simplify(0.5, border="?"), "IndexMethod": lambda: tegl.Index(volume, "?"),
+             "SeriesOrder": lambda: tegl.read(["a.nrrd", "b.nrrd"], sort="?"),
+             "ElementAxes": lambda: contour.elements().save("a.dat", axes="?"),
+             "ElementComponents": lambda: contour.elements().save("a.dat", components="?")}
+    for name, call in calls.items():
+        assert sorted(refused(call)) == sorted(typing.get_args(getattr(_kinds, name))), name
+    for kind in typing.get_args(_kinds.Normals):
+        tegl.contour(volume, 0.0, normals=kind)
+    headers = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "runtime/include/tegl"
+    for name, header, enumeration in (("EventKind", "track.hpp", "TrackEventKind"), ("SimplifyEnd", "simplify.hpp", "SimplifyEnd"),
+                                      ("AxisDirection", "io.hpp", "AxisDirection")):
+        text = (headers / header).read_text(encoding="utf-8")
+        values = re.search(r"enum class %s[^{]*\{(.*?)\};" % enumeration, text, re.DOTALL).group(1)
+        values = re.sub(r"///.*", "", values)
+        assert sorted(re.findall(r"\w+", values)) == sorted(typing.get_args(getattr(_kinds, name))), name
+    tested = {"Normals", "EventKind", "SimplifyEnd", "AxisDirection", *calls}
+    assert {name for name in vars(_kinds) if name[0].isupper()} == tested
 
 
 def test_the_package_is_marked_as_typed():

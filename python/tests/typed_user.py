@@ -44,6 +44,8 @@ assert_type(contour.measure().content, Optional[float])
 assert_type(tegl.measure(contour), tegl.Measures)
 assert_type(tegl.measure(contour, at=[1, 2]), tegl.CutMeasures)
 assert_type(tegl.measure(contour, at=1.5), tegl.CutMeasures)
+assert_type(contour.measure(at=[1, 2]), tegl.CutMeasures)
+assert_type(contour.measure(at="2020-02-15", allow_empty=True).size.shape, Tuple[int, ...])
 assert_type(contour.components(), tegl.Components)
 assert_type(contour.components()[0], tegl.Component)
 assert_type(contour.components()[:2], List[tegl.Component])
@@ -51,11 +53,15 @@ assert_type([component.size for component in contour.components()], List[float])
 assert_type(contour.components().largest(), tegl.Contour)
 assert_type(contour.components().split(), List[tegl.Contour])
 assert_type(contour.simplify(ratio=0.5), tegl.Contour)
+assert_type(contour.simplify(0.5, method="facets", border="within", scale="auto"), tegl.Contour)
+assert_type(contour.simplify(0.5, scale=(1, 1, 1, 2), return_stats=True), Tuple[tegl.Contour, tegl.SimplifyStats])
 assert_type(contour.simplify(ratio=0.5, return_stats=True), Tuple[tegl.Contour, tegl.SimplifyStats])
 assert_type(tegl.simplify(contour, ratio=0.5), tegl.Contour)
 assert_type(tegl.simplify(contour, ratio=0.5, return_stats=True)[1].rounds, int)
 assert_type(contour.elements(by_cell=True).sum(), tegl.ElementSum)
 assert_type(contour.track(times=5), tegl.TrackGraph)
+assert_type(contour.track(times=[1.0, 2.5], first="2020-01-01", allow_empty=True, handles=False), tegl.TrackGraph)
+assert_type(tegl.contour(volume, 0.5, normals="flat", allow_empty=True), tegl.Contour)
 assert_type(tegl.track(contour).events[0], tegl.TrackEvent)
 assert_type(tegl.track(contour).events[0].time, float)
 
@@ -89,6 +95,13 @@ def either(at: Union[float, List[float]]) -> None:
 tegl.contour(volume)  # type: ignore[call-arg]
 tegl.contour(volume, 0.5, spacings=3)  # type: ignore[call-arg]
 tegl.contour(volume, 0.5, normals="yes")  # type: ignore[arg-type]
+tegl.contour(volume, 0.5, ambiguity="most")  # type: ignore[arg-type]
+tegl.contour(volume, "0.5")  # type: ignore[arg-type]
+contour.simplify(0.5, method="best")  # type: ignore[call-overload]
+contour.simplify(0.5, ratios=2)  # type: ignore[call-overload]
+contour.track(handle=False)  # type: ignore[call-arg]
+contour.slice(1.5, allow_empty="yes")  # type: ignore[call-overload]
+tegl.Index(volume, "tree")  # type: ignore[arg-type]
 contour.vertex  # type: ignore[attr-defined]
 contour.slice([1.5, 2]).vertices  # type: ignore[attr-defined]
 contour.vertices = volume  # type: ignore[misc]

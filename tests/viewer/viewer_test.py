@@ -9,6 +9,7 @@ import base64
 import io
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -17,6 +18,7 @@ import unittest
 
 import numpy as np
 from PIL import Image
+from selenium.webdriver.common.keys import Keys
 
 from browser import SOFTWARE, Browser, write_balls, write_noise, write_nrrd, write_scan
 
@@ -222,6 +224,64 @@ class Viewer(unittest.TestCase):
         browser.element("#before").click()
         self.assertLess(browser.run("return tegl.time"), event["time"])
 
+    def test_events_count_all_parts_and_say_how_many_are_drawn(self):
+        browser = self.view("one", self.folder / "balls.vtkhdf", "--tracks", 1)
+        label = browser.element("#graph .event.merge").get_attribute("aria-label")
+        self.assertRegex(label, r"^t [\d.]+: 2 parts merge \(1 of them drawn\) at \(")
+        self.assertEqual(browser.element("#graph-note").text, "1 of 2 tracks, those that live longest, with 3 of 4 events.")
+        events = browser.run("return tegl.app.timeline.events()")
+        self.assertEqual([(event["parts_in"], event["parts_out"]) for event in events if event["kind"] == "merge"], [(2, 1)])
+        write_balls(self.folder / "apart.nrrd", is_backwards=True)
+        browser = self.view("apart", self.folder / "apart.nrrd", "--iso", 0, "--tracks", 1)
+        label = browser.element("#graph .event.split").get_attribute("aria-label")
+        self.assertRegex(label, r": a part splits into 2 \(1 of them drawn\) at \(")
+        browser = self.open()
+        self.assertEqual(browser.element("#graph-note").text, "", "all are drawn")
+        words = browser.run("""const { timeline } = tegl.app;
+            const event = { kind: 'exchange', time: 1, place: [0.5], in: [0, 1], out: [2], parts_in: 2, parts_out: 3 };
+            return ['merge', 'exchange'].map((kind) => timeline.describe({ ...event, kind })).concat(
+                timeline.describe({ ...event, kind: 'birth', parts_in: 0, in: [] }))""")
+        self.assertEqual(words, ["2 parts merge at (0.5)", "2 parts meet and become 3 at (0.5)", "a part is born at (0.5)"])
+
+    def test_a_crowd_of_events_is_marks_with_numbers_that_do_not_overlap(self):
+        write_noise(self.folder / "crowd.nrrd", (9, 9, 9, 12), seed=3)
+        browser = self.view("crowd", self.folder / "crowd.nrrd", "--iso", 2, "--tracks", 10000)
+        events = browser.run("return tegl.app.timeline.events()")
+        self.assertGreater(len(events), 300)
+        marks = browser.run("""return [...document.querySelectorAll('#graph .event')].map((mark) => {
+            const { left, right, top } = mark.querySelector('.plate, .dot').getBoundingClientRect();
+            return { left, right, lane: mark.transform.baseVal[0].matrix.f, count: Number(mark.dataset.count), first: Number(mark.dataset.event),
+              text: mark.querySelector('.number')?.textContent ?? '1', label: mark.getAttribute('aria-label') };
+        })""")
+        self.assertEqual(sum(mark["count"] for mark in marks), len(events))
+        self.assertEqual([int(mark["text"]) for mark in marks], [mark["count"] for mark in marks])
+        self.assertEqual([mark["first"] for mark in marks], sorted({mark["first"] for mark in marks}))
+        lanes = {}
+        for mark in marks:
+            lanes.setdefault(mark["lane"], []).append((mark["left"], mark["right"]))
+        for lane, places in lanes.items():
+            places.sort()
+            for (_, right), (left, _) in zip(places, places[1:]):
+                self.assertGreater(left, right - 2.5, (lane, right, left))
+        crowd = max(marks, key=lambda mark: mark["count"])
+        self.assertGreater(crowd["count"], 3)
+        self.assertRegex(crowd["label"], rf"^{crowd['count']} events, (axis 3|t) [\d.]+( to (axis 3|t) [\d.]+)?: \d+ ")
+        kinds = re.findall(r"(\d+) (merge|split|exchange|birth|death|start|end|entr|exit)", crowd["label"].split(": ")[1])
+        self.assertEqual(sum(int(count) for count, _ in kinds), crowd["count"])
+        # Each click leads to the next event of the crowd.
+        several = next(mark for mark in marks if mark["count"] > 1 and " to " in mark["label"])
+        selector = f"#graph .event[data-event=\"{several['first']}\"]"
+        times = [browser.run("document.querySelector(arguments[0]).dispatchEvent(new Event('click')); return tegl.time", selector)
+                 for _ in range(2 * several["count"])]
+        self.assertGreater(len(set(times)), 1)
+        self.assertLess(max(times) - min(times), 0.5)
+        self.assertLess(times.index(max(times)), times.index(min(times)) if times.index(min(times)) else len(times))
+        # Those at one time are counted.
+        together = next(event for event in events if sum(other["time"] == event["time"] for other in events) > 2)
+        others = sum(other["time"] == together["time"] for other in events) - 1
+        browser.run("tegl.app.goTo(arguments[0])", together)
+        self.assertIn(f", and {others} other events at this time", browser.element("#now").text)
+
     def test_colors_have_legends(self):
         browser = self.open()
         self.assertEqual(browser.run("return tegl.colorings()"), ["plain", "component", "track", "axis0", "axis1", "axis2", "time"])
@@ -325,6 +385,44 @@ class Viewer(unittest.TestCase):
         self.assertEqual(browser.run("return tegl.app.speed"), 2)
         press("?")
         self.assertTrue(browser.element("#keys").is_displayed())
+
+    def test_keys_work_while_a_slider_or_a_list_has_the_focus(self):
+        browser = self.open()
+        theme, speed = "document.documentElement.dataset.theme", "tegl.app.speed"
+        state = lambda what: browser.run(f"return {what}")
+        for selector in ("#clips input", "#stretch", "#slider"):
+            slider = browser.element(selector)
+            browser.run("tegl.time = 2; arguments[0].focus()", slider)
+            for key, what in (("d", theme), ("]", speed), ("[", speed), ("l", "tegl.app.loops"), ("c", "tegl.app.current.source.id")):
+                before = state(what)
+                slider.send_keys(key)
+                self.assertNotEqual(state(what), before, (selector, key))
+            before = state("tegl.time")
+            slider.send_keys(" ")
+            browser.until(f"tegl.time !== {before}")  # it plays
+            slider.send_keys(" ")
+            # What moves the knob is the slider's.
+            time, value = state("tegl.time"), float(slider.get_property("value"))
+            slider.send_keys(Keys.ARROW_RIGHT)
+            self.assertGreater(float(slider.get_property("value")), value, selector)
+            (self.assertGreater if selector == "#slider" else self.assertEqual)(state("tegl.time"), time, selector)
+            slider.send_keys("?")
+            self.assertTrue(browser.element("#keys").is_displayed())
+            browser.run("document.getElementById('keys').close(); tegl.theme('light')")
+        # A list takes letters, for its choices, and leaves the rest to the page.
+        choice = browser.element("#color")
+        before = state(theme), state(speed)
+        choice.send_keys("d")
+        self.assertEqual(state(theme), before[0])
+        choice.send_keys("]")
+        self.assertNotEqual(state(speed), before[1])
+        # Of a box only the space is its own.
+        box = browser.element("#smooth")
+        checked = box.is_selected()
+        box.send_keys(" ")
+        self.assertNotEqual(box.is_selected(), checked)
+        box.send_keys("d")
+        self.assertEqual(state(theme), "dark")
 
     def test_the_keyboard_turns_moves_and_zooms(self):
         browser = self.open()

@@ -9,7 +9,7 @@ import { interfaceOf } from './interface.js';
 import { Panel } from './panel.js';
 import { savePicture } from './picture.js';
 import { Stage } from './stage.js';
-import { grouped, TimeFormat } from './time.js';
+import { counted, grouped, TimeFormat } from './time.js';
 import { Timeline } from './timeline.js';
 
 const $ = (id) => document.getElementById(id);
@@ -26,6 +26,18 @@ const KEYS = [['space', 'play, pause'], ['← →', 'a little earlier, later (wi
 const SMALL = matchMedia('(max-width: 720px), (max-height: 440px)');
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** Keys that move the knob of a slider, or the choice in a list. */
+const MOVES = ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Home', 'End', 'PageUp', 'PageDown'];
+
+/** Whether what has the focus takes a key itself: a button and a box the space, a slider the keys that move its knob, a list
+ *  these and letters. The keys of the slider of the time are those of the page. */
+function isOwnKey(target, key) {
+  if (target.id === 'slider') return false;
+  if (target.closest('select')) return MOVES.includes(key) || /^[\p{L}\p{N} ]$/u.test(key);
+  if (target.closest('input[type="range"]')) return MOVES.includes(key);
+  return key === ' ' && target.closest('button, input') !== null;
+}
 
 /** "temperature = 15, 20 degC": each variable once, with what of it is shown. */
 function isovaluesOf(layers) {
@@ -70,7 +82,7 @@ class App {
     const { title, layers, program } = this.description;
     document.title = $('title').textContent = title;
     const parts = layers.reduce((sum, layer) => sum + layer.components, 0);
-    $('subtitle').textContent = [isovaluesOf(layers), `${grouped(parts)} component${parts === 1 ? '' : 's'}`,
+    $('subtitle').textContent = [isovaluesOf(layers), counted(parts, 'component'),
       program].filter(Boolean).join(' · ');
     const left = layers.filter((layer) => layer.components < layer.of_components).map((layer) =>
       `${layer.file.replace(/^.*\//, '')}: too large to show all. Shown ` +
@@ -111,8 +123,9 @@ class App {
     if (!this.timeline) return;
     this.timeline.show(layer);
     const { graph, tracks_found: found } = layer.description;
-    $('graph-note').textContent = !graph ? '' : graph.tracks.length < found
-      ? `${grouped(graph.tracks.length)} of ${grouped(found)} tracks: those that live longest.` : '';
+    $('graph-note').textContent = !graph || graph.tracks.length === found ? ''
+      : `${grouped(graph.tracks.length)} of ${counted(found, 'track')}, those that live longest, with ` +
+        `${grouped(graph.events.length)} of ${counted(layer.description.events_found, 'event')}.`;
     $('before').hidden = $('after').hidden = this.timeline.events().length === 0;
   }
 
@@ -140,7 +153,7 @@ class App {
     this.timeline.setTime(this.t);
     this.panel.setTime(this.t);
     if (this.event && this.event.time !== this.t) this.setEvent(null);
-    const meaning = this.event ? this.timeline.describe(this.event) : this.format.meaning(this.t);
+    const meaning = this.event ? this.describeEvent() : this.format.meaning(this.t);
     $('now').textContent = this.format.text(this.t);
     if (meaning) $('now').append(' ', Object.assign(document.createElement('small'), { textContent: meaning }));
     this.panel.showCount(this.visible().reduce((sum, layer) => sum + layer.quickCount(), 0),
@@ -161,6 +174,12 @@ class App {
     this.panel.showCount(count, true);
     this.stage.redraw();
     return count;
+  }
+
+  /** The event that is shown, and how many others there are at its time. */
+  describeEvent() {
+    const others = this.timeline.events().filter(({ time }) => time === this.event.time).length - 1;
+    return this.timeline.describe(this.event) + (others > 0 ? `, and ${counted(others, 'other event')} at this time` : '');
   }
 
   setEvent(event) {
@@ -275,7 +294,6 @@ class App {
   key(event) {
     const { target, key, shiftKey } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
-    const isOther = target.closest('select, #panel input');
     const step = ((this.last - this.first) / 400) * (shiftKey ? 10 : 1);
     const ofTime = { ' ': () => this.play(!this.isPlaying), ArrowLeft: () => this.setTime(this.t - step),
       ArrowRight: () => this.setTime(this.t + step), Home: () => this.setTime(this.first),
@@ -288,8 +306,7 @@ class App {
     const inPicture = target.id === 'canvas' && ARROWS[key];
     const action = inPicture ? () => this.stage.turn(...ARROWS[key], shiftKey)
       : always[key] ?? (this.timeline ? ofTime[key] : undefined);
-    const isOwn = key === ' ' && target.closest('button, input');
-    if (!action || isOther || (isOwn && target.id !== 'slider')) return;
+    if (!action || isOwnKey(target, key)) return;
     event.preventDefault();
     action();
   }

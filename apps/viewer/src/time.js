@@ -26,6 +26,9 @@ export function ends(lowest, highest, span = highest - lowest) {
   return (value) => number(value, span || 1, most);
 }
 
+/** "1 part", "12 parts". */
+export const counted = (count, one, several = `${one}s`) => `${grouped(count)} ${count === 1 ? one : several}`;
+
 export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');
 
 const SINCE = new RegExp(String.raw`^\s*([a-z]+)\s+since\s+(\d{1,4})-(\d{1,2})-(\d{1,2})` +

@@ -2,7 +2,8 @@
 //
 // What is below the picture: the slider, and the graph of the parts with its events.
 import { css, ofPart } from './colors.js';
-import { ends, number, ticks } from './time.js';
+import { crowdsOf, widthOf } from './crowds.js';
+import { counted, ends, grouped, number, ticks } from './time.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const INSET = 9; // half of the slider's thumb
@@ -10,8 +11,13 @@ const LANE = 9;
 const STEPS = { ArrowLeft: -1, ArrowRight: 1 };
 const AXIS = 20;
 
+/** What happens to a part at an event of one part. */
 const WHAT = { begin: 'is there from the start', birth: 'is born', enter: 'comes in at the border', end: 'is there at the end',
-  death: 'dies', leave: 'leaves at the border', merge: 'merge', split: 'splits', exchange: 'exchange' };
+  death: 'dies', leave: 'leaves at the border' };
+/** Kinds of events, one and several, the most important first. */
+const KINDS = { merge: ['merge', 'merges'], split: ['split', 'splits'], exchange: ['exchange', 'exchanges'],
+  birth: ['birth', 'births'], death: ['death', 'deaths'], enter: ['entry', 'entries'], leave: ['exit', 'exits'],
+  begin: ['start', 'starts'], end: ['end', 'ends'] };
 
 function make(name, attributes, parent) {
   const element = document.createElementNS(SVG, name);
@@ -112,34 +118,76 @@ export class Timeline {
     for (const track of graph.tracks)
       make('line', { class: 'track', x1: this.x(track.start), x2: Math.max(this.x(track.end), this.x(track.start) + 1),
         y1: y(track.track), y2: y(track.track), stroke: css(ofPart(rank.get(track.track))) }, svg);
+    const places = [];
+    const linked = new Map(); // column of pixels -> [top, bottom] of what is drawn there
     graph.events.forEach((event, i) => {
-      const places = [...event.in, ...event.out].map((s) => graph.segments[s]).filter(Boolean).map((s) => y(s.track));
-      if (places.length === 0) return;
+      const lanesOf = [...event.in, ...event.out].map((s) => graph.segments[s]).filter(Boolean).map((s) => y(s.track));
+      if (lanesOf.length === 0) return;
       const x = this.x(event.time);
-      const [top, bottom] = [Math.min(...places), Math.max(...places)];
-      if (bottom > top) make('line', { x1: x, x2: x, y1: top, y2: bottom }, links);
-      this.drawEvent(svg, event, i, x, event.in.length === 1 && event.out.length > 1 ? places[0] : places.at(-1));
+      const [top, bottom] = [Math.min(...lanesOf), Math.max(...lanesOf)];
+      if (bottom > top) {
+        const [from, to] = linked.get(Math.round(x)) ?? [top, bottom];
+        linked.set(Math.round(x), [Math.min(from, top), Math.max(to, bottom)]);
+      }
+      places.push({ i, event, x, y: event.in.length === 1 && event.out.length > 1 ? lanesOf[0] : lanesOf.at(-1) });
     });
+    for (const [x, [y1, y2]] of linked) make('line', { x1: x, x2: x, y1, y2 }, links);
+    const marks = crowdsOf(places);
+    const stop = Math.max(0, marks.findIndex(({ members }) => members.some(({ i }) => i === this.focused)));
+    marks.forEach((mark, m) => this.drawMark(svg, mark, m === stop));
   }
 
-  drawEvent(svg, event, i, x, y) {
-    const text = `${event.kind} at ${this.format.text(event.time)}`;
-    // One stop for the tab key: from event to event it goes by arrows.
-    const mark = make('g', { class: `event ${event.kind}`, tabindex: i === (this.focused ?? 0) ? 0 : -1, role: 'button',
-      'aria-label': `${this.format.text(event.time)}: ${this.describe(event)}`,
-      'data-event': i, transform: `translate(${x} ${y})` }, svg);
-    make('circle', { class: 'reach', r: 9 }, mark);
-    make('circle', { class: 'dot', r: 3.6 }, mark);
-    make('title', {}, mark).textContent = text;
-    mark.addEventListener('click', () => this.onEvent(event));
+  /** A dot for one event, or, for a crowd of events, a plate with their number. `isStop`: whether the tab key stops there:
+   *  it does once, and arrows go on from mark to mark. */
+  drawMark(svg, { x, y, members }, isStop) {
+    const [{ event, i }] = members;
+    const isCrowd = members.length > 1;
+    const kind = isCrowd ? this.mostImportant(members) : event.kind;
+    const label = isCrowd ? this.describeCrowd(members) : `${this.format.text(event.time)}: ${this.describe(event)}`;
+    const mark = make('g', { class: `event ${kind}${isCrowd ? ' crowd' : ''}`, tabindex: isStop ? 0 : -1, role: 'button',
+      'aria-label': label, 'data-event': i, 'data-count': members.length, transform: `translate(${x} ${y})` }, svg);
+    if (isCrowd) this.drawPlate(mark, members.length);
+    else {
+      make('circle', { class: 'reach', r: 9 }, mark);
+      make('circle', { class: 'dot', r: 3.6 }, mark);
+    }
+    make('title', {}, mark).textContent = isCrowd ? label : `${event.kind} at ${this.format.text(event.time)}`;
+    mark.addEventListener('click', () => this.choose(members));
     mark.addEventListener('keydown', (key) => {
       if (key.key !== 'Enter' && !(key.key in STEPS)) return;
       key.stopPropagation();
       key.preventDefault();
-      if (key.key === 'Enter') this.onEvent(event);
+      if (key.key === 'Enter') this.choose(members);
       else this.focus(svg, mark, STEPS[key.key]);
     });
     mark.addEventListener('focus', () => (this.focused = i));
+  }
+
+  drawPlate(mark, count) {
+    const width = widthOf(count);
+    make('rect', { class: 'reach', x: -width / 2 - 2, y: -9, width: width + 4, height: 18, rx: 9 }, mark);
+    make('rect', { class: 'plate', x: -width / 2, y: -5, width, height: 10, rx: 5 }, mark);
+    make('text', { class: 'number', y: 2.9, 'text-anchor': 'middle' }, mark).textContent = count;
+  }
+
+  /** Goes to the event of a mark; of a crowd to the next one after the time that is shown, and after the last to the first. */
+  choose(members) {
+    this.onEvent((members.find(({ event }) => event.time > this.now) ?? members[0]).event);
+  }
+
+  mostImportant(members) {
+    const order = Object.keys(KINDS);
+    return order[Math.min(...members.map(({ event }) => order.indexOf(event.kind)))];
+  }
+
+  /** "41 events, t 3.1 to t 3.4: 30 merges, 11 births". */
+  describeCrowd(members) {
+    const times = [members[0], members.at(-1)].map(({ event }) => this.format.text(event.time));
+    const kinds = Object.entries(KINDS).map(([kind, [one, several]]) => {
+      const count = members.filter(({ event }) => event.kind === kind).length;
+      return count > 0 ? counted(count, one, several) : '';
+    }).filter(Boolean);
+    return `${grouped(members.length)} events, ${times[0] === times[1] ? times[0] : times.join(' to ')}: ${kinds.join(', ')}`;
   }
 
   /** Goes to another mark, so many on by time. */
@@ -152,12 +200,14 @@ export class Timeline {
     next.focus();
   }
 
-  /** What happened, in words. */
+  /** What happened, in words, with the numbers of all parts: of how many the tracks are drawn is said where it differs. */
   describe(event) {
+    const { kind, parts_in: before, parts_out: after } = event;
     const where = event.place.map((value) => number(value)).join(', ');
-    const parts = event.kind === 'merge' ? `${event.in.length} parts merge` : event.kind === 'split'
-      ? `a part splits in ${event.out.length}` : event.kind === 'exchange' ? 'parts meet and part'
-      : `a part ${WHAT[event.kind]}`;
-    return `${parts} at (${where})`;
+    const parts = kind === 'merge' ? `${counted(before, 'part')} merge` : kind === 'split' ? `a part splits into ${after}`
+      : kind === 'exchange' ? `${counted(before, 'part')} meet and become ${after}` : `a part ${WHAT[kind]}`;
+    const drawn = kind === 'split' ? event.out.length : event.in.length;
+    const all = kind === 'split' ? after : before;
+    return `${parts}${drawn < all ? ` (${drawn === 0 ? 'none' : drawn} of them drawn)` : ''} at (${where})`;
   }
 }

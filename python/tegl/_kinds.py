@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The names that options take, for type checkers. The library has the lists that count; the tests compare both."""
+
+import typing
+
+Triangulation = typing.Literal["compact", "barycentric"]
+Ambiguity = typing.Literal["low", "high", "mean", "saddle"]
+Direction = typing.Literal["descent", "ascent"]
+#: Of vertices along the array's gradient, by differences or by the Sobel kernel, or from the simplices around them; or of
+#: simplices.
+Normals = typing.Literal["gradient", "sobel", "geometric", "flat"]
+Gradient = typing.Literal["differences", "sobel"]
+SimplifyMethod = typing.Literal["quadric", "facets", "vertices", "fast"]
+SimplifyBorder = typing.Literal["fixed", "within"]
+SimplifyEnd = typing.Literal["count", "error", "shape", "rounds"]
+IndexMethod = typing.Literal["full-scan", "interval-tree", "span-space", "min-max-tree", "seed-set"]
+SeriesOrder = typing.Literal["name", "time", "given"]
+ElementAxes = typing.Literal["time_first", "as_is"]
+ElementComponents = typing.Literal["covariant", "contravariant"]
+EventKind = typing.Literal["begin", "birth", "enter", "end", "death", "leave", "merge", "split", "exchange"]
+AxisDirection = typing.Literal["up", "down", "unknown"]

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Levels that no sample is above or below, and places of cuts beyond the data: errors that name the range, unless the
+caller allows empty results. A cut within the data that meets no contour is an empty result, and no error.
+
+The extent of an image, or of a contour without one, is an array of 2 x N: the lowest and the highest world coordinate
+along each of the array's axes.
+"""
+
+from __future__ import annotations
+
+import typing
+from collections.abc import Sequence
+
+import numpy as np
+
+if typing.TYPE_CHECKING:
+    from ._arguments import Prepared
+    from ._contour import Contour
+
+ALLOWED = "or allow_empty=True for an empty {}"
+
+
+def _in_blocks(array: np.ndarray) -> typing.Iterator[np.ndarray]:
+    """Parts of an array, a few megabytes each, in the order of memory."""
+    if array.size == 0:
+        return
+    turned = np.moveaxis(array, int(np.argmax(np.abs(array.strides))), 0)
+    rows = max(1, (1 << 20) * len(turned) // array.size)
+    for first in range(0, len(turned), rows):
+        yield turned[first:first + rows]
+
+
+def _range_not_around(array: np.ndarray, level: float) -> tuple[typing.Any, typing.Any] | None:
+    """The lowest and the highest value, NaN if all are missing; None once there are samples below the level and not below
+    it."""
+    least: typing.Any = np.nan
+    most: typing.Any = np.nan
+    for block in _in_blocks(array):
+        least, most = np.fmin(least, np.fmin.reduce(block, axis=None)), np.fmax(most, np.fmax.reduce(block, axis=None))
+        if least < level <= most:
+            return None
+    return array.dtype.type(least) if least == least else least, array.dtype.type(most) if most == most else most
+
+
+def require_level(prepared: Prepared, level: float, what: str = "contour") -> None:
+    """Raises a ValueError unless the level lies between the values of an array. For results that are empty: then one pass
+    over the values says whether they had to be."""
+    found = _range_not_around(prepared.image.array, level)
+    if found is None:
+        return
+    least, most = found
+    unit = f" {prepared.value_unit}" if prepared.value_unit else ""
+    allowed = ALLOWED.format(what)
+    if least != least:
+        raise ValueError(f"level is {level}, and all values of the array are missing (NaN or masked); expected some, {allowed}")
+    if least == most:
+        raise ValueError(f"level is {level}, and all values of the array are {least}{unit}; expected a level between two values, "
+                         f"{allowed}")
+    raise ValueError(f"level is {level}; expected one above {least} and up to {most}{unit}, the lowest and the highest value "
+                     f"of the array, {allowed}")
+
+
+def without_axis(extent: np.ndarray | None, axis: int) -> np.ndarray | None:
+    return None if extent is None else np.delete(extent, axis, axis=1)
+
+
+def is_outside(extent: np.ndarray | None, axis: int, place: float, dtype) -> bool:
+    """Whether a place along an axis lies outside of an extent, when both are rounded as coordinates are. A place that is
+    not finite is left to the library."""
+    if extent is None or not np.isfinite(place):
+        return False
+    with np.errstate(over="ignore"):
+        low, at, high = np.array([extent[0, axis], place, extent[1, axis]]).astype(dtype)
+    return not low <= at <= high
+
+
+def require_places_of(extent: np.ndarray | None, axis: int, places: Sequence[float], given: Sequence, dtype, name: str,
+                      unit: str, of: str) -> None:
+    """Raises a ValueError unless all places along an axis lie in the extent. `given`: the places as the caller has them."""
+    for place, said in zip(places, given):
+        if extent is None or not is_outside(extent, axis, place, dtype):
+            continue
+        low, high = extent[:, axis].astype(dtype)
+        called = f"axis {axis}" + (f" ('{name}')" if name else "")
+        said_as = "" if isinstance(said, (int, float, np.number)) else f" ({said})"
+        raise ValueError(f"the place along {called} is {place}{said_as}; expected one between {low} and {high}"
+                         f"{' ' + unit if unit else ''}, the ends of the {of}, {ALLOWED.format('cut')}")
+
+
+def _extent_around(contour: Contour) -> tuple[np.ndarray | None, str]:
+    """The extent that cuts of a contour have to meet, and what has it. An empty contour without an image has none."""
+    if contour._extent is not None:
+        return contour._extent, "image"
+    if not len(contour.vertices):
+        return None, "contour"
+    ends = np.stack([contour.vertices.min(axis=0), contour.vertices.max(axis=0)]).astype(np.float64)
+    return (ends if np.isfinite(ends).all() else None), "contour"
+
+
+def require_places(contour: Contour, axis: int, places: Sequence[float], given: Sequence) -> None:
+    """The same for a contour: in the image that it is of, or, if that is not known, in the contour itself."""
+    extent, of = _extent_around(contour)
+    require_places_of(extent, axis, places, given, contour.vertices.dtype, contour.axis_names[axis],
+                      contour.axis_units[axis], of)
+
+
+def require_offsets(contour: Contour, normal: Sequence[float], offsets: Sequence[float]) -> None:
+    """The same for hyperplanes <normal, x> = offset. Which of them meet a box is known up to rounding."""
+    extent, of = _extent_around(contour)
+    if extent is None or len(normal) != contour.ndim or not np.isfinite(normal).all():
+        return
+    ends = extent * np.asarray(normal, dtype=np.float64)
+    low, high = np.min(ends, axis=0).sum(), np.max(ends, axis=0).sum()
+    slack = 4 * np.finfo(contour.vertices.dtype).eps * np.abs(ends).max(axis=0).sum()
+    for offset in offsets:
+        if np.isfinite(offset) and not low - slack <= offset <= high + slack:
+            raise ValueError(f"offset is {offset}; expected one between {low:g} and {high:g}, the ends of the {of} along this "
+                             f"normal, {ALLOWED.format('cut')}")
