@@ -86,7 +86,8 @@ template <class Work>
 
 }  // namespace limited_child_detail
 
-/// Runs `work` in a child process with at most `address_space` bytes (not under sanitizers) for at most `seconds`.
+/// Runs `work` in a child process with at most `address_space` bytes (not under sanitizers), for at most `seconds` of
+/// the clock.
 template <class Work>
 ChildResult in_limited_child(Work&& work, std::uint64_t address_space = std::uint64_t{4} << 30, unsigned seconds = 10) {
   namespace detail = limited_child_detail;
@@ -105,10 +106,10 @@ ChildResult in_limited_child(Work&& work, std::uint64_t address_space = std::uin
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);
-  const auto seconds = [](const timeval& time) {
+  const auto in_seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
-  result.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  result.seconds = in_seconds(usage.ru_utime) + in_seconds(usage.ru_stime);
   if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
   if (bytes.size() < sizeof(detail::Report)) return result;
   detail::Report report;

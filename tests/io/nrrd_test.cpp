@@ -206,7 +206,7 @@ TEST(Nrrd, BrokenHeadersAreNamed) {
     expect(ErrorCode::MalformedFile, lines, part);
   };
   bad("type: uint8\ndimension: 3\nencoding: raw\n", "without the field 'sizes'");
-  bad("type: uint8\ndimension: 2\nsizes: 2 3 4\nencoding: raw\n", "3 sizes (2 3 4); expected 2");
+  bad("type: uint8\ndimension: 2\nsizes: 2 3 4\nencoding: raw\n", "3 sizes ('2 3 4'); expected 2");
   bad("type: uint8\ndimension: 3\nsizes: 2 0 4\nencoding: raw\n", "size '0'");
   bad("type: uint8\ndimension: x\nsizes: 2 3 4\nencoding: raw\n", "dimension 'x'");
   bad("type: uint7\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n", "type 'uint7'");
@@ -219,7 +219,7 @@ TEST(Nrrd, BrokenHeadersAreNamed) {
   bad(kSmall + "space: LPS\nencoding: raw\n", "without the field 'spacedirections'");
   bad(kSmall + "space: LPS\nspace directions: (1,0,0) (0,1,0)\nencoding: raw\n",
       "2 space directions; expected one for each");
-  bad(kSmall + "space: LPS\nspace directions: (1,0) (0,1) (1,1)\nencoding: raw\n", "expected 3 numbers");
+  bad(kSmall + "space: LPS\nspace directions: (1,0) (0,1) (1,1)\nencoding: raw\n", "of 2 numbers; expected 3");
   bad(kSmall + "space: LPS\nspace directions: (1,0,0) (1,0,0) (0,0,1)\nencoding: raw\n", "independent directions");
   bad("type: double\ndimension: 3\nsizes: 100000 100000 100000\nencoding: raw\nendian: little\n",
       "expected 8000000000000000");
