@@ -43,7 +43,9 @@ H5Handle open_file(const fs::path& path, std::span<const unsigned char> content,
     H5Pset_file_image_callbacks(access.id(), &callbacks);
     H5Pset_file_image(access.id(), image.bytes, content.size());
   }
-  return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose};
+  // The driver of bytes in memory refuses the name of a file that exists.
+  const std::string name = content.empty() ? path.string() : path.string() + ".in-memory";
+  return {H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose};
 }
 
 /// The links of one group.
@@ -81,6 +83,7 @@ class LinkChecker {
 
   std::uint64_t run(std::span<const unsigned char> content) {
     bytes_ = content.empty() ? size_of_file(path_) : content.size();
+    in_memory_ = !content.empty();
     walk(path_, content);
     while (!files_.empty()) {
       const fs::path next = files_.back();
@@ -175,7 +178,9 @@ class LinkChecker {
 
   /// A file whose datasets or groups HDF5 opens.
   void check_name(const fs::path& file, const std::string& name, const char* what) {
-    const fs::path target = named_path(path_, (fs::absolute(file).parent_path() / name).string(), allow_outside_);
+    // A file in memory is opened without its folder.
+    const fs::path folder = in_memory_ && file == path_ ? fs::current_path() : fs::absolute(file).parent_path();
+    const fs::path target = named_path(path_, (folder / name).string(), allow_outside_);
     std::error_code error;
     if (!fs::is_regular_file(target, error)) {
       if (allow_outside_) return;
@@ -190,6 +195,7 @@ class LinkChecker {
   const fs::path& path_;
   ExternalStorage storage_;
   bool allow_outside_;
+  bool in_memory_ = false;
   std::uint64_t bytes_ = 0;
   std::set<fs::path> named_;     ///< files that were met, to be counted once
   std::vector<fs::path> files_;  ///< HDF5 files to be checked

@@ -21,9 +21,22 @@ void as_mesh(const fs::path& path) { read_mesh(path); }
 void as_image(const fs::path& path) { read_image(path); }
 void as_layers(const fs::path& path) { open_layers(path); }
 
+/// Seconds of processors that children of this process have taken: a busy machine makes none of them longer.
+double seconds_of_children() {
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+constexpr double kMostSeconds = kHasSanitizer ? 10.0 : 1.0;
+
 /// Reads a file in a child process, which must end with this error, soon and in little memory.
 void expect_refused(const fs::path& path, ErrorCode code, const std::vector<std::string>& parts, const Read& read) {
   SCOPED_TRACE(path.string());
+  const double before = seconds_of_children();
   const ChildResult result = in_limited_child([&] { read(path); });
   EXPECT_EQ(result.signal, 0);
   ASSERT_TRUE(result.code) << "no tegl::Error: '" << result.message << "'";
@@ -31,7 +44,7 @@ void expect_refused(const fs::path& path, ErrorCode code, const std::vector<std:
   for (const std::string& part : parts) EXPECT_THAT(result.message, testing::HasSubstr(part));
   EXPECT_THAT(result.message, testing::HasSubstr(path.filename().string()));
   EXPECT_LT(result.message.size(), 2000U);
-  EXPECT_LT(result.seconds, kHasSanitizer ? 10.0 : 1.0);
+  EXPECT_LT(seconds_of_children() - before, kMostSeconds);
   if (!kHasSanitizer) {
     EXPECT_LT(result.peak_bytes, 2 * fs::file_size(path) + (std::uint64_t{64} << 20));
   }
@@ -143,6 +156,7 @@ TEST(HostileMeshes, AttributesWithManyNamesTakeLinearTime) {
                      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
                      R"({"bufferView":0,"componentType":5126,"count":3,"type":"SCALAR"}])",
                  std::string(36, '\0')));
+  const double before = seconds_of_children();
   const ChildResult result = in_limited_child([&] {
     const Mesh mesh = read_mesh(dir / "names.glb");
     throw Error(ErrorCode::Cancelled,
@@ -150,7 +164,7 @@ TEST(HostileMeshes, AttributesWithManyNamesTakeLinearTime) {
   });
   EXPECT_EQ(result.signal, 0);
   EXPECT_EQ(result.message, "30000 same_30000");
-  EXPECT_LT(result.seconds, kHasSanitizer ? 10.0 : 1.0);
+  EXPECT_LT(seconds_of_children() - before, kMostSeconds);
 }
 
 TEST(HostileMeshes, UrisAreDecodedAndKeptInTheFolder) {
@@ -215,10 +229,11 @@ TEST(HostileMeshes, EqualNamesOfAttributesAreNumberedInLinearTime) {
   }
   write_file(dir / "same.ply",
              header + "element vertex 0\n" + kXyz + properties + "element face 0\n" + kFaces + "end_header\n");
+  const double before = seconds_of_children();
   const ChildResult result = in_limited_child(
       [&] { throw Error(ErrorCode::Cancelled, read_mesh(dir / "same.ply").vertex_attributes.back().name); });
   EXPECT_EQ(result.message, "same_30000");
-  EXPECT_LT(result.seconds, kHasSanitizer ? 10.0 : 1.0);
+  EXPECT_LT(seconds_of_children() - before, kMostSeconds);
 }
 
 TEST(HostileMeshes, AttributesOfPolygonsAreNotCopiedWithoutLimit) {
@@ -439,6 +454,19 @@ void store_points(const fs::path& path, const std::string& other) {
   file.add("VTKHDF/Points", {3, 3}, properties, nullptr);
 }
 
+/// Each row from a file of its own, with its number in the name.
+void view_blocks(const fs::path& path, const std::string& other) {
+  const TriangleFile file(path, false);
+  const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const std::array<hsize_t, 2> size{3, 3}, most{H5S_UNLIMITED, 3}, row{1, 3}, start{0, 0}, rows{H5S_UNLIMITED, 1};
+  const Id space(H5Screate_simple(2, size.data(), most.data()), H5Sclose);
+  const Id source(H5Screate_simple(2, row.data(), nullptr), H5Sclose);
+  EXPECT_GE(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), row.data(), rows.data(), row.data()), 0);
+  EXPECT_GE(H5Pset_virtual(properties, space, other.c_str(), "/p", source), 0);
+  const Id dataset(H5Dcreate2(file.id(), "VTKHDF/Points", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                   H5Dclose);
+}
+
 TEST(HostileMeshes, Hdf5LeadsToFilesInItsFolderOnly) {
   TempDir dir;
   fs::create_directories(dir / "meshes/sub");
@@ -469,7 +497,7 @@ TEST(HostileMeshes, Hdf5LeadsToFilesInItsFolderOnly) {
   link_points(path, "nowhere.h5");  // HDF5 looks for it in the current folder as well
   expect_error(ErrorCode::UnsupportedData, {path.string(), "'nowhere.h5', which does not exist"},
                [&] { read_mesh(path); });
-  view_points(path, "points%b.h5");
+  view_blocks(path, "points%b.h5");
   expect_error(ErrorCode::UnsupportedData, {path.string(), "points%b.h5"}, [&] { read_mesh(path); });
 }
 
@@ -507,6 +535,7 @@ TEST(HostileMeshes, NetcdfLeadsToFilesInItsFolderOnly) {
   for (const Read& read : {Read(as_image), Read(as_layers)})
     expect_error(ErrorCode::UnsupportedData, {path.string(), fs::canonical(dir / "points.h5").string()},
                  [&] { read(path); });
+  write(path, fs::canonical(dir / "points.h5").string());
   write_file(dir / "images/a.nc.gz", compressed(read_file(path)));
   expect_error(ErrorCode::UnsupportedData, {"a.nc.gz", fs::canonical(dir / "points.h5").string()},
                [&] { read_image(dir / "images/a.nc.gz"); });
@@ -616,8 +645,8 @@ TEST(HostileMeshes, FoundFilesAreRefused) {
   const fs::path folder = fs::path(TEGL_SHARED_DATA_DIR) / "hostile";
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
   expect_refused(folder / "attrs.vtkhdf", ErrorCode::MalformedFile, {"expected"}, as_mesh);
-  expect_refused(folder / "vtkhdf_sig14_rss_1_899.vtkhdf", ErrorCode::MalformedFile, {"chunks of", "expected at most"},
-                 as_mesh);
+  expect_refused(folder / "vtkhdf_sig14_rss_1_899.vtkhdf", ErrorCode::MalformedFile,
+                 {"values of 1442840577 bytes", "expected numbers of 1 to 16"}, as_mesh);
   expect_refused(folder / "chunk.nc", ErrorCode::MalformedFile, {"chunks of", "expected at most"}, as_image);
   expect_refused(folder / "chunk.nc", ErrorCode::MalformedFile, {"chunks of", "expected at most"}, as_layers);
   expect_refused(folder / "seq_10000.dcm", ErrorCode::MalformedFile, {"nested deeper than 64"}, as_image);
