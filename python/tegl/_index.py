@@ -32,8 +32,8 @@ class Index:
     """
 
     @_arguments.documents("build_active_tiles", "ActiveMethod")
-    def __init__(self, array, method: _kinds.IndexMethod = "interval-tree", *, spacing=None, origin=None, coords=None, affine=None,
-                 mask=None, axis_names=None, axis_units=None, time_axis: int | None = None, threads: int = 0,
+    def __init__(self, array, method: _kinds.IndexMethod = "interval-tree", *, spacing=None, origin=None, coords=None,
+                 affine=None, mask=None, axis_names=None, axis_units=None, time_axis: int | None = None, threads: int = 0,
                  progress: Progress | None = None) -> None:
         """Builds an index. Arguments as of `tegl.contour`; methods: "interval-tree", "span-space", "min-max-tree",
         "seed-set", "full-scan"."""

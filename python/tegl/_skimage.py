@@ -41,10 +41,10 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     # Here samples at the level are high, there they are low.
     above = np.nextafter(level, np.inf)
     options = _arguments.extract_options(ambiguity="saddle" if method == "lewiner" else "low", normals=True)
-    if mask is None:
+    cubes = None if mask is None else _arguments.booleans(mask)[::step, ::step, ::step].T
+    if cubes is None or cubes[1:, 1:, 1:].all():
         core = _tegl.extract(prepared.image, above, False, options, None)
     else:
-        cubes = _arguments.booleans(mask)[::step, ::step, ::step].T
         core = _tegl.extract_masked(prepared.image, cubes, above, options)
     if not len(core.vertices):
         raise RuntimeError("No surface found at the given iso value.")

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._kinds import Direction, IndexMethod
+
 _Progress = Callable[[float], object] | None
 _Attributes = dict[str, tuple[npt.NDArray[np.float64], str]]
 
@@ -47,7 +49,7 @@ class Contour:
     @property
     def axis_units(self) -> list[str]: ...
     @property
-    def direction(self) -> str: ...
+    def direction(self) -> Direction: ...
     @property
     def vertex_attributes(self) -> _Attributes: ...
     @property
@@ -89,7 +91,7 @@ class TrackGraph:
 
 class Index:
     @property
-    def method(self) -> str: ...
+    def method(self) -> IndexMethod: ...
     @property
     def memory(self) -> int: ...
     def contour(self, level: float, double: bool, options: dict[str, Any], progress: _Progress) -> Contour: ...

@@ -229,7 +229,7 @@ def test_other_fields_are_sampled_at_the_vertices(moving_balls):
 @pytest.mark.parametrize("ndim", [2, 3, 4])
 @pytest.mark.parametrize("time_axis", [0, -1])
 def test_normals_are_of_the_kind_that_is_named(ndim, time_axis):
-    array = ball(ndim, {2: 41, 3: 21, 4: 13}[ndim])
+    array = ball(ndim, {2: 41, 3: 21, 4: 13}[ndim], 0.69)
     options = dict(spacing=(1.0, 2.0, 3.0, 1.5)[:ndim], time_axis=time_axis, dtype=np.float64)
     plain, gradient = tegl.contour(array, 0.0, **options), tegl.contour(array, 0.0, normals=True, **options)
     assert plain.normals is None and tegl.contour(array, 0.0, normals=False, **options).normals is None
@@ -246,12 +246,14 @@ def test_normals_are_of_the_kind_that_is_named(ndim, time_axis):
     assert_same(flat, plain)
     assert flat.normals is None
     normal = flat.simplex_attributes["normal"]
-    assert normal.shape == flat.simplices.shape and np.linalg.norm(normal, axis=1) == pytest.approx(1)
+    size = np.linalg.norm(normal, axis=1)
+    has_size = size > 0  # a few tetrahedra of compact 4D contours are flat
+    assert normal.shape == flat.simplices.shape and size[has_size] == pytest.approx(1) and has_size.mean() > 0.99
     corners = flat.vertices[flat.simplices]
     for side in range(1, ndim):
         assert np.abs(((corners[:, side] - corners[:, 0]) * normal).sum(axis=1)).max() < 1e-9
     middle = (np.array(array.shape) - 1) / 2 * options["spacing"]
-    assert ((corners.mean(axis=1) - middle) * normal / np.square(options["spacing"])).sum(axis=1).min() > 0
+    assert ((corners.mean(axis=1) - middle) * normal).sum(axis=1)[has_size].min() > 0
     geometric = tegl.contour(array, 0.0, normals="geometric", **options)
     assert_same(geometric, plain)
     assert not np.array_equal(geometric.normals, gradient.normals)

@@ -4,7 +4,7 @@
 
 import datetime
 import pathlib
-from typing import Any, List, Optional, Tuple, Union
+from typing import Any, List, Literal, Optional, Tuple, Union
 
 import numpy as np
 import tegl
@@ -64,6 +64,8 @@ assert_type(contour.track(times=[1.0, 2.5], first="2020-01-01", allow_empty=True
 assert_type(tegl.contour(volume, 0.5, normals="flat", allow_empty=True), tegl.Contour)
 assert_type(tegl.track(contour).events[0], tegl.TrackEvent)
 assert_type(tegl.track(contour).events[0].time, float)
+assert_type(tegl.simplify(contour, 0.5, return_stats=True)[1].end, Literal["count", "error", "shape", "rounds"])
+assert_type(tegl.Index(volume).method, Literal["full-scan", "interval-tree", "span-space", "min-max-tree", "seed-set"])
 
 # Indexes, files, scikit-image's.
 index = tegl.Index(volume)
@@ -74,7 +76,7 @@ assert_type(tegl.load("surface.ply"), tegl.Contour)
 assert_type(tegl.read("ocean.nc", "temp"), tegl.Image)
 assert_type(tegl.read([pathlib.Path("a.nrrd"), pathlib.Path("b.nrrd")], times=[0, 2], sort="name"), tegl.Image)
 assert_type(tegl.read(["a.nrrd", "b.nrrd"], time_step=0.5).contour(3.0), tegl.Contour)
-assert_type(tegl.read("scan", series="T1").axis_directions, Tuple[str, ...])
+assert_type(tegl.read("scan", series="T1").axis_directions, Tuple[Literal["up", "down", "unknown"], ...])
 assert_type(tegl.read("scan").to_xarray(), Any)
 verts, faces, normals, values = tegl.marching_cubes(volume[0], 0.5)
 assert_type(len(faces), int)
@@ -84,7 +86,7 @@ def stop(fraction: float) -> bool:
     return fraction < 0.5
 
 
-assert_type(tegl.contour(volume, 0.5, progress=stop).direction, str)
+assert_type(tegl.contour(volume, 0.5, progress=stop).direction, Literal["descent", "ascent"])
 
 
 def either(at: Union[float, List[float]]) -> None:

@@ -186,13 +186,31 @@ class Separation {
     for (Real& x : normal) x = square > 0 ? static_cast<Real>(static_cast<double>(x) / std::sqrt(square)) : Real{0};
   }
 
+  /// Joins the triangles around `v` that share an edge there. There are few, so that all pairs are compared: that is
+  /// quicker than sorting their edges.
+  void join_triangles(Index v, std::span<const Index> star) {
+    ends_.clear();
+    for (const Index s : star)
+      for (const Index w : contour_.simplices[s])
+        if (w != v) ends_.push_back(w);
+    for (std::size_t i = 1; i < star.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (ends_[2 * i] == ends_[2 * j] || ends_[2 * i] == ends_[2 * j + 1] || ends_[2 * i + 1] == ends_[2 * j] ||
+            ends_[2 * i + 1] == ends_[2 * j + 1])
+          sets_.join(j, i);
+  }
+
   /// Gives every part of the star but the first a vertex of its own. Parts hang together by faces. As simplices with a
   /// common face at `v` are in one part, faces stay shared by the same simplices.
   void split_vertex(Index v, std::span<const Index> star) {
     if (star.size() < 2) return;
-    gather_faces(v, star);
     sets_.reset(star.size());
-    for_shared_faces([this](const Face& a, const Face& b) { sets_.join(a.place, b.place); });
+    if constexpr (N == 3) {
+      join_triangles(v, star);
+    } else {
+      gather_faces(v, star);
+      for_shared_faces([this](const Face& a, const Face& b) { sets_.join(a.place, b.place); });
+    }
     own_.assign(star.size(), v);
     for (std::size_t i = 0; i < star.size(); ++i) {
       const std::size_t leader = sets_.find(i);
@@ -318,6 +336,7 @@ class Separation {
   std::vector<std::size_t> first_;  ///< star of candidate c: members_[first_[c]] to members_[first_[c + 1]]
   std::vector<Index> members_;
   std::vector<Face> faces_;
+  std::vector<Index> ends_;  ///< of the triangles of a star, the two vertices of each that are not its own
   std::vector<Around> around_;
   std::vector<Rim> rim_;
   std::vector<Index> own_;

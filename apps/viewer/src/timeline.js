@@ -11,9 +11,10 @@ const LANE = 9;
 const STEPS = { ArrowLeft: -1, ArrowRight: 1 };
 const AXIS = 20;
 
-/** What happens to a part at an event of one part. */
-const WHAT = { begin: 'is there from the start', birth: 'is born', enter: 'comes in at the border', end: 'is there at the end',
-  death: 'dies', leave: 'leaves at the border' };
+/** What parts do at an event, one and several. */
+const WHAT = { begin: ['is there from the start', 'are there from the start'], birth: ['is born', 'are born'],
+  enter: ['comes in at the border', 'come in at the border'], end: ['is there at the end', 'are there at the end'],
+  death: ['dies', 'die'], leave: ['leaves at the border', 'leave at the border'], merge: ['merges', 'merge'] };
 /** Kinds of events, one and several, the most important first. */
 const KINDS = { merge: ['merge', 'merges'], split: ['split', 'splits'], exchange: ['exchange', 'exchanges'],
   birth: ['birth', 'births'], death: ['death', 'deaths'], enter: ['entry', 'entries'], leave: ['exit', 'exits'],
@@ -204,10 +205,12 @@ export class Timeline {
   describe(event) {
     const { kind, parts_in: before, parts_out: after } = event;
     const where = event.place.map((value) => number(value)).join(', ');
-    const parts = kind === 'merge' ? `${counted(before, 'part')} merge` : kind === 'split' ? `a part splits into ${after}`
-      : kind === 'exchange' ? `${counted(before, 'part')} meet and become ${after}` : `a part ${WHAT[kind]}`;
-    const drawn = kind === 'split' ? event.out.length : event.in.length;
-    const all = kind === 'split' ? after : before;
+    // Those that the event is about: what comes of a split, what was there before a merge, and the only ones of a birth.
+    const isOfLater = kind === 'split' || before === 0;
+    const [all, drawn] = isOfLater ? [after, event.out.length] : [before, event.in.length];
+    const parts = kind === 'split' ? `a part splits into ${after}` : kind === 'exchange'
+      ? `${counted(before, 'part')} meet and become ${after}`
+      : all === 1 ? `a part ${WHAT[kind][0]}` : `${counted(all, 'part')} ${WHAT[kind][1]}`;
     return `${parts}${drawn < all ? ` (${drawn === 0 ? 'none' : drawn} of them drawn)` : ''} at (${where})`;
   }
 }
