@@ -44,12 +44,14 @@ void AttributeOptions::require_inputs() const {
 }
 
 template <int N, class Real>
-void AttributeOptions::sample_to(Contour<N, Real>& contour, unsigned threads, ProgressBar& bar) const {
+void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads,
+                                 ProgressBar& bar) const {
   for (const std::string& text : texts_) {
     const FileAndVariable from = parse_file_and_variable(text);
     const Progress progress = bar.stage("attribute");
-    const auto reading = [&](double fraction) { return progress(0.7 * fraction); };
-    const ReadImageResult input = read_image(from.file, {.variable = from.variable, .progress = reading});
+    reading.variable = from.variable;
+    reading.progress = [&](double fraction) { return progress(0.7 * fraction); };
+    const ReadImageResult input = read_image(from.file, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: an image of {} dimensions on a contour in {}D; expected {}", from.file,
@@ -69,11 +71,11 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, unsigned threads, Pr
   }
 }
 
-template void AttributeOptions::sample_to(Contour<2, float>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<2, double>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<3, float>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<3, double>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<4, float>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<4, double>&, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<2, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<2, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<3, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<3, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<4, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<4, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
 
 }  // namespace tegl::cli

@@ -33,10 +33,11 @@ class AttributeOptions {
   void require_inputs() const;
 
   /// The images' values at the vertices: by the names of the variables, or of the files without their extensions.
+  /// `reading`: how the files are read.
   /// Throws InvalidArgument if two have the same name, UnsupportedData for an image of another dimension, and what the
   /// readers throw.
   template <int N, class Real>
-  void sample_to(Contour<N, Real>& contour, unsigned threads, ProgressBar& bar) const;
+  void sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads, ProgressBar& bar) const;
 
  private:
   std::vector<std::string> texts_;

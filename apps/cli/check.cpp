@@ -40,7 +40,7 @@ class CheckCommand final : public Command {
     require_inputs();
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
-    const Mesh mesh = read_finite_mesh(file(), bar.stage("read"));
+    const Mesh mesh = read_finite_mesh(file(), mesh_reading(bar.stage("read")));
     const double read_seconds = watch.lap();
     const MeshReport report = check_mesh(mesh, bar.stage("check"));
     const double check_seconds = watch.lap();

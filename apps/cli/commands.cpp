@@ -18,6 +18,7 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
   app_->parse_complete_callback(
       [this, files] { worked_on_ = files == Files::each ? std::vector{files_.front()} : files_; });
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
+  images_.add_in_process_to(*app_);
 }
 
 void Command::add_quiet() {

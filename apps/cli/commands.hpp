@@ -79,6 +79,19 @@ class Command {
   [[nodiscard]] ReadImageResult read(const Progress& progress);
   /// The same to be read layer by layer.
   [[nodiscard]] OpenLayersResult open();
+  /// How to read a file beside these, and a mesh.
+  [[nodiscard]] ReadImageOptions image_reading(Progress progress = {}) const {
+    ReadImageOptions options;
+    options.progress = std::move(progress);
+    options.separate_process = images_.separate_process();
+    return options;
+  }
+  [[nodiscard]] ReadMeshOptions mesh_reading(Progress progress) const {
+    ReadMeshOptions options;
+    options.progress = std::move(progress);
+    options.separate_process = images_.separate_process();
+    return options;
+  }
   /// Throws FileNotFound unless the files that are worked on can be read.
   void require_inputs() const;
   /// Keeps a remark for the end; an empty one is none.

@@ -41,8 +41,8 @@ Contour<N, double> widened(Contour<N, Real> contour) {
 
 }  // namespace
 
-Mesh read_finite_mesh(const std::string& file, const Progress& progress) {
-  Mesh mesh = read_mesh(file, progress);
+Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
+  Mesh mesh = read_mesh(file, options);
   const auto is_finite = [](double x) { return std::isfinite(x); };
   const auto first = std::find_if_not(mesh.coordinates.begin(), mesh.coordinates.end(), is_finite);
   if (first == mesh.coordinates.end()) return mesh;
@@ -53,8 +53,8 @@ Mesh read_finite_mesh(const std::string& file, const Progress& progress) {
                           std::isnan(*first) ? std::abs(*first) : *first, others));  // the sign of nan means nothing
 }
 
-Mesh read_saved_contour(const std::string& file, const Progress& progress) {
-  Mesh mesh = read_finite_mesh(file, progress);
+Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options) {
+  Mesh mesh = read_finite_mesh(file, options);
   if (mesh.simplices.empty())
     throw Error(ErrorCode::EmptyResult, "the saved contour is empty; expected one with simplices");
   return mesh;
@@ -156,7 +156,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
     refuse_image_options(files(), given, images(), "none of the options for images but --threads");
-    const Mesh mesh = read_saved_contour(file(), bar.stage("read"));
+    const Mesh mesh = read_saved_contour(file(), mesh_reading(bar.stage("read")));
     result.contour = to_any_contour(mesh);
     result.isovalue = mesh.isovalue;
     result.seconds.read = watch.lap();

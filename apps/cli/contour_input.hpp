@@ -27,10 +27,10 @@ AnyContour to_any_contour(const Mesh& mesh);
 
 /// A mesh that is to be worked on or checked. Throws MalformedFile if a coordinate is infinite or no number, and what
 /// `read_mesh` throws.
-Mesh read_finite_mesh(const std::string& file, const Progress& progress);
+Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 
 /// The same of a contour with simplices. Throws EmptyResult if there are none.
-Mesh read_saved_contour(const std::string& file, const Progress& progress);
+Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options);
 
 /// A contour to work on, and where it came from.
 struct ContourInput {

@@ -19,6 +19,10 @@ class ImageOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
   void add_to(CLI::App& app);
+  /// Adds --in-process, which commands without images have, too.
+  void add_in_process_to(CLI::App& app);
+  /// Whether files are read in a child process where that is of use: always, unless --in-process is given.
+  [[nodiscard]] bool separate_process() const { return !in_process_; }
 
   /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that contradict each other
   /// or the files, and for files in an order that only a shell would choose.
@@ -54,6 +58,7 @@ class ImageOptions {
   std::string variable_, series_, times_, time_step_, time_unit_, sort_, raw_, raw_type_;
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
+  bool in_process_ = false;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;
   mutable std::vector<std::string> remarks_;

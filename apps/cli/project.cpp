@@ -140,7 +140,7 @@ class ProjectCommand final : public ContourInputCommand {
     ContourResult result = input.to_result();
     result.output = output_;
     result.wording = wording();
-    attributes_.sample_to(*contour, threads(), bar);
+    attributes_.sample_to(*contour, image_reading(), threads(), bar);
     Stopwatch watch;
     result.mesh = project_as_asked(*contour, projection, bar);
     result.seconds.slice = watch.lap();

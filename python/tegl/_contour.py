@@ -278,9 +278,10 @@ class Contour:
         _tegl.write_contour(self._core, os.fspath(path), progress)
 
     @staticmethod
-    def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | None = None) -> Contour:
+    def load(path: str | os.PathLike, *, time_axis: int = 0, separate_process: bool = False,
+             progress: Progress | None = None) -> Contour:
         """Reads a contour from a file: see `tegl.load`."""
-        return load(path, time_axis=time_axis, progress=progress)
+        return load(path, time_axis=time_axis, separate_process=separate_process, progress=progress)
 
     # For other programs. Their points are x, y, z (and t): the library's order of axes, as in files.
 
@@ -314,11 +315,12 @@ def _restored(of: type[Contour], *arrays) -> Contour:
 
 
 @_arguments.documents("read_mesh")
-def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | None = None) -> Contour:
+def load(path: str | os.PathLike, *, time_axis: int = 0, separate_process: bool = False,
+         progress: Progress | None = None) -> Contour:
     """Reads a contour from a file: .vtkhdf, .ply, .gltf, .glb, .stl, .obj.
 
     Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;
-    with -1 they are x, y, z (, t).
+    with -1 they are x, y, z (, t). With `separate_process` a .vtkhdf is read in a child process, as `tegl.read` does it.
     """
-    core = _tegl.load_contour(os.fspath(path), progress)
+    core = _tegl.load_contour(os.fspath(path), bool(separate_process), progress)
     return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))

@@ -67,7 +67,7 @@ struct NukeNrrd {
 template <class T>
 ValueArray copied(const Nrrd& nrrd, std::uint64_t count) {
   const T* first = static_cast<const T*>(nrrd.data);
-  return std::vector<T>(first, first + count);
+  return ValueVector<T>(first, first + count);
 }
 
 ValueArray values_of(const Nrrd& nrrd, std::uint64_t count, const fs::path& path) {
@@ -109,7 +109,7 @@ void read_metaimage_values(const fs::path& path, std::uint64_t expected, ValueAr
   const bool read = known && std::visit(
                                  [&](auto& array) {
                                    try {
-                                     array.resize(static_cast<std::size_t>(expected));
+                                     array.resize(static_cast<std::size_t>(expected), {});
                                    } catch (const std::bad_alloc&) {
                                      fail_memory(path, expected);
                                    }

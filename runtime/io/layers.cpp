@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "common.hpp"
 #include "raw_image.hpp"
 #include "raw_values.hpp"
 #include "readers.hpp"
+#include "separate_reading.hpp"
 
 namespace tegl {
 
@@ -19,12 +21,25 @@ namespace {
 
 using namespace io_detail;
 
+/// Shows the values that `read` gives, and keeps them until the next call.
+std::function<ValueView(std::size_t, std::size_t)> keeping(std::function<ValueArray(std::size_t, std::size_t)> read) {
+  return [read = std::move(read), kept = std::make_shared<ValueArray>()](std::size_t first, std::size_t count) {
+    *kept = ValueArray();  // one block at a time
+    *kept = read(first, count);
+    return std::visit(
+        []<class Stored>(const ValueVector<Stored>& values) -> ValueView { return std::span<const Stored>(values); },
+        *kept);
+  };
+}
+
 /// Reads in blocks of the file, so that none is decompressed once per layer; holds one.
 template <Value T, int N>
 class BlockLayers final : public LayerReader<T, N> {
  public:
   BlockLayers(RawLayers source, std::size_t block)
-      : grid_(fixed_grid<N>(source.grid)), read_(std::move(source.read)), block_(block) {
+      : grid_(fixed_grid<N>(source.grid)),
+        look_(source.look ? std::move(source.look) : keeping(std::move(source.read))),
+        block_(block) {
     for (int a = 0; a < N - 1; ++a) layer_size_ *= grid_.axes[a].size();
   }
 
@@ -33,7 +48,6 @@ class BlockLayers final : public LayerReader<T, N> {
   void read(std::size_t k, T* to) override {
     const std::size_t first = k / block_ * block_;
     if (first != first_) {
-      values_ = ValueArray();  // one block at a time
       first_ = kNone;
       values_ = read_block(first, std::min(block_, grid_.axes[N - 1].size() - first));
       first_ = first;
@@ -50,19 +64,19 @@ class BlockLayers final : public LayerReader<T, N> {
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  ValueArray read_block(std::size_t first, std::size_t count) const {
+  ValueView read_block(std::size_t first, std::size_t count) const {
     try {
-      return read_(first, count);
+      return look_(first, count);
     } catch (const Error& error) {
       throw Error(error.code(), fmt::format("{} (layers {} to {})", error.what(), first, first + count - 1));
     }
   }
 
   Grid<N> grid_;
-  std::function<ValueArray(std::size_t, std::size_t)> read_;
+  std::function<ValueView(std::size_t, std::size_t)> look_;
   std::size_t block_;
   std::size_t layer_size_ = 1;
-  ValueArray values_;
+  ValueView values_;
   std::size_t first_ = kNone;
 };
 
@@ -72,7 +86,7 @@ constexpr std::uint64_t kMostBlockBytes = std::uint64_t{1} << 28;
 template <int N>
 AnyLayersN<N> with_dimension(RawLayers&& source, const fs::path& path) {
   return std::visit(
-      [&]<class Stored>(const std::vector<Stored>&) -> AnyLayersN<N> {
+      [&]<class Stored>(const ValueVector<Stored>&) -> AnyLayersN<N> {
         using T = std::conditional_t<Value<Stored>, Stored, double>;
         std::vector<std::uint64_t> sizes;
         for (const Axis& axis : source.grid.axes) sizes.push_back(axis.size());
@@ -108,10 +122,20 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
   }
 }
 
-OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
-  if (is_dicom(path)) return to_open_layers(open_dicom(std::span(&path, 1), variable, {}), path);
+RawLayers io_detail::open_any_layers(const fs::path& path, const std::string& variable) {
+  if (is_dicom(path)) return open_dicom(std::span(&path, 1), variable, {});
   require_readable_file(path);
-  return to_open_layers(open_netcdf_layers(path, variable), path);
+  return open_netcdf_layers(path, variable);
+}
+
+OpenLayersResult open_layers(const fs::path& path, const OpenLayersOptions& options) {
+  const auto open = [&] { return LayersOfFiles{open_any_layers(path, options.variable), {path}}; };
+  const bool separate = options.separate_process && needs_separate_process(path);
+  return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
+}
+
+OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
+  return open_layers(path, OpenLayersOptions{.variable = variable});
 }
 
 RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
@@ -128,7 +152,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   source.grid.linear = Eigen::MatrixXd::Identity(n, n);
   source.grid.offset = Eigen::VectorXd::Zero(n);
   name_axes(source.grid);
-  const std::uint64_t item = std::visit([]<class T>(const std::vector<T>&) { return sizeof(T); }, array_of_type(type));
+  const std::uint64_t item = std::visit([]<class T>(const ValueVector<T>&) { return sizeof(T); }, array_of_type(type));
   const std::vector<std::uint64_t> sizes(layout.sizes.begin(), layout.sizes.end());
   const std::uint64_t needed = checked_bytes(sizes, item, path);
   const std::uint64_t found = size_of_file(path);

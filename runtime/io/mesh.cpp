@@ -10,6 +10,7 @@
 #include "common.hpp"
 #include "mesh_formats.hpp"
 #include "obj_reader.hpp"
+#include "separate_reading.hpp"
 
 namespace tegl {
 
@@ -203,18 +204,26 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress
     write_vtkhdf(mesh, path, progress);
 }
 
-Mesh read_mesh(const fs::path& path, const Progress& progress) {
+Mesh read_mesh(const fs::path& path, const ReadMeshOptions& options) {
   require_readable_file(path);
   const MeshFileFormat& format = format_of(path);
-  ReadProgress read(progress, path);
-  Mesh mesh = format.extension == ".ply"      ? read_ply(path, read)
-              : format.extension == ".vtkhdf" ? read_vtkhdf(path, read)
-              : is_gltf(format)               ? read_gltf(path, read)
-              : format.extension == ".obj"    ? read_obj(path, read)
-                                              : read_stl(path, read);
+  const auto read_format = [&](const Progress& progress) {
+    ReadProgress read(progress, path);
+    return format.extension == ".ply"      ? read_ply(path, read)
+           : format.extension == ".vtkhdf" ? read_vtkhdf(path, read)
+           : is_gltf(format)               ? read_gltf(path, read)
+           : format.extension == ".obj"    ? read_obj(path, read)
+                                           : read_stl(path, read);
+  };
+  const bool separate = options.separate_process && format.extension == ".vtkhdf";
+  Mesh mesh = separate ? read_separately(path, options.progress, read_format) : read_format(options.progress);
   check_indices(mesh, path);
-  tick(progress, 1.0, path);
+  tick(options.progress, 1.0, path);
   return mesh;
+}
+
+Mesh read_mesh(const fs::path& path, const Progress& progress) {
+  return read_mesh(path, ReadMeshOptions{.progress = progress});
 }
 
 template Mesh to_mesh(const Contour<2, float>&);

@@ -14,6 +14,7 @@
 #include "cdf_header.hpp"
 #include "common.hpp"
 #include "inflate.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -31,28 +32,28 @@ bool is_hdf5(std::span<const unsigned char> prefix) {
 ValueArray array_for(nc_type type, bool as_unsigned) {
   switch (type) {
     case NC_BYTE:
-      if (as_unsigned) return std::vector<std::uint8_t>();
-      return std::vector<std::int8_t>();
+      if (as_unsigned) return ValueVector<std::uint8_t>();
+      return ValueVector<std::int8_t>();
     case NC_UBYTE:
-      return std::vector<std::uint8_t>();
+      return ValueVector<std::uint8_t>();
     case NC_SHORT:
-      if (as_unsigned) return std::vector<std::uint16_t>();
-      return std::vector<std::int16_t>();
+      if (as_unsigned) return ValueVector<std::uint16_t>();
+      return ValueVector<std::int16_t>();
     case NC_USHORT:
-      return std::vector<std::uint16_t>();
+      return ValueVector<std::uint16_t>();
     case NC_INT:
-      if (as_unsigned) return std::vector<std::uint32_t>();
-      return std::vector<std::int32_t>();
+      if (as_unsigned) return ValueVector<std::uint32_t>();
+      return ValueVector<std::int32_t>();
     case NC_UINT:
-      return std::vector<std::uint32_t>();
+      return ValueVector<std::uint32_t>();
     case NC_INT64:
-      return std::vector<std::int64_t>();
+      return ValueVector<std::int64_t>();
     case NC_UINT64:
-      return std::vector<std::uint64_t>();
+      return ValueVector<std::uint64_t>();
     case NC_FLOAT:
-      return std::vector<float>();
+      return ValueVector<float>();
     default:
-      return std::vector<double>();
+      return ValueVector<double>();
   }
 }
 
@@ -68,6 +69,7 @@ const char* nc_type_name(nc_type type) noexcept {
 bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UINT64 && type != NC_CHAR; }
 
 NcFile::NcFile(const fs::path& path, const Progress& progress) : path_(path) {
+  now_reading(path);
   if (is_gzip(path)) content_ = inflate_to_memory(path, progress);
   const auto prefix =
       content_.empty() ? read_bytes(path, 0, 8)
@@ -210,6 +212,7 @@ void NcFile::read_blocks(const NcVariable& variable, std::size_t item, void* to,
     tick(progress, static_cast<double>(first) / static_cast<double>(layers), path_);
     start[0] = first;
     count[0] = std::min(step, layers - first);
+    expect_step(count[0] * layer_bytes);
     check(nc_get_vara(variable.group, variable.id, start.data(), count.data(),
                       static_cast<unsigned char*>(to) + first * layer_bytes),
           "reading " + variable.name);
@@ -222,6 +225,13 @@ std::size_t NcFile::block_length(const NcVariable& variable, std::size_t dimensi
   const bool chunked =
       nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) == NC_NOERR && storage == NC_CHUNKED;
   return chunked ? std::max<std::size_t>(1, chunks[dimension]) : 1;
+}
+
+std::uint64_t NcFile::chunk_bytes(const NcVariable& variable, std::size_t item) const {
+  std::uint64_t bytes = item;
+  for (std::size_t d = 0; d < variable.sizes.size(); ++d)
+    bytes *= std::min(variable.sizes[d], block_length(variable, d));
+  return bytes;
 }
 
 ValueArray NcFile::numeric_array(const NcVariable& variable) const {
@@ -239,9 +249,11 @@ ValueArray NcFile::values(const NcVariable& variable, std::size_t dimension, std
   start[dimension] = first;
   sizes[dimension] = count;
   std::visit(
-      [&]<class T>(std::vector<T>& values) {
+      [&]<class T>(ValueVector<T>& values) {
         const std::vector<std::uint64_t> wide(sizes.begin(), sizes.end());
-        values.resize(static_cast<std::size_t>(checked_bytes(wide, sizeof(T), path_) / sizeof(T)));
+        const std::uint64_t bytes = checked_bytes(wide, sizeof(T), path_);
+        expect_step(std::max(bytes, count == 0 ? 0 : chunk_bytes(variable, sizeof(T))));
+        values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
         check(nc_get_vara(variable.group, variable.id, start.data(), sizes.data(), values.data()),
               "reading " + variable.name);
       },
@@ -253,7 +265,7 @@ ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) 
   ValueArray result = numeric_array(variable);
   const std::vector<std::uint64_t> sizes(variable.sizes.begin(), variable.sizes.end());
   std::visit(
-      [&]<class T>(std::vector<T>& values) {
+      [&]<class T>(ValueVector<T>& values) {
         const std::uint64_t bytes = checked_bytes(sizes, sizeof(T), path_);
         // No filter of the library compresses better; more is a damaged header, not data.
         constexpr std::uint64_t kBestRatio = 4096;
@@ -261,6 +273,7 @@ ValueArray NcFile::values(const NcVariable& variable, const Progress& progress) 
         if (bytes / kBestRatio > stored)
           fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} samples in a file of {} bytes", variable.name,
                shape_text(sizes), stored);
+        expect_memory(kBytesPerValue * (bytes / sizeof(T)));
         values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
         read_blocks(variable, sizeof(T), values.data(), progress);
       },

@@ -281,9 +281,9 @@ ValueArray scaled(ValueArray&& values, const Header& header) {
                      (header.slope == 1 && header.intercept == 0);
   if (plain) return std::move(values);
   return std::visit(
-      [&]<class T>(const std::vector<T>& stored) -> ValueArray {
+      [&]<class T>(const ValueVector<T>& stored) -> ValueArray {
         using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
-        std::vector<Real> result(stored.size());
+        ValueVector<Real> result(stored.size());
         std::transform(stored.begin(), stored.end(), result.begin(), [&](T value) {
           return static_cast<Real>(header.slope * static_cast<double>(value) + header.intercept);
         });

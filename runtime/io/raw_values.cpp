@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 template <class T>
-void swap_bytes(std::vector<T>& values) {
+void swap_bytes(ValueVector<T>& values) {
   auto* bytes = reinterpret_cast<unsigned char*>(values.data());
   for (std::size_t i = 0; i < values.size(); ++i) std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
 }
@@ -57,7 +57,7 @@ ValueArray read_raw_values(const fs::path& path, std::uint64_t offset, std::stri
                            bool swapped, const Progress& progress) {
   ValueArray result = array_of_type(type);
   std::visit(
-      [&]<class T>(std::vector<T>& values) {
+      [&]<class T>(ValueVector<T>& values) {
         const std::uint64_t bytes = checked_bytes(std::array{count}, sizeof(T), path);
         // What deflate can make of a byte, at best: a header that promises more is damaged.
         constexpr std::uint64_t kBestRatio = 1032;
@@ -85,7 +85,7 @@ ValueArray read_values_at(const fs::path& path, std::uint64_t offset, std::strin
                           bool swapped) {
   ValueArray result = array_of_type(type);
   std::visit(
-      [&]<class T>(std::vector<T>& values) {
+      [&]<class T>(ValueVector<T>& values) {
         values.resize(static_cast<std::size_t>(count));
         std::ifstream file(path, std::ios::binary);
         file.seekg(static_cast<std::streamoff>(offset));

@@ -31,6 +31,8 @@ struct RawLayers {
   std::size_t block = 1;  ///< layers that are best read together
   /// The samples of the layers [first, first + count); always of the same type. Keeps the file open.
   std::function<ValueArray(std::size_t first, std::size_t count)> read;
+  /// The same samples without a copy, valid until the next call; there may be `read` only.
+  std::function<ValueView(std::size_t first, std::size_t count)> look = {};
 };
 /// The layers, of the value types and dimensions of the library.
 OpenLayersResult to_open_layers(RawLayers&& source, const std::filesystem::path& path);
@@ -45,6 +47,8 @@ RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::st
 /// The series there.
 std::vector<ImageVariable> list_dicom(const std::filesystem::path& path);
 RawLayers open_netcdf_layers(const std::filesystem::path& path, const std::string& variable);
+/// The layers of a netCDF or HDF5 file, or of DICOM files.
+RawLayers open_any_layers(const std::filesystem::path& path, const std::string& variable);
 
 /// The variables of a netCDF file that can be read as images.
 std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path);

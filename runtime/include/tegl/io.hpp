@@ -59,6 +59,11 @@ struct ReadImageResult {
 struct ReadImageOptions {
   std::string variable;  ///< netCDF: which; DICOM: which series, by UID, description or number; empty: the only one
   Progress progress;     ///< see Progress
+  /// Reads formats of libraries that some damaged files bring down, HDF5 (netCDF-4) and DCMTK, in a child process with
+  /// limits of memory and time: whatever happens there, the error is MalformedFile. The values are the same, in memory
+  /// that the child has filled, without a copy. Starting the child takes about a millisecond, and more in a process of
+  /// gigabytes in small pages. Callable while other threads run.
+  bool separate_process = false;
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
@@ -91,7 +96,8 @@ struct ImageVariable {
 /// The variables that ReadImageOptions::variable may name in a netCDF file, or the series in DICOM (the description as
 /// long_name); none for the other formats, whose files hold one image without a name. Reads no values. Errors: those of
 /// read_image.
-std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path);
+std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
+                                                const ReadImageOptions& options = {});
 
 /// The layers of an image of any value type in N dimensions.
 template <int N>
@@ -109,11 +115,19 @@ struct OpenLayersResult {
   ImageInfo info;    ///< beyond values and grid
 };
 
+/// What to read of a file by layers.
+struct OpenLayersOptions {
+  std::string variable = {};      ///< as in ReadImageOptions
+  bool separate_process = false;  ///< as in ReadImageOptions; the child lives as long as the layers
+};
+
 /// Opens a variable of a netCDF file, or a dataset of an HDF5 file, to be read layer by layer: what read_image reads
 /// whole, with the same grid and values (uint32, int64 and uint64 as double). DICOM likewise, slice by slice.
 /// `variable` as in ReadImageOptions. The file stays open as long as the layers live. Memory: a layer, or as many as
 /// lie in one compressed block of the file, if these are no more than 256 MiB. Errors: those of read_image, now or by
 /// read(); UnsupportedData for a file that is gzipped as a whole.
+OpenLayersResult open_layers(const std::filesystem::path& path, const OpenLayersOptions& options);
+/// Opens layers in this process.
 OpenLayersResult open_layers(const std::filesystem::path& path, const std::string& variable = {});
 
 /// Values that lie in a file one after the other, axis 0 fastest.
@@ -217,6 +231,12 @@ class ContourFile final : public ContourSink<N, Real> {
   std::unique_ptr<Parts> parts_;
 };
 
+/// How to read a mesh.
+struct ReadMeshOptions {
+  Progress progress = {};         ///< see Progress
+  bool separate_process = false;  ///< as in ReadImageOptions: for VTKHDF
+};
+
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into
 /// triangles; glTF: nodes applied). Of .stl come triangles with coordinates as float, where vertices with equal
 /// coordinates become one, and nothing else. Of .obj come the vertices as they are numbered, with all digits, and
@@ -227,6 +247,8 @@ class ContourFile final : public ContourSink<N, Real> {
 /// _NAME as float). What write_mesh wrote to these comes back with the same numbering, names, units and isovalue; to
 /// .obj with the same numbering.
 /// Errors: FileNotFound, MalformedFile, UnsupportedFormat, UnsupportedData, TooLarge, Cancelled.
+Mesh read_mesh(const std::filesystem::path& path, const ReadMeshOptions& options);
+/// Reads a mesh with the default options and this progress.
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace tegl

@@ -33,6 +33,7 @@ struct SeriesOptions {
   SeriesOrder order = SeriesOrder::given;  ///< of the files
   std::optional<RawLayout> raw;            ///< files of nothing but values: how each one of them is laid out
   Progress progress;                       ///< of read_series, over all files
+  bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
 };
 
 /// An image of several files, which is a ReadImageResult as any other, and those files.
