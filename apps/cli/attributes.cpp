@@ -23,6 +23,14 @@ std::string stem(const fs::path& file) {
   return name.substr(0, std::max<std::size_t>(1, std::min(name.find('.', 1), name.size())));
 }
 
+ReadImageResult read_attribute(const std::string& file, const ReadImageOptions& options) {
+  try {
+    return read_image(file, options);
+  } catch (const Error& error) {
+    throw Error(error.code(), with_option_names(error.what()));
+  }
+}
+
 }  // namespace
 
 FileAndVariable parse_file_and_variable(const std::string& text) {
@@ -33,7 +41,6 @@ FileAndVariable parse_file_and_variable(const std::string& text) {
 }
 
 void AttributeOptions::add_to(CLI::App& app) {
-  app_ = &app;
   app.add_option("--attribute", texts_,
                  "values of another image at the vertices: FILE, or FILE:VARIABLE (netCDF); may be given again")
       ->allow_extra_args(false)
@@ -50,26 +57,15 @@ void AttributeOptions::require_inputs() const {
   for (const std::string& file : files()) require_input(file, Folders::allowed);
 }
 
-ReadImageResult AttributeOptions::read(const FileAndVariable& from, const Progress& progress) const {
-  ReadImageOptions options;
-  options.variable = from.variable;
-  options.progress = progress;
-  const CLI::Option* const outside = app_->get_option_no_throw("--allow-outside-paths");
-  options.allow_outside_paths = outside != nullptr && outside->count() > 0;
-  try {
-    return read_image(from.file, options);
-  } catch (const Error& error) {
-    throw Error(error.code(), with_option_names(error.what()));
-  }
-}
-
 template <int N, class Real>
-void AttributeOptions::sample_to(Contour<N, Real>& contour, unsigned threads, ProgressBar& bar) const {
+void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads,
+                                 ProgressBar& bar) const {
   for (const std::string& text : texts_) {
     const FileAndVariable from = parse_file_and_variable(text);
     const Progress progress = bar.stage("attribute");
-    const auto reading = [&](double fraction) { return progress(0.7 * fraction); };
-    const ReadImageResult input = read(from, reading);
+    reading.variable = from.variable;
+    reading.progress = [&](double fraction) { return progress(0.7 * fraction); };
+    const ReadImageResult input = read_attribute(from.file, reading);
     if (image_dim(input.image) != N)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: an image of {} dimensions on a contour in {}D; expected {}", from.file,
@@ -89,11 +85,11 @@ void AttributeOptions::sample_to(Contour<N, Real>& contour, unsigned threads, Pr
   }
 }
 
-template void AttributeOptions::sample_to(Contour<2, float>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<2, double>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<3, float>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<3, double>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<4, float>&, unsigned, ProgressBar&) const;
-template void AttributeOptions::sample_to(Contour<4, double>&, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<2, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<2, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<3, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<3, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<4, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<4, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
 
 }  // namespace tegl::cli

@@ -36,17 +36,13 @@ class AttributeOptions {
   void require_inputs() const;
 
   /// The images' values at the vertices: by the names of the variables, or of the files without their extensions.
-  /// Throws InvalidArgument if two have the same name, UnsupportedData for an image of another dimension, and what the
-  /// readers throw.
+  /// `reading`: how the files are read. Throws InvalidArgument if two have the same name, UnsupportedData for an image
+  /// of another dimension, and what the readers throw.
   template <int N, class Real>
-  void sample_to(Contour<N, Real>& contour, unsigned threads, ProgressBar& bar) const;
+  void sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads, ProgressBar& bar) const;
 
  private:
-  /// The image of FILE:VARIABLE. --allow-outside-paths of the command holds for it, too.
-  [[nodiscard]] ReadImageResult read(const FileAndVariable& from, const Progress& progress) const;
-
   std::vector<std::string> texts_;
-  const CLI::App* app_ = nullptr;
 };
 
 }  // namespace tegl::cli

@@ -22,12 +22,22 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
                  "wherever they "
                  "lie, not only in its folder and below");
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
+  images_.add_in_process_to(*app_);
+}
+
+ReadImageOptions Command::image_options(Progress progress) const {
+  ReadImageOptions options;
+  options.progress = std::move(progress);
+  options.allow_outside_paths = images_.allow_outside_paths();
+  options.separate_process = images_.separate_process();
+  return options;
 }
 
 ReadMeshOptions Command::mesh_options(Progress progress) const {
   ReadMeshOptions options;
   options.progress = std::move(progress);
   options.allow_outside_paths = images_.allow_outside_paths();
+  options.separate_process = images_.separate_process();
   return options;
 }
 

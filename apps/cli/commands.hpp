@@ -79,7 +79,9 @@ class Command {
   /// Adds the options that say how FILE is read as an image.
   void add_image_options() { images_.add_to(*app_); }
   [[nodiscard]] const ImageOptions& images() const { return images_; }
-  /// How FILE is read as a mesh, with --allow-outside-paths.
+  /// How a file beside FILE is read as an image, with --allow-outside-paths and --in-process.
+  [[nodiscard]] ReadImageOptions image_options(Progress progress = {}) const;
+  /// How FILE is read as a mesh, with --allow-outside-paths and --in-process.
   [[nodiscard]] ReadMeshOptions mesh_options(Progress progress) const;
   /// Reads the image that FILE and these options name. From then on the files that are worked on stand in the order in
   /// which they follow each other.

@@ -323,7 +323,7 @@ class ContourCommand final : public Command {
   template <class AnyContour>
   Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
     options_.add_shape_normals(contour);
-    attributes_.sample_to(contour, threads, bar);
+    attributes_.sample_to(contour, image_options(), threads, bar);
     return to_mesh(contour);
   }
 

@@ -194,7 +194,7 @@ class DemoCommand final : public Command {
   ExitCode run(const Streams& streams) override {
     const fs::path data = find_data();
     ProgressBar bar(streams.err, wants_progress());
-    const ReadImageResult input = read_image(data, {.variable = {}, .progress = bar.stage("read")});
+    const ReadImageResult input = read_image(data, image_options(bar.stage("read")));
     const auto* const of_4d = std::get_if<AnyImageN<4>>(&input.image);
     const auto* const image = of_4d == nullptr ? nullptr : std::get_if<OwnedImage<float, 4>>(of_4d);
     if (image == nullptr)

@@ -133,7 +133,7 @@ class ElementsCommand final : public ContourInputCommand {
   template <int N>
   void make(Contour<N, double>& contour, const ContourInput& input, ElementReport& report, ProgressBar& bar) const {
     Stopwatch watch;
-    attributes_.sample_to(contour, threads(), bar);
+    attributes_.sample_to(contour, image_options(), threads(), bar);
     report.attribute_seconds = watch.lap();
     const WorkOptions work{threads(), bar.stage("elements")};
     const Elements<N> all =

@@ -145,6 +145,12 @@ void ImageOptions::add_raw_to(CLI::App& app) {
   add_of_axes("--axis-units", axis_units_, "UNITS", "of --raw: a unit for each axis, as mm,mm,mm,s; nothing for none");
 }
 
+void ImageOptions::add_in_process_to(CLI::App& app) {
+  app.add_flag("--in-process", in_process_,
+               "read netCDF-4, VTKHDF and DICOM in this process, not in a child process: a damaged file may end "
+               "the program");
+}
+
 std::vector<std::string> ImageOptions::given() const {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_)
@@ -231,17 +237,22 @@ ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const
   for (const std::string& file : files) require_input(file, Folders::allowed);
   SeriesOptions options = series_options(files);
   options.progress = progress;
+  options.separate_process = separate_process();
   return remembered(with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); }));
 }
 
 OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const {
   for (const std::string& file : files) require_input(file, Folders::allowed);
-  const SeriesOptions options = series_options(files);
+  SeriesOptions options = series_options(files);
+  options.separate_process = separate_process();
   return remembered(with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); }));
 }
 
 std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {
-  return raw() ? std::vector<ImageVariable>() : list_image_variables(files.front());
+  if (raw()) return {};
+  ReadImageOptions options;
+  options.separate_process = separate_process();
+  return list_image_variables(files.front(), options);
 }
 
 }  // namespace tegl::cli

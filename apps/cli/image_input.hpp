@@ -22,6 +22,10 @@ class ImageOptions {
  public:
   /// Adds the options to a command. This must outlive the parse.
   void add_to(CLI::App& app);
+  /// Adds --in-process, which commands without images have, too.
+  void add_in_process_to(CLI::App& app);
+  /// Whether files are read in a child process where that is of use: always, unless --in-process is given.
+  [[nodiscard]] bool separate_process() const { return !in_process_; }
 
   /// Of --allow-outside-paths, which every command has, for meshes too: Command adds it.
   [[nodiscard]] bool& allow_outside_paths() { return allow_outside_paths_; }
@@ -68,6 +72,7 @@ class ImageOptions {
   std::uint64_t raw_offset_ = 0;
   bool raw_big_endian_ = false;
   bool allow_outside_paths_ = false;
+  bool in_process_ = false;
   std::vector<std::string> fixed_;
   CLI::Option* raw_option_ = nullptr;
   std::vector<CLI::Option*> options_;

@@ -144,7 +144,7 @@ class ProjectCommand final : public ContourInputCommand {
     result.output = output_;
     result.compression = compress_.compression();
     result.wording = wording();
-    attributes_.sample_to(*contour, threads(), bar);
+    attributes_.sample_to(*contour, image_options(), threads(), bar);
     Stopwatch watch;
     result.mesh = project_as_asked(*contour, projection, bar);
     result.seconds.slice = watch.lap();

@@ -163,11 +163,12 @@ void append_points(const ContourResult& result, const std::vector<double>& facto
 
 /// Gives the cuts the values of other images at their vertices.
 template <int N>
-void add_attributes(const AttributeOptions& attributes, const std::vector<double>& factors, unsigned threads,
-                    std::vector<ContourResult>& results, ProgressBar& bar) {
+void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& reading,
+                    const std::vector<double>& factors, unsigned threads, std::vector<ContourResult>& results,
+                    ProgressBar& bar) {
   Contour<N, double> points;  // of all cuts, so that each image is read once
   for (const ContourResult& result : results) append_points<N>(result, factors, points);
-  attributes.sample_to(points, threads, bar);
+  attributes.sample_to(points, reading, threads, bar);
   for (const Attribute& all : points.vertex_attributes) {
     std::size_t first = 0;
     for (ContourResult& result : results) {
@@ -240,9 +241,9 @@ class SliceCommand final : public Command {
     std::vector<ContourResult> results =
         find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
     if (attributes_.wanted() && results[0].image_dim == 4)
-      add_attributes<4>(attributes_, factors_, options_.threads(), results, bar);
+      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), results, bar);
     else if (attributes_.wanted())
-      add_attributes<3>(attributes_, factors_, options_.threads(), results, bar);
+      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), results, bar);
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
       results[i].output = outputs_[i];

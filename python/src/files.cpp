@@ -47,9 +47,9 @@ void put_grid(py::dict& result, const Grid<N>& grid) {
 template <class T, int N>
 void put_image(py::dict& result, OwnedImage<T, N>& image) {
   put_grid(result, image.grid);
-  auto kept = std::make_unique<std::vector<T>>(std::move(image.values));
-  const py::capsule owner(kept.get(), [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
-  const std::vector<T>& values = *kept.release();
+  auto kept = std::make_unique<Values<T>>(std::move(image.values));
+  const py::capsule owner(kept.get(), [](void* memory) { delete static_cast<Values<T>*>(memory); });
+  const Values<T>& values = *kept.release();
   std::vector<py::ssize_t> shape;
   std::vector<py::ssize_t> strides;
   py::ssize_t stride = sizeof(T);
@@ -90,7 +90,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
                   const std::optional<std::vector<double>>& times, std::optional<double> time_step,
                   const std::optional<std::string>& time_unit, const std::optional<std::string>& sort,
                   const std::vector<std::pair<std::string, std::size_t>>& fixed, bool allow_outside_paths,
-                  const py::object& progress) {
+                  bool separate_process, const py::object& progress) {
   Call call(progress);
   const std::vector<std::filesystem::path> files(paths.begin(), paths.end());
   SeriesRequest request{variable, times, time_step, time_unit, {}, {}, {}, false};
@@ -105,6 +105,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
     const FileLock lock(tell);
     SeriesOptions options = series_options(files, request, kWords);
     options.progress = tell;
+    options.separate_process = separate_process;
     return read_with_hint(files, options);
   });
   for (const std::string& remark : read.info.remarks)
@@ -139,7 +140,8 @@ void write_any(const AnyContour& contour, const std::string& path, const py::obj
   });
 }
 
-std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside_paths, const py::object& progress) {
+std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside_paths, bool separate_process,
+                                     const py::object& progress) {
   Call call(progress);
   const Progress tell = call.progress();
   const Mesh mesh = call.run([&] {
@@ -147,6 +149,7 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside
     ReadMeshOptions options;
     options.progress = tell;
     options.allow_outside_paths = allow_outside_paths;
+    options.separate_process = separate_process;
     return read_mesh(path, options);
   });
   const py::gil_scoped_release release;
@@ -168,11 +171,11 @@ std::unique_ptr<AnyContour> load_any(const std::string& path, bool allow_outside
 
 void bind_files(py::module_& m) {
   m.def("read_series", &read_any, py::arg("paths"), py::arg("variable"), py::arg("times"), py::arg("time_step"),
-        py::arg("time_unit"), py::arg("sort"), py::arg("fixed"), py::arg("allow_outside_paths"), py::arg("progress"),
-        doc::read_series);
+        py::arg("time_unit"), py::arg("sort"), py::arg("fixed"), py::arg("allow_outside_paths"),
+        py::arg("separate_process"), py::arg("progress"), doc::read_series);
   m.def("write_contour", &write_any, py::arg("contour"), py::arg("path"), py::arg("progress"), doc::write_mesh);
-  m.def("load_contour", &load_any, py::arg("path"), py::arg("allow_outside_paths"), py::arg("progress"),
-        doc::read_mesh);
+  m.def("load_contour", &load_any, py::arg("path"), py::arg("allow_outside_paths"), py::arg("separate_process"),
+        py::arg("progress"), doc::read_mesh);
 }
 
 }  // namespace tegl::python

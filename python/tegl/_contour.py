@@ -316,9 +316,9 @@ class Contour:
 
     @staticmethod
     def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bool = False,
-         progress: Progress | None = None) -> Contour:
+             separate_process: bool = False, progress: Progress | None = None) -> Contour:
         """Reads a contour from a file: see `tegl.load`."""
-        return load(path, time_axis=time_axis, progress=progress)
+        return load(path, time_axis=time_axis, separate_process=separate_process, progress=progress)
 
     # For other programs. Their points are x, y, z (and t): the library's order of axes, as in files.
 
@@ -357,14 +357,17 @@ def _restored(of: type[Contour], *parts) -> Contour:
 
 
 @_arguments.documents("read_mesh")
-def load(path: str | os.PathLike, *, time_axis: int = 0, progress: Progress | None = None) -> Contour:
+def load(path: str | os.PathLike, *, time_axis: int = 0, separate_process: bool = False,
+         progress: Progress | None = None) -> Contour:
     """Reads a contour from a file: .vtkhdf, .ply, .gltf, .glb, .stl, .obj.
 
     Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;
     with -1 they are x, y, z (, t).
 
     A file may name further files: buffers of glTF, links and external storage of HDF5. These are read in the folder of
-    `path` and below it; with `allow_outside_paths=True` elsewhere, too.
+    `path` and below it; with `allow_outside_paths=True` elsewhere, too. With `separate_process` a .vtkhdf is read in a
+    child process, as `tegl.read` does it.
     """
-    core = _tegl.load_contour(os.fspath(path), bool(allow_outside_paths), progress)
+    core = _tegl.load_contour(os.fspath(path), _arguments.as_bool("allow_outside_paths", allow_outside_paths),
+                              _arguments.as_bool("separate_process", separate_process), progress)
     return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))

@@ -341,3 +341,60 @@ def test_formats_without_directions_do_not_know_them(tmp_path):
     path = tmp_path / "a.nrrd"
     path.write_bytes(b"NRRD0004\ntype: uchar\nencoding: raw\ndimension: 3\nsizes: 2 2 2\n\n" + bytes(8))
     assert tegl.read(path).axis_directions == ("unknown",) * 3
+
+
+def test_a_separate_process_gives_the_same_contour(tmp_path):
+    contour = tegl.contour(noise((12, 40, 40), 1), 0.5)
+    path = tmp_path / "a.vtkhdf"
+    contour.save(path)
+    assert_same(tegl.load(path, separate_process=True), tegl.load(path))
+    assert_same(tegl.Contour.load(path, separate_process=True), tegl.load(path))
+
+
+def write_hdf5(path, array):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w") as file:
+        file.create_dataset("v", data=array, chunks=(1, *array.shape[1:]), compression="gzip", compression_opts=1)
+
+
+def test_a_separate_process_gives_the_same_array(tmp_path):
+    array = noise((60, 90, 120), 2).astype(np.float32)
+    write_hdf5(tmp_path / "a.nc", array)
+    image = tegl.read(tmp_path / "a.nc", separate_process=True)
+    assert np.array_equal(image.array, array) and not image.array.flags.owndata
+    image.array[...] += 1
+    assert np.array_equal(image.array, array + 1)
+    seen = []
+    tegl.read(tmp_path / "a.nc", separate_process=True, progress=lambda share: seen.append(share))
+    assert seen == sorted(seen)
+    with pytest.raises(tegl.Cancelled):
+        tegl.read(tmp_path / "a.nc", separate_process=True, progress=lambda share: share <= 0)
+
+
+def test_separate_processes_under_threads(tmp_path):
+    array = noise((20, 30, 40), 3).astype(np.float32)
+    write_hdf5(tmp_path / "a.nc", array)
+    wrong = []
+
+    def work():
+        for _ in range(20):
+            image = tegl.read(tmp_path / "a.nc", separate_process=True)
+            if not np.array_equal(image.array, array) or not len(tegl.contour(image, 0.5).vertices):
+                wrong.append(image)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+@pytest.mark.parametrize("name", ["n4_byte_0x1545.nc", "chunk.nc", "seq_10000.dcm", "vtkhdf_sig11_2_149.vtkhdf",
+                                  "vtkhdf_sig11_2_330.vtkhdf", "vtkhdf_sig14_rss_1_899.vtkhdf"])
+def test_what_brings_a_library_down_is_a_value_error(name):
+    path = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]).parent / "shared/data/hostile" / name
+    if not path.exists():
+        pytest.skip(f"no {path}")
+    with pytest.raises(ValueError, match=name):
+        (tegl.load if name.endswith(".vtkhdf") else tegl.read)(path, separate_process=True)

@@ -17,6 +17,7 @@
 #include "dicom_file.hpp"
 #include "raw_image.hpp"
 #include "readers.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -484,7 +485,10 @@ class PlaneReader {
       tick(progress, static_cast<double>(i - first) / static_cast<double>(count), volume_.path(plane));
       decode(plane.file);
       // A file that promises too much has failed by now.
-      if (i == first) std::visit([&](auto& all) { all.reserve(size * count); }, values);
+      if (i == first) {
+        expect_memory(kBytesPerValue * size * count);
+        std::visit([&](auto& all) { all.reserve(size * count); }, values);
+      }
       append(volume_.frame(plane), plane.frame * size, size, values);
     }
     return values;
@@ -500,7 +504,7 @@ class PlaneReader {
 
   void append(const DicomFrame& frame, std::size_t first, std::size_t size, ValueArray& values) const {
     std::visit(
-        [&]<class To, class From>(std::vector<To>& to, const std::vector<From>& from) {
+        [&]<class To, class From>(ValueVector<To>& to, const ValueVector<From>& from) {
           const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first);
           const auto end = begin + static_cast<std::ptrdiff_t>(size);
           std::transform(begin, end, std::back_inserter(to), [&](From value) {

@@ -31,6 +31,7 @@
 #include "jpeg2000.hpp"
 #include "named_path.hpp"
 #include "raw_image.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -325,9 +326,18 @@ void require_bytes(const DicomFile& file, E_TransferSyntax stored_as) {
          needed, shape_text(sizes), file.type);
 }
 
+/// Memory and time for the pixels, as many as compression can make of the file.
+void expect_pixels(const DicomFile& file) {
+  constexpr std::uint64_t kBestRatio = 4096;
+  const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
+  const std::uint64_t count = std::min(checked_bytes(sizes, 1, file.path), kBestRatio * size_of_file(file.path));
+  expect_memory(kBytesPerValue * count);
+  expect_step(4 * count);
+}
+
 /// Moves the stored bits of each value down and extends its sign: what is above and below them is anyone's.
 template <class T>
-void keep_stored_bits(std::vector<T>& values, const DicomFile& file) {
+void keep_stored_bits(ValueVector<T>& values, const DicomFile& file) {
   using Unsigned = std::make_unsigned_t<T>;
   const int unused = static_cast<int>(8 * sizeof(T)) - file.bits_stored;
   const int above = static_cast<int>(8 * sizeof(T)) - 1 - file.high_bit;
@@ -361,6 +371,7 @@ bool begins_as_dicom(const fs::path& path) {
 }
 
 std::optional<DicomFile> read_dicom_header(const fs::path& path) {
+  now_reading(path);
   DcmFileFormat format;
   const auto damage = try_to_load(format, path, kSmallElement);
   if (damage && (format.getDataset() == nullptr || !format.getDataset()->tagExists(DCM_SeriesInstanceUID)))
@@ -395,6 +406,8 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
 }
 
 ValueArray read_dicom_values(const DicomFile& file) {
+  now_reading(file.path);
+  expect_pixels(file);
   DcmFileFormat format;
   load(format, file.path, DCM_MaxReadLength);
   DcmDataset& data = *format.getDataset();
@@ -408,7 +421,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
          syntax.getXferName());
   ValueArray values = array_of_type(file.type);
   std::visit(
-      [&]<class T>(std::vector<T>& all) {
+      [&]<class T>(ValueVector<T>& all) {
         const std::uint64_t needed = checked_bytes(sizes, sizeof(T), file.path);
         const void* bytes = nullptr;
         unsigned long count = 0;  // of bytes, or of pairs of them
@@ -451,6 +464,7 @@ fs::path path_in_directory(const fs::path& directory, const std::string& name) {
 }  // namespace
 
 std::vector<fs::path> read_dicomdir(const fs::path& path) {
+  now_reading(path);
   DcmFileFormat format;
   load(format, path, DCM_MaxReadLength);
   std::vector<fs::path> files;

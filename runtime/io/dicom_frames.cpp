@@ -100,7 +100,7 @@ std::vector<std::size_t> first_fragments(const Fragments& fragments, const Dicom
 /// end, wherever the header says that they lie; whether it calls them signed is often not what the header says, which
 /// is right. A longer one has all bits of the cell.
 template <class T>
-void append(const Jpeg2000Image& image, const DicomFile& file, std::vector<T>& values) {
+void append(const Jpeg2000Image& image, const DicomFile& file, ValueVector<T>& values) {
   using Unsigned = std::make_unsigned_t<T>;
   constexpr int kBits = static_cast<int>(8 * sizeof(T));
   const bool whole_cell = image.precision > file.bits_stored;
@@ -180,7 +180,7 @@ ValueArray read_jpeg2000_frames(DcmDataset& data, const DicomFile& file) {
         firsts.size() == 1 ? file.path.string() : fmt::format("{}: frame {}", file.path.string(), f + 1);
     const Jpeg2000Image image = decode_jpeg2000(bytes, file.columns, file.rows, label);
     std::visit(
-        [&]<class T>(std::vector<T>& all) {
+        [&]<class T>(ValueVector<T>& all) {
           if constexpr (std::is_integral_v<T> && sizeof(T) <= 4) {
             if (image.precision > static_cast<int>(8 * sizeof(T)))
               throw Error(ErrorCode::MalformedFile,

@@ -11,6 +11,7 @@
 
 #include "common.hpp"
 #include "hdf5_links.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -394,6 +395,7 @@ void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to,
   for (std::uint64_t first = 0; first < size[0]; first += most) {
     const std::array<hsize_t, 2> from{first, 0};
     const std::array<hsize_t, 2> rows{std::min(most, size[0] - first), rank == 2 ? size[1] : 1};
+    expect_step(rows[0] * row_bytes);
     const H5Handle room = checked(H5Screate_simple(rank, rows.data(), nullptr), H5Sclose, "reading a dataset");
     checked(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, from.data(), nullptr, rows.data(), nullptr),
             "reading a dataset");

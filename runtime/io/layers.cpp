@@ -5,12 +5,14 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "common.hpp"
 #include "raw_image.hpp"
 #include "readers.hpp"
 #include "sample_reader.hpp"
+#include "separate_reading.hpp"
 
 namespace tegl {
 
@@ -20,12 +22,25 @@ namespace {
 
 using namespace io_detail;
 
+/// Shows the values that `read` gives, and keeps them until the next call.
+std::function<ValueView(std::size_t, std::size_t)> keeping(std::function<ValueArray(std::size_t, std::size_t)> read) {
+  return [read = std::move(read), kept = std::make_shared<ValueArray>()](std::size_t first, std::size_t count) {
+    *kept = ValueArray();  // one block at a time
+    *kept = read(first, count);
+    return std::visit(
+        []<class Stored>(const ValueVector<Stored>& values) -> ValueView { return std::span<const Stored>(values); },
+        *kept);
+  };
+}
+
 /// Reads in blocks of the file, so that none is decompressed once per layer; holds one.
 template <Value T, int N>
 class BlockLayers final : public LayerReader<T, N> {
  public:
   BlockLayers(RawLayers source, std::size_t block)
-      : grid_(fixed_grid<N>(source.grid)), read_(std::move(source.read)), block_(block) {
+      : grid_(fixed_grid<N>(source.grid)),
+        look_(source.look ? std::move(source.look) : keeping(std::move(source.read))),
+        block_(block) {
     for (int a = 0; a < N - 1; ++a) layer_size_ *= grid_.axes[a].size();
   }
 
@@ -34,7 +49,6 @@ class BlockLayers final : public LayerReader<T, N> {
   void read(std::size_t k, T* to) override {
     const std::size_t first = k / block_ * block_;
     if (first != first_) {
-      values_ = ValueArray();  // one block at a time
       first_ = kNone;
       values_ = read_block(first, std::min(block_, grid_.axes[N - 1].size() - first));
       first_ = first;
@@ -51,19 +65,19 @@ class BlockLayers final : public LayerReader<T, N> {
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  ValueArray read_block(std::size_t first, std::size_t count) const {
+  ValueView read_block(std::size_t first, std::size_t count) const {
     try {
-      return read_(first, count);
+      return look_(first, count);
     } catch (const Error& error) {
       throw Error(error.code(), fmt::format("{} (layers {} to {})", error.what(), first, first + count - 1));
     }
   }
 
   Grid<N> grid_;
-  std::function<ValueArray(std::size_t, std::size_t)> read_;
+  std::function<ValueView(std::size_t, std::size_t)> look_;
   std::size_t block_;
   std::size_t layer_size_ = 1;
-  ValueArray values_;
+  ValueView values_;
   std::size_t first_ = kNone;
 };
 
@@ -73,7 +87,7 @@ constexpr std::uint64_t kMostBlockBytes = std::uint64_t{1} << 28;
 template <int N>
 AnyLayersN<N> with_dimension(RawLayers&& source, const fs::path& path) {
   return std::visit(
-      [&]<class Stored>(const std::vector<Stored>&) -> AnyLayersN<N> {
+      [&]<class Stored>(const ValueVector<Stored>&) -> AnyLayersN<N> {
         using T = std::conditional_t<Value<Stored>, Stored, double>;
         std::vector<std::uint64_t> sizes;
         for (const Axis& axis : source.grid.axes) sizes.push_back(axis.size());
@@ -148,7 +162,9 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
 }
 
 OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
-  return to_open_layers(open_any_layers(path, options), path);
+  const auto open = [&] { return LayersOfFiles{open_any_layers(path, options), {path}}; };
+  const bool separate = options.separate_process && needs_separate_process(path);
+  return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
 }
 
 OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {

@@ -11,6 +11,7 @@
 #include "common.hpp"
 #include "mesh_formats.hpp"
 #include "obj_reader.hpp"
+#include "separate_reading.hpp"
 
 namespace tegl {
 
@@ -220,12 +221,16 @@ void write_mesh(const Mesh& mesh, const fs::path& path, const Progress& progress
 Mesh read_mesh(const fs::path& path, const ReadMeshOptions& options) {
   require_readable_file(path);
   const MeshFileFormat& format = format_of(path);
-  ReadProgress read(options.progress, path);
-  Mesh mesh = format.extension == ".ply"      ? read_ply(path, read)
-              : format.extension == ".vtkhdf" ? read_vtkhdf(path, read, options.allow_outside_paths)
-              : is_gltf(format)               ? read_gltf(path, read, options.allow_outside_paths)
-              : format.extension == ".obj"    ? read_obj(path, read)
-                                              : read_stl(path, read);
+  const auto read_format = [&](const Progress& progress) {
+    ReadProgress read(progress, path);
+    return format.extension == ".ply"      ? read_ply(path, read)
+           : format.extension == ".vtkhdf" ? read_vtkhdf(path, read, options.allow_outside_paths)
+           : is_gltf(format)               ? read_gltf(path, read, options.allow_outside_paths)
+           : format.extension == ".obj"    ? read_obj(path, read)
+                                           : read_stl(path, read);
+  };
+  const bool separate = options.separate_process && format.extension == ".vtkhdf";
+  Mesh mesh = separate ? read_separately(path, options.progress, read_format) : read_format(options.progress);
   check_indices(mesh, path);
   tick(options.progress, 1.0, path);
   return mesh;

@@ -21,6 +21,7 @@
 #include "common.hpp"
 #include "netcdf_file.hpp"
 #include "readers.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -73,8 +74,8 @@ Real unpack_one(T stored, const Packing& packing) {
 }
 
 template <class Real, class T>
-std::vector<Real> unpack_all(const std::vector<T>& stored, const Packing& packing) {
-  std::vector<Real> result(stored.size());
+ValueVector<Real> unpack_all(const ValueVector<T>& stored, const Packing& packing) {
+  ValueVector<Real> result(stored.size());
   std::transform(stored.begin(), stored.end(), result.begin(),
                  [&](T value) { return unpack_one<Real>(value, packing); });
   return result;
@@ -83,7 +84,7 @@ std::vector<Real> unpack_all(const std::vector<T>& stored, const Packing& packin
 /// Float for what float holds exactly, integers of up to 16 bits included; double for the others.
 ValueArray unpack(ValueArray&& values, Packing packing) {
   return std::visit(
-      [&]<class T>(std::vector<T>& stored) -> ValueArray {
+      [&]<class T>(ValueVector<T>& stored) -> ValueArray {
         // A value that the type cannot hold is never met, and casting it would be undefined.
         std::erase_if(packing.missing, [](double value) {
           constexpr auto kLowest = static_cast<double>(std::numeric_limits<T>::lowest());
@@ -432,6 +433,7 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
   const VariableGrid grid = read_grid(*file, found.variable, found.slab);
   found.info.axis_directions = grid.directions;
   const Packing packing = read_packing(*file, found.variable);
+  expect_memory(2 * file->chunk_bytes(found.variable, sizeof(double)));
   return {grid.grid, found.info, file->block_length(found.variable, grid.last_dimension),
           [file, packing, grid, variable = found.variable, slab = found.slab](std::size_t first, std::size_t count) {
             const NcSlab layers = layers_of(slab, grid.last_dimension, first, count);

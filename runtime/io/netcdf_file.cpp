@@ -16,6 +16,7 @@
 #include "common.hpp"
 #include "hdf5_links.hpp"
 #include "inflate.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -81,28 +82,28 @@ std::pair<int, std::string> name_from(const Get& get) {
 ValueArray array_for(nc_type type, bool as_unsigned) {
   switch (type) {
     case NC_BYTE:
-      if (as_unsigned) return std::vector<std::uint8_t>();
-      return std::vector<std::int8_t>();
+      if (as_unsigned) return ValueVector<std::uint8_t>();
+      return ValueVector<std::int8_t>();
     case NC_UBYTE:
-      return std::vector<std::uint8_t>();
+      return ValueVector<std::uint8_t>();
     case NC_SHORT:
-      if (as_unsigned) return std::vector<std::uint16_t>();
-      return std::vector<std::int16_t>();
+      if (as_unsigned) return ValueVector<std::uint16_t>();
+      return ValueVector<std::int16_t>();
     case NC_USHORT:
-      return std::vector<std::uint16_t>();
+      return ValueVector<std::uint16_t>();
     case NC_INT:
-      if (as_unsigned) return std::vector<std::uint32_t>();
-      return std::vector<std::int32_t>();
+      if (as_unsigned) return ValueVector<std::uint32_t>();
+      return ValueVector<std::int32_t>();
     case NC_UINT:
-      return std::vector<std::uint32_t>();
+      return ValueVector<std::uint32_t>();
     case NC_INT64:
-      return std::vector<std::int64_t>();
+      return ValueVector<std::int64_t>();
     case NC_UINT64:
-      return std::vector<std::uint64_t>();
+      return ValueVector<std::uint64_t>();
     case NC_FLOAT:
-      return std::vector<float>();
+      return ValueVector<float>();
     default:
-      return std::vector<double>();
+      return ValueVector<double>();
   }
 }
 
@@ -118,6 +119,7 @@ const char* nc_type_name(nc_type type) noexcept {
 bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UINT64 && type != NC_CHAR; }
 
 NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outside_paths) : path_(path) {
+  now_reading(path);
   if (is_gzip(path)) content_ = inflate_netcdf(path, progress);
   const std::vector<unsigned char> start = content_.empty() ? read_bytes(path, 0, 8) : std::vector<unsigned char>();
   const auto all = std::span<const unsigned char>(content_.empty() ? start : content_);
@@ -267,6 +269,7 @@ void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::si
     tick(progress, static_cast<double>(first) / static_cast<double>(layers), path_);
     part.start[along] = slab.start[along] + first;
     part.count[along] = std::min(step, layers - first);
+    expect_step(part.count[along] * layer_bytes);
     check(nc_get_vara(variable.group, variable.id, part.start.data(), part.count.data(),
                       static_cast<unsigned char*>(to) + first * layer_bytes),
           "reading " + variable.name);
@@ -279,6 +282,13 @@ std::size_t NcFile::block_length(const NcVariable& variable, std::size_t dimensi
   const bool chunked =
       nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) == NC_NOERR && storage == NC_CHUNKED;
   return chunked ? std::max<std::size_t>(1, chunks[dimension]) : 1;
+}
+
+std::uint64_t NcFile::chunk_bytes(const NcVariable& variable, std::size_t item) const {
+  std::uint64_t bytes = item;
+  for (std::size_t d = 0; d < variable.sizes.size(); ++d)
+    bytes *= std::min(variable.sizes[d], block_length(variable, d));
+  return bytes;
 }
 
 ValueArray NcFile::numeric_array(const NcVariable& variable) const {
@@ -301,21 +311,23 @@ void NcFile::require_stored(const NcVariable& variable, std::span<const std::uin
   std::vector<std::size_t> chunks(std::max<std::size_t>(1, variable.sizes.size()), 1);
   if (nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) != NC_NOERR || storage != NC_CHUNKED)
     return;
-  const std::uint64_t chunk_bytes =
-      checked_bytes(std::vector<std::uint64_t>(chunks.begin(), chunks.end()), item, path_);
+  const std::uint64_t of_chunk = checked_bytes(std::vector<std::uint64_t>(chunks.begin(), chunks.end()), item, path_);
   const std::vector<std::uint64_t> all(variable.sizes.begin(), variable.sizes.end());
-  if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(chunk_bytes, whole))
+  if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(of_chunk, whole))
     fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} bytes in chunks of {} ({} bytes); expected at most {}",
-         variable.name, whole, shape_text(chunks), chunk_bytes, std::max(kMostChunkBytes, 2 * whole));
+         variable.name, whole, shape_text(chunks), of_chunk, std::max(kMostChunkBytes, 2 * whole));
 }
 
 ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const Progress& progress) const {
   ValueArray result = numeric_array(variable);
   const std::vector<std::uint64_t> sizes(slab.count.begin(), slab.count.end());
   std::visit(
-      [&]<class T>(std::vector<T>& values) {
+      [&]<class T>(ValueVector<T>& values) {
         require_stored(variable, sizes, sizeof(T));
-        values.resize(static_cast<std::size_t>(checked_bytes(sizes, sizeof(T), path_) / sizeof(T)));
+        const std::uint64_t bytes = checked_bytes(sizes, sizeof(T), path_);
+        expect_step(std::max(bytes, bytes == 0 ? 0 : chunk_bytes(variable, sizeof(T))));
+        expect_memory(kBytesPerValue * (bytes / sizeof(T)));
+        values.resize(static_cast<std::size_t>(bytes / sizeof(T)));
         if (!values.empty()) read_blocks(variable, slab, sizeof(T), values.data(), progress);
       },
       result);

@@ -61,6 +61,8 @@ class NcFile {
   [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress = {}) const;
   /// How many indices of a dimension lie in one block of the file; 1 if it is not stored in blocks.
   [[nodiscard]] std::size_t block_length(const NcVariable& variable, std::size_t dimension) const;
+  /// Bytes of the values in a block of the file, as far as the variable has them.
+  [[nodiscard]] std::uint64_t chunk_bytes(const NcVariable& variable, std::size_t item) const;
   [[nodiscard]] bool is_compressed() const noexcept { return !content_.empty(); }
 
  private:

@@ -285,9 +285,9 @@ struct Scaling {
   /// slope * v + intercept, as float for values of up to 16 bits and for float, else as double.
   [[nodiscard]] ValueArray apply(const ValueArray& values) const {
     return std::visit(
-        [&]<class T>(const std::vector<T>& stored) -> ValueArray {
+        [&]<class T>(const ValueVector<T>& stored) -> ValueArray {
           using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
-          std::vector<Real> result(stored.size());
+          ValueVector<Real> result(stored.size());
           std::transform(stored.begin(), stored.end(), result.begin(),
                          [&](T value) { return static_cast<Real>(slope * static_cast<double>(value) + intercept); });
           return result;

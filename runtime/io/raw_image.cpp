@@ -24,14 +24,14 @@ constexpr bool kIsWide =
     std::is_same_v<T, std::uint32_t> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint64_t>;
 
 template <class To, class From>
-std::vector<To> converted(const std::vector<From>& from) {
-  std::vector<To> to(from.size());
+ValueVector<To> converted(const ValueVector<From>& from) {
+  ValueVector<To> to(from.size());
   std::transform(from.begin(), from.end(), to.begin(), [](From value) { return static_cast<To>(value); });
   return to;
 }
 
 template <class T>
-bool fits_int32(const std::vector<T>& values) {
+bool fits_int32(const ValueVector<T>& values) {
   constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
   return std::all_of(values.begin(), values.end(), [](T value) {
     if constexpr (std::is_signed_v<T>) return value >= -kMax - 1 && value <= kMax;
@@ -43,7 +43,7 @@ template <int N>
 AnyImageN<N> with_dimension(RawImage&& image) {
   const Grid<N> grid = fixed_grid<N>(image.grid);
   return std::visit(
-      [&]<class T>(std::vector<T>& values) -> AnyImageN<N> {
+      [&]<class T>(ValueVector<T>& values) -> AnyImageN<N> {
         if constexpr (!kIsWide<T>) {
           return OwnedImage<T, N>{grid, std::move(values)};
         } else {
@@ -194,8 +194,8 @@ ValueArray array_of_type(std::string_view name) {
 
 ValueArray with_axis_last(const ValueArray& values, std::size_t inner, std::size_t count, std::size_t outer) {
   return std::visit(
-      [&]<class T>(const std::vector<T>& from) -> ValueArray {
-        std::vector<T> to(from.size());
+      [&]<class T>(const ValueVector<T>& from) -> ValueArray {
+        ValueVector<T> to(from.size());
         for (std::size_t o = 0; o < outer; ++o)
           for (std::size_t i = 0; i < count; ++i)
             std::copy_n(from.begin() + static_cast<std::ptrdiff_t>((o * count + i) * inner), inner,

@@ -11,6 +11,7 @@
 #include "raw_image.hpp"
 #include "readers.hpp"
 #include "sample_reader.hpp"
+#include "separate_reading.hpp"
 
 namespace tegl {
 
@@ -155,14 +156,22 @@ RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOption
 
 ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options) {
   tick(options.progress, 0.0, path);
-  RawImage image = read_any(path, Extent::whole, options);
+  const auto read = [&](const Progress& progress) {
+    ReadImageOptions own = options;
+    own.progress = progress;
+    return ImageOfFiles{read_any(path, Extent::whole, own), {}};
+  };
+  const bool separate = options.separate_process && needs_separate_process(path);
+  RawImage image = (separate ? read_separately(path, options.progress, read) : read(options.progress)).image;
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), path);
   tick(options.progress, 1.0, path);
   return {std::move(result), std::move(info)};
 }
 
-std::vector<ImageVariable> list_image_variables(const fs::path& path) {
+std::vector<ImageVariable> list_image_variables(const fs::path& path, const ReadImageOptions& options) {
+  if (options.separate_process && needs_separate_process(path))
+    return read_separately(path, [&] { return list_image_variables(path); });
   if (is_dicom(path)) return list_dicom(path);
   require_readable_file(path);
   return format_of(path) == Format::NetCdf ? list_netcdf(path) : std::vector<ImageVariable>();

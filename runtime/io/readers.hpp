@@ -44,6 +44,8 @@ struct RawLayers {
   std::size_t block = 1;  ///< layers that are best read together
   /// The samples of the layers [first, first + count); always of the same type. Keeps the file open.
   std::function<ValueArray(std::size_t first, std::size_t count)> read;
+  /// The same samples without a copy, valid until the next call; there may be `read` only.
+  std::function<ValueView(std::size_t first, std::size_t count)> look = {};
 };
 /// The layers, of the value types and dimensions of the library.
 OpenLayersResult to_open_layers(RawLayers&& source, const std::filesystem::path& path);

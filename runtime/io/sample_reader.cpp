@@ -28,12 +28,12 @@ namespace fs = std::filesystem;
 namespace {
 
 template <class T>
-std::span<unsigned char> as_bytes(std::vector<T>& values, std::size_t first) {
+std::span<unsigned char> as_bytes(ValueVector<T>& values, std::size_t first) {
   return {reinterpret_cast<unsigned char*>(values.data() + first), (values.size() - first) * sizeof(T)};
 }
 
 template <class T>
-void swap_bytes(std::vector<T>& values) {
+void swap_bytes(ValueVector<T>& values) {
   unsigned char* const bytes = as_bytes(values, 0).data();
   for (std::size_t i = 0; i < values.size(); ++i) std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
 }
@@ -182,7 +182,7 @@ class SampleReader::Source {
   [[nodiscard]] const StoredSamples& samples() const noexcept { return samples_; }
 
   template <class T>
-  void read(std::uint64_t first, std::uint64_t count, std::vector<T>& values, const Progress& progress) {
+  void read(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
     if (count == 0) return;
     const bool in_order = is_open() && first >= next_;
     if (samples_.encoding != Encoding::raw && !in_order) restart();
@@ -224,7 +224,7 @@ class SampleReader::Source {
   }
 
   template <class T>
-  void read_raw(std::uint64_t first, std::uint64_t count, std::vector<T>& values, const Progress& progress) {
+  void read_raw(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
     values.resize(static_cast<std::size_t>(count));
     constexpr std::size_t kBlock = std::size_t{1} << 22;
     const auto to = as_bytes(values, 0);
@@ -239,7 +239,7 @@ class SampleReader::Source {
   }
 
   template <class T>
-  void read_deflated(std::uint64_t first, std::uint64_t count, std::vector<T>& values, const Progress& progress) {
+  void read_deflated(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
     inflater_->skip((first - next_) * item_);
     grow(values, count, progress, [&](std::size_t before) {
       const auto to = as_bytes(values, before);
@@ -249,7 +249,7 @@ class SampleReader::Source {
   }
 
   template <class T>
-  void read_words(std::uint64_t first, std::uint64_t count, std::vector<T>& values, const Progress& progress) {
+  void read_words(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
     const auto next = [&](std::uint64_t number) {
       const std::string_view word = text_->next_word();
       if (word.empty()) fail_length(number, "numbers", "", total_);
@@ -266,7 +266,7 @@ class SampleReader::Source {
   }
 
   template <class T>
-  void read_digits(std::uint64_t first, std::uint64_t count, std::vector<T>& values, const Progress& progress) {
+  void read_digits(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
     const auto next = [&](std::uint64_t number) {
       const std::optional<char> c = text_->next_character();
       if (!c) fail_length(number, "hexadecimal digits", "", 2 * total_ * item_);
@@ -290,7 +290,7 @@ class SampleReader::Source {
   /// Lets `fill` fill some more values, after those that there are already, until there are `count`. A file that has
   /// fewer than its header says costs no more memory than those it has.
   template <class T, class Fill>
-  void grow(std::vector<T>& values, std::uint64_t count, const Progress& progress, const Fill& fill) {
+  void grow(ValueVector<T>& values, std::uint64_t count, const Progress& progress, const Fill& fill) {
     constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
     // Pages are taken only as values come. A sample takes at least two characters, or a 1032nd of its bytes.
     const std::uint64_t possible = samples_.encoding == Encoding::deflate ? count : left_ / 2 + 1;
@@ -335,7 +335,7 @@ class SampleReader::Source {
 };
 
 std::uint64_t bytes_of_type(std::string_view type) {
-  return std::visit([]<class T>(const std::vector<T>&) -> std::uint64_t { return sizeof(T); }, array_of_type(type));
+  return std::visit([]<class T>(const ValueVector<T>&) -> std::uint64_t { return sizeof(T); }, array_of_type(type));
 }
 
 SampleReader::SampleReader(StoredSamples samples) : source_(std::make_unique<Source>(std::move(samples))) {}

@@ -14,6 +14,8 @@
 #include "common.hpp"
 #include "raw_image.hpp"
 #include "readers.hpp"
+#include "reading_process.hpp"
+#include "separate_reading.hpp"
 #include "time_units.hpp"
 
 namespace tegl {
@@ -248,8 +250,8 @@ std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOp
 /// Adds the values of a file behind those of others.
 void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::path& path) {
   std::visit(
-      [&]<class T>(std::vector<T>& values) {
-        const auto* const added = std::get_if<std::vector<T>>(&from);
+      [&]<class T>(ValueVector<T>& values) {
+        const auto* const added = std::get_if<ValueVector<T>>(&from);
         if (added == nullptr || added->size() != expected)
           fail(ErrorCode::MalformedFile, path, "has changed since its header was read");
         values.insert(values.end(), added->begin(), added->end());
@@ -257,14 +259,8 @@ void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::p
       to);
 }
 
-/// Layers, and the files in the order of the new axis.
-struct OrderedLayers {
-  RawLayers layers;
-  std::vector<fs::path> files;
-};
-
 /// The series as layers, a file each.
-OrderedLayers open_members(std::span<const fs::path> files, const SeriesOptions& options) {
+LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options) {
   std::vector<Member> members = read_headers(files, options);
   auto [last, direction] = make_axis(members, options);
   RawLayers result;
@@ -279,6 +275,7 @@ OrderedLayers open_members(std::span<const fs::path> files, const SeriesOptions&
       std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });
   result.read = [paths, layer, type = members.front().type, own = options](std::size_t begin, std::size_t count) {
     ValueArray values = array_of_type(name_of_type(type));
+    expect_memory(kBytesPerValue * count * layer);
     std::visit([&](auto& all) { all.reserve(count * layer); }, values);
     for (std::size_t i = begin; i < begin + count; ++i) {
       Progress progress;
@@ -304,9 +301,31 @@ RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions&
   return open_dicom(files, options.variable, options.progress);
 }
 
-OrderedLayers open_several(std::span<const fs::path> files, const SeriesOptions& options) {
+LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions& options) {
   if (options.raw || !are_dicom_files(files)) return open_members(files, options);
   return {open_dicom_files(files, options), {files.begin(), files.end()}};
+}
+
+/// One file or several, in this process.
+ImageOfFiles read_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (files.size() == 1) return {read_member(files[0], Extent::whole, options, options.progress), {files[0]}};
+  auto [layers, order] = open_several(files, options);
+  ImageOfFiles result;
+  result.image.values = layers.read(0, layers.grid.axes.back().size());
+  result.image.grid = std::move(layers.grid);
+  result.image.info = std::move(layers.info);
+  result.files = std::move(order);
+  return result;
+}
+
+LayersOfFiles open_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (files.size() > 1) return open_several(files, options);
+  return {options.raw ? open_raw(files[0], *options.raw) : open_any_layers(files[0], member_options(options, {})),
+          {files[0]}};
+}
+
+bool is_read_separately(std::span<const fs::path> files, const SeriesOptions& options) {
+  return options.separate_process && !options.raw && needs_separate_process(files);
 }
 
 /// Throws for what only several files can be asked for.
@@ -377,17 +396,13 @@ std::string series_hint(const Error& error, const SeriesOptions& options, const 
 
 ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
-  RawImage image;
-  std::vector<fs::path> order(files.begin(), files.end());
-  if (files.size() == 1) {
-    image = read_member(files[0], Extent::whole, options, options.progress);
-  } else {
-    auto [layers, ordered] = open_several(files, options);
-    image.values = layers.read(0, layers.grid.axes.back().size());
-    image.grid = std::move(layers.grid);
-    image.info = std::move(layers.info);
-    order = std::move(ordered);
-  }
+  const auto read = [&](const Progress& progress) {
+    SeriesOptions own = options;
+    own.progress = progress;
+    return read_files(files, own);
+  };
+  auto [image, order] =
+      is_read_separately(files, options) ? read_separately(files[0], options.progress, read) : read(options.progress);
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), files[0]);
   return {{std::move(result), std::move(info)}, std::move(order)};
@@ -395,12 +410,10 @@ ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOption
 
 OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
-  if (files.size() == 1)
-    return {options.raw ? open_raw_layers(files[0], *options.raw) : open_layers(files[0], member_options(options, {})),
-            {files[0]}};
   SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
   silent.progress = nullptr;
-  OrderedLayers opened = open_several(files, silent);
+  const auto open = [&] { return open_files(files, silent); };
+  LayersOfFiles opened = is_read_separately(files, options) ? open_separately(files[0], open) : open();
   return {to_open_layers(std::move(opened.layers), files[0]), std::move(opened.files)};
 }
 

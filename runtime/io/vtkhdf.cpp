@@ -14,6 +14,7 @@
 #include "common.hpp"
 #include "hdf5_file.hpp"
 #include "mesh_formats.hpp"
+#include "reading_process.hpp"
 #include "vtkhdf_writer.hpp"
 
 namespace tegl::io_detail {
@@ -38,10 +39,7 @@ std::vector<std::string> split(const std::string& text, std::size_t count) {
 class Reader {
  public:
   Reader(const fs::path& path, ReadProgress& progress, bool allow_outside_paths)
-      : path_(path),
-        progress_(progress),
-        file_(H5File::open(path, allow_outside_paths)),
-        group_(open_root(file_, path)) {}
+      : path_(path), progress_(progress), file_(open_file(path, allow_outside_paths)), group_(open_root(file_, path)) {}
 
   Mesh run() {
     mesh_.space_dim = 3;
@@ -67,6 +65,11 @@ class Reader {
   }
 
  private:
+  static H5File open_file(const fs::path& path, bool allow_outside_paths) {
+    now_reading(path);
+    return H5File::open(path, allow_outside_paths);
+  }
+
   static H5Handle open_root(const H5File& file, const fs::path& path) {
     H5Handle group = file.open_group("VTKHDF");
     const std::string type = file.get_text(group.id(), "Type");
@@ -81,6 +84,9 @@ class Reader {
     return size[0];
   }
 
+  /// Memory for so many numbers, and for HDF5 beside them.
+  static void expect_numbers(std::uint64_t count) { expect_memory(3 * sizeof(double) * count); }
+
   /// A whole dataset, counted in the progress.
   void read(hid_t group, const char* name, hid_t type, void* to) const {
     file_.read(group, name, type, to, [this](std::uint64_t bytes) { progress_.add(bytes); });
@@ -89,7 +95,9 @@ class Reader {
   template <class T>
   [[nodiscard]] std::vector<T> numbers(const char* name, hid_t type) {
     file_.claim(group_.id(), name);
-    std::vector<T> values(static_cast<std::size_t>(length(group_.id(), name)));
+    const std::uint64_t count = length(group_.id(), name);
+    expect_memory(3 * sizeof(T) * count);
+    std::vector<T> values(static_cast<std::size_t>(count));
     if (!values.empty()) read(group_.id(), name, type, values.data());
     return values;
   }
@@ -127,6 +135,7 @@ class Reader {
     const auto size = file_.claim(group_.id(), "Points");
     if (size.size() != 2 || size[1] != 3)
       fail(ErrorCode::MalformedFile, path_, "points of shape {}; expected rows of 3", shape_text(size));
+    expect_numbers(size[0] * 3);
     mesh_.coordinates.resize(static_cast<std::size_t>(size[0] * 3));
     if (size[0] > 0) read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
   }
@@ -147,6 +156,7 @@ class Reader {
   void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) {
     const std::size_t count = rows.size() / 3;
     file_.claim(point_data.id(), name);
+    expect_numbers(count + 4 * count);
     std::vector<double> fourth(count);
     if (count > 0) read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
     Buffer<double> all(4 * count);
@@ -168,6 +178,7 @@ class Reader {
     if (vertices == 0 || !has(kNormals, {vertices, 3})) return;
     if (mesh_.space_dim == 4 && !has(kNormalTimes, {vertices})) return;
     file_.claim(point_data.id(), kNormals);
+    expect_numbers(3 * vertices);
     mesh_.normals.resize(static_cast<std::size_t>(3 * vertices));
     read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
@@ -208,6 +219,7 @@ class Reader {
       attribute.name = names.make(own_name.empty() ? name : own_name);
       attribute.unit = file_.get_text(dataset.id(), kAttributeUnit);
       attribute.width = size.size() == 1 ? 1 : static_cast<int>(size[1]);
+      expect_numbers(rows * static_cast<std::size_t>(attribute.width));
       attribute.values.resize(rows * static_cast<std::size_t>(attribute.width));
       if (rows > 0) read(group.id(), name.c_str(), H5T_NATIVE_DOUBLE, attribute.values.data());
     }

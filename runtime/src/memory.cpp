@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
+#include "block_source.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/values.hpp"
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -14,18 +17,67 @@
 
 namespace tegl::detail {
 
-#ifdef __linux__
-
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
 std::size_t rounded(std::size_t bytes) { return (bytes + kHugePage - 1) / kHugePage * kHugePage; }
 
+/// A child process that reads a file has one thread, and a thread that takes over a block of it allocates nothing else
+/// meanwhile.
+thread_local BlockSource* block_source = nullptr;
+
+/// Stands before the samples of a large block.
+struct ValuesHeader {
+  void* block;        ///< null: from operator new
+  std::size_t bytes;  ///< of the block
+};
+static_assert(sizeof(ValuesHeader) <= kValuesOffset);
+
+void free_block(void* block, std::size_t bytes) noexcept {
+  if (block_source != nullptr && block_source->release(block, bytes)) return;
+#ifdef __linux__
+  munmap(block, bytes);
+#endif
+}
+
 }  // namespace
+
+BlockSource* exchange_block_source(BlockSource* source) noexcept { return std::exchange(block_source, source); }
+
+std::size_t block_of_values(std::size_t bytes) noexcept {
+  constexpr std::size_t kPage = 4096;
+  return (bytes + kValuesOffset + kPage - 1) / kPage * kPage;
+}
+
+std::size_t block_of_buffer(std::size_t bytes) noexcept { return rounded(bytes); }
+
+void* allocate_values(std::size_t bytes) {
+  if (bytes < kLargeValues) return ::operator new(bytes);
+  ValuesHeader header{nullptr, block_of_values(bytes)};
+  if (block_source != nullptr) header.block = block_source->allocate(header.bytes);
+  auto* const begin = static_cast<unsigned char*>(
+      header.block != nullptr ? header.block : ::operator new(bytes + kValuesOffset, std::align_val_t(kValuesOffset)));
+  ::new (static_cast<void*>(begin)) ValuesHeader(header);
+  return begin + kValuesOffset;
+}
+
+void free_values(void* block, std::size_t bytes) noexcept {
+  if (bytes < kLargeValues) return ::operator delete(block);
+  unsigned char* const begin = static_cast<unsigned char*>(block) - kValuesOffset;
+  const ValuesHeader header = *reinterpret_cast<const ValuesHeader*>(begin);
+  if (header.block != nullptr)
+    free_block(header.block, header.bytes);
+  else
+    ::operator delete(begin, std::align_val_t(kValuesOffset));
+}
+
+#ifdef __linux__
 
 void* allocate_large_block(std::size_t bytes) {
   if (bytes > SIZE_MAX - 2 * kHugePage) throw std::bad_alloc();
+  if (block_source != nullptr)
+    if (void* const block = block_source->allocate(rounded(bytes))) return block;
   // One page more than needed, so that an aligned block can be cut out.
   const std::size_t size = rounded(bytes) + kHugePage;
   void* const mapped = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -38,7 +90,7 @@ void* allocate_large_block(std::size_t bytes) {
   return begin + before;
 }
 
-void free_large_block(void* block, std::size_t bytes) noexcept { munmap(block, rounded(bytes)); }
+void free_large_block(void* block, std::size_t bytes) noexcept { free_block(block, rounded(bytes)); }
 
 #else
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Prints an image as JSON, coordinates and all values: for tests by other readers of the same files. Arguments: the
-// series or variable (may be empty), "whole" or "layers", and the files.
+// series or variable (may be empty), "whole" or "layers", and the files. Reads them in this process and in a child
+// process, which has to give the same.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -78,11 +79,18 @@ int main(int argc, char** argv) {
   tegl::SeriesOptions options;
   options.variable = argv[1];
   const std::vector<std::filesystem::path> files(argv + 3, argv + argc);
-  json result;
-  try {
-    result = std::string(argv[2]) == "layers" ? layers(files, options) : whole(files, options);
-  } catch (const tegl::Error& error) {
-    result = {{"error", tegl::error_name(error.code())}, {"message", error.what()}};
+  const auto read = [&](bool separate_process) -> json {
+    options.separate_process = separate_process;
+    try {
+      return std::string(argv[2]) == "layers" ? layers(files, options) : whole(files, options);
+    } catch (const tegl::Error& error) {
+      return {{"error", tegl::error_name(error.code())}, {"message", error.what()}};
+    }
+  };
+  const json result = read(false);
+  if (read(true) != result) {  // NaN is written as null
+    std::fprintf(stderr, "in a child process: %s\n", read(true).dump().c_str());
+    return 1;
   }
   std::printf("%s\n", result.dump().c_str());
   return 0;

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "tegl/grid.hpp"
+#include "tegl/values.hpp"
 
 namespace tegl {
 
@@ -63,8 +63,8 @@ class Image {
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 struct OwnedImage {
-  Grid<N> grid = {};           ///< the samples' coordinates
-  std::vector<T> values = {};  ///< axis 0 fastest
+  Grid<N> grid = {};      ///< the samples' coordinates
+  Values<T> values = {};  ///< axis 0 fastest
 
   /// The image, to be handed on; valid while this one lives.
   [[nodiscard]] Image<T, N> view() const& { return Image<T, N>(values.data(), grid); }

@@ -71,6 +71,11 @@ struct ReadImageOptions {
   /// Headers may name a file of samples (NRRD `data file`, MetaImage `ElementDataFile`). It is read if it lies in the
   /// header's folder or below, with symbolic links resolved; with this option, wherever it lies.
   bool allow_outside_paths = false;
+  /// Reads formats of libraries that some damaged files bring down, HDF5 (netCDF-4) and DCMTK, in a child process with
+  /// limits of memory and time: whatever happens there, the error is MalformedFile. The values are the same, in memory
+  /// that the child has filled, without a copy. Starting the child takes about a millisecond, and more in a process of
+  /// gigabytes in small pages. Callable while other threads run.
+  bool separate_process = false;
 };
 
 /// Reads NIfTI-1 (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr; raw, gzip, ascii, hex; one data file), MetaImage
@@ -107,7 +112,8 @@ struct ImageVariable {
 /// The variables that ReadImageOptions::variable may name in a netCDF file, or the series in DICOM (the description as
 /// long_name); none for the other formats, whose files hold one image without a name. Variables of more than 4 axes
 /// need ReadImageOptions::fixed to be read. Reads no values. Errors: those of read_image.
-std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path);
+std::vector<ImageVariable> list_image_variables(const std::filesystem::path& path,
+                                                const ReadImageOptions& options = {});
 
 /// The layers of an image of any value type in N dimensions.
 template <int N>
@@ -260,6 +266,7 @@ struct ReadMeshOptions {
   /// Also reads files that the mesh's file names outside of its own folder and the folders below it: buffers of glTF,
   /// external links, external storage and virtual datasets of HDF5. Otherwise these are refused with UnsupportedData.
   bool allow_outside_paths = false;
+  bool separate_process = false;  ///< as in ReadImageOptions: for VTKHDF
 };
 
 /// Reads the formats of write_mesh, by this program or others (PLY: also text and big-endian; polygons are fanned into

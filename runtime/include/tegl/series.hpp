@@ -35,6 +35,7 @@ struct SeriesOptions {
   Progress progress = {};                  ///< of read_series, over all files
   std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, of every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
+  bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
 };
 
 /// An image of several files, which is a ReadImageResult as any other, and those files.

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The samples that an image owns: in a std::vector, or in memory that another process has filled.
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <iterator>
+#include <new>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace tegl {
+
+namespace detail {
+/// Memory for samples, aligned to 64 bytes from 2 MiB on. Throws std::bad_alloc.
+void* allocate_values(std::size_t bytes);
+void free_values(void* block, std::size_t bytes) noexcept;
+
+/// Leaves new samples unset, and takes large blocks from where `allocate_values` does.
+template <class T>
+struct ValueAllocator {
+  using value_type = T;
+  ValueAllocator() = default;
+  template <class U>
+  ValueAllocator(const ValueAllocator<U>&) noexcept {}  // NOLINT(google-explicit-constructor)
+
+  T* allocate(std::size_t n) {
+    if (n > static_cast<std::size_t>(-1) / 2 / sizeof(T)) throw std::bad_array_new_length();
+    return static_cast<T*>(allocate_values(n * sizeof(T)));
+  }
+  void deallocate(T* block, std::size_t n) noexcept { free_values(block, n * sizeof(T)); }
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    if constexpr (sizeof...(Args) == 0)
+      ::new (static_cast<void*>(p)) U;
+    else
+      ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
+  friend bool operator==(const ValueAllocator&, const ValueAllocator&) noexcept { return true; }
+};
+
+/// A vector of samples that leaves new ones unset.
+template <class T>
+using ValueVector = std::vector<T, ValueAllocator<T>>;
+}  // namespace detail
+
+/// Samples in one block of memory, with the functions of a std::vector. Made from a std::vector without a copy. New
+/// samples are 0.
+template <class T>
+class Values {
+ public:
+  using value_type = T;                                                ///< the type of a sample
+  using size_type = std::size_t;                                       ///< a number of samples
+  using difference_type = std::ptrdiff_t;                              ///< a distance of two samples
+  using reference = T&;                                                ///< a sample
+  using const_reference = const T&;                                    ///< a sample that is not changed
+  using iterator = T*;                                                 ///< in the order of memory
+  using const_iterator = const T*;                                     ///< in the order of memory
+  Values() noexcept = default;                                         ///< no samples
+  Values(std::vector<T> values) noexcept : held_(std::move(values)) {  ///< these samples
+    refresh();
+  }
+  Values(detail::ValueVector<T> values) noexcept : held_(std::move(values)) {  ///< these samples
+    refresh();
+  }
+  explicit Values(std::size_t count, T value = T()) : Values(std::vector<T>(count, value)) {}  ///< equal samples
+  Values(std::initializer_list<T> values) : Values(std::vector<T>(values)) {}                  ///< these samples
+  template <std::input_iterator It>
+  Values(It first, It last) : Values(std::vector<T>(first, last)) {}             ///< a range's samples
+  Values(const Values& other) : held_(other.held_) { refresh(); }                ///< a copy
+  Values(Values&& other) noexcept : held_(std::exchange(other.held_, Held())) {  ///< leaves no samples
+    refresh();
+    other.refresh();
+  }
+  Values& operator=(const Values& other) { return *this = Values(other); }  ///< a copy
+  Values& operator=(Values&& other) noexcept {                              ///< leaves no samples
+    held_ = std::exchange(other.held_, Held());
+    refresh();
+    other.refresh();
+    return *this;
+  }
+  ~Values() = default;
+
+  [[nodiscard]] T* data() noexcept { return data_; }                                    ///< the first sample
+  [[nodiscard]] const T* data() const noexcept { return data_; }                        ///< the first sample
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }                     ///< how many there are
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }                      ///< whether there are none
+  [[nodiscard]] T* begin() noexcept { return data_; }                                   ///< at the first sample
+  [[nodiscard]] const T* begin() const noexcept { return data_; }                       ///< at the first sample
+  [[nodiscard]] T* end() noexcept { return data_ + size_; }                             ///< behind the last sample
+  [[nodiscard]] const T* end() const noexcept { return data_ + size_; }                 ///< behind the last sample
+  [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }              ///< sample i < size()
+  [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }  ///< sample i < size()
+  [[nodiscard]] T& front() noexcept { return data_[0]; }                                ///< there has to be one
+  [[nodiscard]] const T& front() const noexcept { return data_[0]; }                    ///< there has to be one
+  [[nodiscard]] T& back() noexcept { return data_[size_ - 1]; }                         ///< there has to be one
+  [[nodiscard]] const T& back() const noexcept { return data_[size_ - 1]; }             ///< there has to be one
+
+  /// As those of std::vector; pointers to samples become invalid.
+  void resize(std::size_t count, T value = T()) {
+    change([&](auto& held) { held.resize(count, value); });
+  }
+  void reserve(std::size_t count) {  ///< room for so many
+    change([&](auto& held) { held.reserve(count); });
+  }
+  void push_back(T value) {  ///< adds a sample at the end
+    change([&](auto& held) { held.push_back(value); });
+  }
+  void assign(std::size_t count, T value) {  ///< equal samples
+    change([&](auto& held) { held.assign(count, value); });
+  }
+  template <std::input_iterator It>
+  void assign(It first, It last) {  ///< a range's samples
+    change([&](auto& held) { held.assign(first, last); });
+  }
+  void clear() noexcept {  ///< leaves no samples
+    change([](auto& held) { held.clear(); });
+  }
+
+  /// A std::vector of the samples: a copy, or without one from a temporary that was made from a std::vector.
+  operator std::vector<T>() const& { return {begin(), end()}; }
+  operator std::vector<T>() && {  ///< leaves no samples
+    auto* const held = std::get_if<std::vector<T>>(&held_);
+    std::vector<T> result = held != nullptr ? std::move(*held) : std::vector<T>(begin(), end());
+    clear();
+    return result;
+  }
+
+  friend bool operator==(const Values& a, const Values& b) {
+    return a.equals(b.begin(), b.end());
+  }                                                                   ///< sample by sample
+  friend bool operator==(const Values& a, const std::vector<T>& b) {  ///< sample by sample
+    return a.equals(b.data(), b.data() + b.size());
+  }
+
+ private:
+  using Held = std::variant<std::vector<T>, detail::ValueVector<T>>;
+
+  template <class Change>
+  void change(Change&& change) {
+    std::visit(change, held_);
+    refresh();
+  }
+  void refresh() noexcept {
+    std::visit(
+        [&](auto& held) {
+          data_ = held.data();
+          size_ = held.size();
+        },
+        held_);
+  }
+  [[nodiscard]] bool equals(const T* first, const T* last) const {
+    if (static_cast<std::size_t>(last - first) != size_) return false;
+    for (std::size_t i = 0; i < size_; ++i)
+      if (!(data_[i] == first[i])) return false;
+    return true;
+  }
+
+  Held held_;
+  T* data_ = nullptr;  ///< of `held_`
+  std::size_t size_ = 0;
+};
+
+}  // namespace tegl
