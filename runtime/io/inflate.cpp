@@ -151,7 +151,7 @@ std::vector<unsigned char> inflate_to_memory(const fs::path& path, const BytesNe
       wanted = needed(bytes);
     }
     // Pages of what is reserved are taken only as bytes come: a header that lies costs nothing.
-    bytes.reserve(static_cast<std::size_t>(wanted));
+    bytes.reserve(static_cast<std::size_t>(wanted) + kInflateSpare);
     if (!grow_to(wanted)) return bytes;
     bytes.resize(static_cast<std::size_t>(wanted));
     stream.check_end();

@@ -50,8 +50,9 @@ class InflateStream {
 /// if more bytes are needed to know that.
 using BytesNeeded = std::function<std::uint64_t(std::span<const unsigned char>)>;
 
-/// The decompressed bytes of a gzip file, as many as `needed` says, or fewer if the stream ends before. TooLarge when
-/// memory runs out.
+/// The decompressed bytes of a gzip file, as many as `needed` says, or fewer if the stream ends before. So many bytes
+/// more fit into the result without a copy. TooLarge when memory runs out.
+inline constexpr std::size_t kInflateSpare = 8192;
 std::vector<unsigned char> inflate_to_memory(const std::filesystem::path& path, const BytesNeeded& needed,
                                              const Progress& progress);
 

@@ -62,7 +62,10 @@ std::vector<unsigned char> inflate_netcdf(const fs::path& path, const Progress& 
     return bytes.size();
   };
   std::vector<unsigned char> content = inflate_to_memory(path, needed, progress);
-  if (is_classic_netcdf(content)) bytes_of_classic_netcdf(content, content.size(), path);
+  if (!is_classic_netcdf(content)) return content;
+  bytes_of_classic_netcdf(content, content.size(), path);
+  // The library reads headers in blocks, and memory that ends within one is an error to it.
+  content.resize(content.size() + kInflateSpare);
   return content;
 }
 
