@@ -48,10 +48,10 @@ def require_level(prepared: Prepared, level: float, what: str = "contour") -> No
     found = _range_not_around(prepared.image.array, level)
     if found is None:
         return
-    least, most = found
+    least, most = map(str, found)  # as short as their type allows, which format() is not
     unit = f" {prepared.value_unit}" if prepared.value_unit else ""
     allowed = ALLOWED.format(what)
-    if least != least:
+    if least == "nan":
         raise ValueError(f"level is {level}, and all values of the array are missing (NaN or masked); expected some, {allowed}")
     if least == most:
         raise ValueError(f"level is {level}, and all values of the array are {least}{unit}; expected a level between two values, "
@@ -80,7 +80,7 @@ def require_places_of(extent: np.ndarray | None, axis: int, places: Sequence[flo
     for place, said in zip(places, given):
         if extent is None or not is_outside(extent, axis, place, dtype):
             continue
-        low, high = extent[:, axis].astype(dtype)
+        low, high = map(str, extent[:, axis].astype(dtype))
         called = f"axis {axis}" + (f" ('{name}')" if name else "")
         said_as = "" if isinstance(said, (int, float, np.number)) else f" ({said})"
         raise ValueError(f"the place along {called} is {place}{said_as}; expected one between {low} and {high}"

@@ -258,7 +258,7 @@ def said(call):
 
 def test_a_level_outside_of_the_values_is_an_error_that_names_them():
     least, most = VOLUME.min(), VOLUME.max()
-    expected = (f"expected one above {least} and up to {most}, the lowest and the highest value of the array, or "
+    expected = (f"expected one above {least!s} and up to {most!s}, the lowest and the highest value of the array, or "
                 "allow_empty=True for an empty contour")
     above, below = float(most) + 1, float(least)
     assert said(lambda: contour(level=above)) == f"level is {above}; {expected}"
@@ -269,6 +269,9 @@ def test_a_level_outside_of_the_values_is_an_error_that_names_them():
     assert said(lambda: tegl.slice(VOLUME, above, at=2)) == f"level is {above}; {cut}"
     assert said(lambda: tegl.slice(VOLUME, above, at=[2, 3])) == f"level is {above}; {cut}"
     assert said(lambda: tegl.slice(VOLUME, above, normal=(1, 1, 0), offset=5)) == f"level is {above}; {expected}"
+    assert "above 0.1 and up to 0.3 K, the lowest" in said(lambda: tegl.Image(
+        np.array([[0.1, 0.3]] * 2, np.float32), (np.arange(2.0), np.arange(2.0)), ("", ""), ("", ""), None, 0, "", "K", "", "", (),
+        "", ("unknown",) * 2, (np.arange(2.0), np.arange(2.0))).contour(9)), "in as few digits as there are"
     assert "up to 200, the lowest" in said(lambda: tegl.contour(np.array([[7, 200], [9, 8]], np.uint8), 300))
     assert len(contour(level=float(most)).simplices) > 0, "the highest sample is at the level"
     for level in (above, below):
@@ -301,7 +304,7 @@ def test_a_level_is_outside_of_values_that_are_all_alike_or_missing():
 def test_a_place_outside_of_the_image_is_an_error_with_its_unit(dtype):
     moving = tegl.contour(hourly(), 0.1, dtype=dtype)
     most = moving.vertices.dtype.type(5 / 24)
-    text = (f"the place along axis 0 ('time') is 31.25; expected one between 0.0 and {most} days since 2020-01-01T00:00:00, the "
+    text = (f"the place along axis 0 ('time') is 31.25; expected one between 0.0 and {most!s} days since 2020-01-01T00:00:00, the "
             "ends of the image, or allow_empty=True for an empty cut")
     calls = {"slice": lambda **more: moving.slice(31.25, **more), "slices": lambda **more: moving.slice([0.1, 31.25], **more),
              "name": lambda **more: moving.slice(time=31.25, **more), "measure": lambda **more: moving.measure(at=31.25, **more),
@@ -352,7 +355,7 @@ def test_places_are_in_the_image_that_a_contour_is_of():
     assert len(direct.slice(0.5).simplices) == 0 and "between 0.0 and 16.0" in said(lambda: direct.slice(16.5))
     alone = tegl.Contour(whole.vertices, whole.simplices)
     low, high = alone.vertices[:, 0].min(), alone.vertices[:, 0].max()
-    assert f"is 1.0; expected one between {low} and {high}, the ends of the contour" in said(lambda: alone.slice(1))
+    assert f"is 1.0; expected one between {low!s} and {high!s}, the ends of the contour" in said(lambda: alone.slice(1))
     assert len(tegl.Contour(np.empty((0, 3)), np.empty((0, 3), int)).slice(1).simplices) == 0
     falling = tegl.contour(array, 0.0, coords=[np.arange(9.0)[::-1] ** 2, None, None, None])
     assert "between 0.0 and 64.0" in said(lambda: falling.slice(65))

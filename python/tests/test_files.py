@@ -2,6 +2,7 @@
 """Files in and out, other programs' structures, and that the program `tegl` gives the same."""
 
 import base64
+import dataclasses
 import importlib.util
 import json
 import os
@@ -62,6 +63,20 @@ def test_samples_outside_of_the_headers_folder_are_read_only_if_allowed(tmp_path
     header.write_text(header.read_text().replace("../a.raw", "/etc/passwd"))
     with pytest.raises(ValueError, match="/etc/passwd"):
         tegl.read(header)
+
+
+def test_an_image_is_three_lines_however_large_it_is():
+    image = tegl.read(OCEAN)
+    assert repr(image) == str(image) == (
+        "<tegl.Image temperature in degC: 12 x 14 x 90 x 180 float32\n"
+        "  axes: time 1 to 12 month; depth 0 to 500 m; lat -89.5 to 88.5 degrees_north; lon 20.5 to 378.5 degrees_east\n"
+        "  time_axis 0, read from netCDF>")
+    turned = tegl.read(OCEAN, time_axis=-1)
+    assert "180 x 90 x 14 x 12" in repr(turned) and "; time 1 to 12 month\n  time_axis 3" in repr(turned)
+    odd = dataclasses.replace(image, variable="v\x1b[2J\n", axis_names=("", "a\nb", "y", "x"), world_frame="RAS",
+                              affine=np.eye(4, 5), variables=("a", "b"))
+    assert repr(odd).count("\n") == 2 and "\x1b" not in repr(odd) and "axes: axis 0 1 to 12 month; a\\nb 0 to" in repr(odd)
+    assert repr(odd).endswith("time_axis 0, with an affine map, world RAS, read from netCDF, one of 2 variables>")
 
 
 @needs_program
