@@ -1,0 +1,231 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""tests/io/make_seeds.py FOLDER: writes the small sound files that tests/io/fuzz_test.cpp mutates, tests/io/seeds. Each format is
+written by several programs, in old and new versions of the format, as text and binary, chunked and compressed, as each
+writer lays out its headers in its own way. The files are kept in the tree, as writers change; this script documents how
+they were made. It needs Debian's python3-h5py, python3-nibabel, python3-netcdf4, python3-pydicom, python3-meshio,
+python3-vtk9, python3-scipy, teem-apps and assimp-utils."""
+
+import pathlib
+import subprocess
+import sys
+
+import h5py
+import meshio
+import netCDF4
+import nibabel
+import numpy
+import pydicom
+import scipy.io
+import vtk
+from pydicom.dataset import Dataset, FileMetaDataset
+from pydicom.encaps import encapsulate
+from vtkmodules.util import numpy_support
+
+SHAPE = (2, 3, 4, 5)
+
+
+def values(shape, dtype):
+    return (numpy.arange(numpy.prod(shape)) % 100).astype(dtype).reshape(shape)
+
+
+def vtk_image(shape, dtype):
+    image = vtk.vtkImageData()
+    image.SetDimensions(shape[::-1])
+    image.SetSpacing(0.5, 2, 3)
+    image.GetPointData().SetScalars(numpy_support.numpy_to_vtk(values(shape, dtype).ravel(), deep=True))
+    return image
+
+
+def write_nifti(folder):
+    affine = numpy.array([[0, -2, 0, 1], [2, 0, 0, 2], [0, 0, 2, 3], [0, 0, 0, 1.0]])
+    four = nibabel.Nifti1Image(values((5, 4, 3, 2), "i2"), affine)
+    four.header.set_xyzt_units("mm", "sec")
+    four.header.set_slope_inter(2, 1)
+    nibabel.save(four, folder / "nibabel_4d.nii")
+    nibabel.save(four, folder / "nibabel_4d_gz.nii.gz")
+    extended = nibabel.Nifti1Image(values((5, 4, 3), "f4"), affine)
+    extended.header.extensions.append(nibabel.nifti1.Nifti1Extension("comment", b"a comment"))
+    nibabel.save(extended, folder / "nibabel_extension.nii")
+    nibabel.save(nibabel.Nifti1Image(values((5, 4, 3), ">f8"), affine), folder / "nibabel_big_endian.nii")
+    writer = vtk.vtkNIFTIImageWriter()
+    writer.SetFileName(str(folder / "vtk.nii"))
+    writer.SetInputData(vtk_image((3, 4, 5), "u1"))
+    writer.Write()
+
+
+def write_nrrd_and_metaimage(folder):
+    writer = vtk.vtkMetaImageWriter()
+    writer.SetCompression(False)
+    writer.SetFileName(str(folder / "vtk.mha"))
+    writer.SetInputData(vtk_image((3, 4, 5), "i2"))
+    writer.Write()
+    writer.SetCompression(True)
+    writer.SetFileName(str(folder / "vtk_compressed.mha"))
+    writer.Write()
+    raw = folder / "raw.bin"
+    raw.write_bytes(values((3, 4, 5), "i2").tobytes())
+    make = ["teem-unu", "make", "-i", raw, "-t", "short", "-s", "5", "4", "3", "-en", "little", "-e", "raw", "-sp", "0.5", "2", "3",
+            "-l", "x", "y", "z"]
+    for encoding in ("raw", "gzip", "hex", "ascii"):
+        out = folder / f"teem_{encoding}.nrrd"
+        with subprocess.Popen(make, stdout=subprocess.PIPE) as made:
+            subprocess.run(["teem-unu", "save", "-f", "nrrd", "-e", encoding, "-o", out], stdin=made.stdout, check=False)
+    raw.unlink()
+    (folder / "hand_ascii.mha").write_text(
+        "ObjectType = Image\nNDims = 3\nBinaryData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 1 2 3\n"
+        "ElementSpacing = 1 2 3\nDimSize = 3 2 2\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n" +
+        " ".join(map(str, range(12))) + "\n")
+    (folder / "hand_4d.nrrd").write_bytes(
+        b"NRRD0005\r\n# comment\r\ntype: unsigned short\r\ndimension: 4\r\nsizes: 5 4 3 2\r\nspace: left-posterior-superior\r\n"
+        b"kinds: domain domain domain list\r\nspace directions: (1,2,0) (0,3,-1) (0.5,0,4) none\r\n"
+        b"space origin: (10,20,30)\r\nspace units: \"mm\" \"mm\" \"mm\"\r\nendian: big\r\nkey:=value\r\nencoding: raw\r\n\r\n" +
+        values(SHAPE, ">u2").tobytes())
+
+
+def fill_netcdf(data, compressed=False):
+    sizes = dict(time=None, depth=3, lat=4, lon=5)
+    for name, size in sizes.items():
+        data.createDimension(name, size)
+    extra = dict(zlib=True, chunksizes=(1, 2, 2, 5), shuffle=True, fletcher32=True) if compressed else {}
+    variable = data.createVariable("temperature", "i2", tuple(sizes), fill_value=-1, **extra)
+    variable.scale_factor, variable.add_offset, variable.units = 0.5, 10.0, "degC"
+    lon = data.createVariable("lon", "f4", ("lon",))
+    time = data.createVariable("time", "f8", ("time",))
+    time.units, time.calendar = "days since 2000-01-01", "noleap"
+    lon[:] = [0, 90, 180, 270, 359]
+    variable[:] = values(SHAPE, "i2")
+    time[:] = [0, 31]
+
+
+def write_netcdf(folder):
+    for kind in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4", "NETCDF4_CLASSIC"):
+        with netCDF4.Dataset(folder / f"netcdf_{kind.lower()}.nc", "w", format=kind) as data:
+            fill_netcdf(data)
+    with netCDF4.Dataset(folder / "netcdf_compressed.nc", "w") as data:
+        fill_netcdf(data, True)
+        group = data.createGroup("group")
+        text = group.createVariable("names", str, ("lon",))
+        for i in range(5):
+            text[i] = f"name {i}"
+        group.createVariable("x", "u8", ("lat", "lon"))[:] = values((4, 5), "u8")
+    with scipy.io.netcdf_file(folder / "scipy.nc", "w") as data:
+        for name, size in (("y", 4), ("x", 5)):
+            data.createDimension(name, size)
+        data.createVariable("v", "f4", ("y", "x"))[:] = values((4, 5), "f4")
+
+
+def fill_hdf5(data, compressed):
+    extra = dict(chunks=(1, 2, 2, 5), compression="gzip", shuffle=True, fletcher32=True) if compressed else {}
+    data.create_dataset("temperature", data=values(SHAPE, "f4"), **extra)
+    data["lon"] = numpy.arange(5.0)
+    data["lon"].make_scale("lon")
+    data["temperature"].dims[3].attach_scale(data["lon"])
+    data.create_group("a").create_dataset("b", data=values((3, 4), "u2"))
+
+
+def write_hdf5(folder):
+    for version in ("earliest", "latest"):
+        for compressed in (False, True):
+            name = f"h5py_{version}_{'gzip' if compressed else 'contiguous'}.h5"
+            with h5py.File(folder / name, "w", libver=version) as data:
+                fill_hdf5(data, compressed)
+
+
+def write_vtkhdf(folder):
+    points = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1.0]])
+    for version in ("earliest", "latest"):
+        for corners, kind in ((3, 5), (4, 10)):
+            cells = numpy.array([[0, 1, 2, 3], [1, 2, 3, 4]])[:, :corners]
+            with h5py.File(folder / f"h5py_{version}_{corners}.vtkhdf", "w", libver=version) as data:
+                root = data.create_group("VTKHDF")
+                root.attrs["Version"] = [1, 0]
+                root.attrs.create("Type", b"UnstructuredGrid", dtype=h5py.string_dtype("ascii", 16))
+                root["NumberOfPoints"], root["NumberOfCells"] = [5], [2]
+                root["NumberOfConnectivityIds"] = [2 * corners]
+                chunks = dict(chunks=(2, 3), compression="gzip") if version == "latest" else {}
+                root.create_dataset("Points", data=points, maxshape=(None, 3) if chunks else None, **chunks)
+                root["Offsets"], root["Connectivity"] = numpy.arange(3) * corners, cells.ravel()
+                root["Types"] = numpy.full(2, kind, "u1")
+                root["PointData/temperature"] = numpy.arange(5.0)
+                root["PointData/t"] = numpy.arange(5.0)
+                root["CellData/label"] = numpy.arange(2, dtype="i4")
+
+
+def write_dicom(folder):
+    syntaxes = dict(explicit=pydicom.uid.ExplicitVRLittleEndian, implicit=pydicom.uid.ImplicitVRLittleEndian,
+                    big=pydicom.uid.ExplicitVRBigEndian, deflated=pydicom.uid.DeflatedExplicitVRLittleEndian,
+                    rle=pydicom.uid.RLELossless)
+    for name, syntax in syntaxes.items():
+        meta = FileMetaDataset()
+        meta.TransferSyntaxUID = syntax
+        meta.MediaStorageSOPClassUID = pydicom.uid.CTImageStorage
+        meta.MediaStorageSOPInstanceUID = "1.2.3.4"
+        image = Dataset()
+        image.file_meta = meta
+        image.is_little_endian, image.is_implicit_VR = syntax.is_little_endian, syntax.is_implicit_VR
+        image.SOPClassUID, image.SOPInstanceUID = meta.MediaStorageSOPClassUID, "1.2.3.4"
+        image.SeriesInstanceUID, image.StudyInstanceUID, image.Modality = "1.2.3", "1.2", "CT"
+        image.Rows, image.Columns, image.BitsAllocated, image.BitsStored, image.HighBit = 4, 5, 16, 12, 11
+        image.SamplesPerPixel, image.PhotometricInterpretation, image.PixelRepresentation = 1, "MONOCHROME2", 0
+        image.ImagePositionPatient, image.ImageOrientationPatient = [1, 2, 3], [1, 0, 0, 0, 1, 0]
+        image.PixelSpacing, image.SliceThickness = [0.5, 0.25], 2
+        image.RescaleSlope, image.RescaleIntercept = 2, -1000
+        item = Dataset()
+        item.CodeValue = "1"
+        image.AnatomicRegionSequence = pydicom.Sequence([item])
+        pixels = values((4, 5), "u2" if syntax.is_little_endian else ">u2").tobytes()
+        image.PixelData = pixels
+        image["PixelData"].VR = "OW"
+        if name == "rle":
+            image.PixelData = encapsulate([pydicom.pixel_data_handlers.rle_handler.rle_encode_frame(values((4, 5), "u2"))])
+            image["PixelData"].is_undefined_length = True
+        pydicom.dcmwrite(folder / f"pydicom_{name}.dcm", image, write_like_original=False)
+
+
+def write_meshes(folder):
+    points = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    faces = numpy.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    mesh = meshio.Mesh(points, [("triangle", faces)], point_data={"temperature": numpy.arange(4.0)},
+                       cell_data={"label": [numpy.arange(4)]})
+    meshio.write(folder / "meshio.ply", mesh)
+    meshio.write(folder / "meshio_text.ply", mesh, binary=False)
+    plain = meshio.Mesh(points, [("triangle", faces)])
+    meshio.write(folder / "meshio.stl", plain, binary=True)
+    meshio.write(folder / "meshio_text.stl", plain)
+    meshio.write(folder / "meshio.obj", plain)
+
+    source = vtk.vtkSphereSource()
+    source.SetThetaResolution(6)
+    source.SetPhiResolution(5)
+    for name, writer in (("vtk.ply", vtk.vtkPLYWriter()), ("vtk.stl", vtk.vtkSTLWriter()), ("vtk.obj", vtk.vtkOBJWriter())):
+        writer.SetFileName(str(folder / name))
+        writer.SetInputConnection(source.GetOutputPort())
+        if name != "vtk.obj":
+            writer.SetFileTypeToBinary()
+        writer.Write()
+    source.Update()
+    writer = vtk.vtkPLYWriter()
+    writer.SetFileName(str(folder / "vtk_big_endian.ply"))
+    writer.SetInputConnection(source.GetOutputPort())
+    writer.SetDataByteOrderToBigEndian()
+    writer.Write()
+    for kind in ("gltf2", "glb2"):
+        extension = kind[:-1]
+        subprocess.run(["assimp", "export", folder / "meshio.obj", folder / f"assimp.{extension}", f"-f{kind}"], check=True,
+                       stdout=subprocess.DEVNULL)
+    subprocess.run(["assimp", "export", folder / "vtk.obj", folder / "assimp.obj", "-fobj"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["assimp", "export", folder / "vtk.obj", folder / "assimp.ply", "-fply"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["assimp", "export", folder / "vtk.obj", folder / "assimp.stl", "-fstl"], check=True, stdout=subprocess.DEVNULL)
+    (folder / "assimp.mtl").unlink()
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    for write in (write_nifti, write_nrrd_and_metaimage, write_netcdf, write_hdf5, write_vtkhdf, write_dicom, write_meshes):
+        write(folder)
+
+
+if __name__ == "__main__":
+    main()
