@@ -251,6 +251,7 @@ OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const
 std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {
   if (raw()) return {};
   ReadImageOptions options;
+  options.allow_outside_paths = allow_outside_paths_;
   options.separate_process = separate_process();
   return list_image_variables(files.front(), options);
 }

@@ -441,8 +441,8 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
           }};
 }
 
-std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path) {
-  const NcFile file(path, {});
+std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path, bool allow_outside_paths) {
+  const NcFile file(path, {}, allow_outside_paths);
   std::vector<ImageVariable> result;
   for (const NcVariable& variable : image_variables(file, file.variables())) {
     ImageVariable& entry = result.emplace_back(describe(file, variable));

@@ -171,10 +171,15 @@ ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options
 
 std::vector<ImageVariable> list_image_variables(const fs::path& path, const ReadImageOptions& options) {
   if (options.separate_process && needs_separate_process(path))
-    return read_separately(path, [&] { return list_image_variables(path); });
+    return read_separately(path, [&] {
+      ReadImageOptions own = options;
+      own.separate_process = false;
+      return list_image_variables(path, own);
+    });
   if (is_dicom(path)) return list_dicom(path);
   require_readable_file(path);
-  return format_of(path) == Format::NetCdf ? list_netcdf(path) : std::vector<ImageVariable>();
+  return format_of(path) == Format::NetCdf ? list_netcdf(path, options.allow_outside_paths)
+                                           : std::vector<ImageVariable>();
 }
 
 }  // namespace tegl

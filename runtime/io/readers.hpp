@@ -64,6 +64,6 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
 RawLayers open_any_layers(const std::filesystem::path& path, const ReadImageOptions& options);
 
 /// The variables of a netCDF file that can be read as images.
-std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path);
+std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path, bool allow_outside_paths);
 
 }  // namespace tegl::io_detail
