@@ -336,7 +336,7 @@ class TileWriter {
           ids[ResolvedTesseract::kFirstOwn + j] = own;
           const TilePoint<N> place = (filling.masks[j] & ResolvedTesseract::kIsBarycentre) != 0
                                          ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
-                                         : mask_place<N>(filling.masks[j], std::identity(), places, true);
+                                         : own_place(filling.masks[j], places);
           vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
           if (placement_.normals() != nullptr)
             vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
@@ -347,6 +347,16 @@ class TileWriter {
                                    ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
                     out);
     return out + filling.simplex_count;
+  }
+
+  /// The place of an own vertex of a filling that is no barycentre.
+  template <class Places>
+  static TilePoint<N> own_place(std::uint64_t mask, const Places& places) noexcept {
+    constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
+    TilePoint<N> place = mask_place<N>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), places, true);
+    for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
+      for (double& x : place) x += 0.0625 * (0.5 - x);
+    return place;
   }
 
   /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per

@@ -91,7 +91,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
         rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
                                                                         : std::nullopt),
         row_table_(rows_ ? &*rows_ : tables.rows),
-        placement_(grid),
+        placement_(grid, N == 4 || plan.keeps_off_layers),
         estimator_(make_estimator(source, grid, options, plan)),
         counter_(shape_, tables, row_table_, options.close, estimator_.get()),
         tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,

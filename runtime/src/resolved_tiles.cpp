@@ -413,7 +413,8 @@ void ResolvedTesseract::fill_region(unsigned corners, bool high) {
   for (unsigned v = 0; v < sigma.size(); ++v) sigma[v] = static_cast<std::uint8_t>(v);
   for (unsigned c = 0; c < component_count_; ++c)
     if (components_[c].is_coned && components_[c].region == corners) cap(components_[c], corners, sigma);
-  for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, copy, sigma);
+  const std::size_t first_centre = masks_.size();
+  for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, first_centre, copy, sigma);
 }
 
 void ResolvedTesseract::add_region_size(unsigned corners, bool high, ResolvedSize& size) {
@@ -478,7 +479,7 @@ std::uint64_t ResolvedTesseract::mask_of(unsigned vertex, unsigned corners) cons
   return mask;
 }
 
-void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool high,
+void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool high, std::size_t first_centre,
                                          std::span<const std::uint8_t, 16> copy,
                                          std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma) {
   const CubeRegions& all = regions();
@@ -495,7 +496,7 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
         const auto v = static_cast<unsigned>(std::countr_zero(rest));
         lifted |= std::uint64_t{1} << (v < 8 ? lifted_corner(cube, v) : kMaskEdge + cubes_.lifted(cube, v - 8));
       }
-      local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
+      local[centre++] = static_cast<std::uint8_t>(add_apart(lifted, first_centre));
     }
     static_assert(CubeRegions::kMoreTetrahedra >= kMoreSimplices, "map_simplices reads so many behind them");
     const auto tetrahedra = all.tetrahedra(region);
@@ -515,6 +516,15 @@ void ResolvedTesseract::add_simplex(const std::array<std::uint8_t, 4>& vertices)
 unsigned ResolvedTesseract::add_own(std::uint64_t mask) {
   masks_.push_back(mask);
   return kFirstOwn + static_cast<unsigned>(masks_.size()) - 1;
+}
+
+/// Of the own vertices from number `first` on another one may have the same mask: where regions of two cubes are cut by
+/// the same curve in the square between them.
+unsigned ResolvedTesseract::add_apart(std::uint64_t mask, std::size_t first) {
+  constexpr std::uint64_t kPoints = (std::uint64_t{1} << kRepeat) - 1;
+  std::uint64_t repeats = 0;
+  for (std::size_t j = first; j < masks_.size(); ++j) repeats += (masks_[j] & kPoints) == mask ? 1 : 0;
+  return add_own(mask | repeats << kRepeat);
 }
 
 bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {

@@ -57,9 +57,10 @@ struct ResolvedView {
   const std::uint8_t* simplices;  ///< 4 vertices each; positive side towards high
   std::uint32_t simplex_count;
   std::uint32_t own_vertices;
-  /// Own vertex -> bit v: corner, bit 16 + e: edge. With edges alone it lies at the mean of their points; with corners
+  /// Own vertex -> bit v: corner, bit 16 + e: edge. With edges only it lies at the mean of their points; with corners
   /// among them, half way from the tile's centre to the mean of all. With ResolvedTesseract::kIsBarycentre it is the
-  /// barycentre of the triangles that the simplices have which it comes first in.
+  /// barycentre of the triangles that the simplices have which it comes first in. Bits from ResolvedTesseract::kRepeat
+  /// on: how many vertices before it have the same corners and edges; each lies nearer to the centre than the last.
   const std::uint64_t* masks;
 };
 
@@ -77,6 +78,7 @@ class ResolvedTesseract {
  public:
   static constexpr unsigned kFirstOwn = ResolvedCubes::kVertices;
   static constexpr std::uint64_t kIsBarycentre = std::uint64_t{1} << 63;  ///< in masks
+  static constexpr unsigned kRepeat = 48;                                 ///< first bit of eight, in masks
 
   explicit ResolvedTesseract(int triangulation = kCompact);
 
@@ -130,10 +132,12 @@ class ResolvedTesseract {
   void fill_region(unsigned corners, bool high);
   void cap(const Component& component, unsigned corners, std::span<std::uint8_t> sigma);
   [[nodiscard]] std::uint64_t mask_of(unsigned vertex, unsigned corners) const;
-  void add_cube_regions(unsigned cube, unsigned corners, bool high, std::span<const std::uint8_t, 16> copy,
+  void add_cube_regions(unsigned cube, unsigned corners, bool high, std::size_t first_centre,
+                        std::span<const std::uint8_t, 16> copy,
                         std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma);
   void add_simplex(const std::array<std::uint8_t, 4>& vertices);
   unsigned add_own(std::uint64_t mask);
+  unsigned add_apart(std::uint64_t mask, std::size_t first);
 
   bool is_barycentric_;
   const ResolvedCubes& cubes_;
