@@ -122,17 +122,17 @@ void add_estimators(const std::string& smooth, std::size_t samples, std::size_t 
     }
 }
 
-/// Barycentric tiles of 4D resolved from the data, which are built one by one, beside those of tables: a smooth field,
-/// and noise.
-void add_built_4d() {
+/// Barycentric tiles of 4D resolved from the data, all put together from their cubes, beside those of tables: a smooth
+/// field, and noise.
+void add_barycentric_4d() {
   for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle}) {
     Case what{"sphere", 24, {}, 1};
     what.options.triangulation = Triangulation::barycentric;
     what.options.ambiguity = ambiguity;
-    add<float, 4>("built", what);
+    add<float, 4>("barycentric", what);
     what.field = "noise";
     what.samples = 8;
-    add<float, 4>("built", what);
+    add<float, 4>("barycentric", what);
   }
 }
 
@@ -194,7 +194,7 @@ void add_all() {
   add_estimators<2>("gyroid", 4096, 4096);
   add_estimators<3>("gyroid", 256, 128);
   add_estimators<4>("balls", 64, 16);
-  add_built_4d();
+  add_barycentric_4d();
   add_5d();
   add_tiles();
   add_types();

@@ -42,6 +42,20 @@ TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, s
   return sum.point;
 }
 
+/// A vertex that a region of a cube adds, in the barycentric triangulation: the mean by unequal weights, as mask_place
+/// has them, so that it hardly ever lies in a plane with three others. Those of a region along a tunnel (`is_collar`)
+/// may have all of their points in one square, and are moved out of it.
+template <unsigned Axes>
+TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask, bool is_collar) noexcept {
+  Weighted<3> sum;
+  for (; mask != 0; mask &= mask - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(mask));
+    sum.add(v < 8 ? corner_point<3>(v) : places(v - 8), 1.0 + 0.01 * v);
+  }
+  for (double& x : sum.point) x = is_collar ? 0.9 * (x / sum.weight) + 0.1 * 0.5 : x / sum.weight;
+  return sum.point;
+}
+
 }  // namespace
 
 template <int N, class Real>
@@ -129,12 +143,13 @@ void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const
     for (Word rest = border[w]; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned signature = cells.signature(bit);
-      const tables::RegionList& list = tables_.square->lists[original(signature, 4)];
+      index[0] = w * kWordBits + bit;
+      const tables::RegionTable& table = table_of<Axes>(*tables_.square, original(signature, 4), index);
+      const tables::RegionList& list = table.lists[original(signature, 4)];
       if (list.own_vertices == 0) continue;
       plane.bits[0][word] |= Word{1} << bit;
-      index[0] = w * kWordBits + bit;
       const EdgePlaces<N, Axes> places(source_, index, signature);
-      add_vertex<Axes>(index, region_place<N, Axes>(places, tables_.square->masks[list.first_mask]));
+      add_vertex<Axes>(index, region_place<N, Axes>(places, table.masks[list.first_mask]));
     }
   }
 }
@@ -146,7 +161,7 @@ void Caps<N, Real>::add_layer(std::size_t k, const Layer<N>& layer, const Slab<N
     const Row at{row, k, below, above};
     add_corners(planes.corners, layer, at);
     if constexpr (N == 4) {
-      if (estimator_ != nullptr) continue;
+      if (!has_squares()) continue;
       const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr};
       add_squares<3>(planes.squares[square_plane(3)], view, at);
       add_squares<5>(planes.squares[square_plane(5)], view, at);
@@ -178,7 +193,10 @@ void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i
     const unsigned mask = square % 2 != 0 ? away : 0;
     const unsigned pair = kAxes ^ away;
     const CapPlanes& planes = (pair >> (N - 1) & 1u) != 0 ? slab_ : layers_[(layer + (mask >> (N - 1))) % 2];
-    out[square] = planes.squares[square_plane(pair)].id(shape_.shifted(row, mask), shape_.words(), i + (mask & 1u));
+    const EdgePlane& plane = planes.squares[square_plane(pair)];
+    const std::size_t of_row = shape_.shifted(row, mask), at = i + (mask & 1u);
+    const bool has_one = (plane.bits[0][of_row * shape_.words() + at / kWordBits] >> (at % kWordBits) & 1u) != 0;
+    out[square] = has_one ? plane.id(of_row, shape_.words(), at) : kNoSquare;
   }
 }
 
@@ -226,7 +244,7 @@ void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, s
           add_resolved<Omitted>(face, row, layer, index, signature, ids, !flip);
           continue;
         }
-      const tables::RegionTable& table = table_of<kAxes>(signature, index);
+      const tables::RegionTable& table = N == 3 ? table_of<kAxes>(*tables_.face, signature, index) : *tables_.face;
       edges.ids(bit, ids.data() + kCorners);
       shared_ids<Omitted>(face, row, layer, index[0], signature, ids);
       add_own<kAxes>(table, signature, index, ids);
@@ -252,14 +270,15 @@ void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::si
 template <int N, class Real>
 template <unsigned Axes>
 const tables::RegionTable& Caps<N, Real>::table_of(
-    [[maybe_unused]] unsigned signature, [[maybe_unused]] const typename RowShape<N>::Index& index) const noexcept {
-  if constexpr (N == 3)
+    const tables::RegionTable& low, [[maybe_unused]] unsigned signature,
+    [[maybe_unused]] const typename RowShape<N>::Index& index) const noexcept {
+  if constexpr (std::popcount(Axes) == 2)
     if (estimator_ != nullptr && ambiguous_signatures<2>()[signature]) {
       std::array<double, 4> values;
       source_.corner_values(index, Axes, values.data());
       if (estimator_->is_square_high(index, Axes, values)) return *tables_.high_face;
     }
-  return *tables_.face;
+  return low;
 }
 
 template <int N, class Real>
@@ -302,24 +321,32 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
   using Regions = CubeRegions;
   const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
   corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
-  const unsigned own = cube_vertices(key);
+  const unsigned own = cube_vertices(estimator_->triangulation(), key);
   if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key, own))
     return estimator_->report_change(index);
   if (own != 0) {
     const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);
     for (unsigned j = 0; j < own; ++j) ids[Regions::kFirstOwn + j] = first + j;
   }
+  if (has_squares()) square_ids<Omitted>(row, layer, index[0], ids.data() + Regions::kFirstSquare);
   const auto number = [&](unsigned v) {
     if (v < Regions::kFirstEdge || v >= Regions::kFirstCentre) return kCapVertex | ids[v];
     return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
   };
   const EdgePlaces<N, kAxes> places(source_, index, signature);
-  const Regions& regions = Regions::instance();
+  const bool barycentric = estimator_->triangulation() == kBarycentric;
+  const Regions& regions = Regions::of_caps(estimator_->triangulation());
   for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
+    // A caller that changes its mind may see a square otherwise than when its barycentre was found.
+    if (estimator_->is_callers() && has_squares())
+      for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region))
+        for (const unsigned v : tetrahedron)
+          if (v >= Regions::kFirstSquare && ids[v] == kNoSquare) return estimator_->report_change(index);
     unsigned centre = Regions::kFirstCentre;
     for (const std::uint32_t mask : regions.centres(region)) {
       ids[centre++] = static_cast<Index>(vertices_.size());
-      add_vertex<kAxes>(index, region_place<N, kAxes>(places, mask));
+      add_vertex<kAxes>(index, barycentric ? centre_place<kAxes>(places, mask, region.centre_count > 1)
+                                           : region_place<N, kAxes>(places, mask));
     }
     for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region)) {
       Simplex simplex;
@@ -351,7 +378,7 @@ void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned si
 template <int N, class Real>
 void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
   if constexpr (N == 4)
-    for (std::size_t row = 0; row < shape_.rows() && estimator_ == nullptr; ++row) {
+    for (std::size_t row = 0; row < shape_.rows() && has_squares(); ++row) {
       const Row at{row, k, nullptr, view.slab};
       add_squares<9>(slab_.squares[square_plane(9)], view, at);
       add_squares<10>(slab_.squares[square_plane(10)], view, at);

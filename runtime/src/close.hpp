@@ -62,6 +62,7 @@ class Caps {
     const Slab<N>* above;
   };
   using Ids = std::array<Index, 256>;
+  static constexpr Index kNoSquare = ~Index{0};  ///< of a square without a barycentre
 
   /// Cells along `axes` based in this row that lie in the border and belong to a valid tile.
   const Word* border_cells(unsigned axes, const Row& at);
@@ -70,6 +71,10 @@ class Caps {
   void add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at);
   template <unsigned Axes>
   void add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at);
+  /// Whether squares of the border have barycentres that the cubes around them share (N = 4).
+  [[nodiscard]] bool has_squares() const noexcept {
+    return N == 4 && tables_.square != nullptr && tables_.square->max_own_vertices != 0;
+  }
   template <int Omitted>
   void add_face(const SlabView<N>& view, std::size_t k, unsigned side);
   /// `face`: what the cells of the face at `side` of axis `Omitted` lie in, from `layer` on.
@@ -82,9 +87,9 @@ class Caps {
   template <int Omitted>
   void shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
                   Ids& ids) const;
-  /// The table that the cell of a face is in.
+  /// The table that a square is in, where data may decide.
   template <unsigned Axes>
-  [[nodiscard]] const tables::RegionTable& table_of(unsigned signature,
+  [[nodiscard]] const tables::RegionTable& table_of(const tables::RegionTable& low, unsigned signature,
                                                     const typename RowShape<N>::Index& index) const noexcept;
   template <unsigned Axes>
   void add_own(const tables::RegionTable& table, unsigned signature, const typename RowShape<N>::Index& index,

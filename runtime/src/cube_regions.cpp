@@ -22,9 +22,11 @@ namespace {
 
 using Triangle = std::array<std::uint8_t, 3>;
 using Tetrahedron = CubeRegions::Tetrahedron;
-using Set = std::uint32_t;  ///< of local vertices
+using Set = std::uint64_t;  ///< of local vertices
 
-constexpr unsigned kFirstEdge = CubeRegions::kFirstEdge, kFirstOwn = CubeRegions::kFirstOwn;
+constexpr unsigned kFirstEdge = CubeRegions::kFirstEdge, kFirstOwn = CubeRegions::kFirstOwn,
+                   kFirstSquare = CubeRegions::kFirstSquare;
+constexpr unsigned kEnd = kFirstSquare + 6;  ///< of local vertices
 
 constexpr Set bit(unsigned v) { return Set{1} << v; }
 constexpr Set set_of(const Triangle& t) { return bit(t[0]) | bit(t[1]) | bit(t[2]); }
@@ -38,6 +40,7 @@ const std::array<Set, 6> kSquares = [] {
       if ((v >> axis & 1u) == side) result[q] |= bit(v);
     for (unsigned e = 0; e < 12; ++e)
       if (e / 4 != axis && (edge_base(3, e) >> axis & 1u) == side) result[q] |= bit(kFirstEdge + e);
+    result[q] |= bit(kFirstSquare + q);
   }
   return result;
 }();
@@ -55,12 +58,13 @@ std::uint8_t edge_between(unsigned a, unsigned b) {
 struct Side {
   unsigned signature, high_squares;
   bool high;
+  bool has_square_centres;  ///< polygons of more than a triangle are coned from their barycentre
 
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == high; }
 
-  /// The side's part of a square, each polygon as a fan from its lowest corner: neighbours have the same. Turned to
-  /// the outside of the low side, to the inside of the high one: then it goes on where the contour, which is turned
-  /// towards high, ends.
+  /// The side's part of a square, each polygon as a fan from its lowest corner, or coned: neighbours have the same.
+  /// Turned to the outside of the low side, to the inside of the high one: then it goes on where the contour, which is
+  /// turned towards high, ends.
   void add_square(unsigned q, std::vector<Triangle>& to) const {
     const unsigned axis = q / 2, b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2, at = (q % 2) << axis;
     std::array<unsigned, 4> ring = {at, at | 1u << b, at | 1u << b | 1u << c, at | 1u << c};
@@ -78,6 +82,9 @@ struct Side {
     if (apart) {
       for (std::size_t i = 0; i < n; ++i)
         if (outline[i] < 8) to.push_back({outline[(i + n - 1) % n], outline[i], outline[(i + 1) % n]});
+    } else if (corners != 0 && n > 3 && has_square_centres) {
+      for (std::size_t i = 0; i < n; ++i)
+        to.push_back({static_cast<std::uint8_t>(kFirstSquare + q), outline[i], outline[(i + 1) % n]});
     } else if (corners != 0) {
       std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
       for (std::size_t i = 1; i + 1 < n; ++i) to.push_back({outline[0], outline[i], outline[i + 1]});
@@ -125,7 +132,7 @@ std::vector<std::vector<Triangle>> parts_of(const std::vector<Triangle>& triangl
 
 /// Whether the cone from a corner of a sphere has nothing in a square but what the square's own triangulation has.
 bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
-  std::array<Set, 32> around{};
+  std::array<Set, kEnd> around{};
   std::set<Set> triangles;
   for (const Triangle& t : sphere) {
     triangles.insert(set_of(t));
@@ -146,6 +153,8 @@ bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
 /// Makes the regions of one side of a cube.
 class RegionMaker {
  public:
+  explicit RegionMaker(bool is_barycentric) : is_barycentric_(is_barycentric) {}
+
   std::vector<Tetrahedron> tetrahedra;
   std::vector<std::uint32_t> centres;
 
@@ -159,9 +168,10 @@ class RegionMaker {
 
  private:
   void fill_ball(const std::vector<Triangle>& sphere) {
+    const bool is_simplex = sphere.size() == 4;
     Set corners = 0;
     for (const Triangle& t : sphere) corners |= set_of(t) & 0xffu;
-    for (; corners != 0; corners &= corners - 1)
+    for (; corners != 0 && (is_simplex || !is_barycentric_); corners &= corners - 1)
       if (const auto v = static_cast<std::uint8_t>(std::countr_zero(corners)); may_be_apex(sphere, v))
         return cone(sphere, v);
     cone(sphere, add_centre(sphere));
@@ -178,7 +188,9 @@ class RegionMaker {
     return add_centre(vertices);
   }
   std::uint8_t add_centre(Set around) {
-    centres.push_back(around & ((1u << kFirstOwn) - 1));
+    centres.push_back(static_cast<std::uint32_t>(around & (bit(kFirstOwn) - 1)));
+    if (CubeRegions::kFirstCentre + centres.size() > CubeRegions::kVertices)
+      throw std::logic_error("a region of a cube with too many centres");
     return static_cast<std::uint8_t>(CubeRegions::kFirstCentre + centres.size() - 1);
   }
 
@@ -306,14 +318,14 @@ class RegionMaker {
     }
   }
 
-  /// Along the cube's boundary, over corners, to another polygon.
+  /// Along the cube's boundary, over corners and barycentres of squares, to another polygon.
   void go_outside() {
     constexpr std::size_t kMostCorners = 3;
     const std::uint8_t here = path_.back();
     for (Set rest = outside_[here]; rest != 0; rest &= rest - 1) {
       const auto next = static_cast<std::uint8_t>(std::countr_zero(rest));
       if (std::find(path_.begin(), path_.end(), next) != path_.end()) continue;
-      const bool is_corner = next < kFirstEdge;
+      const bool is_corner = next < kFirstEdge || next >= kFirstSquare;
       if (!is_corner && (polygon_of_[next] <= polygon_of_[path_[0]] || path_.size() == 1)) continue;
       if (is_corner && path_.size() > kMostCorners) continue;
       path_.push_back(next);
@@ -346,41 +358,52 @@ class RegionMaker {
 
   static constexpr unsigned kNoPolygon = ~0u, kMoreCurves = 3;
   std::vector<Triangle> contour_;
-  std::array<Set, 32> outside_{}, inside_{};  ///< neighbours in squares, and along the contour
-  std::array<unsigned, 32> polygon_of_{};
+  bool is_barycentric_;
+  std::array<Set, kEnd> outside_{}, inside_{};  ///< neighbours in squares, and along the contour
+  std::array<unsigned, kEnd> polygon_of_{};
   std::vector<std::uint8_t> path_;
   std::vector<Curve> curves_;
 };
 
 }  // namespace
 
-const CubeRegions& CubeRegions::instance() {
-  static const CubeRegions regions;
-  return regions;
+const CubeRegions& CubeRegions::instance(int triangulation) {
+  if (triangulation == kBarycentric) {
+    static const CubeRegions barycentric(kBarycentric, false);
+    return barycentric;
+  }
+  static const CubeRegions compact(kCompact, false);
+  return compact;
 }
 
-CubeRegions::CubeRegions() {
-  const std::vector<CubeList>& lists = ResolvedCubes::instance().lists();
+const CubeRegions& CubeRegions::of_caps(int triangulation) {
+  if (triangulation == kCompact) return instance(kCompact);
+  static const CubeRegions barycentric(kBarycentric, true);
+  return barycentric;
+}
+
+CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
+  const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
+  const std::vector<CubeList>& lists = cubes.lists();
   whole_ = static_cast<unsigned>(lists.size());
   for (unsigned number = 0; number <= whole_; ++number)
     for (const bool high : {false, true}) {
       first_region_.push_back(static_cast<std::uint32_t>(regions_.size()));
       const bool is_whole = number == whole_;
-      Side side{is_whole ? (high ? 255u : 0u) : lists[number].signature, is_whole ? 0u : lists[number].high_squares,
-                high};
+      const Side side{is_whole ? (high ? 255u : 0u) : lists[number].signature,
+                      is_whole ? 0u : lists[number].high_squares, high, has_square_centres};
       std::vector<Triangle> surface, contour;
       for (unsigned q = 0; q < 6; ++q) side.add_square(q, surface);
       if (!is_whole) {
-        const tables::ResolvedList& list = *lists[number].list;
-        const std::uint8_t* at = tables::kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
-        for (unsigned t = 0; t < list.triangle_count; ++t, at += 3)
-          contour.push_back({static_cast<std::uint8_t>(kFirstEdge + at[0]),
-                             static_cast<std::uint8_t>(kFirstEdge + at[1]),
-                             static_cast<std::uint8_t>(kFirstEdge + at[2])});
+        const std::span<const std::uint8_t> triangles = cubes.triangles_of(number);
+        for (std::size_t t = 0; t < triangles.size(); t += 3)
+          contour.push_back({static_cast<std::uint8_t>(kFirstEdge + triangles[t]),
+                             static_cast<std::uint8_t>(kFirstEdge + triangles[t + 1]),
+                             static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
         surface.insert(surface.end(), contour.begin(), contour.end());
       }
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
-        RegionMaker maker;
+        RegionMaker maker(triangulation == kBarycentric);
         maker.fill(part, contour);
         Set vertices = 0;
         for (const Triangle& t : part) vertices |= set_of(t);

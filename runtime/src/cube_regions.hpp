@@ -22,7 +22,9 @@ class CubeRegions {
   static constexpr unsigned kFirstEdge = 8;                                      ///< after the corners
   static constexpr unsigned kFirstOwn = kFirstEdge + 12;                         ///< own vertices of the list
   static constexpr unsigned kFirstCentre = kFirstOwn + ResolvedCubes::kMostOwn;  ///< vertices of the region
-  static constexpr unsigned kVertices = 32;                                      ///< at most
+  static constexpr unsigned kVertices = 32;                                      ///< at most, but for the next
+  /// In the regions of caps in the barycentric triangulation: barycentres of the high parts of squares.
+  static constexpr unsigned kFirstSquare = kVertices;
   using Tetrahedron = std::array<std::uint8_t, 4>;
 
   struct Region {
@@ -32,7 +34,11 @@ class CubeRegions {
     std::uint32_t first_tetrahedron, first_centre;
   };
 
-  static const CubeRegions& instance();
+  /// What sides of tesseracts are copied from. In a square each polygon is a fan from its lowest corner.
+  static const CubeRegions& instance(int triangulation = kCompact);
+  /// What closes contours at the image's border: the squares are those of tables::region_table, which close contours of
+  /// 3D images.
+  static const CubeRegions& of_caps(int triangulation);
 
   /// Of list number `list`; kNone: of a cube all on that side.
   [[nodiscard]] std::span<const Region> regions(unsigned list, bool high) const noexcept {
@@ -51,7 +57,7 @@ class CubeRegions {
   }
 
  private:
-  CubeRegions();
+  CubeRegions(int triangulation, bool has_square_centres);
 
   unsigned whole_;  ///< number in place of a list's
   std::vector<std::uint32_t> first_region_;

@@ -35,8 +35,7 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& i
   if (options.close && !active.is_complete())
     throw Error(ErrorCode::InvalidArgument,
                 "the border cannot be closed around chosen tiles; expected an index of all active tiles");
-  // Built tiles are found by all samples, as they take so much longer to build.
-  const bool finds_all = active.is_complete() && ((options.close && missing) || detail::is_tile_by_tile<N>(options));
+  const bool finds_all = active.is_complete() && options.close && missing;
   if (active.grid().count() == 0 || finds_all) return extract<Real>(image, isovalue, options, stats);
   detail::Stopwatch watch;
   // Next to missing values rows that are not looked at tell nothing of each other.

@@ -17,12 +17,12 @@ template <int N>
 Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
                     const FaceEstimator<N>* estimator)
     : shape_(shape), tile_(*tables.tile), rows_(rows), estimator_(estimator), ranks_(ranks) {
-  if constexpr (N == 4)
+  lists_cubes_ = N == 4 && estimator_ != nullptr;
+  if (N == 4 && !lists_cubes_)
     for (unsigned s = 0; s < 256; ++s) {
       cube_vertices_[s] = tables.cube->lists[tables.cube->list_of[s]].cone_vertices;
       has_cubes_ = has_cubes_ || cube_vertices_[s] != 0;
     }
-  lists_cubes_ = N == 4 && estimator_ != nullptr;
   quick_ = rows_ != nullptr && !has_cubes_ && shape_.size(0) <= kMostListed;
   has_cubes_ = has_cubes_ || lists_cubes_;
 }
@@ -299,7 +299,8 @@ void Counter<N>::list_cubes(CubePlane& plane, const SlabView<N>& view, std::size
         const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
         base[0] = w * kWordBits + bit;
         const unsigned key = cube_key<N>(*estimator_, base, Axes, cells.signature(bit));
-        if (const unsigned own = detail::cube_vertices(key); own != 0) plane.add(row, base[0], key, own);
+        if (const unsigned own = detail::cube_vertices(estimator_->triangulation(), key); own != 0)
+          plane.add(row, base[0], key, own);
       }
     }
   }
@@ -461,16 +462,15 @@ template <int N>
                                                       TileCount& count, ResolvedTesseract& tesseract,
                                                       const FoundCubes* found) const {
   if constexpr (N == 4) {
-    const auto& ambiguous = ambiguous_signatures<N>();
     const bool is_listed = shape_.size(0) <= kMostListed;
     BitWalk walk(room.active);
     auto base = shape_.index_of(row);
     base[N - 1] = view.k;
-    const ResolvedCubes& cubes = ResolvedCubes::instance();
+    const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active});
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
-      if (!ambiguous[signature]) continue;
+      if (!is_put_together(*estimator_, signature)) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile tile = tiles.resolve(base, i, signature);
       const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
@@ -494,7 +494,7 @@ template <int N>
 template <int N>
 CountScratch Counter<N>::make_scratch() const {
   CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, {}};
-  if (lists_cubes_) scratch.tesseract = std::make_unique<ResolvedTesseract>();
+  if (lists_cubes_) scratch.tesseract = std::make_unique<ResolvedTesseract>(estimator_->triangulation());
   if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
   if (estimator_ != nullptr && estimator_->is_callers()) {
     if constexpr (N == 4)

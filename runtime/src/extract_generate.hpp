@@ -56,15 +56,15 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
   }
 }
 
-/// The same of cubes that are listed.
+/// The same of cubes that are listed; `table`: by key.
 template <unsigned Axes, class Real>
-void generate_listed_cubes(const SampleSource<4>& source, const Placement<4, Real>& placement, const SlabView<4>& view,
-                           const CubePlane& plane, std::size_t row, std::size_t layer,
+void generate_listed_cubes(const SampleSource<4>& source, const tables::TileTable& table,
+                           const Placement<4, Real>& placement, const SlabView<4>& view, const CubePlane& plane,
+                           std::size_t row, std::size_t layer,
                            VertexRun<typename Placement<4, Real>::Vertex> vertices) noexcept {
   if (plane.count[row] == 0) return;
   auto index = view.shape->index_of(row);
   index[3] = layer;
-  const tables::TileTable& table = variant_table<3>(1).tile();
   std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points;
   Index next = plane.first(row);
   for (const ListedCube& cube : plane.lists.row(row)) {
@@ -283,20 +283,21 @@ class TileWriter {
   }
 
   /// Whether the cubes of a tile are those that were counted.
-  [[nodiscard]] static bool has_listed_cubes(const SlabView<N>& view, std::size_t row, std::size_t at,
-                                             const ResolvedTile& tile) noexcept {
+  [[nodiscard]] bool has_listed_cubes(const SlabView<N>& view, std::size_t row, std::size_t at,
+                                      const ResolvedTile& tile) const noexcept {
     for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
       const unsigned axis = cube / 2, side = cube % 2;
       const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
       if (!plane.has_listed(view.shape->shifted(row, side << axis), at + (axis == 0 ? side : 0), tile.cubes[cube],
-                            detail::cube_vertices(tile.cubes[cube])))
+                            detail::cube_vertices(estimator_->triangulation(), tile.cubes[cube])))
         return false;
     }
     return true;
   }
 
   [[nodiscard]] bool is_estimated_tile(unsigned signature) const noexcept {
-    return N == 4 && estimator_ != nullptr && ambiguous_signatures<4>()[signature];
+    if constexpr (N == 4) return estimator_ != nullptr && is_put_together(*estimator_, signature);
+    return false;
   }
 
   /// A tile of four dimensions that data decide on, by what a caller answered or by itself.
@@ -316,7 +317,7 @@ class TileWriter {
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
                           unsigned signature, const ResolvedTile& tile, Ids& ids, Index& own,
                           VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
-    const ResolvedCubes& cubes = ResolvedCubes::instance();
+    const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     const ResolvedView& filling = tesseract.find(tile.key, tile.lists);
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
       const auto cube = static_cast<unsigned>(std::countr_zero(rest));
@@ -326,22 +327,36 @@ class TileWriter {
       const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));
       for (unsigned j = 0; j < count; ++j) ids[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] = first + j;
     }
-    if (filling.own_vertices != 0) {
-      const EdgePlaces<N, kAll> alphas(source_, index, signature);
-      const auto places = [&](unsigned edge) { return edge_point_at_once<N>(edge, alphas.alpha(edge)); };
-      for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
-        ids[ResolvedTesseract::kFirstOwn + j] = own;
-        const TilePoint<N> place = mask_place<N>(filling.masks[j], std::identity(), places, true);
-        vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
-        if (placement_.normals() != nullptr)
-          vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
+    if constexpr (N == 4)
+      if (filling.own_vertices != 0) {
+        const EdgePlaces<N, kAll> alphas(source_, index, signature);
+        const auto places = [&](unsigned edge) { return edge_point_at_once<N>(edge, alphas.alpha(edge)); };
+        ResolvedPlaces shared(alphas, cubes, tile.lists);
+        for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
+          ids[ResolvedTesseract::kFirstOwn + j] = own;
+          const TilePoint<N> place = (filling.masks[j] & ResolvedTesseract::kIsBarycentre) != 0
+                                         ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
+                                         : own_place(filling.masks[j], places);
+          vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
+          if (placement_.normals() != nullptr)
+            vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
+        }
       }
-    }
     if constexpr (N == 4)
       write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, ids.data(),
                                    ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
                     out);
     return out + filling.simplex_count;
+  }
+
+  /// The place of an own vertex of a filling that is no barycentre.
+  template <class Places>
+  static TilePoint<N> own_place(std::uint64_t mask, const Places& places) noexcept {
+    constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
+    TilePoint<N> place = mask_place<N>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), places, true);
+    for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
+      for (double& x : place) x += 0.0625 * (0.5 - x);
+    return place;
   }
 
   /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per

@@ -147,34 +147,23 @@ class MemorySink final : public ContourSink<N, Real> {
   ContourSize size_;
 };
 
-/// For contours that are not made part by part.
-template <int N, class Real, class I>
-ContourSize copy_into(const Contour<N, Real>& contour, const ContourRoom<N, Real, I>& room, bool with_normals) {
-  check_room(room.simplices.size(), contour.simplices.size(), kSimplices);
-  MemorySink<N, Real, I> sink(room);
-  sink.add_vertices(contour.vertices);
-  if (with_normals) sink.add_normals(contour.normals);
-  auto* to = room.simplices.data();
-  for (const auto& simplex : contour.simplices) std::copy(simplex.begin(), simplex.end(), (*to++).begin());
-  return {contour.vertices.size(), contour.simplices.size()};
-}
-
 template <Value T, int N>
 ContourSize count_by_parts(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
                            ExtractStats* stats) {
   const ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
+  const auto tables = generated_tables<N>(options);
   ExtractStats done;
   if (!options.close) {
     ImageSource<T, N> source(image, isovalue, options.epsilon);
     CountOutput<N, float> output;
-    done = extract_any_to<N, float>(source, image.grid(), options, plan, output);
+    done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
     if (stats != nullptr) *stats = done;
     if (!output.any_missing) return output.size;
   }
   ImageSource<T, N> source(image, isovalue, options.epsilon);
   NoSink<N, float> sink;
   StreamOutput<N, float> output(sink, options.normals);
-  done = extract_any_to<N, float>(source, image.grid(), options, plan, output);
+  done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
   if (stats != nullptr) *stats = done;
   return output.size();
 }
@@ -200,8 +189,6 @@ requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& i
                                                             const ContourRoom<N, Real, I>& room,
                                                             const ExtractOptions& options, ExtractStats* stats) {
   detail::check_arguments(isovalue, options);
-  if (detail::is_tile_by_tile<N>(options))
-    return detail::copy_into(extract<Real>(image, isovalue, options, stats), room, options.normals);
   const auto tables = detail::generated_tables<N>(options);
   detail::ExtractPlan plan;
   if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};

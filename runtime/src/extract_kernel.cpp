@@ -91,7 +91,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
         rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
                                                                         : std::nullopt),
         row_table_(rows_ ? &*rows_ : tables.rows),
-        placement_(grid),
+        placement_(grid, N == 4 || plan.keeps_off_layers),
         estimator_(make_estimator(source, grid, options, plan)),
         counter_(shape_, tables, row_table_, options.close, estimator_.get()),
         tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
@@ -414,14 +414,18 @@ class Extraction final : public SteppedExtraction<N, Real> {
     edges.finish();
   }
 
+  [[nodiscard]] const tables::TileTable& cubes_by_key() const {
+    return variant_table<3>(estimator_->triangulation()).tile();
+  }
+
   void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
                             [[maybe_unused]] VertexRun<Vertex> vertices) noexcept {
     if constexpr (N == 4)
       if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
         const Layer<N>& here = layer(k);
         if (counter_.lists_cubes())
-          return generate_listed_cubes<7u>(source_, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row,
-                                           k, vertices);
+          return generate_listed_cubes<7u>(source_, cubes_by_key(), placement_, {&shape_, {&here, nullptr}, nullptr},
+                                           here.cubes, row, k, vertices);
         generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
                            vertices);
       }
@@ -433,9 +437,9 @@ class Extraction final : public SteppedExtraction<N, Real> {
       if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
         const auto& cubes = around.slab->cubes;
         if (counter_.lists_cubes()) {
-          generate_listed_cubes<14u>(source_, placement_, around, cubes[0], row, k, vertices);
-          generate_listed_cubes<13u>(source_, placement_, around, cubes[1], row, k, vertices);
-          generate_listed_cubes<11u>(source_, placement_, around, cubes[2], row, k, vertices);
+          generate_listed_cubes<14u>(source_, cubes_by_key(), placement_, around, cubes[0], row, k, vertices);
+          generate_listed_cubes<13u>(source_, cubes_by_key(), placement_, around, cubes[1], row, k, vertices);
+          generate_listed_cubes<11u>(source_, cubes_by_key(), placement_, around, cubes[2], row, k, vertices);
           return;
         }
         generate_cubes<14u>(source_, *tables_.cube, placement_, around, cubes[0], row, k, vertices);

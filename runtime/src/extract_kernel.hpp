@@ -103,6 +103,8 @@ struct ExtractPlan {
   std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;
   const TileSelection* selection = nullptr;  ///< what to look at; null: all
   PartOfImage part{};                        ///< for estimators: what the grid is a part of
+  /// N = 3: whether points between layers of the last axis are kept off the layers, as they always are in 4D.
+  bool keeps_off_layers = false;
   bool keeps_tiles = true;  ///< false: lists of active tiles are made twice, whatever memory there is for them
 };
 

@@ -11,6 +11,8 @@
 #include "corners.hpp"
 #include "extract_source.hpp"
 #include "extract_tables.hpp"
+#include "resolved_tiles.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 
@@ -121,6 +123,66 @@ class SharedPlaces<4> {
   const tables::TileTable* cube_;
   std::uint64_t known_ = 0;
   std::array<TilePoint<4>, kShared> places_;  ///< those known: each is asked for by many simplices
+};
+
+/// The places of the vertices that a tile of four dimensions shares, where it is put together from its cubes
+/// (ResolvedTesseract), barycentrically; those of cubes by the arithmetic of the cubes of 3D images.
+class ResolvedPlaces {
+ public:
+  ResolvedPlaces(const EdgePlaces<4, 15>& edges, const ResolvedCubes& cubes, const ResolvedCubes::Lists& lists) noexcept
+      : edges_(edges), cubes_(cubes), lists_(lists) {}
+
+  const TilePoint<4>& operator()(unsigned v) noexcept {
+    if ((known_ >> v & 1u) == 0) find(v);
+    return places_[v];
+  }
+
+  /// That of own vertex `apex` of a filling: the mean of the triangles that it is joined with, weighted by their areas.
+  [[nodiscard]] TilePoint<4> barycentre(const ResolvedView& filling, unsigned apex) noexcept {
+    Weighted<4> sum, plain;  // plain: for a sphere that has shrunk to a point
+    for (std::uint32_t q = 0; q < filling.simplex_count; ++q) {
+      const std::uint8_t* const simplex = filling.simplices + 4 * std::size_t{q};
+      if (simplex[0] != apex) continue;
+      const std::array<TilePoint<4>, 3> face = {(*this)(simplex[1]), (*this)(simplex[2]), (*this)(simplex[3])};
+      const Weighted<4> part = opposite_face<4>(face, is_barycentre(simplex[1]));
+      sum.add(part.point, part.weight);
+      plain.add(part.point, 1.0);
+    }
+    Weighted<4>& mean = sum.weight > 0 ? sum : plain;
+    for (double& x : mean.point) x /= mean.weight;
+    return mean.point;
+  }
+
+ private:
+  [[nodiscard]] bool is_barycentre(unsigned v) const noexcept {
+    if (v < ResolvedCubes::kEdges) return false;
+    const unsigned cube = (v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
+    return (v - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn < cubes_.summary(lists_[cube]).barycentres;
+  }
+
+  [[gnu::noinline]] void find(unsigned v) noexcept {
+    if (v >= ResolvedCubes::kEdges) return find_cube((v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn);
+    places_[v] = edges_(v);
+    known_ |= std::uint64_t{1} << v;
+  }
+
+  void find_cube(unsigned cube) noexcept {
+    const SimplexList<3> list(variant_table<3>(kBarycentric).tile(), cubes_.key(lists_[cube]));
+    std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points{};
+    own_places<3>(
+        list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data());
+    for (unsigned j = 0; j < ResolvedCubes::kMostOwn; ++j) {
+      const unsigned v = ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j;
+      places_[v] = cube_point(cube, points[j]);
+      known_ |= std::uint64_t{1} << v;
+    }
+  }
+
+  const EdgePlaces<4, 15>& edges_;
+  const ResolvedCubes& cubes_;
+  const ResolvedCubes::Lists& lists_;
+  std::uint64_t known_ = 0;
+  std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< those known
 };
 
 }  // namespace tegl::detail

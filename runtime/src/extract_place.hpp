@@ -27,7 +27,9 @@ class Placement {
   using Index = std::array<std::size_t, N>;
   using Vertex = std::array<Real, N>;
 
-  explicit Placement(const Grid<N>& grid) : linear_(grid.linear), offset_(grid.offset), mapped_(grid.has_world_map()) {
+  /// `keeps_off_layers`, N = 3 or 4: see inside_slab.
+  explicit Placement(const Grid<N>& grid, bool keeps_off_layers = N == 4)
+      : linear_(grid.linear), offset_(grid.offset), mapped_(grid.has_world_map()) {
     // The arithmetic along a row takes the numbers of samples for 32-bit integers.
     is_uniform_ = grid.axes[0].is_uniform() && grid.axes[0].size() < std::numeric_limits<std::int32_t>::max();
     if (is_uniform_) {
@@ -38,7 +40,7 @@ class Placement {
       coordinates_[a].resize(grid.axes[a].size());
       for (std::size_t i = 0; i < coordinates_[a].size(); ++i) coordinates_[a][i] = grid.axes[a][i];
     }
-    if constexpr (N == 4) find_insides();
+    if (keeps_off_layers) find_insides();
   }
 
   /// Null: none are wanted.
@@ -91,16 +93,16 @@ class Placement {
     edges.linear = mapped_ ? linear_.data() : nullptr;
     edges.offset = offset_.data();
     edges.inside.fill(std::numeric_limits<Real>::quiet_NaN());
-    if (N == 4 && edges.axis == N - 1 && !insides_.empty()) edges.inside = insides_[k];
+    if (edges.axis == N - 1 && !insides_.empty()) edges.inside = insides_[k];
     write_points<N, Real>(edges);
   }
 
  private:
-  /// N = 4: a point between layers k and k + 1, kept off both by the least that shows in its type. Where samples
-  /// equal the isovalue (or almost), points between layers would fall into a layer, and a cut there could not tell
-  /// them from the layer's own points (`slice`).
+  /// A point between layers k and k + 1, kept off both by the least that shows in its type: in 4D, and in 3D for cuts
+  /// at a layer straight from the image. Where samples equal the isovalue (or almost), points between layers would fall
+  /// into a layer, and a cut there could not tell them from the layer's own points (`slice`).
   Vertex inside_slab(Vertex vertex, std::size_t k) const noexcept {
-    if constexpr (N == 4)
+    if constexpr (N == 3 || N == 4)
       if (!insides_.empty()) vertex[N - 1] = std::clamp(vertex[N - 1], insides_[k][0], insides_[k][1]);
     return vertex;
   }
@@ -138,7 +140,7 @@ class Placement {
   bool is_uniform_;  ///< axis 0
   double origin_ = 0.0, step_ = 0.0;
   bool mapped_;
-  std::vector<std::array<Real, 2>> insides_;
+  std::vector<std::array<Real, 2>> insides_;  ///< by slab; none: points may be anywhere
   std::optional<NormalWriter<N, Real>> normals_;
 };
 

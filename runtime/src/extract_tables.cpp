@@ -32,7 +32,7 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
   set.rows = triangulation == 0 ? row_table<N, 0>() : row_table<N, 1>();
   set.compact = options.triangulation == Triangulation::compact;
   if constexpr (N == 4)
-    if (is_estimated(options.ambiguity)) set.rows = &estimated_tesseracts();
+    if (is_estimated(options.ambiguity)) set.rows = &estimated_tesseracts(triangulation);
   if constexpr (N < 4)
     if (is_estimated(options.ambiguity)) {
       const VariantTable<N>& variants = variant_table<N>(triangulation);
@@ -42,7 +42,10 @@ TableSet<N> generated_tables(const ExtractOptions& options) {
     }
   if (N == 4) set.cube = &tables::tile_table(3, triangulation);
   if (options.close) set.face = &tables::region_table(N - 1, triangulation, alternative);
-  if (options.close && N == 4) set.square = &tables::region_table(2, triangulation, alternative);
+  if (options.close && N == 4) {
+    set.square = &tables::region_table(2, triangulation, alternative);
+    if (is_estimated(options.ambiguity)) set.high_face = &tables::region_table(2, triangulation, 1);
+  }
   return set;
 }
 

@@ -615,24 +615,6 @@ class BuiltContour final : public ContourOutput<N, Real> {
 }  // namespace
 
 template <int N, class Real>
-ExtractStats extract_tiles_to(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                              const ExtractPlan& plan, ContourOutput<N, Real>& output, std::size_t tile_bytes) {
-  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
-  TileExtraction<N, Real> extraction(source, grid, options, output, tile_bytes, plan);
-  extraction.run();
-  return extraction.stats();
-}
-
-template <int N, class Real>
-std::unique_ptr<SteppedExtraction<N, Real>> make_tiles_extraction(SampleSource<N>& source, const Grid<N>& grid,
-                                                                  const ExtractOptions& options,
-                                                                  const ExtractPlan& plan,
-                                                                  ContourOutput<N, Real>& output) {
-  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return nullptr;
-  return std::make_unique<TileExtraction<N, Real>>(source, grid, options, output, kBuiltTileBytes, plan);
-}
-
-template <int N, class Real>
 ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
                           Contour<N, Real>* contour, ExtractStats* stats, std::size_t tile_bytes,
                           const ExtractPlan& plan) {
@@ -644,17 +626,18 @@ ContourSize extract_tiles(SampleSource<N>& source, const Grid<N>& grid, const Ex
     contour->direction = options.direction;
   }
   BuiltContour<N, Real> output(contour, options.normals);
-  const ExtractStats done = extract_tiles_to<N, Real>(source, grid, options, plan, output, tile_bytes);
+  ExtractStats done;
+  if (SteppedExtraction<N, Real>::tiles_of(grid) != 0) {
+    TileExtraction<N, Real> extraction(source, grid, options, output, tile_bytes, plan);
+    extraction.run();
+    done = extraction.stats();
+  }
   if (stats != nullptr) *stats = done;
   return output.size;
 }
 
-#define TEGL_INSTANTIATE(N, Real)                                                                            \
-  template ExtractStats extract_tiles_to<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&,   \
-                                                  const ExtractPlan&, ContourOutput<N, Real>&, std::size_t); \
-  template std::unique_ptr<SteppedExtraction<N, Real>> make_tiles_extraction<N, Real>(                       \
-      SampleSource<N>&, const Grid<N>&, const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
-  template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&,       \
+#define TEGL_INSTANTIATE(N, Real)                                                                      \
+  template ContourSize extract_tiles<N, Real>(SampleSource<N>&, const Grid<N>&, const ExtractOptions&, \
                                               Contour<N, Real>*, ExtractStats*, std::size_t, const ExtractPlan&);
 TEGL_INSTANTIATE(2, double)
 TEGL_INSTANTIATE(3, double)

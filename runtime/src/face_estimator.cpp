@@ -151,7 +151,11 @@ const char* name_of(Ambiguity ambiguity) noexcept {
 template <int N>
 FaceEstimator<N>::FaceEstimator(const SampleSource<N>& source, const Index& sizes, const ExtractOptions& options,
                                 PartOfImage part)
-    : source_(source), ambiguity_(options.ambiguity), estimator_(options.estimator), isovalue_(source.isovalue()) {
+    : source_(source),
+      ambiguity_(options.ambiguity),
+      estimator_(options.estimator),
+      triangulation_(options.triangulation == Triangulation::barycentric ? 0 : 1),
+      isovalue_(source.isovalue()) {
   around_.image = &source;
   around_.read = [](const void* image, const std::ptrdiff_t* index) {
     Index at;

@@ -46,6 +46,8 @@ class FaceEstimator {
   FaceEstimator& operator=(const FaceEstimator&) = delete;
 
   [[nodiscard]] const SampleSource<N>& source() const noexcept { return source_; }
+  /// Of the contour that it is asked for, by the number that tables have for it.
+  [[nodiscard]] int triangulation() const noexcept { return triangulation_; }
 
   /// The centre of the ambiguous square along `axes` based at `base`, with these values at its corners.
   [[nodiscard]] bool is_square_high(const Index& base, unsigned axes, std::span<const double, 4> values) const noexcept;
@@ -73,6 +75,7 @@ class FaceEstimator {
   const SampleSource<N>& source_;
   Ambiguity ambiguity_;
   const Estimator& estimator_;
+  int triangulation_;
   double isovalue_;
   AmbiguousFace::Surroundings around_;
   mutable std::atomic<bool> failed_ = false;

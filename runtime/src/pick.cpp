@@ -250,7 +250,7 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
                 detail::part_of(options.progress, kNearestShare, kFlooded), &at_missing);
   std::sort(tiles.begin(), tiles.end());
   found.tiles = tiles.size();
-  const bool in_tiles = !detail::is_tile_by_tile<N>(options) && !options.close;
+  const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
   // Where missing values part the tiles around an edge, a vertex there is doubled for the components on either side,
   // and comes first in the one and last in the others (pinches.hpp): so all tiles that have it must be there.
   std::vector<TileNumber> around;

@@ -4,8 +4,10 @@
 #include "resolved_cubes.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "corners.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -14,18 +16,15 @@ using tables::kTile3Resolved;
 
 constexpr unsigned kCubeEdges = 12;
 
-/// The vertices of the triangles of a list.
-const std::uint8_t* triangle(const tables::ResolvedList& list, unsigned t) {
-  return kTile3Resolved.triangles + 3 * (std::size_t{list.first_triangle} + t);
-}
+using Triangles = std::span<const std::uint8_t>;  ///< three vertices each
 
 /// Sets of a list's vertices that are joined by an edge, by vertex, itself among them.
 using Neighbours = std::array<std::uint32_t, kCubeEdges + ResolvedCubes::kMostOwn>;
 
-Neighbours neighbours_of(const tables::ResolvedList& list) {
+Neighbours neighbours_of(Triangles triangles) {
   Neighbours result{};
-  for (unsigned t = 0; t < list.triangle_count; ++t) {
-    const std::uint8_t* const v = triangle(list, t);
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const std::uint8_t* const v = triangles.data() + t;
     for (unsigned i = 0; i < 3; ++i) result[v[i]] |= 1u << v[0] | 1u << v[1] | 1u << v[2];
   }
   return result;
@@ -43,13 +42,13 @@ std::uint32_t connected(const Neighbours& neighbours, unsigned vertex) {
 
 /// Whether a cone from this vertex has no simplex in the cube that is not the list's: it is joined with all vertices of
 /// its part, and any three that are joined one with another, it among them, are a triangle.
-bool may_be_apex(const tables::ResolvedList& list, const Neighbours& neighbours, unsigned vertex, std::uint32_t part) {
+bool may_be_apex(Triangles triangles, const Neighbours& neighbours, unsigned vertex, std::uint32_t part) {
   if ((part & ~neighbours[vertex]) != 0) return false;
   unsigned around = 0, edges = 0;
-  for (unsigned t = 0; t < list.triangle_count; ++t) {
-    const std::uint8_t* const v = triangle(list, t);
-    if (v[0] == vertex || v[1] == vertex || v[2] == vertex) ++around;
-  }
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+    if (std::count(triangles.begin() + static_cast<std::ptrdiff_t>(t),
+                   triangles.begin() + static_cast<std::ptrdiff_t>(t + 3), vertex) != 0)
+      ++around;
   for (std::uint32_t rest = part & ~(1u << vertex); rest != 0; rest &= rest - 1)
     edges += static_cast<unsigned>(std::popcount(neighbours[std::countr_zero(rest)] & part & ~(1u << vertex))) - 1;
   return edges == 2 * around;  // each edge was counted from both ends
@@ -81,12 +80,16 @@ std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsign
   return place;
 }
 
-const ResolvedCubes& ResolvedCubes::instance() {
-  static const ResolvedCubes cubes;
-  return cubes;
+const ResolvedCubes& ResolvedCubes::instance(int triangulation) {
+  if (triangulation == kBarycentric) {
+    static const ResolvedCubes barycentric(kBarycentric);
+    return barycentric;
+  }
+  static const ResolvedCubes compact(kCompact);
+  return compact;
 }
 
-ResolvedCubes::ResolvedCubes() {
+ResolvedCubes::ResolvedCubes(int triangulation) {
   for (unsigned tile = 0; tile < 256; ++tile)
     for (unsigned f = 0; f < kCubes; ++f) {
       for (unsigned half = 0; half < 2; ++half) {
@@ -112,18 +115,18 @@ ResolvedCubes::ResolvedCubes() {
         if ((ambiguous >> q & 1u) != 0) result |= (high >> q & 1u) << at++;
       compressed_[ambiguous << 6 | high] = static_cast<std::uint8_t>(result);
     }
-  number_lists();
+  number_lists(triangulation);
   make_frames();
   for (unsigned f = 0; f < kCubes; ++f) {
-    for (std::size_t i = 0; i < lists_.size(); ++i) {
+    for (unsigned i = 0; i < lists_.size(); ++i) {
       const auto first = static_cast<std::uint32_t>(parts_.size());
-      make_parts(f, lists_[i]);
+      make_parts(f, i);
       // Points of one part are not joined with those of another one in the cube.
       apexes_.push_back(parts_[first].apexes & (parts_.size() - first > 1 ? ~edges_of_[f] : ~std::uint32_t{0}));
       if (f != 0) continue;
       summaries_[i].first_part = first;
       summaries_[i].part_count = static_cast<std::uint8_t>(parts_.size() - first);
-      summaries_[i].triangle_count = static_cast<std::uint8_t>(lists_[i].list->triangle_count);
+      summaries_[i].triangle_count = static_cast<std::uint8_t>(triangles_of(i).size() / 3);
     }
     apexes_.push_back(~std::uint32_t{0});  // of kNone
     if (f == 0) parts_of_cube_ = static_cast<std::uint32_t>(parts_.size());
@@ -134,7 +137,7 @@ ResolvedCubes::ResolvedCubes() {
   triangles_.resize(triangles_.size() + kWordsBehind);
 }
 
-void ResolvedCubes::number_lists() {
+void ResolvedCubes::number_lists(int triangulation) {
   list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
   for (unsigned entry = 0; entry < kTile3Resolved.entry_count; ++entry)
     has_choice_.push_back(kTile3Resolved.entries[entry].components > 1 ? 1 : 0);
@@ -152,10 +155,13 @@ void ResolvedCubes::number_lists() {
           list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
           lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
           const unsigned variant = 1 + 3 * (entry - kTile3Resolved.first_entry[s]) + choice;
-          key_of_.push_back(static_cast<std::uint16_t>(s | variant << 8));
+          key_of_.push_back(static_cast<std::uint16_t>(ambiguous_signatures<3>()[s] ? s | variant << 8 : s));
           Summary& summary = summaries_.emplace_back();
           summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;
-          summary.own_vertices = static_cast<std::uint8_t>(lists[choice]->own_vertices);
+          if (triangulation == kCompact)
+            take_compact(*lists[choice]);
+          else
+            take_barycentric();
         } else {
           list_of_[3 * entry + choice] = list_of_[3 * entry + same];
         }
@@ -164,6 +170,37 @@ void ResolvedCubes::number_lists() {
       if (high == 0) break;
     }
   }
+}
+
+/// Triangles, masks and summary of the list that is numbered last.
+void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
+  const std::uint8_t* const first = kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
+  of_cube_.insert(of_cube_.end(), first, first + 3 * std::size_t{list.triangle_count});
+  first_of_cube_.push_back(static_cast<std::uint32_t>(of_cube_.size()));
+  auto& masks = masks_.emplace_back();
+  for (unsigned j = 0; j < list.own_vertices; ++j) masks[j] = kTile3Resolved.masks[list.first_mask + j];
+  summaries_.back().own_vertices = list.own_vertices;
+}
+
+/// The same from the table that contours of 3D images are made of.
+void ResolvedCubes::take_barycentric() {
+  const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
+  const tables::List& list = table.lists[table.list_of[key_of_.back()]];
+  const std::uint8_t* const first = table.simplices + 3 * std::size_t{list.first_simplex};
+  const std::span<const std::uint8_t> triangles(first, 3 * std::size_t{list.simplex_count});
+  of_cube_.insert(of_cube_.end(), triangles.begin(), triangles.end());
+  first_of_cube_.push_back(static_cast<std::uint32_t>(of_cube_.size()));
+  auto& masks = masks_.emplace_back();
+  const unsigned own = unsigned{list.cone_vertices} + list.side_vertices;
+  if (own > kMostOwn) throw std::logic_error("a cube with more vertices of its own than tesseracts have numbers for");
+  for (unsigned j = 0; j < own; ++j)
+    if (j >= list.cone_vertices)
+      masks[j] = static_cast<std::uint32_t>(table.side_masks[list.first_side + j - list.cone_vertices]);
+  for (std::size_t t = 0; t < triangles.size(); t += 3)  // a barycentre stands first
+    if (triangles[t] >= kCubeEdges && triangles[t] < kCubeEdges + list.cone_vertices)
+      masks[triangles[t] - kCubeEdges] |= 1u << (8 + triangles[t + 1]) | 1u << (8 + triangles[t + 2]);
+  summaries_.back().own_vertices = static_cast<std::uint8_t>(own);
+  summaries_.back().barycentres = list.cone_vertices;
 }
 
 void ResolvedCubes::make_frames() {
@@ -186,23 +223,23 @@ void ResolvedCubes::make_frames() {
         beside_[e] |= edges_of_[f] | ((std::uint64_t{1} << kMostOwn) - 1) << (kEdges + kMostOwn * f);
 }
 
-void ResolvedCubes::make_parts(unsigned cube, const CubeList& of) {
-  const tables::ResolvedList& list = *of.list;
-  const Neighbours neighbours = neighbours_of(list);
+void ResolvedCubes::make_parts(unsigned cube, unsigned list) {
+  const Triangles triangles = triangles_of(list);
+  const Neighbours neighbours = neighbours_of(triangles);
   std::uint32_t done = 0;
-  for (unsigned t = 0; t < list.triangle_count; ++t) {
-    if ((done >> triangle(list, t)[0] & 1u) != 0) continue;
-    const std::uint32_t vertices = connected(neighbours, triangle(list, t)[0]);
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    if ((done >> triangles[t] & 1u) != 0) continue;
+    const std::uint32_t vertices = connected(neighbours, triangles[t]);
     done |= vertices;
     Part part{~std::uint32_t{0}, static_cast<std::uint32_t>(triangles_.size()), 0, static_cast<std::uint8_t>(cube)};
     std::uint64_t& in_tile = part_vertices_.emplace_back(0);
     for (std::uint32_t rest = vertices; rest != 0; rest &= rest - 1) {
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
       in_tile |= std::uint64_t{1} << lifted(cube, v);
-      if (v < kCubeEdges && !may_be_apex(list, neighbours, v, vertices)) part.apexes &= ~(1u << lifted(cube, v));
+      if (v < kCubeEdges && !may_be_apex(triangles, neighbours, v, vertices)) part.apexes &= ~(1u << lifted(cube, v));
     }
-    for (unsigned u = t; u < list.triangle_count; ++u) {
-      const std::uint8_t* const v = triangle(list, u);
+    for (std::size_t u = t; u < triangles.size(); u += 3) {
+      const std::uint8_t* const v = triangles.data() + u;
       if ((vertices >> v[0] & 1u) == 0) continue;
       std::array<std::uint8_t, 4> word = {0, 0, 0, 0};
       for (unsigned i = 0; i < 3; ++i) word[1 + i] = static_cast<std::uint8_t>(lifted(cube, v[i]));

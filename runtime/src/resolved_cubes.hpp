@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The lists of the table of the cube with every ambiguity resolved freely, as parts of Sigma in each of the eight cubes
-// of a tile of four dimensions. Made once.
+// of a tile of four dimensions. Made once for each triangulation.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,12 @@
 
 namespace tegl::detail {
 
+/// Triangulations by the numbers of the generated tables (tables::tile_table).
+inline constexpr int kBarycentric = 0, kCompact = 1;
+
 /// A list of the table, and what is known of the cube.
 struct CubeList {
-  const tables::ResolvedList* list;
+  const tables::ResolvedList* list;  ///< in the compact triangulation
   std::uint8_t signature;
   std::uint8_t high_squares;  ///< of those that are ambiguous
 };
@@ -50,11 +53,13 @@ class ResolvedCubes {
     std::uint8_t part_count, triangle_count;
     std::uint8_t is_not_low;  ///< whether it is not that of the low-connected contour
     std::uint8_t own_vertices;
+    std::uint8_t barycentres;  ///< so many of the own vertices, the first ones, are barycentres of polygons
   };
 
   using Lists = std::array<std::uint16_t, kCubes>;  ///< of each cube of a tile
 
-  static const ResolvedCubes& instance();
+  /// The numbers of lists are the same in both triangulations.
+  static const ResolvedCubes& instance(int triangulation = kCompact);
 
   /// Byte f: the signature of cube f.
   [[nodiscard]] std::uint64_t signatures(std::uint16_t tile) const noexcept {
@@ -86,6 +91,12 @@ class ResolvedCubes {
   /// A key (tile_variants.hpp) that the list is that of.
   [[nodiscard]] std::uint16_t key(unsigned list) const noexcept { return key_of_[list]; }
   [[nodiscard]] const std::vector<CubeList>& lists() const noexcept { return lists_; }
+  /// The triangles of a list in the cube, three local vertices each.
+  [[nodiscard]] std::span<const std::uint8_t> triangles_of(unsigned list) const noexcept {
+    return {of_cube_.data() + first_of_cube_[list], of_cube_.data() + first_of_cube_[list + 1]};
+  }
+  /// The corners (bit v) and edges (bit 8 + e) that own vertex `own` of a list lies between.
+  [[nodiscard]] std::uint32_t mask(unsigned list, unsigned own) const noexcept { return masks_[list][own]; }
   [[nodiscard]] const Summary& summary(unsigned list) const noexcept {
     return summaries_.data()[std::min<std::size_t>(list, summaries_.size() - 1)];
   }
@@ -117,10 +128,12 @@ class ResolvedCubes {
   [[nodiscard]] bool is_reversed(unsigned cube) const noexcept { return reversed_[cube]; }
 
  private:
-  ResolvedCubes();
-  void number_lists();
+  explicit ResolvedCubes(int triangulation);
+  void number_lists(int triangulation);
+  void take_compact(const tables::ResolvedList& list);
+  void take_barycentric();
   void make_frames();
-  void make_parts(unsigned cube, const CubeList& list);
+  void make_parts(unsigned cube, unsigned list);
 
   std::array<std::array<std::uint64_t, 256>, 2> signatures_{};
   std::array<std::array<std::uint64_t, 16>, 6> squares_{};
@@ -132,10 +145,13 @@ class ResolvedCubes {
   std::array<std::uint8_t, 64 * 64> compressed_{};
   std::vector<CubeList> lists_;
   std::vector<std::uint16_t> list_of_;
-  std::vector<std::uint16_t> key_of_;     ///< by list
-  std::vector<Summary> summaries_;        ///< likewise; behind them that of kNone
-  std::vector<std::uint8_t> has_choice_;  ///< by entry
-  std::vector<std::uint32_t> apexes_;     ///< by cube, then as summaries
+  std::vector<std::uint16_t> key_of_;  ///< by list
+  std::vector<std::uint8_t> of_cube_;  ///< triangles of the lists
+  std::vector<std::uint32_t> first_of_cube_{0};
+  std::vector<std::array<std::uint32_t, kMostOwn>> masks_;  ///< by list
+  std::vector<Summary> summaries_;                          ///< likewise; behind them that of kNone
+  std::vector<std::uint8_t> has_choice_;                    ///< by entry
+  std::vector<std::uint32_t> apexes_;                       ///< by cube, then as summaries
   std::uint32_t parts_of_cube_ = 0;
   std::vector<Part> parts_;
   std::vector<std::uint64_t> part_vertices_;

@@ -88,7 +88,15 @@ Choice choice_of(const ResolvedKey& key, unsigned cube) {
 
 }  // namespace
 
-ResolvedTesseract::ResolvedTesseract() : cubes_(ResolvedCubes::instance()), in_table_(in_table().data()) {}
+ResolvedTesseract::ResolvedTesseract(int triangulation)
+    : is_barycentric_(triangulation == kBarycentric),
+      cubes_(ResolvedCubes::instance(triangulation)),
+      in_table_(in_table().data()) {}
+
+const CubeRegions& ResolvedTesseract::regions() {
+  if (regions_ == nullptr) regions_ = &CubeRegions::instance(is_barycentric_ ? kBarycentric : kCompact);
+  return *regions_;
+}
 
 const std::vector<ResolvedTesseract::InTable>& ResolvedTesseract::in_table() {
   static const std::vector<InTable> entries = [] {
@@ -227,7 +235,7 @@ void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t co
 
 /// The table holds the low-connected contour, its spheres coned and what is none filled as by a low centre.
 bool ResolvedTesseract::is_in_table(const ResolvedKey& key) const {
-  if (!as_low_) return false;
+  if (!as_low_ || is_barycentric_) return false;
   if (key.tile == Choice::separate) return true;
   for (unsigned c = 0; c < component_count_; ++c)
     if (!components_[c].is_sphere && key.tile == Choice::high) return false;
@@ -340,8 +348,11 @@ bool ResolvedTesseract::is_alone(unsigned component) const {
 }
 
 /// The point of most triangles, of those that may be a cone's apex; if there is none, a number of own vertices. All its
-/// neighbours are beside it, and of the component there is nothing else beside it.
+/// neighbours are beside it, and of the component there is nothing else beside it. In the barycentric triangulation
+/// only a tetrahedron has one.
 unsigned ResolvedTesseract::apex_of(const Component& component) const {
+  if (is_barycentric_)
+    return component.triangles == 4 ? static_cast<unsigned>(std::countr_zero(component.vertices)) : kFirstOwn;
   auto apexes = static_cast<std::uint32_t>(component.vertices) & (component_count_ == 1 ? apexes_ : ~std::uint32_t{0});
   unsigned cubes = 0;
   for (std::uint32_t rest = component.parts; component_count_ > 1 && rest != 0 && apexes != 0; rest &= rest - 1) {
@@ -362,7 +373,10 @@ unsigned ResolvedTesseract::apex_of(const Component& component) const {
 void ResolvedTesseract::cone(const Component& component) {
   unsigned apex = apex_of(component);
   const bool is_own = apex == kFirstOwn;
-  if (is_own) apex = add_own((component.vertices & 0xffffffffu) << kMaskEdge);
+  if (is_own) {
+    const std::uint64_t edges = component.vertices & 0xffffffffu;
+    apex = add_own(edges << kMaskEdge | (is_barycentric_ ? kIsBarycentre : 0));
+  }
   const std::uint32_t first = ResolvedCubes::apex_word(apex), repeated = apex * 0x01010101u;
   Word* out = simplices_.data() + simplex_count_;
   for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
@@ -399,11 +413,12 @@ void ResolvedTesseract::fill_region(unsigned corners, bool high) {
   for (unsigned v = 0; v < sigma.size(); ++v) sigma[v] = static_cast<std::uint8_t>(v);
   for (unsigned c = 0; c < component_count_; ++c)
     if (components_[c].is_coned && components_[c].region == corners) cap(components_[c], corners, sigma);
-  for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, copy, sigma);
+  const std::size_t first_centre = masks_.size();
+  for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, first_centre, copy, sigma);
 }
 
-void ResolvedTesseract::add_region_size(unsigned corners, bool high, ResolvedSize& size) const {
-  const CubeRegions& all = CubeRegions::instance();
+void ResolvedTesseract::add_region_size(unsigned corners, bool high, ResolvedSize& size) {
+  const CubeRegions& all = regions();
   size.own_vertices += static_cast<std::uint32_t>(std::popcount(corners));
   for (unsigned c = 0; c < component_count_; ++c)
     if (components_[c].is_coned && components_[c].region == corners) {
@@ -454,8 +469,7 @@ std::uint64_t ResolvedTesseract::mask_of(unsigned vertex, unsigned corners) cons
   }
   const unsigned cube = (vertex - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
   const unsigned own = (vertex - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn;
-  const tables::ResolvedList& list = *cubes_.lists()[lists_[cube]].list;
-  for (std::uint32_t rest = tables::kTile3Resolved.masks[list.first_mask + own]; rest != 0; rest &= rest - 1) {
+  for (std::uint32_t rest = cubes_.mask(lists_[cube], own); rest != 0; rest &= rest - 1) {
     const auto v = static_cast<unsigned>(std::countr_zero(rest));
     if (v < 8)
       mask |= std::uint64_t{1} << lifted_corner(cube, v);
@@ -465,10 +479,10 @@ std::uint64_t ResolvedTesseract::mask_of(unsigned vertex, unsigned corners) cons
   return mask;
 }
 
-void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool high,
+void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool high, std::size_t first_centre,
                                          std::span<const std::uint8_t, 16> copy,
                                          std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma) {
-  const CubeRegions& all = CubeRegions::instance();
+  const CubeRegions& all = regions();
   std::array<std::uint8_t, CubeRegions::kVertices> local{};
   for (unsigned v = 0; v < 8; ++v) local[v] = copy[lifted_corner(cube, v)];
   for (unsigned v = 0; v < 12 + ResolvedCubes::kMostOwn; ++v)
@@ -482,7 +496,7 @@ void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool h
         const auto v = static_cast<unsigned>(std::countr_zero(rest));
         lifted |= std::uint64_t{1} << (v < 8 ? lifted_corner(cube, v) : kMaskEdge + cubes_.lifted(cube, v - 8));
       }
-      local[centre++] = static_cast<std::uint8_t>(add_own(lifted));
+      local[centre++] = static_cast<std::uint8_t>(add_apart(lifted, first_centre));
     }
     static_assert(CubeRegions::kMoreTetrahedra >= kMoreSimplices, "map_simplices reads so many behind them");
     const auto tetrahedra = all.tetrahedra(region);
@@ -502,6 +516,15 @@ void ResolvedTesseract::add_simplex(const std::array<std::uint8_t, 4>& vertices)
 unsigned ResolvedTesseract::add_own(std::uint64_t mask) {
   masks_.push_back(mask);
   return kFirstOwn + static_cast<unsigned>(masks_.size()) - 1;
+}
+
+/// Of the own vertices from number `first` on another one may have the same mask: where regions of two cubes are cut by
+/// the same curve in the square between them.
+unsigned ResolvedTesseract::add_apart(std::uint64_t mask, std::size_t first) {
+  constexpr std::uint64_t kPoints = (std::uint64_t{1} << kRepeat) - 1;
+  std::uint64_t repeats = 0;
+  for (std::size_t j = first; j < masks_.size(); ++j) repeats += (masks_[j] & kPoints) == mask ? 1 : 0;
+  return add_own(mask | repeats << kRepeat);
 }
 
 bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {

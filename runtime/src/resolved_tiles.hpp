@@ -7,6 +7,10 @@
 // without being Sigma's, else from its barycentre. A component of higher genus, and components that the tile's centre
 // joins, are filled with a copy of one side of the tile's boundary, put together from the cubes as well
 // (cube_regions.hpp). Where all faces are resolved as in the low-connected contour, the compact table is taken.
+//
+// In the barycentric triangulation the lists are those of the cubes that 3D images are contoured by
+// (tile_variants.hpp): so the contour in each face is the 3D contour there. Spheres of more than a tetrahedron's
+// triangles are coned from their barycentres, and no table is taken.
 #pragma once
 
 #include <array>
@@ -53,8 +57,10 @@ struct ResolvedView {
   const std::uint8_t* simplices;  ///< 4 vertices each; positive side towards high
   std::uint32_t simplex_count;
   std::uint32_t own_vertices;
-  /// Own vertex -> bit v: corner, bit 16 + e: edge. With edges alone it lies at the mean of their points; with corners
-  /// among them, half way from the tile's centre to the mean of all.
+  /// Own vertex -> bit v: corner, bit 16 + e: edge. With edges only it lies at the mean of their points; with corners
+  /// among them, half way from the tile's centre to the mean of all. With ResolvedTesseract::kIsBarycentre it is the
+  /// barycentre of the triangles that the simplices have which it comes first in. Bits from ResolvedTesseract::kRepeat
+  /// on: how many vertices before it have the same corners and edges; each lies nearer to the centre than the last.
   const std::uint64_t* masks;
 };
 
@@ -71,8 +77,10 @@ struct ResolvedSize {
 class ResolvedTesseract {
  public:
   static constexpr unsigned kFirstOwn = ResolvedCubes::kVertices;
+  static constexpr std::uint64_t kIsBarycentre = std::uint64_t{1} << 63;  ///< in masks
+  static constexpr unsigned kRepeat = 48;                                 ///< first bit of eight, in masks
 
-  ResolvedTesseract();
+  explicit ResolvedTesseract(int triangulation = kCompact);
 
   /// Valid until the next call.
   const ResolvedView& find(const ResolvedKey& key) { return find(key, lists_of(key)); }
@@ -103,6 +111,7 @@ class ResolvedTesseract {
     std::uint16_t simplex_count, own_vertices;
   };
   static const std::vector<InTable>& in_table();
+  [[nodiscard]] const CubeRegions& regions();
 
   [[nodiscard]] ResolvedCubes::Lists lists_of(const ResolvedKey& key) const noexcept;
   [[nodiscard]] const ResolvedCubes::Part& part(unsigned i) const noexcept { return cubes_.part(parts_[i]); }
@@ -116,20 +125,24 @@ class ResolvedTesseract {
   void fill(const ResolvedKey& key, bool joins);
   [[nodiscard]] unsigned apex_of(const Component& component) const;
   void cone(const Component& component);
-  void add_region_size(unsigned corners, bool high, ResolvedSize& size) const;
+  void add_region_size(unsigned corners, bool high, ResolvedSize& size);
   [[nodiscard]] static bool is_in(unsigned cube, const CubeRegions::Region& region, unsigned corners) noexcept;
   void find_regions(const ResolvedKey& key, bool high);
   [[nodiscard]] bool is_alone(unsigned component) const;
   void fill_region(unsigned corners, bool high);
   void cap(const Component& component, unsigned corners, std::span<std::uint8_t> sigma);
   [[nodiscard]] std::uint64_t mask_of(unsigned vertex, unsigned corners) const;
-  void add_cube_regions(unsigned cube, unsigned corners, bool high, std::span<const std::uint8_t, 16> copy,
+  void add_cube_regions(unsigned cube, unsigned corners, bool high, std::size_t first_centre,
+                        std::span<const std::uint8_t, 16> copy,
                         std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma);
   void add_simplex(const std::array<std::uint8_t, 4>& vertices);
   unsigned add_own(std::uint64_t mask);
+  unsigned add_apart(std::uint64_t mask, std::size_t first);
 
+  bool is_barycentric_;
   const ResolvedCubes& cubes_;
-  const InTable* in_table_;  ///< by signature
+  const CubeRegions* regions_ = nullptr;  ///< once they are asked for
+  const InTable* in_table_;               ///< by signature
   // Of the tile at hand.
   ResolvedCubes::Lists lists_{};
   std::array<std::uint32_t, 32 + ResolvedCubes::kMostParts> parts_{};          ///< their numbers

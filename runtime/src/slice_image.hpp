@@ -115,8 +115,9 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const
   detail::check_arguments(isovalue, options);
   auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
   const bool is_last = axis == N - 1;
-  // Contours of 4D images keep points between layers of the last axis out of these, and those of no other axis.
-  if (N == 4 && !is_last && detail::is_at_layer<N, Real>(image.grid(), axis, at, layers)) {
+  // Points between layers are kept out of these on the last axis, and on no other axis.
+  const bool at_layer = detail::is_at_layer<N, Real>(image.grid(), axis, at, layers);
+  if (!is_last && at_layer) {
     ExtractOptions moved = options;
     if (options.ambiguity == Ambiguity::custom) moved.estimator = detail::moved_estimator<N>(options.estimator, axis);
     return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, moved, stats);
@@ -126,6 +127,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const
   // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.
   detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
   detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
+  plan.keeps_off_layers = at_layer;
   if (!is_last) plan.part = {axis, layers.first};
   const Contour<N, Real> contour = detail::extract_any<N, Real>(source, slab.grid(), options, stats, plan);
   return slice(contour, Hyperplane<N>::across(axis, at));

@@ -63,8 +63,8 @@ requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, 
   detail::LayerRing<T, N> ring(layers);
   detail::LayerSource<T, N> source(ring, isovalue, options.epsilon);
   detail::StreamOutput<N, Real> output(sink, options.normals);
-  const ExtractStats done =
-      detail::extract_any_to<N, Real>(source, layers.grid(), options, detail::streaming_plan(layers.grid()), output);
+  const ExtractStats done = detail::extract_to<N, Real>(source, layers.grid(), detail::generated_tables<N>(options),
+                                                        options, detail::streaming_plan(layers.grid()), output);
   if (stats != nullptr) *stats = done;
   return output.size();
 }

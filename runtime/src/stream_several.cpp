@@ -58,8 +58,8 @@ struct OneOfSeveral {
         source(ring, contour.isovalue, options.epsilon),
         sink(*contour.sink, calls),
         output(sink, options.normals),
-        extraction(detail::make_any_extraction<N, Real>(source, ring.grid(), options,
-                                                        detail::streaming_plan(ring.grid()), output)) {}
+        extraction(detail::make_extraction<N, Real>(source, ring.grid(), detail::generated_tables<N>(options), options,
+                                                    detail::streaming_plan(ring.grid()), output)) {}
 
   ExtractOptions options;
   detail::LayerSource<T, N> source;

@@ -513,10 +513,25 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   }
 }
 
+/// A tile in which there is nothing to decide.
+static ResolvedTile settled_tile(const ResolvedCubes& cubes, unsigned signature) noexcept {
+  ResolvedTile tile;
+  tile.key.signature = static_cast<std::uint16_t>(signature);
+  const std::uint64_t signatures = cubes.signatures(tile.key.signature);
+  for (unsigned f = 0; f < 8; ++f) {
+    tile.cubes[f] = static_cast<std::uint16_t>(signatures >> (8 * f) & 255);
+    tile.lists[f] = cubes.list(tile.cubes[f], 0, facets::Choice::separate);
+    if (cubes.own_vertices(tile.lists[f]) != 0)
+      tile.with_vertices = static_cast<std::uint8_t>(tile.with_vertices | 1u << f);
+  }
+  return tile;
+}
+
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
                            unsigned signature) noexcept {
   const auto& table = tables::kTile3Resolved;
-  const ResolvedCubes& cubes = ResolvedCubes::instance();
+  const ResolvedCubes& cubes = ResolvedCubes::instance(estimator.triangulation());
+  if (!ambiguous_signatures<4>()[signature]) return settled_tile(cubes, signature);
   const auto& ambiguous_cubes = ambiguous_signatures<3>();
   std::array<double, 16> values;
   estimator.source().corner_values(base, 15, values.data());
@@ -595,7 +610,7 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
 bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
              ResolvedTile& tile) noexcept {
   if (block.unsure[bit] != 0) return false;
-  const ResolvedCubes& cubes = ResolvedCubes::instance();
+  const ResolvedCubes& cubes = ResolvedCubes::instance(estimator.triangulation());
   const std::uint64_t high = block.high[bit];
   tile.key = {};
   tile.key.signature = static_cast<std::uint16_t>(signature);
@@ -643,7 +658,7 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
 
 ResolvedTile RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
                                       unsigned signature) noexcept {
-  if (!at_once_) return resolved_tile(estimator_, base, signature);
+  if (!at_once_ || !ambiguous_signatures<4>()[signature]) return resolved_tile(estimator_, base, signature);
   const std::size_t word = base[0] / kWordBits;
   if (word != word_) {
     word_ = word;
@@ -671,14 +686,19 @@ unsigned list_of_key(unsigned key) noexcept {
   return ResolvedCubes::instance().list(signature, squares, choice);
 }
 
-const RowTable& estimated_tesseracts() {
-  static const RowTable table = [] {
-    RowTable result(tables::tile_table(4, 1));
+const RowTable& estimated_tesseracts(int triangulation) {
+  const auto make = [](bool all) {
+    RowTable result(tables::tile_table(4, kCompact));
     for (unsigned s = 0; s < 65536; ++s)
-      if (ambiguous_signatures<4>()[s]) result.mark_as_own(s);
+      if (all || ambiguous_signatures<4>()[s]) result.mark_as_own(s);
     return result;
-  }();
-  return table;
+  };
+  if (triangulation == kBarycentric) {
+    static const RowTable barycentric = make(true);
+    return barycentric;
+  }
+  static const RowTable compact = make(false);
+  return compact;
 }
 
 template <>

@@ -76,21 +76,29 @@ template <int N>
 unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
                   unsigned signature) noexcept;
 
-/// The filling of an ambiguous tile of four dimensions.
+/// Whether a tile of four dimensions is put together from its cubes where data decide: if they have a say in it, and in
+/// the barycentric triangulation always, as the cubes' barycentres are listed with their tiles.
+inline bool is_put_together(const FaceEstimator<4>& estimator, unsigned signature) noexcept {
+  return estimator.triangulation() == kBarycentric || ambiguous_signatures<4>()[signature];
+}
+/// The filling of such a tile.
 ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base,
                            unsigned signature) noexcept;
 /// The same of tile `bit` of a block; false where it is to be asked for by itself.
 bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsigned bit, unsigned signature,
              ResolvedTile& tile) noexcept;
 
-/// The compact table of four dimensions; all tiles that data decide on are marked as those with vertices of their own.
-const RowTable& estimated_tesseracts();
+/// The compact table of four dimensions; all tiles that are put together are marked as those with vertices of their
+/// own.
+const RowTable& estimated_tesseracts(int triangulation);
 
 /// The number of the list (ResolvedCubes) that a cube's key stands for; kNone for a cube without a contour.
 unsigned list_of_key(unsigned key) noexcept;
 
-/// How many vertices of its own a cube has in the compact triangulation, by key.
-inline unsigned cube_vertices(unsigned key) { return variant_table<3>(1).rows().own_vertices(key); }
+/// How many vertices of its own a cube has, by key.
+inline unsigned cube_vertices(int triangulation, unsigned key) {
+  return variant_table<3>(triangulation).rows().own_vertices(key);
+}
 
 /// The faces of a row's tiles, N = 3 or 4, a word of tiles at a time: where many of a word's tiles are ambiguous this
 /// is quicker than to ask for them one by one.

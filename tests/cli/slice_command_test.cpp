@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "sample_files.hpp"
 #include "tegl/io.hpp"
 #include "tegl_program.hpp"
@@ -146,6 +150,47 @@ TEST_F(Slice, OfAWholeTimeIsTheContourOfThatStep) {
     return list;
   };
   EXPECT_EQ(points("cut.ply"), points("layer.ply"));
+}
+
+TEST_F(Slice, OfNoiseAtAWholeTimeIsTheContourOfThatStepFromTheImageAndFromASavedContour) {
+  Samples film = noise({6, 7, 5, 4}, 3);
+  for (float& value : film.values) value = std::floor(value / 64);  // many equal the isovalue
+  const std::size_t step = 6 * 7 * 5;
+  const std::string film_file = write("film.nii", nifti_bytes(film, {1, 1, 1, 1}));
+  /// Triangles by the places of their corners, each from its least corner on.
+  const auto triangles = [&](const std::string& name) {
+    const Mesh mesh = read_mesh(path(name));
+    std::vector<std::array<std::array<double, 3>, 3>> list(mesh.simplices.size() / 3);
+    for (std::size_t i = 0; i < mesh.simplices.size(); ++i)
+      for (std::size_t a = 0; a < 3; ++a) list[i / 3][i % 3][a] = mesh.coordinates[3 * mesh.simplices[i] + a];
+    for (auto& corners : list)
+      std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    std::sort(list.begin(), list.end());
+    return list;
+  };
+  for (const char* ambiguity : {"low", "mean", "saddle"})
+    for (const char* triangulation : {"compact", "barycentric"}) {
+      const std::vector<std::string> how = {"--iso",           "2",           "--ambiguity", ambiguity,
+                                            "--triangulation", triangulation, "--close"};
+      const auto run = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), how.begin(), how.end());
+        const RunResult result = run_tegl(arguments);
+        ASSERT_EQ(result.exit, 0) << result.err;
+      };
+      run({"contour", film_file, "-o", path("all.vtkhdf"), "-q"});
+      for (const std::size_t k : {0u, 2u, 3u}) {
+        const auto first = film.values.begin() + static_cast<std::ptrdiff_t>(k * step);
+        const Samples layer{{6, 7, 5}, {first, first + static_cast<std::ptrdiff_t>(step)}};
+        const std::string at = "t=" + std::to_string(k);
+        run({"contour", write("layer.nii", nifti_bytes(layer, {1, 1, 1})), "-o", path("layer.vtkhdf"), "-q"});
+        run({"slice", film_file, "--at", at, "-o", path("cut.vtkhdf"), "-q"});
+        ASSERT_EQ(run_tegl({"slice", path("all.vtkhdf"), "--at", at, "-o", path("saved.vtkhdf"), "-q"}).exit, 0);
+        const auto expected = triangles("layer.vtkhdf");
+        EXPECT_GT(expected.size(), 100u);
+        EXPECT_TRUE(triangles("cut.vtkhdf") == expected) << ambiguity << " " << triangulation << " " << at;
+        EXPECT_TRUE(triangles("saved.vtkhdf") == expected) << ambiguity << " " << triangulation << " " << at;
+      }
+    }
 }
 
 TEST_F(Slice, CutsAtSeveralTimesAtOnce) {

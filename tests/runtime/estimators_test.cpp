@@ -500,8 +500,7 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnes) {
   }
 }
 
-/// Barycentric, resolved from the data: built tile by tile.
-ExtractOptions built(Ambiguity ambiguity, bool close) {
+ExtractOptions barycentric_by(Ambiguity ambiguity, bool close) {
   ExtractOptions options = with(ambiguity);
   options.triangulation = Triangulation::barycentric;
   options.close = close;
@@ -514,7 +513,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithTheSameBytes) {
     for (const Ambiguity ambiguity : kEstimated)
       for (const bool close : {false, true}) {
         SCOPED_TRACE(std::string(name_of(ambiguity)) + (close ? ", closed" : "") + (missing > 0 ? ", missing" : ""));
-        ExtractOptions options = built(ambiguity, close);
+        ExtractOptions options = barycentric_by(ambiguity, close);
         options.normals = true;
         const auto contour = extract(image.view(), 0.5, options);
         if (missing > 0 || !close)
@@ -541,7 +540,7 @@ TEST(BarycentricContoursOf4dImages, AreStreamedWithAnEstimatorThatLooksFarther) 
   const auto image = noise<float, 4>(std::array<std::size_t, 4>{4, 3, 4, 7}, 16);
   for (const std::size_t reach : {1, 3}) {
     Neighbourhood<float, 4> around{image};
-    ExtractOptions options = built(Ambiguity::custom, false);
+    ExtractOptions options = barycentric_by(Ambiguity::custom, false);
     options.estimator = around.estimator(reach);
     const auto contour = extract(image.view(), 0.5, options);
     Collector<4, float> collector;
@@ -572,7 +571,7 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnesNextToMissingVal
     const auto holes = choose_tiles(image.view(), tiles);
     for (const Ambiguity ambiguity : kEstimated) {
       SCOPED_TRACE(std::string(name_of(ambiguity)) + ", seed " + std::to_string(seed));
-      const ExtractOptions built_options = built(ambiguity, false), compact_options = with(ambiguity);
+      const ExtractOptions barycentric_options = barycentric_by(ambiguity, false), compact_options = with(ambiguity);
       const auto expect_alike = [](const Contour<4, double>& found, const Contour<4, double>& compact) {
         expect_oriented_manifold(found);
         const MeshReport a = check(found), b = check(compact);
@@ -580,13 +579,13 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnesNextToMissingVal
         EXPECT_EQ(a.euler, b.euler);
         EXPECT_GT(found.simplices.size(), 0u);
       };
-      expect_alike(extract<double>(image.view(), 0.5, built_options),
+      expect_alike(extract<double>(image.view(), 0.5, barycentric_options),
                    extract<double>(image.view(), 0.5, compact_options));
-      expect_alike(extract<double>(whole.view(), 0.5, built_options, *chosen),
+      expect_alike(extract<double>(whole.view(), 0.5, barycentric_options, *chosen),
                    extract<double>(whole.view(), 0.5, compact_options, *chosen));
-      expect_alike(extract<double>(image.view(), 0.5, built_options, *holes),
+      expect_alike(extract<double>(image.view(), 0.5, barycentric_options, *holes),
                    extract<double>(image.view(), 0.5, compact_options, *holes));
-      expect_closed_up_to_missing_values<double>(image.view(), 0.5, built_options);
+      expect_closed_up_to_missing_values<double>(image.view(), 0.5, barycentric_options);
     }
   }
 }

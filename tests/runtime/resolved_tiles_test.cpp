@@ -13,6 +13,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "corners.hpp"
@@ -21,6 +22,7 @@
 #include "tegl/facets/facets.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile_facets.hpp"
+#include "tile_variants.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -65,6 +67,25 @@ const tables::ResolvedList& list_of(const ResolvedKey& key, unsigned cube) {
   const tables::ResolvedEntry& lists = tables::kTile3Resolved.entries[entry];
   const Choice choice = cube_choice(key, cube);
   return choice == Choice::separate ? lists.separate : choice == Choice::low ? lists.low : lists.high;
+}
+
+/// The triangles of a cube.
+std::span<const std::uint8_t> triangles_of(const ResolvedKey& key, unsigned cube, int triangulation) {
+  const tables::ResolvedList& list = list_of(key, cube);
+  if (triangulation == kCompact)
+    return {tables::kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle},
+            3 * std::size_t{list.triangle_count}};
+  // Those that 3D images are contoured by.
+  const ResolvedCubes& cubes = ResolvedCubes::instance(kBarycentric);
+  const auto& lists = cubes.lists();
+  const unsigned signature = cube_signature(key.signature, cube);
+  for (unsigned number = 0; number < lists.size(); ++number) {
+    if (lists[number].signature != signature || lists[number].list->first_triangle != list.first_triangle) continue;
+    const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
+    const tables::List& of_key = table.lists[table.list_of[cubes.key(number)]];
+    return {table.simplices + 3 * std::size_t{of_key.first_simplex}, 3 * std::size_t{of_key.simplex_count}};
+  }
+  return {};
 }
 
 /// Keys: all uniform, or what the mean of uniform noise gives.
@@ -119,7 +140,7 @@ class AsBuilt {
   [[nodiscard]] const FaceLattice& lattice() const { return lattice_; }
   [[nodiscard]] std::uint32_t face_of_edge(unsigned e) const { return edge_face_[e]; }
 
-  facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view) const {
+  facets::TileFacets operator()(const ResolvedKey& key, const ResolvedView& view, int triangulation = kCompact) const {
     facets::TileFacets tile;
     for (unsigned v = 0; v < kFirstOwn + view.own_vertices; ++v) {
       facets::Vertex vertex;
@@ -134,9 +155,8 @@ class AsBuilt {
       const auto g = static_cast<std::size_t>(std::find(faces.begin(), faces.end(), face_of_cube(f)) - faces.begin());
       const unsigned in_cube = cube_signature(key.signature, f);
       if (in_cube == 0 || in_cube == 255) continue;
-      const tables::ResolvedList& list = list_of(key, f);
-      const std::uint8_t* at = tables::kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
-      for (unsigned t = 0; t < list.triangle_count; ++t, at += 3) {
+      const std::span<const std::uint8_t> list = triangles_of(key, f, triangulation);
+      for (const std::uint8_t* at = list.data(); at != list.data() + list.size(); at += 3) {
         Simplex triangle = kNoSimplex;
         for (unsigned i = 0; i < 3; ++i)
           triangle[i] = static_cast<VertexId>(ResolvedCubes::instance().lifted(f, at[i]));
@@ -318,13 +338,19 @@ void note_genera(const facets::TileFacets& tile, std::map<int, int>& count) {
 
 class ResolvedTiles : public ::testing::Test {
  protected:
+  /// In the compact triangulation, and every fourth key in the barycentric one.
   void expect_certified(const ResolvedKey& key) {
-    const ResolvedSize size = tile_.size(key);
-    const ResolvedView& view = tile_.find(key);
+    ASSERT_NO_FATAL_FAILURE(expect_certified(key, tile_, kCompact));
+    if (keys_certified_++ % 4 == 0) expect_certified(key, barycentric_, kBarycentric);
+  }
+
+  void expect_certified(const ResolvedKey& key, ResolvedTesseract& from, int triangulation) {
+    const ResolvedSize size = from.size(key);
+    const ResolvedView& view = from.find(key);
     ASSERT_EQ(size.simplices, view.simplex_count);
     ASSERT_EQ(size.own_vertices, view.own_vertices);
     ASSERT_LT(kFirstOwn + view.own_vertices, 256u);
-    const facets::TileFacets tile = as_built_(key, view);
+    const facets::TileFacets tile = as_built_(key, view, triangulation);
     note_genera(tile, genera_);
     const facets::Fault fault = certifier_.certify(as_built_.lattice(), tile);
     ASSERT_EQ(fault, facets::Fault::none)
@@ -334,7 +360,8 @@ class ResolvedTiles : public ::testing::Test {
 
   Keys keys_;
   AsBuilt as_built_;
-  ResolvedTesseract tile_;
+  ResolvedTesseract tile_, barycentric_{kBarycentric};
+  std::size_t keys_certified_ = 0;
   facets::Certifier certifier_;
   std::map<int, int> genera_;  ///< genus -> components of Sigma
 };
@@ -382,6 +409,24 @@ TEST_F(ResolvedTiles, FillingsAreThoseOfTheEngine) {
     ASSERT_EQ(Topology(found), Topology(as_built_.built(key)))
         << " signature " << key.signature << " squares " << key.squares << " low " << int{key.low_cubes} << " high "
         << int{key.high_cubes} << " tile " << static_cast<int>(key.tile);
+    if (i % 4 != 0) continue;
+    ASSERT_EQ(Topology(as_built_(key, barycentric_.find(key), kBarycentric)), Topology(as_built_.built(key)))
+        << "barycentric, signature " << key.signature << " squares " << key.squares;
+  }
+}
+
+TEST_F(ResolvedTiles, BarycentricSpheresAreConedFromBarycentres) {
+  for (int i = 0; i < 2000; ++i) {
+    ResolvedKey key = keys_.of_means();
+    if (!ResolvedTesseract::is_settled(key.signature)) continue;
+    const ResolvedView& view = barycentric_.find(key);
+    ASSERT_LE(view.own_vertices, 1u);
+    if (view.own_vertices == 0) {
+      ASSERT_LE(view.simplex_count, 1u);
+      continue;
+    }
+    ASSERT_NE(view.masks[0] & ResolvedTesseract::kIsBarycentre, 0u);
+    for (std::uint32_t q = 0; q < view.simplex_count; ++q) ASSERT_EQ(view.simplices[4 * q], kFirstOwn);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compare.hpp"
+#include "estimators.hpp"
 #include "fields.hpp"
 #include "invariants.hpp"
 #include "real_images.hpp"
@@ -111,14 +112,19 @@ TEST_P(SliceOfFile, ByAScrubberIsTheSame) {
   });
 }
 
-TEST_P(SliceOfFile, AtATimeStepEqualsThe3dContour) {
+TEST_P(SliceOfFile, AtATimeStepEqualsThe3dContourInEveryCombination) {
   with_image([](const auto& image) {
     const double isovalue = isovalue_at(image, GetParam().quantile);
-    const auto whole = extract<double>(image, isovalue);
-    for (std::size_t k = 0; k < image.size(3); ++k)
-      EXPECT_TRUE(same_surface(slice(whole, time_of(image, static_cast<double>(k))),
-                               extract<double>(test::last_axis_layer(image, k), isovalue)))
-          << k;
+    for (const auto& [name, options_of_way] : test::all_ways())
+      for (const bool close : {false, true}) {
+        ExtractOptions options = options_of_way;
+        options.close = close;
+        const auto whole = extract<double>(image, isovalue, options);
+        for (std::size_t k = 0; k < image.size(3); ++k)
+          EXPECT_TRUE(same_surface(slice(whole, time_of(image, static_cast<double>(k))),
+                                   extract<double>(test::last_axis_layer(image, k), isovalue, options)))
+              << name << (close ? ", closed" : "") << ", layer " << k;
+      }
   });
 }
 
