@@ -58,7 +58,10 @@ int create_memory_file(std::size_t bytes, void*& begin) noexcept {
   if (file < 0) return -1;
   if (ftruncate(file, static_cast<off_t>(bytes)) == 0 && fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) == 0) {
     begin = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-    if (begin != MAP_FAILED) return file;
+    if (begin != MAP_FAILED) {
+      madvise(begin, bytes, MADV_HUGEPAGE);  // if the system has them for files in memory
+      return file;
+    }
   }
   close(file);
   return -1;

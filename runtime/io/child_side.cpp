@@ -156,7 +156,7 @@ void send_package(int socket, MessageKind kind, const Packer& packer) {
     if (descriptor >= 0)
       send_message(socket, MessageKind::block, {}, descriptor);
     else
-      send_message(socket, MessageKind::block, {}, FileCopy(block.begin, block.bytes, block.bytes).descriptor());
+      send_message(socket, MessageKind::block, {}, FileCopy(block.begin, block.used, block.bytes).descriptor());
   }
   const auto bytes = packer.bytes();
   if (bytes.size() <= kMostInline) return send_message(socket, kind, bytes);

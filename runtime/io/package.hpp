@@ -47,6 +47,7 @@ class Packer {
   struct Block {
     const void* begin;
     std::size_t bytes;
+    std::size_t used;  ///< bytes up to the end of the array
   };
 
   template <class T>
@@ -74,7 +75,8 @@ class Packer {
     number(static_cast<std::uint64_t>(values.capacity()));
     align();
     if (large)
-      blocks_.push_back({reinterpret_cast<const unsigned char*>(values.data()) - offset, block});
+      blocks_.push_back({reinterpret_cast<const unsigned char*>(values.data()) - offset, block,
+                         offset + values.size() * sizeof(values[0])});
     else
       append(values.data(), values.size() * sizeof(values[0]));
   }
@@ -148,6 +150,7 @@ class Unpacker {
   void array_in(Vector& to, const BlockSize& block_size) {
     using T = typename Vector::value_type;
     const Array array = head(sizeof(T));
+    to = Vector();
     if (array.large) {
       adopt(next_block(), block_size(array.capacity * sizeof(T)), [&] { to.reserve(array.capacity); });
       to.resize(array.size);

@@ -38,8 +38,7 @@ const fs::path kFile = "/no/such/file.nc";
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 [[noreturn]] void loop() {
-  for (volatile unsigned i = 0;; i = i + 1) {
-  }
+  for (std::atomic<unsigned> i = 0;;) ++i;
 }
 
 /// What `work` in a child leads to.
