@@ -42,9 +42,25 @@ TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, s
   return sum.point;
 }
 
+/// Whether all corners and edges in a region's mask belong to one square of the cube.
+bool lies_in_square(std::uint32_t mask) noexcept {
+  for (unsigned square = 0; square < 6; ++square) {
+    const unsigned axis = square / 2, side = square % 2;
+    const auto has = [&](unsigned v) {
+      if (v < 8) return (v >> axis & 1u) == side;
+      return (v - 8) / 4 != axis && (edge_base(3, v - 8) >> axis & 1u) == side;
+    };
+    std::uint32_t rest = mask;
+    while (rest != 0 && has(static_cast<unsigned>(std::countr_zero(rest)))) rest &= rest - 1;
+    if (rest == 0) return true;
+  }
+  return false;
+}
+
 /// A vertex that a region of a cube adds, in the barycentric triangulation: the mean by unequal weights, as mask_place
 /// has them, so that it hardly ever lies in a plane with three others. Those of a region along a tunnel (`is_collar`)
-/// may have all of their points in one square, and are moved out of it.
+/// may have all of their points in one square, where the cube on its other side may have one as well, and are moved
+/// out.
 template <unsigned Axes>
 TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask, bool is_collar) noexcept {
   Weighted<3> sum;
@@ -345,8 +361,10 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
     unsigned centre = Regions::kFirstCentre;
     for (const std::uint32_t mask : regions.centres(region)) {
       ids[centre++] = static_cast<Index>(vertices_.size());
-      add_vertex<kAxes>(index, barycentric ? centre_place<kAxes>(places, mask, region.centre_count > 1)
-                                           : region_place<N, kAxes>(places, mask));
+      const bool is_collar = region.centre_count > 1;
+      add_vertex<kAxes>(index, barycentric || (is_collar && lies_in_square(mask))
+                                   ? centre_place<kAxes>(places, mask, is_collar)
+                                   : region_place<N, kAxes>(places, mask));
     }
     for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region)) {
       Simplex simplex;

@@ -25,7 +25,6 @@
 #include "tile_cells.hpp"
 #include "tile_choices.hpp"
 #include "tile_places.hpp"
-#include "tile_selection.hpp"
 #include "workers.hpp"
 
 namespace tegl::detail {
@@ -34,29 +33,15 @@ namespace {
 /// The samples against the isovalue, and the faces with vertices among those within the layer.
 struct TileLayer {
   std::vector<Word> high;
-  std::vector<Word> missing;  ///< none: none are
   FaceRanks faces;
 };
 
 /// Between two layers.
 struct TileSlab {
-  std::vector<Word> valid;  ///< rows x words, tiles that count; none: all do
   std::vector<Cell> cells;
   std::vector<SeenTile> tiles;
   std::vector<std::uint64_t> simplices;  ///< by cell: the first one's number
   FaceRanks faces;
-};
-
-/// The vertices next to tiles that do not count.
-class TilePinches final : public PinchList {
- public:
-  void note_missing() noexcept { any_missing_ = true; }
-  /// What comes next is not below what came in earlier calls.
-  void add(std::vector<std::uint64_t>& vertices) {
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    vertices_.insert(vertices_.end(), vertices.begin(), vertices.end());
-  }
 };
 
 template <int N, class Real>
@@ -69,7 +54,6 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         options_(options),
         output_(output),
         max_vertices_(plan.max_vertices),
-        selection_(plan.selection != nullptr && plan.selection->only_these() ? plan.selection : nullptr),
         reporter_(options.progress, grid.axes[N - 1].size() - 1),
         flip_(against_tables(grid, options)),
         shape_(grid.sizes()),
@@ -117,7 +101,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     number_vertices(k);
     watch.add_to(stats_.find_seconds);
     if (k > 0) write(k - 1);
-    if (k == slabs) output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, pinches_);
+    if (k == slabs) output_.finish({0, vertices_, 0, simplices_, 1.0}, nullptr, no_pinches_);
     watch.add_to(stats_.generate_seconds);
   }
 
@@ -156,62 +140,35 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   void classify(std::size_t k) {
     TileLayer& here = layer(k);
     here.high.assign(shape_.rows() * shape_.pitch(), 0);
-    here.missing.assign(shape_.rows() * shape_.pitch(), 0);
     here.faces.reset(shape_.rows() * grid_cells_.slots(false) * shape_.words());
     std::atomic<bool> any_missing = false;
     for_range(shape_.rows(), 64, [&](std::size_t from, std::size_t to) {
+      std::vector<Word> missing(shape_.pitch());
       for (std::size_t row = from; row < to; ++row) {
         auto start = shape_.index_of(row);
         start[N - 1] = k;
         const std::size_t first = row * shape_.pitch();
-        if (source_.classify(start, 1, {here.high.data() + first, shape_.pitch()},
-                             {here.missing.data() + first, shape_.pitch()}) != 0)
+        if (source_.classify(start, 1, {here.high.data() + first, shape_.pitch()}, {missing.data(), shape_.pitch()}) !=
+            0)
           any_missing = true;
       }
     });
-    if (!any_missing) return here.missing.clear();
-    if (N > 4)
+    if (any_missing)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("a {}D image with missing values, the first in layer {} of its last axis; expected "
                               "numbers only: contours next to missing values are made up to 4D",
                               N, k));
   }
 
-  /// The tiles of slab k that count.
-  void find_valid(std::size_t k) {
-    std::vector<Word>& valid = slab(k).valid;
-    valid.clear();
-    const TileLayer &below = layer(k), &above = layer(k + 1);
-    if (selection_ == nullptr && below.missing.empty() && above.missing.empty()) return;
-    pinches_.note_missing();
-    valid.assign(shape_.rows() * shape_.words(), ~Word{0});
-    for (std::size_t chunk = 0; selection_ != nullptr && chunk < shape_.chunks(); ++chunk)
-      selection_->write_valid(k, chunk, shape_.chunk_end(chunk) - chunk * kChunkRows, shape_.words(), valid);
-    constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
-    for (std::size_t row = 0; row < shape_.rows(); ++row)
-      for (std::size_t w = 0; w < shape_.words(); ++w) {
-        Word& here = valid[row * shape_.words() + w];
-        here &= shape_.mask(w, true);
-        if (!shape_.has_cells(shape_.index_of(row), kMiddle)) here = 0;
-        for (const TileLayer* of : {&below, &above})
-          for (unsigned shift = 0; shift <= kMiddle && here != 0 && !of->missing.empty(); shift += 2) {
-            const Word* const at = of->missing.data() + shape_.shifted(row, shift) * shape_.pitch() + w;
-            here &= ~(at[0] | at[0] >> 1 | at[1] << (kWordBits - 1));
-          }
-      }
-  }
-
   void find_cells(std::size_t k, ExtractStats& stats) {
     TileSlab& here = slab(k);
     here.faces.reset(shape_.rows() * grid_cells_.slots(true) * shape_.words());
     const std::array<const Word*, 2> layers = {layer(k).high.data(), layer(k + 1).high.data()};
-    find_valid(k);
-    const Word* const valid = here.valid.empty() ? nullptr : here.valid.data();
     by_row_.resize(shape_.rows());
     for_range(shape_.rows(), 16, [&](std::size_t from, std::size_t to) {
       for (std::size_t row = from; row < to; ++row) {
         by_row_[row].clear();
-        finder_.find(k, layers, valid, row, by_row_[row]);
+        finder_.find(k, layers, row, by_row_[row]);
       }
     });
     here.cells.clear();
@@ -382,78 +339,18 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         TilePlaces<N> places(cube_, built_.symmetries());
         std::vector<Index> ids;
         for (std::size_t c = from; c < to; ++c) {
-          write_vertices(k, c, k == 0 ? kAnyFace : kNotBelow, places, ids);
+          write_vertices(k, c, places, ids);
           write_simplices(slab(k), c, ids);
         }
       });
-      // Of the layer above, what no tile of this slab has.
-      if (pinches_.any_missing() && k + 2 < shape_.layers())
-        for_range(slab(k + 1).cells.size(), 16, [&](std::size_t from, std::size_t to) {
-          TilePlaces<N> places(cube_, built_.symmetries());
-          std::vector<Index> ids;
-          for (std::size_t c = from; c < to; ++c) write_vertices(k + 1, c, kBelow, places, ids);
-        });
       if (estimator_) estimator_->rethrow();
-      if (pinches_.any_missing()) find_pinches(k);
-      output_.close(part, pinches_);
+      output_.close(part, no_pinches_);
     }
     part_first_ = part_end_;
   }
 
-  /// The vertices of the part that are next to tiles that do not count: those on edges, and the caps'.
-  void find_pinches(std::size_t k) {
-    std::vector<std::uint64_t> found;
-    const auto look = [&](std::size_t of, bool below) {
-      for (std::size_t c = 0; c < slab(of).cells.size(); ++c) {
-        const CellKind<N> kind(slab(of).cells[c].kind);
-        const auto base = base_of(slab(of).cells[c], of);
-        for_faces_of(of, c,
-                     [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
-                         std::size_t, std::uint16_t face) {
-                       const CubeFaces::Cell& cell = cube_.cells()[face];
-                       const bool is_below = &faces == &layer(of).faces;
-                       if (cell.dim != 1 || (is_below ? !below && of > 0 : below)) return;
-                       if (!kind.is_cap() && is_surrounded(base, cell)) return;
-                       const std::uint64_t first =
-                           part_first_ + static_cast<Index>(faces.first(word, bit) - static_cast<Index>(part_first_));
-                       for (std::size_t v = 0; v < vertices.count; ++v) found.push_back(first + v);
-                     });
-      }
-    };
-    look(k, false);
-    if (k + 2 < shape_.layers()) look(k + 1, true);
-    pinches_.add(found);
-  }
-
-  /// Whether all tiles around an edge of the tile at `base`, of those that the image has, count.
-  [[nodiscard]] bool is_surrounded(const typename RowShape<N>::Index& base, const CubeFaces::Cell& edge) {
-    constexpr unsigned kAllAxes = (1u << N) - 1;
-    const unsigned across = kAllAxes & ~unsigned{edge.axes};
-    for (unsigned back = across;; back = (back - 1) & across) {
-      auto tile = base;
-      bool inside = true;
-      for (int a = 0; a < N; ++a) {
-        tile[a] += edge.base >> a & 1u;
-        inside = inside && tile[a] >= (back >> a & 1u);
-        tile[a] -= back >> a & 1u;
-        inside = inside && tile[a] + 1 < shape_.size(a);
-      }
-      if (inside && !is_valid(tile)) return false;
-      if (back == 0) return true;
-    }
-  }
-  [[nodiscard]] bool is_valid(const typename RowShape<N>::Index& tile) noexcept {
-    const std::vector<Word>& valid = slab(tile[N - 1]).valid;
-    if (valid.empty()) return true;
-    std::size_t row = 0;
-    for (int a = 1; a + 1 < N; ++a) row += tile[a] * shape_.shifted(0, 1u << a);
-    return (valid[row * shape_.words() + tile[0] / kWordBits] >> (tile[0] % kWordBits) & 1u) != 0;
-  }
-
-  enum Which { kAnyFace, kNotBelow, kBelow };  ///< faces: all, but those of the layer below the cells, those alone
-
-  /// Numbers all vertices of a cell, and writes those of the faces that it owns.
-  void write_vertices(std::size_t k, std::size_t c, Which which, TilePlaces<N>& places, std::vector<Index>& ids) {
+  /// Numbers all vertices of a cell, and writes those of the faces that it owns: of the layer below, in slab 0 only.
+  void write_vertices(std::size_t k, std::size_t c, TilePlaces<N>& places, std::vector<Index>& ids) {
     const Cell& cell = slab(k).cells[c];
     const SeenTile& seen = slab(k).tiles[cell.tile];
     const CellKind<N> kind(cell.kind);
@@ -464,16 +361,11 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
                      std::size_t, std::uint16_t face) {
                    const bool is_below = &faces == &layer(k).faces;
-                   if (which == kBelow && !is_below) {  // has no numbers yet; edges are places of what depends on them
-                     if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
-                     return;
-                   }
                    // Cells around a face agree on it, unless a caller's estimator does not.
                    if (estimator_ && vertices.count != faces.count(word, bit)) return estimator_->report_change(base);
                    number_face(seen, vertices, faces.first(word, bit), ids);
                    if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
-                   if ((is_below && which == kNotBelow) || faces.owner(word, bit) != owner_name(faces, layer(k), c))
-                     return;
+                   if ((is_below && k > 0) || faces.owner(word, bit) != owner_name(faces, layer(k), c)) return;
                    for (std::size_t v = vertices.first; v < std::size_t{vertices.first} + vertices.count; ++v) {
                      const auto place = in_grid(kind, places(v));
                      const auto at = static_cast<Index>(ids[v] - static_cast<Index>(part_first_));
@@ -555,7 +447,6 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   const ExtractOptions& options_;
   ContourOutput<N, Real>& output_;
   std::uint64_t max_vertices_;
-  const TileSelection* selection_;  ///< null: all tiles
   ProgressReporter reporter_;
   bool flip_;
   RowShape<N> shape_;
@@ -578,7 +469,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   std::uint64_t simplices_ = 0;
   std::uint64_t part_first_ = 0, part_end_ = 0;  ///< vertices of the part at hand
   typename ContourOutput<N, Real>::Room room_{};
-  TilePinches pinches_;
+  PinchList no_pinches_;
 };
 
 /// A contour in memory, or its size alone.
@@ -596,13 +487,8 @@ class BuiltContour final : public ContourOutput<N, Real> {
     return {contour_->vertices.data() + part.first_vertex, contour_->simplices.data() + part.first_simplex,
             normals_ ? contour_->normals.data() + part.first_vertex : nullptr};
   }
-  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& pinches) override {
+  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& /*pinches*/) override {
     size = {all.end_vertex, all.end_simplex};
-    if constexpr (N <= 4) {
-      if (contour_ == nullptr || !pinches.any_missing()) return;
-      separate_pinches(*contour_, {pinches.vertices().begin(), pinches.vertices().end()}, kMaxVertices);
-      size = {contour_->vertices.size(), contour_->simplices.size()};
-    }
   }
 
   ContourSize size;

@@ -30,12 +30,9 @@ class CellFinder {
   /// `closed`: the axes across which borders have caps.
   CellFinder(const RowShape<N>& shape, unsigned closed) : shape_(shape), closed_(closed) {}
 
-  /// The cells that start in a row of slab k, between `layers`, kind by kind; caps along with their tiles. `valid`: the
-  /// tiles that count, or null.
-  void find(std::size_t k, const std::array<const Word*, 2>& layers, const Word* valid, std::size_t row,
-            std::vector<Cell>& out) const {
+  /// The cells that start in a row of slab k, between `layers`, kind by kind; caps along with their tiles.
+  void find(std::size_t k, const std::array<const Word*, 2>& layers, std::size_t row, std::vector<Cell>& out) const {
     const auto index = shape_.index_of(row);
-    const std::size_t before = out.size();
     if (shape_.has_cells(index, kAll)) sweep(CellKind<N>(0), layers, row, kRowOfCells, out);
     for (int axis = 0; axis < N; ++axis)
       for (unsigned side = 0; side < 2; ++side) {
@@ -50,22 +47,11 @@ class CellFinder {
           sweep(kind, layers, row, kRowOfCells, out);
         }
       }
-    if (valid == nullptr) return;
-    out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(before), out.end(),
-                             [&](const Cell& cell) { return !is_of_valid_tile(cell, valid); }),
-              out.end());
   }
 
  private:
   static constexpr unsigned kAll = (1u << N) - 1;
   static constexpr std::size_t kRowOfCells = ~std::size_t{0};
-
-  [[nodiscard]] bool is_of_valid_tile(const Cell& cell, const Word* valid) const noexcept {
-    const CellKind<N> kind(cell.kind);
-    const unsigned back = kind.is_cap() && kind.side() == 1 ? 1u << kind.across() : 0;
-    const std::size_t row = shape_.unshifted(cell.row, back), i = cell.i - (back & 1u);
-    return (valid[row * shape_.words() + i / kWordBits] >> (i % kWordBits) & 1u) != 0;
-  }
 
   /// `only`: the one sample that a cell may start at; kRowOfCells: cells along the row.
   void sweep(CellKind<N> kind, const std::array<const Word*, 2>& layers, std::size_t row, std::size_t only,

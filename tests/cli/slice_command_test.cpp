@@ -163,8 +163,11 @@ TEST_F(Slice, OfNoiseAtAWholeTimeIsTheContourOfThatStepFromTheImageAndFromASaved
     std::vector<std::array<std::array<double, 3>, 3>> list(mesh.simplices.size() / 3);
     for (std::size_t i = 0; i < mesh.simplices.size(); ++i)
       for (std::size_t a = 0; a < 3; ++a) list[i / 3][i % 3][a] = mesh.coordinates[3 * mesh.simplices[i] + a];
-    for (auto& corners : list)
+    for (auto& corners : list) {
       std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+      const bool repeats = corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2];
+      if (repeats) std::sort(corners.begin(), corners.end());  // without an orientation
+    }
     std::sort(list.begin(), list.end());
     return list;
   };

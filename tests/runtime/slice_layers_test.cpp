@@ -17,13 +17,15 @@
 #include <utility>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "estimators.hpp"
 #include "fields.hpp"
 #include "random_fields.hpp"
+#include "simplicial_contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/scrubber.hpp"
 #include "tegl/slice.hpp"
-#include "variants.hpp"
 
 namespace tegl {
 namespace {

@@ -135,17 +135,17 @@ Image<T, N - 1> last_axis_layer(const Image<T, N>& image, std::size_t i) {
   return Image<T, N - 1>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[N - 1], grid, strides);
 }
 
-/// The layer of a 4D image across any axis, as a 3D image of its other axes. For grids without a world map.
-template <Value T>
-Image<T, 3> layer_across(const Image<T, 4>& image, int axis, std::size_t i) {
-  Grid<3> grid;
-  typename Image<T, 3>::Strides strides;
-  for (int a = 0, b = 0; a < 4; ++a) {
+/// The layer of an image across any axis, as an image of its other axes. For grids without a world map.
+template <Value T, int N>
+Image<T, N - 1> layer_across(const Image<T, N>& image, int axis, std::size_t i) {
+  Grid<N - 1> grid;
+  typename Image<T, N - 1>::Strides strides;
+  for (int a = 0, b = 0; a < N; ++a) {
     if (a == axis) continue;
     grid.axes[b] = image.grid().axes[a];
     strides[b++] = image.strides()[a];
   }
-  return Image<T, 3>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[axis], grid, strides);
+  return Image<T, N - 1>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[axis], grid, strides);
 }
 
 }  // namespace tegl::test

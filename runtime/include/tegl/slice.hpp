@@ -23,10 +23,14 @@ namespace tegl {
 /// below where the contour does not come up to it from below, and is itself the point of every cut edge that ends in
 /// it; simplices that collapse thereby are dropped. Parts of the contour's boundary that lie in the hyperplane belong
 /// to the cut where only their upper side has a contour. So
-///  - at a sample's coordinate t = k the cut has the vertices and simplices of the contour of layer k of the image,
-///    bit by bit: also at the first layer, where the layer below is missing, and where samples equal the isovalue. (N =
-///    3: not in the last case. There pieces of the surface may lie flat in the layer, and the cut is the limit from
-///    below; a positive ExtractOptions::epsilon at the extraction keeps them out of it.)
+///  - at a sample's coordinate t = k the cut is the contour of layer k of the image, bit by bit: both have the same
+///    vertices and the same oriented simplices, compared by the bits of their coordinates; numbers, and the vertex that
+///    a simplex begins with, may differ. This holds for the contours that `extract` makes with any options: also at the
+///    first and the last layer, and, N = 4, where samples equal the isovalue. (N = 3: not in this case. There pieces of
+///    the surface may lie flat in the layer, and the cut is the limit from below; a positive ExtractOptions::epsilon at
+///    the extraction keeps them out of it.) Conditions: Real has numbers between the coordinates of the layers; an
+///    estimator of the caller's answers alike for a face of the image and for the same face of the layer. Where samples
+///    are missing, the contour has no more of the layer than what belongs to a tile, and it may be divided otherwise.
 ///  - at any other t the cut of a closed manifold is a closed manifold, oriented alike. That holds for every t: where
 ///    drawing points together would pinch the cut, they are left apart at the same place.
 ///
@@ -67,9 +71,10 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
 
 /// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
 /// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
-/// Equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit; where values are missing
-/// at some times and not at others, up to how the same surface is divided into triangles. `options.close` closes the
-/// cut at the borders of the other axes, as the cut of the closed contour is.
+/// At a sample's coordinate it is the contour of the layer, bit by bit, also where samples equal the isovalue (N = 3,
+/// 4). Elsewhere it equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit; where
+/// values are missing at some times and not at others, up to how the same surface is divided into triangles.
+/// `options.close` closes the cut at the borders of the other axes, as the cut of the closed contour is.
 ///
 /// An image with one sample along the last axis has no tiles, hence an empty cut, at the one `at` that lies inside.
 /// Errors: those of `extract`; InvalidArgument when `at` is not finite or outside of the last axis, and when
@@ -81,9 +86,9 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<
                                                                     ExtractStats* stats = nullptr);
 
 /// The same across any axis: the cut by x_axis = at, in the other coordinates. Only a slab of layers of that axis is
-/// contoured (for normals, the layers beside it too); all said of the last axis holds for this one, but that normals
-/// are the same up to rounding. So at a sample's coordinate a cut of a 4D image is the contour of that layer, also
-/// where samples equal the isovalue, when cuts of the whole contour may differ from it.
+/// contoured (for normals, the layers beside it too). All that is said of the last axis holds for this one, except that
+/// normals are the same up to rounding: at a sample's coordinate the cut is the contour of that layer, also where
+/// samples equal the isovalue and cuts of the whole contour may differ from it.
 template <class Real = float, Value T, int N>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
                                                                            int axis, double at,
