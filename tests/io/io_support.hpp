@@ -65,6 +65,11 @@ std::string bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
+template <class T>
+std::string bytes_of(const Values<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
 /// deflate with a gzip (or, `zlib`, a zlib) frame.
 inline std::string compressed(const std::string& bytes, bool zlib = false) {
   z_stream stream{};
