@@ -91,8 +91,6 @@ class Values {
   [[nodiscard]] const T* begin() const noexcept { return data_; }                       ///< at the first sample
   [[nodiscard]] T* end() noexcept { return data_ + size_; }                             ///< behind the last sample
   [[nodiscard]] const T* end() const noexcept { return data_ + size_; }                 ///< behind the last sample
-  [[nodiscard]] auto rbegin() const noexcept { return std::reverse_iterator(end()); }   ///< at the last sample
-  [[nodiscard]] auto rend() const noexcept { return std::reverse_iterator(begin()); }   ///< before the first sample
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }              ///< sample i < size()
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }  ///< sample i < size()
   [[nodiscard]] T& front() noexcept { return data_[0]; }                                ///< there has to be one
@@ -100,8 +98,7 @@ class Values {
   [[nodiscard]] T& back() noexcept { return data_[size_ - 1]; }                         ///< there has to be one
   [[nodiscard]] const T& back() const noexcept { return data_[size_ - 1]; }             ///< there has to be one
 
-  /// Changes the number of samples; new ones have this value. Pointers to samples become invalid, as by all that
-  /// follow.
+  /// As those of std::vector; pointers to samples become invalid.
   void resize(std::size_t count, T value = T()) {
     change([&](auto& held) { held.resize(count, value); });
   }
@@ -131,10 +128,12 @@ class Values {
     return result;
   }
 
-  /// Sample by sample.
-  friend bool operator==(const Values& a, const Values& b) { return a.equals(b.begin(), b.end()); }
-  /// Sample by sample.
-  friend bool operator==(const Values& a, const std::vector<T>& b) { return a.equals(b.data(), b.data() + b.size()); }
+  friend bool operator==(const Values& a, const Values& b) {
+    return a.equals(b.begin(), b.end());
+  }                                                                   ///< sample by sample
+  friend bool operator==(const Values& a, const std::vector<T>& b) {  ///< sample by sample
+    return a.equals(b.data(), b.data() + b.size());
+  }
 
  private:
   using Held = std::variant<std::vector<T>, detail::ValueVector<T>>;
