@@ -39,7 +39,7 @@ std::uint64_t rounds() { return number_of("TEGL_FUZZ_ROUNDS", 1000); }
 /// Seeds of these extensions: those of other writers, and hostile files of up to 100 kB where they are there.
 std::vector<Seed> seeds_with(const std::vector<std::string>& extensions, std::vector<Seed> own) {
   constexpr std::uintmax_t kMost = 100'000;
-  for (const fs::path folder :
+  for (const fs::path& folder :
        {fs::path(TEGL_SOURCE_DIR "/tests/io/seeds"), fs::path(TEGL_SHARED_DATA_DIR "/hostile")}) {
     if (!fs::is_directory(folder)) continue;
     std::set<fs::path> files;  // in order, so that a number means the same mutation everywhere

@@ -119,7 +119,7 @@ void expect_same_both_ways(const fs::path& path) {
         }
       },
       here.image, there.image);
-  OpenLayersResult opened = open_layers(path, OpenLayersOptions{.separate_process = true});
+  OpenLayersResult opened = open_layers(path, ReadImageOptions{.separate_process = true});
   expect_same_info(opened.info, open_layers(path).info);
   expect_layers_of(open_layers(path).layers.index() == here.image.index() ? there.image : here.image, opened.layers);
   const auto variables = list_image_variables(path, kSeparate);
@@ -249,7 +249,7 @@ TEST(SeparateReading, LayersOfSeveralFilesAtATime) {
   for (int i = 0; i < 3; ++i) {
     const fs::path path = dir / (std::to_string(i) + ".nc");
     write_image(path, {.chunk = {3, 150, 200}, .deflate = 1, .offset = 7.0 * i});
-    opened.push_back(open_layers(path, OpenLayersOptions{.separate_process = true}));
+    opened.push_back(open_layers(path, ReadImageOptions{.separate_process = true}));
     images.push_back(image_as<float, 3>(read_image(path).image));
   }
   std::vector<float> layer(150 * 200);
@@ -264,7 +264,7 @@ TEST(SeparateReading, LayersOfSeveralFilesAtATime) {
 TEST(SeparateReading, ChildKilledBetweenLayersIsAnErrorThatNamesTheFile) {
   TempDir dir;
   write_image(dir / "a.nc", {.sizes = {200, 150, 200}});
-  OpenLayersResult opened = open_layers(dir / "a.nc", OpenLayersOptions{.separate_process = true});
+  OpenLayersResult opened = open_layers(dir / "a.nc", ReadImageOptions{.separate_process = true});
   auto& reader = std::get<std::unique_ptr<LayerReader<float, 3>>>(std::get<AnyLayersN<3>>(opened.layers));
   std::vector<float> layer(150 * 200);
   reader->read(0, layer.data());
@@ -301,7 +301,7 @@ TEST(SeparateReading, LeavesNothingBehindAndWorksWhileOtherThreadsDo) {
   read_image(dir / "a.nc", kSeparate);
   const std::size_t before = open_descriptors();
   for (int i = 0; i < 1000; ++i) read_image(dir / (i % 10 == 0 ? "b.nc" : "a.nc"), kSeparate);
-  for (int i = 0; i < 20; ++i) open_layers(dir / "b.nc", OpenLayersOptions{.separate_process = true});
+  for (int i = 0; i < 20; ++i) open_layers(dir / "b.nc", ReadImageOptions{.separate_process = true});
   done = true;
   busy.join();
   EXPECT_EQ(open_descriptors(), before);
@@ -317,7 +317,7 @@ TEST(SeparateReading, HostileFilesAreErrors) {
     const auto start = Clock::now();
     expect_error(ErrorCode::MalformedFile, {(root / name).string()}, [&] { read_image(root / name, kSeparate); });
     expect_error(ErrorCode::MalformedFile, {(root / name).string()}, [&] {
-      OpenLayersResult opened = open_layers(root / name, OpenLayersOptions{.separate_process = true});
+      OpenLayersResult opened = open_layers(root / name, ReadImageOptions{.separate_process = true});
       const auto read_first = [](auto& reader) {
         std::vector<typename std::decay_t<decltype(*reader)>::value_type> layer(std::size_t{1} << 20);
         reader->read(0, layer.data());

@@ -2,6 +2,7 @@
 //
 // Sampling at vertices: exact for multilinear fields on grids of any kind, NaN where an image says nothing and nowhere
 // else, and the isovalue itself where the image is the contour's own.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -173,7 +174,8 @@ TEST(Sample, IsTheSameForAnyNumberOfThreadsAndStrides) {
   const auto contour = extract<float>(image.view(), 0.5);
   const Attribute one = sample(image.view(), contour, "v", "", {.threads = 1});
   const Attribute many = sample(image.view(), contour, "v", "", {.threads = 4});
-  std::vector<float> turned(image.values.rbegin(), image.values.rend());
+  std::vector<float> turned(image.values.begin(), image.values.end());
+  std::reverse(turned.begin(), turned.end());
   const Image<float, 3> backwards(turned.data() + turned.size() - 1, image.grid, {-1, -24, -24 * 24});
   const Attribute same = sample(backwards, contour, "v");
   ASSERT_GT(one.values.size(), 10000u);
