@@ -78,9 +78,6 @@ auto with_hint(const std::string& variable, const std::vector<std::string>& file
 }  // namespace
 
 std::string with_option_names(std::string message) {
-  if (const std::size_t at = message.find("the option allow_outside_paths"); at != std::string::npos)
-    return message.replace(at, std::string_view("the option allow_outside_paths").size(),
-                           "the option --allow-outside-paths");
   if (message.find("a fixed index of another dimension") != std::string::npos) message += " (--fix DIMENSION=INDEX)";
   return message;
 }

@@ -318,7 +318,8 @@ class Contour:
     def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bool = False,
              separate_process: bool = False, progress: Progress | None = None) -> Contour:
         """Reads a contour from a file: see `tegl.load`."""
-        return load(path, time_axis=time_axis, separate_process=separate_process, progress=progress)
+        return load(path, time_axis=time_axis, allow_outside_paths=allow_outside_paths,
+                    separate_process=separate_process, progress=progress)
 
     # For other programs. Their points are x, y, z (and t): the library's order of axes, as in files.
 
@@ -357,8 +358,8 @@ def _restored(of: type[Contour], *parts) -> Contour:
 
 
 @_arguments.documents("read_mesh")
-def load(path: str | os.PathLike, *, time_axis: int = 0, separate_process: bool = False,
-         progress: Progress | None = None) -> Contour:
+def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bool = False,
+         separate_process: bool = False, progress: Progress | None = None) -> Contour:
     """Reads a contour from a file: .vtkhdf, .ply, .gltf, .glb, .stl, .obj.
 
     Files have x, y, z and t. With `time_axis=0` columns are (t,) z, y, x, as those of contours of arrays in C order are;

@@ -75,8 +75,8 @@ class HeaderWalk {
   std::string name() {
     const std::uint64_t length = count_field();
     if (length < 1 || length > kLongestName)
-      fail(ErrorCode::MalformedFile, path_, "netCDF name of {} bytes before byte {}; expected 1 to {}", length, at_,
-           kLongestName);
+      fail(ErrorCode::MalformedFile, path_, "netCDF name of {} bytes before byte {}; expected 1 to {}",
+           version_ == 5 ? static_cast<std::int64_t>(length) : static_cast<std::int32_t>(length), at_, kLongestName);
     const auto bytes = take(length + (4 - length % 4) % 4);
     return {reinterpret_cast<const char*>(bytes.data()), static_cast<std::size_t>(length)};
   }
@@ -223,8 +223,13 @@ std::uint64_t bytes_of_classic_netcdf(std::span<const unsigned char> bytes, std:
 void check_classic_netcdf(const fs::path& path) {
   const std::uint64_t size = size_of_file(path);
   // Headers are mostly some kilobytes; the rare long one is read again in larger pieces.
-  for (std::size_t piece = std::size_t{1} << 16; bytes_of_classic_netcdf(read_bytes(path, 0, piece), size, path) == 0;)
-    piece *= 16;
+  for (std::size_t piece = std::size_t{1} << 16;; piece *= 16) {
+    const std::vector<unsigned char> bytes = read_bytes(path, 0, piece);
+    if (bytes_of_classic_netcdf(bytes, size, path) != 0) return;
+    if (bytes.size() < piece)
+      fail(ErrorCode::MalformedFile, path, "ends within its header, after {} bytes; expected a whole file",
+           bytes.size());
+  }
 }
 
 }  // namespace tegl::io_detail

@@ -158,11 +158,12 @@ ChildProcess::Message ChildProcess::next_message() {
   ssize_t size = 0;
   do size = recvmsg(socket_, &header, MSG_CMSG_CLOEXEC);
   while (size < 0 && errno == EINTR);
-  if (size <= 0) return message;
+  if (size < 0) return message;
   if (const cmsghdr* const first = CMSG_FIRSTHDR(&header); first != nullptr && first->cmsg_level == SOL_SOCKET &&
                                                            first->cmsg_type == SCM_RIGHTS &&
                                                            first->cmsg_len == CMSG_LEN(sizeof(int)))
     std::memcpy(&message.descriptor, CMSG_DATA(first), sizeof(int));
+  if (size == 0 && message.descriptor < 0) return message;
   const auto bytes = static_cast<std::size_t>(size);
   const bool is_whole = bytes >= sizeof(head) && (header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) == 0;
   const bool is_known = is_whole && head.magic == kMessageMagic && head.version == kMessageVersion &&
@@ -206,7 +207,16 @@ void ChildProcess::take_block(int descriptor, std::vector<Mapping>& blocks, bool
 
 void ChildProcess::require_time(double fraction, const Progress& progress) {
   tick(progress, fraction, path_);
-  if (seconds_used(pid_) - used_before_ <= limits_.seconds + granted_) return;
+  const double used = seconds_used(pid_);
+  const auto now = std::chrono::steady_clock::now();
+  if (used > used_last_) {
+    used_last_ = used;
+    standing_since_ = now;
+  }
+  constexpr std::chrono::seconds kLongestWait(120);  // for a disk or a network
+  if (now - standing_since_ > kLongestWait)
+    fail_damaged(fmt::format("waited for more than {} s without progress", kLongestWait.count()));
+  if (used - used_before_ <= limits_.seconds + granted_) return;
   fail_damaged(fmt::format("took more than {:.3g} s of processor time without progress", limits_.seconds + granted_));
 }
 
@@ -218,7 +228,8 @@ Package ChildProcess::wait(const Progress& progress, bool shared) {
   std::vector<Mapping> blocks;
   double fraction = 0;
   const auto has_progressed = [&] {
-    used_before_ = seconds_used(pid_);
+    used_before_ = used_last_ = seconds_used(pid_);
+    standing_since_ = std::chrono::steady_clock::now();
     granted_ = 0;
   };
   has_progressed();

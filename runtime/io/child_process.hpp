@@ -10,6 +10,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -92,12 +93,14 @@ class ChildProcess {
   ChildLimits limits_;
   int socket_ = -1;
   pid_t pid_ = -1;
-  pid_t owner_ = -1;               ///< the process that started it
-  std::optional<int> status_;      ///< of its end, once it is known
-  double used_before_ = 0;         ///< its processor time at the last sign of progress
-  double granted_ = 0;             ///< further seconds of it until the next one
-  Mapping shared_block_;           ///< the last one that was lent
-  std::uint64_t shared_file_ = 0;  ///< and of which file it is
+  pid_t owner_ = -1;                                      ///< the process that started it
+  std::optional<int> status_;                             ///< of its end, once it is known
+  double used_last_ = 0;                                  ///< its processor time when it was read last
+  std::chrono::steady_clock::time_point standing_since_;  ///< when that last grew
+  double used_before_ = 0;                                ///< its processor time at the last sign of progress
+  double granted_ = 0;                                    ///< further seconds of it until the next one
+  Mapping shared_block_;                                  ///< the last one that was lent
+  std::uint64_t shared_file_ = 0;                         ///< and of which file it is
 };
 
 }  // namespace tegl::io_detail

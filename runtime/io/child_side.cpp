@@ -172,6 +172,7 @@ void send_number(MessageKind kind, Number number) {
 }
 
 void send_out_of_memory() {
+  if (child_side == nullptr) _exit(EXIT_FAILURE);
   const auto by_limit = static_cast<std::uint8_t>(child_side->memory.is_limiting());
   const std::uint64_t limit = child_side->memory.allowed();
   constexpr std::uint64_t kForTheMessage = std::uint64_t{1} << 20;
@@ -183,6 +184,9 @@ void send_out_of_memory() {
 }
 
 void send_failure(const Error& error) {
+  if (child_side == nullptr) _exit(EXIT_FAILURE);
+  constexpr std::uint64_t kForTheMessage = std::uint64_t{1} << 20;
+  child_side->memory.allow(kForTheMessage);
   Packer packer;
   packer.number(static_cast<std::uint64_t>(error.code()));
   packer.text(error.what());
@@ -237,7 +241,7 @@ void expect_step(std::uint64_t bytes) {
   send_number(MessageKind::grant, static_cast<double>(bytes) / kSlowest);
 }
 
-void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildProcess::Work& work) {
+void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildProcess::Work& work) noexcept {
   parent_process = parent;
   reset_signals();
   forbid_core_files();

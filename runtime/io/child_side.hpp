@@ -35,7 +35,9 @@ struct MessageHead {
   std::uint64_t in_file = 0;  ///< how many bytes are in the file that comes along; 0: there is none
 };
 
-/// Does the work of a child that has just been forked with all signals blocked, and ends the process.
-[[noreturn]] void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildProcess::Work& work);
+/// Does the work of a child that has just been forked with all signals blocked, and ends the process. What is thrown
+/// while a failure is sent ends it, too (SIGABRT), as the caller's code must not go on in the child.
+[[noreturn]] void run_child_side(int socket, pid_t parent, const ChildLimits& limits,
+                                 const ChildProcess::Work& work) noexcept;
 
 }  // namespace tegl::io_detail

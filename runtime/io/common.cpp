@@ -73,22 +73,6 @@ std::vector<unsigned char> read_bytes(const fs::path& path, std::uint64_t offset
   return bytes;
 }
 
-fs::path path_beside(const fs::path& header, std::string_view name, bool allow_outside) {
-  const fs::path file = header.parent_path() / name;
-  if (allow_outside) return file;
-  std::error_code error;
-  const fs::path folder = fs::canonical(fs::absolute(header).parent_path(), error);
-  const fs::path target = error ? fs::path() : fs::weakly_canonical(fs::absolute(file), error);
-  const bool inside =
-      !error && std::mismatch(folder.begin(), folder.end(), target.begin(), target.end()).first == folder.end();
-  if (!inside)
-    fail(ErrorCode::UnsupportedData, header,
-         "names the file '{}', which lies outside of the folder '{}'; expected a file there or below it, or the option "
-         "allow_outside_paths",
-         file.string(), folder.string());
-  return file;
-}
-
 std::string lower(std::string_view text) {
   std::string result(text);
   for (char& c : result)

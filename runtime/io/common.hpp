@@ -40,10 +40,6 @@ std::uint64_t size_of_file(const std::filesystem::path& path);
 /// Up to `count` bytes from `offset`; fewer only at the end of the file.
 std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::uint64_t offset, std::size_t count);
 
-/// The file that a header names, relative to the header's folder or absolute. UnsupportedData, unless `allow_outside`,
-/// for one that lies outside of the header's folder once `..` and symbolic links are resolved.
-std::filesystem::path path_beside(const std::filesystem::path& header, std::string_view name, bool allow_outside);
-
 /// The name of the last component in lower case: extensions are compared without regard to case.
 std::string lower_name(const std::filesystem::path& path);
 std::string lower(std::string_view text);

@@ -348,6 +348,11 @@ void keep_stored_bits(ValueVector<T>& values, const DicomFile& file) {
 
 }  // namespace
 
+void load_dicom_dictionary() {
+  dcmDataDict.rdlock();  // loads it at the first call
+  dcmDataDict.rdunlock();
+}
+
 bool is_dicom_file(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;

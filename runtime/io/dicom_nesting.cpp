@@ -237,6 +237,7 @@ Meta read_meta(Bytes& bytes) {
   if (mark.size() == 4 && std::memcmp(mark.data(), "DICM", 4) == 0) meta.start = 132;
   meta.data_sets.push_back(meta.start);
   std::uint64_t position = meta.start;
+  constexpr std::size_t kMostPromises = 3;
   for (;;) {
     const auto header = bytes.at(position, kLongestHeader);
     if (header.size() < 12 || number(header.first(2), false) != 2) break;
@@ -245,7 +246,9 @@ Meta read_meta(Bytes& bytes) {
     const std::uint32_t length = is_long ? number(header.subspan(8, 4), false) : number(header.subspan(6, 2), false);
     const std::uint32_t element = number(header.subspan(2, 2), false);
     const std::uint64_t value = position + (is_long ? 12 : 8);
-    if (element == 0 && length == 4) meta.data_sets.push_back(value + 4 + number(header.subspan(8, 4), false));
+    // Sound files have one length of the group.
+    if (element == 0 && length == 4 && meta.data_sets.size() < kMostPromises)
+      meta.data_sets.push_back(value + 4 + number(header.subspan(8, 4), false));
     constexpr std::uint32_t kLongestUid = 64;
     if (element == 0x10 && length <= kLongestUid) {
       const auto text = bytes.at(value, length);

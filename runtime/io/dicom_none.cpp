@@ -25,6 +25,8 @@ bool is_dicom(const std::filesystem::path& path) {
   return name.ends_with(".dcm") || name.ends_with(".ima") || name.ends_with(".dicom");
 }
 
+void load_dicom_dictionary() {}
+
 RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::string&, const Progress&) {
   fail_without_dcmtk(paths.front());
 }

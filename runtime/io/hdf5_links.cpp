@@ -173,7 +173,15 @@ class LinkChecker {
     const fs::path from =
         storage_ == ExternalStorage::in_current_folder ? fs::current_path() : fs::absolute(file).parent_path();
     const fs::path target = named_path(path_, (from / name.data()).string(), allow_outside_);
+    require_no_device(file, target);
     if (named_.insert(target).second && fs::is_regular_file(target)) bytes_ += size_of_file(target);
+  }
+
+  /// HDF5 would wait for ever at a pipe.
+  static void require_no_device(const fs::path& file, const fs::path& target) {
+    std::error_code error;
+    if (fs::exists(target, error) && !fs::is_regular_file(target, error))
+      fail(ErrorCode::UnsupportedData, file, "names '{}', which is no regular file; expected one", target.string());
   }
 
   /// A file whose datasets or groups HDF5 opens.
@@ -181,6 +189,7 @@ class LinkChecker {
     // A file in memory is opened without its folder.
     const fs::path folder = in_memory_ && file == path_ ? fs::current_path() : fs::absolute(file).parent_path();
     const fs::path target = named_path(path_, (folder / name).string(), allow_outside_);
+    require_no_device(file, target);
     std::error_code error;
     if (!fs::is_regular_file(target, error)) {
       if (allow_outside_) return;

@@ -162,7 +162,9 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
 }
 
 OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
-  const auto open = [&] { return LayersOfFiles{open_any_layers(path, options), {path}}; };
+  ReadImageOptions silent = options;  // what opens takes no time, and a child must not call the caller's functions
+  silent.progress = nullptr;
+  const auto open = [&] { return LayersOfFiles{open_any_layers(path, silent), {path}}; };
   const bool separate = options.separate_process && needs_separate_process(path);
   return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
 }

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "common.hpp"
+#include "named_path.hpp"
 #include "readers.hpp"
 
 namespace tegl::io_detail {
@@ -206,7 +207,7 @@ void locate_data(const Fields& fields, std::uint64_t header_end, bool allow_outs
   const bool local = lower(file) == "local";
   if (file.empty() || file.starts_with("LIST") || file.find('%') != std::string::npos)
     fail(ErrorCode::UnsupportedFormat, path, "ElementDataFile {}; expected LOCAL or the name of one file", shown(file));
-  samples.path = local ? path : path_beside(path, file, allow_outside_paths);
+  samples.path = local ? path : named_path(path, std::string(file), allow_outside_paths);
   require_readable_file(samples.path);
   samples.offset = local ? header_end : read_header_size(fields, samples, path);
   const auto compressed = fields.number<std::int64_t>("CompressedDataSize", 0);

@@ -38,8 +38,8 @@ fs::path named_path(const fs::path& header, const std::string& name, bool allow_
   const fs::path target = resolved(path, header);
   if (std::mismatch(folder.begin(), folder.end(), target.begin(), target.end()).first != folder.end())
     fail(ErrorCode::UnsupportedData, header,
-         "names the file '{}', which is {}; expected a file in the folder {} or below it; the option "
-         "allow_outside_paths (--allow-outside-paths) reads others, too",
+         "names the file '{}', which is '{}', outside of the folder '{}'; expected a file there or below it, or the "
+         "option allow_outside_paths (--allow-outside-paths)",
          name, target.string(), folder.string());
   return path;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers of NIfTI-1 images. Not through ITK, whose reader (5.2) replaces NaN, our missing values, by 0 and refuses
-// files whose only orientation is a sheared sform.
+// Headers of NIfTI-1 images.
 //
 // Based on: R. W. Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004; nifti1.h.
 #include <algorithm>

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "common.hpp"
+#include "named_path.hpp"
 #include "readers.hpp"
 
 namespace tegl::io_detail {
@@ -357,7 +358,7 @@ void locate_data(const Text& text, Header& header, bool allow_outside_paths, con
     fail(ErrorCode::MalformedFile, path, "neither a 'data file' nor data after the header (no blank line)");
   if (file.starts_with("LIST") || file.find('%') != std::string::npos)
     fail(ErrorCode::UnsupportedFormat, path, "data in several files ({}); expected one data file", shown(file));
-  samples.path = file.empty() ? path : path_beside(path, file, allow_outside_paths);
+  samples.path = file.empty() ? path : named_path(path, std::string(file), allow_outside_paths);
   samples.offset = file.empty() ? text.end : 0;
   require_readable_file(samples.path);
   skip_to_samples(text.fields, samples, path);

@@ -54,6 +54,8 @@ OpenLayersResult to_open_layers(RawLayers&& source, const std::filesystem::path&
 RawLayers open_raw(const std::filesystem::path& path, const RawLayout& layout);
 /// Whether a path is a DICOM file, or a folder or DICOMDIR, which may hold some.
 bool is_dicom(const std::filesystem::path& path);
+/// Loads the data dictionary, so that child processes have it and need not load it one by one (some 30 ms).
+void load_dicom_dictionary();
 /// The images of DICOM files and folders, as the one whose UID, number or description `series` says. `progress` is told
 /// of while headers are read (0), and of each read.
 RawLayers open_dicom(std::span<const std::filesystem::path> paths, const std::string& series, const Progress& progress);

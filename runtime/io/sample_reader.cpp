@@ -186,19 +186,12 @@ class SampleReader::Source {
     if (count == 0) return;
     const bool in_order = is_open() && first >= next_;
     if (samples_.encoding != Encoding::raw && !in_order) restart();
-    switch (samples_.encoding) {
-      case Encoding::raw:
-        read_raw(first, count, values, progress);
-        break;
-      case Encoding::deflate:
-        read_deflated(first, count, values, progress);
-        break;
-      case Encoding::text:
-        read_words(first, count, values, progress);
-        break;
-      default:
-        read_digits(first, count, values, progress);
-        break;
+    try {
+      read_encoded(first, count, values, progress);
+    } catch (...) {  // the stream is somewhere between two samples
+      inflater_.reset();
+      text_.reset();
+      throw;
     }
     next_ = first + count;
     if (next_ == total_) check_end<T>();
@@ -207,6 +200,20 @@ class SampleReader::Source {
 
  private:
   [[nodiscard]] bool is_open() const { return inflater_.has_value() || text_.has_value(); }
+
+  template <class T>
+  void read_encoded(std::uint64_t first, std::uint64_t count, ValueVector<T>& values, const Progress& progress) {
+    switch (samples_.encoding) {
+      case Encoding::raw:
+        return read_raw(first, count, values, progress);
+      case Encoding::deflate:
+        return read_deflated(first, count, values, progress);
+      case Encoding::text:
+        return read_words(first, count, values, progress);
+      default:
+        return read_digits(first, count, values, progress);
+    }
+  }
 
   void restart() {
     next_ = 0;

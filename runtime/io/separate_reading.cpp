@@ -264,10 +264,10 @@ class SeparateLayers {
       result.files = get_paths(unpacker);
       return result;
     });
-    if (opened.layers.grid.axes.empty()) child_.fail_contradiction();
+    if (opened.layers.grid.axes.empty() || opened.layers.grid.axes.back().size() == 0) child_.fail_contradiction();
     const std::size_t layers = opened.layers.grid.axes.back().size();
     layer_size_ = sample_count(opened.layers.grid, path_) / layers;
-    opened.layers.block = std::min(layers, worthwhile(opened.layers.block));
+    opened.layers.block = std::min(layers, worthwhile(std::clamp<std::size_t>(opened.layers.block, 1, layers)));
     return opened;
   }
 
@@ -333,7 +333,10 @@ class SeparateLayers {
 }  // namespace
 
 bool needs_separate_process(const fs::path& path) {
-  if (is_dicom(path)) return true;
+  if (is_dicom(path)) {
+    load_dicom_dictionary();
+    return true;
+  }
   constexpr std::string_view kHdf5 = "\x89HDF";
   try {
     const auto prefix = read_prefix(path, kHdf5.size());
@@ -369,7 +372,7 @@ ImageOfFiles read_separately(const fs::path& path, const Progress& progress,
     result.image.values = get_values(unpacker);
     result.files = get_paths(unpacker);
     const std::size_t size = std::visit([](const auto& array) { return array.size(); }, result.image.values);
-    if (size != 0 && size != sample_count(result.image.grid, path)) throw BadPackage();
+    if (size != sample_count(result.image.grid, path)) throw BadPackage();
     return result;
   });
 }
@@ -395,6 +398,7 @@ std::vector<ImageVariable> read_separately(const fs::path& path,
       put_list(packer, variable.sizes, [&](std::size_t size) { packer.number(static_cast<std::uint64_t>(size)); });
       packer.text(variable.unit);
       packer.text(variable.long_name);
+      put_list(packer, variable.axes, [&](const std::string& axis) { packer.text(axis); });
     });
     parent.send(packer);
   });
@@ -408,6 +412,7 @@ std::vector<ImageVariable> read_separately(const fs::path& path,
       get_list(unpacker, variable.sizes, [&] { return unpacker.count(std::size_t{1} << 60); });
       variable.unit = unpacker.text();
       variable.long_name = unpacker.text();
+      get_list(unpacker, variable.axes, [&] { return unpacker.text(); });
       return variable;
     });
     return result;
