@@ -49,8 +49,10 @@ TEST_F(Precision, FloatMakesFilesSmallerInTheFormatsThatHaveBoth) {
     const Mesh a = read_mesh(path("double" + extension));
     const Mesh b = read_mesh(path("float" + extension));
     EXPECT_EQ(a.simplices, b.simplices);
-    expect_floats(b.coordinates);
-    expect_floats(b.normals);
+    if (extension != ".obj") {  // its digits are those of a float, and read as a double
+      expect_floats(b.coordinates);
+      expect_floats(b.normals);
+    }
     ASSERT_EQ(a.coordinates.size(), b.coordinates.size());
     for (std::size_t i = 0; i < a.coordinates.size(); ++i) ASSERT_NEAR(a.coordinates[i], b.coordinates[i], 1e-4);
   }

@@ -60,9 +60,10 @@ TEST(Mesh, InSinglePrecisionComesBackFromSmallerFiles) {
       EXPECT_EQ(back.simplices, mesh.simplices);
       EXPECT_LT(std::filesystem::file_size(dir_of_files / name),
                 9 * std::filesystem::file_size(dir_of_files / (std::string("double_") + name)) / 10);
-      if (back.space_dim == space_dim) {
-        EXPECT_EQ(back.coordinates, mesh.coordinates);
-      }
+      if (back.space_dim != space_dim) continue;
+      ASSERT_EQ(back.coordinates.size(), mesh.coordinates.size());
+      for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
+        ASSERT_EQ(static_cast<float>(back.coordinates[i]), static_cast<float>(mesh.coordinates[i]));
     }
 }
 
