@@ -188,7 +188,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
     separate_process
         Whether netCDF-4 and DICOM are read in a child process: a file so damaged that their libraries crash, loop or
         take all memory is then a ValueError, and this process goes on. For files of unknown origin. The array is the
-        same, without a copy; starting the child takes about a millisecond.
+        same, without a copy; starting the child takes a few milliseconds.
 
     The array's first axis is the one that runs slowest in the file: (t, z, y, x), in C order. With `time_axis=-1` the
     axes are the other way round, (x, y, z, t) in Fortran order, as nibabel has them.

@@ -71,10 +71,10 @@ struct ReadImageOptions {
   /// Headers may name a file of samples (NRRD `data file`, MetaImage `ElementDataFile`). It is read if it lies in the
   /// header's folder or below, with symbolic links resolved; with this option, wherever it lies.
   bool allow_outside_paths = false;
-  /// Reads formats of libraries that some damaged files bring down, HDF5 (netCDF-4) and DCMTK, in a child process with
-  /// limits of memory and time: whatever happens there, the error is MalformedFile. The values are the same, in memory
-  /// that the child has filled, without a copy. Starting the child takes about a millisecond, and more in a process of
-  /// gigabytes in small pages. Callable while other threads run.
+  /// Reads formats whose libraries some damaged files bring down, HDF5 (netCDF-4) and DCMTK, in a child process with
+  /// limits of memory and time: if it crashes, loops or needs too much memory, the error is MalformedFile. The values
+  /// are the same, in memory that the child has filled, without a copy. A child takes a few milliseconds to start, and
+  /// some 20 ms more for each gigabyte that this process has in small pages. Other threads may run meanwhile. Linux.
   bool separate_process = false;
 };
 
