@@ -136,7 +136,7 @@ TEST(Ambiguity4d, WithEpsilonVerticesLieApartAndNoBarycentricTetrahedronHasSizeZ
       options.epsilon = 0.01;
       std::size_t shared = 0, flat = 0, tetrahedra = 0;
       for (std::uint64_t seed = 0; seed < 60; ++seed) {
-        const auto contour = extract<double>(small_image(seed).view(), 0.5, options);
+        const auto contour = extract<double>(view_of(small_image(seed)), 0.5, options);
         const auto vertices = sorted_vertices(contour);
         for (std::size_t v = 1; v < vertices.size(); ++v) shared += vertices[v] == vertices[v - 1] ? 1 : 0;
         for (std::size_t s = 0; s < contour.simplices.size(); ++s) flat += simplex_measure(contour, s) < 1e-13 ? 1 : 0;

@@ -25,7 +25,7 @@ Contour<4, double> contour_of_middle(const std::filesystem::path& file, double i
       for (const int axis : {0, 1, 3}) image = image.part(axis, image.size(axis) / 4, image.size(axis) / 2);
       return extract<double>(image, isovalue);
     }
-    return {};
+    return Contour<4, double>();
   };
   return std::visit([&](const auto& typed) { return std::visit(of_image, typed); }, input.image);
 }
