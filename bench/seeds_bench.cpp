@@ -122,7 +122,7 @@ void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
 
 /// A value so far up in the order of all.
 template <Value T>
-double quantile(const std::vector<T>& values, double share) {
+double quantile(const Values<T>& values, double share) {
   std::vector<double> finite;
   for (std::size_t i = 0; i < values.size(); i += 1 + values.size() / 100000)
     if (std::isfinite(static_cast<double>(values[i]))) finite.push_back(static_cast<double>(values[i]));

@@ -123,7 +123,8 @@ def test_stl_and_obj_hold_the_same_closed_surface_with_high_inside(time_axis, tm
         contour.save(tmp_path / name)
         loaded = tegl.load(tmp_path / name, time_axis=time_axis)
         assert loaded.check().is_closed and loaded.check().euler == 2
-        assert np.array_equal(loaded.vertices[loaded.simplices], contour.vertices[contour.simplices])
+        # OBJ has the digits of floats, which are read as doubles.
+        assert np.array_equal(loaded.vertices[loaded.simplices].astype(np.float32), contour.vertices[contour.simplices])
         assert loaded.measure().content == pytest.approx(contour.measure().content, rel=1e-6) and loaded.measure().content > 0
     assert (tmp_path / "ball.stl").stat().st_size == 84 + 50 * len(contour.simplices)
     tegl.contour(ball(2, 21), 0.0).save(tmp_path / "line.obj")
@@ -383,7 +384,7 @@ def test_a_separate_process_gives_the_same_array(tmp_path):
     tegl.read(tmp_path / "a.nc", separate_process=True, progress=lambda share: seen.append(share))
     assert seen == sorted(seen)
     with pytest.raises(tegl.Cancelled):
-        tegl.read(tmp_path / "a.nc", separate_process=True, progress=lambda share: share <= 0)
+        tegl.read(tmp_path / "a.nc", separate_process=True, progress=lambda share: False)
 
 
 def test_separate_processes_under_threads(tmp_path):

@@ -233,6 +233,7 @@ Package ChildProcess::wait(const Progress& progress, bool shared) {
     granted_ = 0;
   };
   has_progressed();
+  tick(progress, fraction, path_);
   for (;;) {
     pollfd waiting{socket_, POLLIN, 0};
     if (poll(&waiting, 1, kMilliseconds) <= 0) {

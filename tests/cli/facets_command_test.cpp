@@ -102,7 +102,7 @@ TEST_F(FacetsCommand, RefusesWhatDoesNotGoTogether) {
   expect_failure(5, {solid, "--iso", "99", "--facets", "-o", path("o.vtu")}, {"99"});
   expect_failure(2, {moving, "--iso", "0", "--triangulation", "zigzag", "-o", path("o.vtkhdf")}, {"4D", "compact"});
   expect_failure(2, {solid, "--iso", "0", "--triangulation", "fan", "--stream", "-o", path("o.vtkhdf")},
-                 {"fan", "--stream", "--raw", "compact"});
+                 {"fan", "--stream", "compact"});
 }
 
 TEST_F(FacetsCommand, TriangulatesPolygonsEachInItsOwnWay) {

@@ -131,7 +131,7 @@ TEST_F(Index, RefusesWrongUsage) {
   EXPECT_THAT(named.err, HasSubstr("expected a file named *.tindex"));
   EXPECT_EQ(run_tegl({"index", file(), "-o", path("no/a.tindex")}).exit, 6);
   const RunResult streamed = run_tegl({"contour", file(), "--index", file(), "--raw", "40x30x20", "--raw-type", "float",
-                                       "--iso", "0", "-o", path("x.vtkhdf")});
+                                       "--iso", "0", "--stream", "-o", path("x.vtkhdf")});
   EXPECT_EQ(streamed.exit, 2);
   EXPECT_THAT(streamed.err, HasSubstr("--index is for images in memory"));
   EXPECT_THAT(files(), ElementsAre("ball.nrrd"));

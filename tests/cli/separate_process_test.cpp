@@ -85,7 +85,8 @@ TEST_F(SeparateProcess, GivesTheSameBytes) {
   }
   EXPECT_EQ(run_tegl({"check", path("apart.vtkhdf")}).exit, 0);
   EXPECT_EQ(run_tegl({"check", path("apart.vtkhdf"), "--in-process"}).exit, 0);
-  EXPECT_EQ(run_tegl({"info", file}).out, run_tegl({"info", file, "--in-process"}).out);
+  const auto without_times = [](const std::string& text) { return text.substr(0, text.find("  seconds")); };
+  EXPECT_EQ(without_times(run_tegl({"info", file}).out), without_times(run_tegl({"info", file, "--in-process"}).out));
 }
 
 TEST_F(SeparateProcess, ItsEndIsADamagedFile) {
