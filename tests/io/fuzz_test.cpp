@@ -5,8 +5,8 @@
 // within ten seconds, and need no more than twice the memory of the sound files and 64 MiB. The sound files (seeds/,
 // make_seeds.py) come from several writers.
 //
-// A mutation is known by its number. TEGL_FUZZ_ROUNDS sets how many there are for each format (1 000 by default), TEGL_FUZZ_FIRST the first one's number, and TEGL_FUZZ_KEEP a
-// folder for those that fail.
+// A mutation is known by its number. TEGL_FUZZ_ROUNDS sets how many there are for each format (1 000 by default),
+// TEGL_FUZZ_FIRST the first one's number, and TEGL_FUZZ_KEEP a folder for those that fail.
 #include <spawn.h>
 
 #include <cstdlib>
