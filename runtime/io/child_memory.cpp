@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -63,7 +64,9 @@ int create_memory_file(std::size_t bytes, void*& begin) noexcept {
       return file;
     }
   }
+  const int reason = errno;
   close(file);
+  errno = reason;
   return -1;
 }
 

@@ -59,6 +59,9 @@ class BlockedSignals {
   sigset_t before_{};
 };
 
+/// For a sound file that needs more than any that was thought of.
+constexpr const char* kWithoutLimits = " (--in-process, or separate_process = false, reads without limits)";
+
 /// Processor time of a process so far; 0 if the system does not say.
 double seconds_used(pid_t process) {
   clockid_t clock = 0;
@@ -133,7 +136,7 @@ void ChildProcess::rethrow(const Message& message) {
   if (message.kind == MessageKind::out_of_memory) {
     const bool is_limit = unpacker.number<std::uint8_t>() != 0;
     const auto bytes = unpacker.number<std::uint64_t>();
-    if (is_limit) fail_damaged(fmt::format("needed more than {} MiB of memory", bytes >> 20));
+    if (is_limit) fail_damaged(fmt::format("needed more than {} MiB of memory{}", bytes >> 20, kWithoutLimits));
     end();
     throw std::bad_alloc();
   }
@@ -215,9 +218,10 @@ void ChildProcess::require_time(double fraction, const Progress& progress) {
   }
   constexpr std::chrono::seconds kLongestWait(120);  // for a disk or a network
   if (now - standing_since_ > kLongestWait)
-    fail_damaged(fmt::format("waited for more than {} s without progress", kLongestWait.count()));
+    fail_damaged(fmt::format("waited for more than {} s without progress{}", kLongestWait.count(), kWithoutLimits));
   if (used - used_before_ <= limits_.seconds + granted_) return;
-  fail_damaged(fmt::format("took more than {:.3g} s of processor time without progress", limits_.seconds + granted_));
+  fail_damaged(fmt::format("took more than {:.3g} s of processor time without progress{}", limits_.seconds + granted_,
+                           kWithoutLimits));
 }
 
 Package ChildProcess::wait(const Progress& progress, bool shared) {

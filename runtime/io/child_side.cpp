@@ -51,7 +51,7 @@ void reset_signals() {
   action.sa_handler = SIG_DFL;
   for (int number = 1; number < NSIG; ++number) sigaction(number, &action, nullptr);
   action.sa_handler = SIG_IGN;
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaction(number, &action, nullptr);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ}) sigaction(number, &action, nullptr);
   action.sa_handler = end_if_orphaned;
   action.sa_flags = SA_RESTART;
   sigaction(SIGPROF, &action, nullptr);
@@ -101,6 +101,14 @@ void forbid_core_files() {
   prctl(PR_SET_DUMPABLE, 0);  // nor for a program that takes them
 }
 
+/// The child writes no files, but the system counts memory that it shares as one: as large as may be.
+void allow_large_blocks() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_FSIZE, &limit);
+}
+
 /// Sends a message; a parent that is gone ends the process.
 void send_message(int socket, MessageKind kind, std::span<const unsigned char> bytes, int descriptor = -1,
                   std::uint64_t in_file = 0) {
@@ -133,6 +141,12 @@ class FileCopy {
  public:
   FileCopy(const void* bytes, std::size_t count, std::size_t size)
       : size_(size), descriptor_(create_memory_file(size, begin_)) {
+    if (descriptor_ < 0 && errno == EFBIG)
+      fail(ErrorCode::TooLarge, child_side->file,
+           "{} bytes cannot be handed over by the process that reads it: the system's limit for files (ulimit -f) holds "
+           "for shared memory, too; expected a larger limit, or the file read in the same process (separate_process, "
+           "--in-process)",
+           size);
     if (descriptor_ < 0) throw std::bad_alloc();
     std::memcpy(begin_, bytes, count);
   }
@@ -200,7 +214,7 @@ Progress ParentLink::progress() const {
   static constexpr std::chrono::milliseconds kEvery(20);
   return [last = Clock::time_point()](double fraction) mutable {
     const auto now = Clock::now();
-    if (now - last < kEvery) return true;
+    if (fraction < 1.0 && now - last < kEvery) return true;  // the end is always told
     last = now;
     send_number(MessageKind::progress, fraction);
     return true;
@@ -245,6 +259,7 @@ void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const C
   parent_process = parent;
   reset_signals();
   forbid_core_files();
+  allow_large_blocks();
   try {
     close_inherited(socket);
     silence();

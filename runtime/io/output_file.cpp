@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <system_error>
 
 #include "common.hpp"
@@ -47,6 +48,11 @@ void lock_list() noexcept {
   while (list_locked.test_and_set(std::memory_order_acquire)) sched_yield();
 }
 
+/// How many listed files are being created. The lock is not held meanwhile, and no signal is blocked: a disk or a
+/// network may take its time.
+std::atomic<int> creations{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+
 class LockedList {
  public:
   LockedList() noexcept {
@@ -68,13 +74,21 @@ class LockedList {
 
 }  // namespace
 
-int PendingPath::create(unsigned mode) noexcept {
+void PendingPath::enlist() noexcept {
   const LockedList lock;
-  const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
-  if (file < 0) return file;
   after_ = first_pending;
   if (after_ != nullptr) after_->before_ = this;
   first_pending = this;
+}
+
+int PendingPath::create(unsigned mode) noexcept {
+  enlist();  // first, so that no signal finds a file that is not in the list
+  creations.fetch_add(1);
+  const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
+  const int reason = errno;
+  creations.fetch_sub(1);
+  if (file < 0) delist();
+  errno = reason;
   return file;
 }
 
@@ -88,7 +102,17 @@ void PendingPath::delist() noexcept {
 
 void remove_pending_files() noexcept {
   lock_list();  // for good: nobody changes the list of a process that ends
-  for (const PendingPath* each = first_pending; each != nullptr; each = each->after_) unlink(each->pending_.c_str());
+  const auto remove_all = [] {
+    for (const PendingPath* each = first_pending; each != nullptr; each = each->after_) unlink(each->pending_.c_str());
+  };
+  remove_all();
+  if (creations.load() == 0) return;
+  // Another thread may create its file after that; a creation that takes longer, or that this handler interrupts, is
+  // not waited for.
+  constexpr int kMilliseconds = 1000;
+  constexpr timespec kMillisecond = {0, 1'000'000};
+  for (int i = 0; i < kMilliseconds && creations.load() > 0; ++i) nanosleep(&kMillisecond, nullptr);
+  remove_all();
 }
 
 fs::path place_of(const fs::path& path) {

@@ -405,6 +405,7 @@ ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOption
       is_read_separately(files, options) ? read_separately(files[0], options.progress, read) : read(options.progress);
   ImageInfo info = std::move(image.info);
   AnyImage result = to_any_image(std::move(image), files[0]);
+  tick(options.progress, 1.0, files[0]);
   return {{std::move(result), std::move(info)}, std::move(order)};
 }
 

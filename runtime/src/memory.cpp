@@ -4,6 +4,7 @@
 // 4 KiB that is seven times faster, and several threads can touch different parts at a time.
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -29,8 +30,9 @@ thread_local BlockSource* block_source = nullptr;
 
 /// Stands before the samples of a large block.
 struct ValuesHeader {
-  void* block;        ///< null: from operator new
+  void* block;        ///< from the block source; null: there is none
   std::size_t bytes;  ///< of the block
+  void* heap;         ///< from operator new; null: from the block source
 };
 static_assert(sizeof(ValuesHeader) <= kValuesOffset);
 
@@ -54,12 +56,18 @@ std::size_t block_of_buffer(std::size_t bytes) noexcept { return rounded(bytes);
 
 void* allocate_values(std::size_t bytes) {
   if (bytes < kLargeValues) return ::operator new(bytes);
-  ValuesHeader header{nullptr, block_of_values(bytes)};
+  ValuesHeader header{nullptr, block_of_values(bytes), nullptr};
   if (block_source != nullptr) header.block = block_source->allocate(header.bytes);
-  auto* const begin = static_cast<unsigned char*>(
-      header.block != nullptr ? header.block : ::operator new(bytes + kValuesOffset, std::align_val_t(kValuesOffset)));
-  ::new (static_cast<void*>(begin)) ValuesHeader(header);
-  return begin + kValuesOffset;
+  void* begin = header.block;
+  if (begin == nullptr) {
+    // Aligned by hand: glibc's aligned allocation does not fit into the gap that one of the same size has left (until
+    // 2.38), and blocks that come and go, the layers of a stream, would be laid one after the other.
+    std::size_t space = bytes + 2 * kValuesOffset;
+    begin = header.heap = ::operator new(space);
+    begin = std::align(kValuesOffset, bytes + kValuesOffset, begin, space);
+  }
+  ::new (begin) ValuesHeader(header);
+  return static_cast<unsigned char*>(begin) + kValuesOffset;
 }
 
 void free_values(void* block, std::size_t bytes) noexcept {
@@ -69,7 +77,7 @@ void free_values(void* block, std::size_t bytes) noexcept {
   if (header.block != nullptr)
     free_block(header.block, header.bytes);
   else
-    ::operator delete(begin, std::align_val_t(kValuesOffset));
+    ::operator delete(header.heap);
 }
 
 #ifdef __linux__

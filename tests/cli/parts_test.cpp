@@ -47,6 +47,8 @@ TEST(Numbers, AreReadWholeOrNotAtAll) {
   EXPECT_EQ(parse_number("7.3"), 7.3);
   EXPECT_EQ(parse_number("-4e2"), -400.0);
   EXPECT_EQ(parse_number("+1"), 1.0);
+  EXPECT_EQ(parse_number("-1e400"), -INFINITY);
+  EXPECT_EQ(parse_number("1e-400"), 0.0);
   EXPECT_TRUE(std::isnan(parse_number("nan").value()));
   for (const char* text : {"", "abc", "7.3x", "7,3", "1 2", "+-1", "--1", "0x10", " 1"}) {
     EXPECT_FALSE(parse_number(text).has_value()) << text;

@@ -129,7 +129,7 @@ TEST_F(Stream, NeedsLittleMemoryWhateverTheLengthOfTheLastAxis) {
   // 2 GiB of samples, almost all of them in the holes of a sparse file, with a ball in every 16th volume.
   constexpr std::uintmax_t kSize = 256;
   constexpr std::uintmax_t kSteps = 128;
-  constexpr int kLimitKiB = 680 * 1024;  // of address space, program and libraries included
+  constexpr int kLimitKiB = 480 * 1024;  // of address space, program and libraries included
   static_assert(kSize * kSize * kSize * kSteps >= 3 * std::uintmax_t{kLimitKiB} * 1024);
   const std::string raw = path("large.raw");
   {

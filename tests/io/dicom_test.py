@@ -31,8 +31,9 @@ OBLIQUE = [0.8, 0.6, 0.0, -0.36, 0.48, 0.8]
 
 
 def dump(*paths, series="", how="whole"):
-    run = subprocess.run([DUMP, series, how, *map(str, paths)], capture_output=True, text=True, check=True)
-    assert run.stderr == "", run.stderr  # nothing is printed, whatever a file has
+    run = subprocess.run([DUMP, series, how, *map(str, paths)], capture_output=True, text=True)
+    # Nothing is printed, whatever a file has, and a child process gives the same.
+    assert run.returncode == 0 and run.stderr == "", f"exit {run.returncode}: {run.stderr}"
     return json.loads(run.stdout)
 
 

@@ -2,7 +2,7 @@
 //
 // Prints an image as JSON, coordinates and all values: for tests by other readers of the same files. Arguments: the
 // series or variable (may be empty), "whole" or "layers", and the files. Reads them in this process and in a child
-// process, which has to give the same.
+// process, which has to give the same; of an error but which layers were read together.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -72,6 +72,9 @@ json layers(std::span<const std::filesystem::path> files, const tegl::SeriesOpti
   return std::visit([&](auto& typed) { return std::visit(of_layers, typed); }, opened.layers);
 }
 
+/// A message without the layers that were read together, of which there are more in a child process.
+std::string without_layers(const std::string& message) { return message.substr(0, message.find(" (layer")); }
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -84,12 +87,13 @@ int main(int argc, char** argv) {
     try {
       return std::string(argv[2]) == "layers" ? layers(files, options) : whole(files, options);
     } catch (const tegl::Error& error) {
-      return {{"error", tegl::error_name(error.code())}, {"message", error.what()}};
+      return {{"error", tegl::error_name(error.code())}, {"message", without_layers(error.what())}};
     }
   };
   const json result = read(false);
   if (read(true) != result) {  // NaN is written as null
-    std::fprintf(stderr, "in a child process: %s\n", read(true).dump().c_str());
+    std::fprintf(stderr, "in this process: %s\nin a child process: %s\n", result.dump().c_str(),
+                 read(true).dump().c_str());
     return 1;
   }
   std::printf("%s\n", result.dump().c_str());

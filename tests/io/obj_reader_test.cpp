@@ -24,11 +24,16 @@ Mesh as_obj_has_it(const Mesh& mesh) {
   return expected;
 }
 
+/// Of a mesh in single precision the text has the digits of its floats, and is read in double precision.
 void expect_comes_back(const Mesh& mesh) {
   TempDir dir;
   write_mesh(mesh, dir / "a.obj");
   const Mesh read = read_mesh(dir / "a.obj");
-  expect_same(read, as_obj_has_it(mesh));
+  Mesh rounded = read;
+  if (mesh.single_precision)
+    for (const auto rows : {&Mesh::coordinates, &Mesh::normals})
+      for (double& value : rounded.*rows) value = static_cast<double>(static_cast<float>(value));
+  expect_same(rounded, as_obj_has_it(mesh));
   // Written again it is the same file.
   write_mesh(read, dir / "b.obj");
   EXPECT_EQ(read_file(dir / "b.obj"), read_file(dir / "a.obj"));

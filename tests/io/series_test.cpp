@@ -410,6 +410,7 @@ TEST_F(Series, DamagedFilesAreNamed) {
   add_three();
   write_file(files_[1], nrrd({2, 3, 4}, 0).substr(0, 100));
   expect_error(ErrorCode::MalformedFile, {"frame_1.nrrd"}, [&] { read_series(files_); });
+  write_file(files_[1], nrrd({2, 3, 4}, 0));
   files_.push_back(dir_ / "none.nrrd");
   expect_refused(ErrorCode::FileNotFound, {"none.nrrd"});
 }

@@ -142,7 +142,8 @@ TEST(Obj, LinesComeBackAsLines) {
   for (std::size_t s = 0; s < again.simplices.size(); ++s)
     for (std::size_t c = 0; c < 2; ++c)
       for (int a = 0; a < 2; ++a)
-        EXPECT_EQ(again.vertices[again.simplices[s][c]][a], contour.vertices[contour.simplices[s][c]][a]);
+        EXPECT_EQ(static_cast<float>(again.vertices[again.simplices[s][c]][a]),
+                  contour.vertices[contour.simplices[s][c]][a]);
   expect_closed_manifold(again);
   EXPECT_NEAR(measure(again).content.value(), measure(contour).content.value(), 1e-3);
 }

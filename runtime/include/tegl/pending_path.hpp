@@ -45,8 +45,9 @@ class PendingPath {
  private:
   friend void remove_pending_files() noexcept;
   enum class State { pending, placed, exchanged, replaced };
-  /// Creates the pending file and enters the list of files that remove_pending_files() removes. Returns its descriptor,
-  /// or -1.
+  /// Enters the list of files that remove_pending_files() removes.
+  void enlist() noexcept;
+  /// Creates the pending file, listed. Returns its descriptor, or -1.
   int create(unsigned mode) noexcept;
   /// Leaves the list.
   void delist() noexcept;
