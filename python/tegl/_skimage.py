@@ -16,7 +16,7 @@ def marching_cubes(volume, level=None, *, spacing=(1.0, 1.0, 1.0), gradient_dire
     Returns (verts, faces, normals, values): #V x 3 coordinates in the order of the volume's axes, #F x 3 vertex numbers,
     #V x 3 normals towards lower values, and for each vertex the largest range of the samples of a cube around it.
 
-    What differs: docs/python.md. In short, the same vertices (but in another order), each once; surfaces are closed
+    What differs: docs/scikit-image.md. In short, the same vertices (but in another order), each once; surfaces are closed
     manifolds whatever the values; NaN is a missing value; the volume is not copied.
 
     level

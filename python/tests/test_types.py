@@ -33,12 +33,15 @@ def cache(tmp_path_factory):
 
 
 def test_package_users_examples_and_docs_are_sound(cache, tmp_path):
-    page = (SOURCE / "docs/python.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    assert len(blocks) > 5
-    code = re.sub(r":(\d+)j", r":\1", "\n".join(blocks))  # mypy knows no slices with complex steps, as numpy.ogrid has
-    (tmp_path / "page.py").write_text(code)
-    assert mypy(cache, PACKAGE, USER, SOURCE / "examples/python", tmp_path / "page.py") == ""
+    pages = [SOURCE / f"docs/{name}.md" for name in ("python", "python-arrays", "scikit-image")]
+    files = []
+    for page in pages:
+        blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+        assert blocks, page
+        code = re.sub(r":(\d+)j", r":\1", "\n".join(blocks))  # mypy knows no slices with complex steps, as numpy.ogrid has
+        files.append(tmp_path / f"{page.stem.replace('-', '_')}_page.py")
+        files[-1].write_text(code)
+    assert mypy(cache, PACKAGE, USER, SOURCE / "examples/python", *files) == ""
 
 
 def test_wrong_code_is_found(cache, tmp_path):

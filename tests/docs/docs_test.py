@@ -6,7 +6,7 @@
     docs_test.py snippets SOURCE        every ```cpp and ```cmake block stands in a file that the build compiles
     docs_test.py links SOURCE           every link leads to a file, every anchor to a heading, and the front page to all pages
     docs_test.py transcripts SOURCE BIN [--update]
-                                        the ```console blocks of getting-started.md and guides.md: what is behind each $ runs,
+                                        the ```console blocks of getting-started.md, guides.md and the tutorials: what is behind each $ runs,
                                         and says what stands below it. --update writes what it says into the page. Neither
                                         these nor the pages' ```sh blocks leave anything that git status would show
     docs_test.py html SOURCE FOLDER     builds the documentation as scripts/docs does, into FOLDER
@@ -34,7 +34,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs/site"
 import pages as markdown  # noqa: E402
 
 pages = markdown.all_pages
-TRANSCRIPTS = ("docs/getting-started.md", "docs/guides.md")
+TRANSCRIPTS = ("docs/getting-started.md", "docs/guides.md", "docs/tutorial-medicine.md", "docs/tutorial-ocean.md",
+               "docs/tutorial-simulation.md", "docs/tutorial-physics.md")
 
 
 def blocks(page, languages):
