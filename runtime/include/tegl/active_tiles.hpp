@@ -194,7 +194,7 @@ class ActiveTiles {
   /// The rows that have active tiles, and perhaps more: those that are worth looking at.
   [[nodiscard]] TileRowSet find_rows(double isovalue) const;
 
-  /// Writes the index; `load_active_tiles` reads it. The format is described in docs/active-tiles.md. Errors: those of
+  /// Writes the index; `load_active_tiles` reads it. The format is described in docs/file-formats.md. Errors: those of
   /// the sink; InvalidArgument where nothing can be saved (`choose_tiles`).
   void save(ByteSink& to) const;
 
