@@ -4,7 +4,7 @@
 // costs (of those with TEXT in their names): the least time of R (5) repetitions, or of fewer where these take more
 // than 10 s together, the least processor time of all threads together (which other work on the machine hardly
 // changes), and the most memory that it had beside what was there before (image, contour, and what it works on).
-// A Markdown table for each file; docs/operations.md has the figures.
+// A Markdown table for each file; docs/cost.md has the figures.
 //
 // A new operation is a line in `operations_on`, or in a function that it calls.
 #include <malloc.h>

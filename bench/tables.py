@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The figures of bench/results/*.json as tables for readers: writes bench/results/README.md, and the table of missed
-marks in docs/cost.md."""
+marks in bench/README.md."""
 
 import json
 import re
@@ -8,9 +8,9 @@ import re
 import machine
 
 RESULTS = machine.ROOT / "bench/results"
-COST = machine.ROOT / "docs/cost.md"
+MISSED = machine.ROOT / "bench/README.md"
 
-# What bounds a case beside memory, by field and dimension: written by hand, explained in docs/cost.md.
+# What bounds a case beside memory, by field and dimension: written by hand, explained in bench/README.md.
 BOUNDS = {
     ("metaballs", 3): "instructions for rows with two or three edges",
     ("gyroid", 3): "instructions for each tile, fresh memory",
@@ -167,7 +167,7 @@ def missed(result: dict, cases: list[dict]) -> list[str]:
 
 
 def write_missed(path) -> None:
-    """Puts that table between its marks in docs/cost.md."""
+    """Puts that table between its marks in bench/README.md."""
     result = json.loads((RESULTS / "side_by_side.json").read_text())
     cases = json.loads((RESULTS / "instructions.json").read_text())["cases"]
     first, last = "<!-- missed marks: made by bench/tables.py -->\n", "<!-- end -->"
@@ -195,7 +195,7 @@ def main() -> None:
     text += page("instructions", "Instructions", "`bench/instructions --large`: of one extraction by one thread, by callgrind, "
                  "which knows AVX2 at most.", instructions)
     (RESULTS / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(text)) + "\n")
-    write_missed(COST)
+    write_missed(MISSED)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,8 @@ TAG = re.compile(r"<(?:a|img)\b[^>]*?\b(?:href|src)=\"([^\"]*)\"")
 def all_pages(source: pathlib.Path) -> list[pathlib.Path]:
     """Every page, the README first."""
     return [source / "README.md", source / "CONTRIBUTING.md", source / "CHANGELOG.md",
-            source / "examples/README.md", source / "examples/data/README.md", source / "bench/results/README.md",
+            source / "examples/README.md", source / "examples/data/README.md", source / "bench/README.md",
+            source / "bench/results/README.md",
             *sorted((source / "docs").rglob("*.md"))]
 
 
