@@ -26,7 +26,8 @@ namespace tegl::io_detail {
 struct ChildLimits {
   /// Memory that it may take before it has opened a file; more by now_reading() and expect_memory().
   std::uint64_t memory = std::uint64_t{64} << 20;
-  double seconds = 8;  ///< of its processor time between two signs of progress
+  /// Of its processor time between two signs of progress; more for large files by now_reading(), expect_step().
+  double seconds = 2;
 };
 
 /// Layers that the parent asks for.

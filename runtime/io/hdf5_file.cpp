@@ -96,7 +96,7 @@ H5File H5File::create(const fs::path& where, const fs::path& path) {
 }
 
 H5File H5File::open(const fs::path& path, bool allow_outside_paths) {
-  const std::uint64_t bytes = check_hdf5_links(path, {}, ExternalStorage::beside_file, allow_outside_paths);
+  const std::uint64_t bytes = check_hdf5_links(path, {}, Hdf5Reader::h5file, allow_outside_paths);
   H5Handle handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (handle.id() < 0)
     fail(ErrorCode::MalformedFile, path, "cannot be opened as HDF5 ({}); expected a whole HDF5 file",

@@ -12,6 +12,7 @@
 
 #include "common.hpp"
 #include "named_path.hpp"
+#include "reading_process.hpp"
 
 namespace tegl::io_detail {
 
@@ -51,6 +52,7 @@ H5Handle open_file(const fs::path& path, std::span<const unsigned char> content,
 /// The links of one group.
 struct Links {
   std::vector<haddr_t> hard;
+  std::vector<haddr_t> soft;          ///< objects that soft links lead to
   std::vector<std::string> external;  ///< names of files
   bool out_of_memory = false;
 };
@@ -60,6 +62,10 @@ herr_t add_link(hid_t group, const char* name, const H5L_info_t* info, void* to)
   auto& links = *static_cast<Links*>(to);
   try {
     if (info->type == H5L_TYPE_HARD) links.hard.push_back(info->u.address);
+    if (info->type == H5L_TYPE_SOFT) {
+      H5O_info_t object;
+      if (H5Oget_info_by_name(group, name, &object, H5P_DEFAULT) >= 0) links.soft.push_back(object.addr);
+    }
     if (info->type == H5L_TYPE_EXTERNAL) {
       std::vector<char> value(info->u.val_size);
       const char* file = nullptr;
@@ -78,8 +84,8 @@ herr_t add_link(hid_t group, const char* name, const H5L_info_t* info, void* to)
 
 class LinkChecker {
  public:
-  LinkChecker(const fs::path& path, ExternalStorage storage, bool allow_outside)
-      : path_(path), storage_(storage), allow_outside_(allow_outside) {}
+  LinkChecker(const fs::path& path, Hdf5Reader reader, bool allow_outside)
+      : path_(path), reader_(reader), allow_outside_(allow_outside) {}
 
   std::uint64_t run(std::span<const unsigned char> content) {
     bytes_ = content.empty() ? size_of_file(path_) : content.size();
@@ -90,6 +96,7 @@ class LinkChecker {
       files_.pop_back();
       walk(next, {});
     }
+    if (reader_ == Hdf5Reader::netcdf) expect_objects(objects_);
     return bytes_;
   }
 
@@ -110,6 +117,8 @@ class LinkChecker {
       fail(ErrorCode::MalformedFile, file, "cannot be opened as HDF5; expected a whole, undamaged HDF5 file");
     std::set<haddr_t> seen;
     std::vector<Object> open;
+    H5O_info_t root;
+    if (H5Oget_info(handle.id(), &root) >= 0) seen.insert(root.addr);
     list(file, handle.id(), 0, seen, open);
     while (!open.empty()) {
       const Object object = open.back();
@@ -133,8 +142,22 @@ class LinkChecker {
       damaged(file);
     }
     for (const std::string& name : links.external) check_name(file, name, "an external link");
+    objects_ += links.hard.size() + links.soft.size() + links.external.size();
     for (const haddr_t address : links.hard)
-      if (seen.insert(address).second) open.push_back({address, depth + 1});
+      if (seen.insert(address).second)
+        open.push_back({address, depth + 1});
+      else if (reader_ == Hdf5Reader::netcdf)
+        require_no_group(file, group, address);
+    if (reader_ != Hdf5Reader::netcdf) return;
+    for (const haddr_t address : links.soft) require_no_group(file, group, address);
+  }
+
+  /// netCDF-C reads groups as a tree: one with two names twice, and one within itself without end.
+  void require_no_group(const fs::path& file, hid_t group, haddr_t address) const {
+    const H5Handle object(H5Oopen_by_addr(group, address), H5Oclose);
+    if (object.id() >= 0 && H5Iget_type(object.id()) == H5I_GROUP)
+      fail(ErrorCode::MalformedFile, file,
+           "two links lead to the group at byte {}; expected groups that form a tree, as netCDF has them", address);
   }
 
   void check_dataset(const fs::path& file, hid_t dataset) {
@@ -171,7 +194,7 @@ class LinkChecker {
     hsize_t size = 0;
     if (H5Pget_external(properties, i, name.size() - 1, name.data(), &offset, &size) < 0) damaged(file);
     const fs::path from =
-        storage_ == ExternalStorage::in_current_folder ? fs::current_path() : fs::absolute(file).parent_path();
+        reader_ == Hdf5Reader::netcdf ? fs::current_path() : fs::absolute(file).parent_path();
     const fs::path target = named_path(path_, (from / name.data()).string(), allow_outside_);
     require_no_device(file, target);
     if (named_.insert(target).second && fs::is_regular_file(target)) bytes_ += size_of_file(target);
@@ -202,20 +225,21 @@ class LinkChecker {
   }
 
   const fs::path& path_;
-  ExternalStorage storage_;
+  Hdf5Reader reader_;
   bool allow_outside_;
   bool in_memory_ = false;
   std::uint64_t bytes_ = 0;
+  std::uint64_t objects_ = 0;    ///< by their links
   std::set<fs::path> named_;     ///< files that were met, to be counted once
   std::vector<fs::path> files_;  ///< HDF5 files to be checked
 };
 
 }  // namespace
 
-std::uint64_t check_hdf5_links(const fs::path& path, std::span<const unsigned char> content, ExternalStorage storage,
+std::uint64_t check_hdf5_links(const fs::path& path, std::span<const unsigned char> content, Hdf5Reader reader,
                                bool allow_outside_paths) {
   const H5Quiet quiet;
-  return LinkChecker(path, storage, allow_outside_paths).run(content);
+  return LinkChecker(path, reader, allow_outside_paths).run(content);
 }
 
 }  // namespace tegl::io_detail

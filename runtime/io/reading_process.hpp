@@ -15,6 +15,9 @@ void now_reading(const std::filesystem::path& path);
 /// So much more memory is needed for values that the file is large enough for.
 void expect_memory(std::uint64_t bytes);
 
+/// So many variables, groups and types of a file will be opened, each with memory and time for its tables.
+void expect_objects(std::uint64_t count);
+
 /// So many bytes of values are read in one step, which may take the time for that.
 void expect_step(std::uint64_t bytes);
 

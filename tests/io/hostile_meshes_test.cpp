@@ -419,6 +419,21 @@ TEST(HostileMeshes, GroupsOfHdf5AreNotNestedDeeply) {
   expect_refused(dir / "deep.nc", ErrorCode::MalformedFile, {"groups nested deeper than 32"}, as_image);
 }
 
+TEST(HostileMeshes, GroupsThatAreNoTreeAreRefusedBeforeNetCdfFollowsThem) {
+  for (const bool soft : {false, true}) {
+    TempDir dir;
+    {
+      const Id file(H5Fcreate((dir / "loop.nc").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+      const Id group(H5Gcreate2(file, "a", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+      if (soft)
+        H5Lcreate_soft("/", group, "b", H5P_DEFAULT, H5P_DEFAULT);
+      else
+        H5Lcreate_hard(file, "/", group, "b", H5P_DEFAULT, H5P_DEFAULT);
+    }
+    expect_refused(dir / "loop.nc", ErrorCode::MalformedFile, {"two links lead to the group", "form a tree"}, as_image);
+  }
+}
+
 /// VTKHDF files whose points are in another file, in each way that HDF5 has.
 struct PointsElsewhere {
   const char* way;

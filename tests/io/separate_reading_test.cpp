@@ -150,6 +150,21 @@ TEST(SeparateReading, ImagesAndLayersAreTheSame) {
   }
 }
 
+TEST(SeparateReading, ManyVariablesHaveMemoryForTheirTables) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  TempDir dir;
+  constexpr int kVariables = 1500;  // 64 MiB is too little for them
+  {
+    NcWriter file(dir / "many.nc", NC_NETCDF4);
+    const std::vector<int> dimensions = {file.dimension("y", 4), file.dimension("x", 5)};
+    for (int i = 0; i < kVariables; ++i)
+      NcWriter::ok(nc_def_var_deflate(file.id(), file.variable("v" + std::to_string(i), NC_FLOAT, dimensions), 1, 1, 1));
+  }
+  EXPECT_EQ(list_image_variables(dir / "many.nc", kSeparate).size(), kVariables);
+}
+
 TEST(SeparateReading, WideIntegersAndGzippedFilesAreTheSame) {
   TempDir dir;
   write_image(dir / "a.nc", {.type = NC_INT64, .sizes = {10, 200, 200}});
