@@ -430,6 +430,7 @@ RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageO
     fail(ErrorCode::UnsupportedData, path,
          "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");
   Found found = find_variable(*file, options);
+  file->require_stored(found.variable, found.slab);
   const VariableGrid grid = read_grid(*file, found.variable, found.slab);
   found.info.axis_directions = grid.directions;
   const Packing packing = read_packing(*file, found.variable);

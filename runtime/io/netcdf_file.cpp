@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 
+#include <netcdf_filter.h>
 #include <netcdf_mem.h>
 
 #include "cdf_header.hpp"
@@ -301,14 +302,31 @@ ValueArray NcFile::numeric_array(const NcVariable& variable) const {
   return array_for(variable.type, lower(text(variable, "_Unsigned")) == "true");
 }
 
+namespace {
+
+/// How many times its bytes in the file a variable may take: deflate makes at most 1 032 of one.
+std::uint64_t best_ratio(const NcVariable& variable) {
+  constexpr std::uint64_t kOfDeflate = 1032;
+  constexpr std::uint64_t kOfOthers = 4096;
+  constexpr unsigned kLastOfDeflate = 3;  // H5Z_FILTER_DEFLATE, _SHUFFLE and _FLETCHER32
+  std::size_t count = 0;
+  if (nc_inq_var_filter_ids(variable.group, variable.id, &count, nullptr) != NC_NOERR) return kOfDeflate;
+  std::vector<unsigned> filters(count);
+  if (count == 0 || nc_inq_var_filter_ids(variable.group, variable.id, &count, filters.data()) != NC_NOERR)
+    return kOfDeflate;
+  return std::ranges::all_of(filters, [](unsigned id) { return id <= kLastOfDeflate; }) ? kOfDeflate : kOfOthers;
+}
+
+}  // namespace
+
 void NcFile::require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const {
   const std::uint64_t bytes = checked_bytes(sizes, item, path_);
-  // No filter of the library compresses better; more is a damaged header, not data.
-  constexpr std::uint64_t kBestRatio = 4096;
-  if (bytes / kBestRatio > bytes_)
+  // More is a damaged header, not data.
+  const std::uint64_t ratio = best_ratio(variable);
+  if (bytes / ratio > bytes_)
     fail(ErrorCode::MalformedFile, path_,
          "variable '{}' of {} samples takes {} bytes in a file of {}; expected at most {} times as many", variable.name,
-         shape_text(sizes), bytes, bytes_, kBestRatio);
+         shape_text(sizes), bytes, bytes_, ratio);
   // A chunk is decompressed whole, whatever part of it is read.
   int storage = NC_CONTIGUOUS;
   std::vector<std::size_t> chunks(std::max<std::size_t>(1, variable.sizes.size()), 1);
@@ -319,6 +337,12 @@ void NcFile::require_stored(const NcVariable& variable, std::span<const std::uin
   if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(of_chunk, whole))
     fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} bytes in chunks of {} ({} bytes); expected at most {}",
          variable.name, whole, shape_text(chunks), of_chunk, std::max(kMostChunkBytes, 2 * whole));
+}
+
+void NcFile::require_stored(const NcVariable& variable, const NcSlab& slab) const {
+  const std::vector<std::uint64_t> sizes(slab.count.begin(), slab.count.end());
+  std::visit([&]<class T>(const ValueVector<T>&) { require_stored(variable, sizes, sizeof(T)); },
+             numeric_array(variable));
 }
 
 ValueArray NcFile::values(const NcVariable& variable, const NcSlab& slab, const Progress& progress) const {

@@ -59,6 +59,8 @@ class NcFile {
   /// Values in the order of the file; attribute _Unsigned is taken into account. UnsupportedData unless numeric,
   /// MalformedFile for a variable that the file cannot hold.
   [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress = {}) const;
+  /// Throws MalformedFile if the file cannot hold the values of a slab, which may be read in parts.
+  void require_stored(const NcVariable& variable, const NcSlab& slab) const;
   /// How many indices of a dimension lie in one block of the file; 1 if it is not stored in blocks.
   [[nodiscard]] std::size_t block_length(const NcVariable& variable, std::size_t dimension) const;
   /// Bytes of the values in a block of the file, as far as the variable has them.
