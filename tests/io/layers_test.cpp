@@ -193,7 +193,7 @@ TEST(Layers, ThatCannotBeReadAreNamed) {
   auto& layers = *std::get<std::unique_ptr<LayerReader<std::uint8_t, 2>>>(std::get<AnyLayersN<2>>(opened.layers));
   std::array<std::uint8_t, 10> row;
   layers.read(6, row.data());
-  expect_error(ErrorCode::MalformedFile, {"a.raw", "(layers 7 to 7)"}, [&] { layers.read(7, row.data()); });
+  expect_error(ErrorCode::MalformedFile, {"a.raw", "(layer 7)"}, [&] { layers.read(7, row.data()); });
 }
 
 TEST(Layers, OfRawValuesThatCannotBeAreRefused) {
