@@ -193,8 +193,7 @@ class LinkChecker {
     off_t offset = 0;
     hsize_t size = 0;
     if (H5Pget_external(properties, i, name.size() - 1, name.data(), &offset, &size) < 0) damaged(file);
-    const fs::path from =
-        reader_ == Hdf5Reader::netcdf ? fs::current_path() : fs::absolute(file).parent_path();
+    const fs::path from = reader_ == Hdf5Reader::netcdf ? fs::current_path() : fs::absolute(file).parent_path();
     const fs::path target = named_path(path_, (from / name.data()).string(), allow_outside_);
     require_no_device(file, target);
     if (named_.insert(target).second && fs::is_regular_file(target)) bytes_ += size_of_file(target);

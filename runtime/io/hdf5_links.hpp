@@ -12,8 +12,8 @@
 
 namespace tegl::io_detail {
 
-/// What reads the file after the check. HDF5 takes names of external storage from the current folder, as netCDF-C leaves
-/// it, unless a dataset is opened with the prefix "${ORIGIN}", as `H5File::open` does.
+/// What reads the file after the check. HDF5 takes names of external storage from the current folder, as netCDF-C
+/// leaves it, unless a dataset is opened with the prefix "${ORIGIN}", as `H5File::open` does.
 enum class Hdf5Reader {
   netcdf,  ///< netCDF-C: reads all groups when it opens the file, by every link
   h5file,  ///< H5File: what is asked for by name

@@ -69,8 +69,9 @@ class BlockLayers final : public LayerReader<T, N> {
     try {
       return look_(first, count);
     } catch (const Error& error) {
-      throw Error(error.code(), count == 1 ? fmt::format("{} (layer {})", error.what(), first)
-                                           : fmt::format("{} (layers {} to {})", error.what(), first, first + count - 1));
+      throw Error(error.code(), count == 1
+                                    ? fmt::format("{} (layer {})", error.what(), first)
+                                    : fmt::format("{} (layers {} to {})", error.what(), first, first + count - 1));
     }
   }
 

@@ -134,7 +134,7 @@ NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outsid
     fail(ErrorCode::MalformedFile, path, "starts with {}; expected netCDF: 'CDF' and 1, 2 or 5, or '\\x89HDF'",
          shown(prefix));
   }
-  bytes_ = is_hdf5(prefix) ? check_hdf5_links(path, content_, Hdf5Reader::netcdf, allow_outside_paths)
+  bytes_ = is_hdf5(prefix)    ? check_hdf5_links(path, content_, Hdf5Reader::netcdf, allow_outside_paths)
            : content_.empty() ? size_of_file(path)
                               : content_.size();
   // An absolute path cannot be taken for the address of a server.

@@ -148,7 +148,8 @@ std::vector<double> per_axis(const Fields& fields, std::string_view name, std::s
     if (!parse_number(word, value))
       fail(ErrorCode::MalformedFile, path, "{} with {}; expected numbers", name, shown(word));
     if (std::isinf(value))
-      fail(ErrorCode::MalformedFile, path, "{} with {}; expected finite numbers, or nan if not known", name, shown(word));
+      fail(ErrorCode::MalformedFile, path, "{} with {}; expected finite numbers, or nan if not known", name,
+           shown(word));
     values.push_back(value);
   }
   if (values.size() != axes)

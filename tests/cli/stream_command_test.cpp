@@ -202,8 +202,8 @@ TEST_F(Stream, LeavesNoFileWhenItFails) {
   const std::string list = "kinds: list domain domain domain\n";
   expect_failure(4, {"contour", write("a.nrrd", nrrd_bytes(balls, list)), "--stream", "--iso", "0", "-o", out},
                  "expected the list along the last axis");
-  const std::string full =
-      "ulimit -f 40; exec " TEGL_PROGRAM " contour " + kOcean + " --iso 20 --stream --in-process -q -o " + out + " 2> /dev/null";
+  const std::string full = "ulimit -f 40; exec " TEGL_PROGRAM " contour " + kOcean +
+                           " --iso 20 --stream --in-process -q -o " + out + " 2> /dev/null";
   EXPECT_EQ(WEXITSTATUS(std::system(full.c_str())), 6);
   EXPECT_FALSE(std::filesystem::exists(out));
 }

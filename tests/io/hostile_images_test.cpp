@@ -223,8 +223,7 @@ TEST(HostileImages, NetCdfClassic) {
     add("records", {.version = version, .records = 0x7fffffff, .size = 0}, {"'v' ends at byte", "the file's size"});
     add("open", {.version = version, .records = version == 5 ? kAll : 0xffffffffU, .size = 0}, {"left open"});
   }
-  files.push_back(
-      {"name-1.nc", Classic{.version = 5, .name_bytes = kAll}.bytes(), {"netCDF name of -1 bytes"}});
+  files.push_back({"name-1.nc", Classic{.version = 5, .name_bytes = kAll}.bytes(), {"netCDF name of -1 bytes"}});
   files.push_back({"size-1.nc", Classic{.version = 5, .size = kAll}.bytes(), {"'y' has size 18446744073709551615"}});
   files.push_back({"begin-1.nc", Classic{.version = 5, .begin = kAll - 3}.bytes(), {"'v' ends at byte"}});
   expect_all_refused(files);

@@ -160,7 +160,8 @@ TEST(SeparateReading, ManyVariablesHaveMemoryForTheirTables) {
     NcWriter file(dir / "many.nc", NC_NETCDF4);
     const std::vector<int> dimensions = {file.dimension("y", 4), file.dimension("x", 5)};
     for (int i = 0; i < kVariables; ++i)
-      NcWriter::ok(nc_def_var_deflate(file.id(), file.variable("v" + std::to_string(i), NC_FLOAT, dimensions), 1, 1, 1));
+      NcWriter::ok(
+          nc_def_var_deflate(file.id(), file.variable("v" + std::to_string(i), NC_FLOAT, dimensions), 1, 1, 1));
   }
   EXPECT_EQ(list_image_variables(dir / "many.nc", kSeparate).size(), kVariables);
 }
