@@ -32,7 +32,7 @@ File open_for_reading(const fs::path& path) {
 
 template <class Number>
 bool parse_with_from_chars(std::string_view text, Number& value) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  text = without_plus(text);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && !text.empty();
 }
@@ -106,6 +106,12 @@ std::uint64_t checked_bytes(std::span<const std::uint64_t> sizes, std::uint64_t 
     if (__builtin_mul_overflow(product, size, &product) || product > (std::uint64_t{1} << 62))
       fail(ErrorCode::TooLarge, path, "{} samples of {} bytes are more than any memory holds", shape_text(sizes), item);
   return product;
+}
+
+std::string_view without_plus(std::string_view text) {
+  if (!text.starts_with('+')) return text;
+  text.remove_prefix(1);
+  return text.starts_with('+') || text.starts_with('-') ? std::string_view() : text;
 }
 
 bool parse_number(std::string_view text, double& value) {

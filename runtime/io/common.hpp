@@ -59,6 +59,8 @@ std::string shape_text(const Range& sizes) {
   return fmt::format("{}", fmt::join(sizes, " x "));
 }
 
+/// A number's text without its plus sign, which std::from_chars does not take; nothing if two signs follow each other.
+std::string_view without_plus(std::string_view text);
 /// Parses a whole text as a number, independent of the locale; false if anything is left over.
 bool parse_number(std::string_view text, double& value);
 bool parse_number(std::string_view text, std::uint64_t& value);

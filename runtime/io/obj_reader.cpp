@@ -112,7 +112,7 @@ class ObjReader {
   double number(std::string_view word) const {
     double value = 0;
     if (parse_number(word, value)) return value;
-    const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
+    const std::string_view digits = without_plus(word);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const bool is_number = error == std::errc::result_out_of_range && end == digits.data() + digits.size();
     bad("{}; expected a number{}", shown(word), is_number ? " that double holds" : "");

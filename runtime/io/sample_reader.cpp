@@ -113,10 +113,7 @@ class TextFile {
 /// Smaller than the smallest of a floating type is 0.
 template <class T>
 bool parse_sample(std::string_view word, T& value) {
-  if (word.starts_with('+')) {
-    word.remove_prefix(1);
-    if (word.starts_with('+') || word.starts_with('-')) return false;
-  }
+  word = without_plus(word);
   const char* const end = word.data() + word.size();
   const auto is_whole = [&](std::from_chars_result result) { return result.ec == std::errc() && result.ptr == end; };
   if (word.empty()) return false;

@@ -121,6 +121,7 @@ TEST(HostileImages, Nrrd) {
        {"more than 1000 characters without a blank ('1111"}},
       {"ascii300.nrrd", nrrd("", "ascii", "1 2 3 300"), {"sample 3 is '300'", "from 0 to 255 (uint8)"}},
       {"ascii_signs.nrrd", nrrd("", "ascii", "1 2 3 +-5", "2 2", "short"), {"sample 3 is '+-5'"}},
+      {"spacing_signs.nrrd", nrrd("spacings: 1 +-1\n", "raw", "1234"), {"spacings with '+-1'; expected numbers"}},
       {"spacing_inf.nrrd", nrrd("spacings: 1 inf\n", "raw", "1234"), {"spacings with 'inf'; expected finite numbers"}},
       {"ascii_big.nrrd", nrrd("", "ascii", "1 2 3 1e400", "2 2", "float"), {"sample 3 is '1e400'", "float"}},
       {"ascii_many.nrrd", nrrd("", "ascii", "1 2 3 4 x"), {"'x' after the last number; expected 4"}},
