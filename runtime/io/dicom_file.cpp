@@ -28,6 +28,7 @@
 #include "common.hpp"
 #include "dicom_frames.hpp"
 #include "dicom_nesting.hpp"
+#include "inflate.hpp"
 #include "jpeg2000.hpp"
 #include "named_path.hpp"
 #include "raw_image.hpp"
@@ -328,9 +329,8 @@ void require_bytes(const DicomFile& file, E_TransferSyntax stored_as) {
 
 /// Memory and time for the pixels, as many as compression can make of the file.
 void expect_pixels(const DicomFile& file) {
-  constexpr std::uint64_t kBestRatio = 4096;
   const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
-  const std::uint64_t count = std::min(checked_bytes(sizes, 1, file.path), kBestRatio * size_of_file(file.path));
+  const std::uint64_t count = std::min(checked_bytes(sizes, 1, file.path), kMostExpansion * size_of_file(file.path));
   expect_memory(kBytesPerValue * count);
   expect_step(4 * count);
 }

@@ -11,6 +11,7 @@
 
 #include "common.hpp"
 #include "hdf5_links.hpp"
+#include "inflate.hpp"
 #include "reading_process.hpp"
 
 namespace tegl::io_detail {
@@ -270,9 +271,12 @@ int H5File::rank(hid_t group, const char* name) const {
   return H5Sget_simple_extent_ndims(space.id());
 }
 
-namespace {
+std::uint64_t most_expansion_by(H5Z_filter_t filter) {
+  if (filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32) return 1;
+  return filter == H5Z_FILTER_DEFLATE ? kMostInflation : kMostExpansion;
+}
 
-constexpr std::uint64_t kBestRatio = 4096;  ///< of a filter whose best one is not known
+namespace {
 
 /// What a dataset is, and how the file holds it.
 struct Stored {
@@ -284,15 +288,13 @@ struct Stored {
   bool is_virtual = false;        ///< a view of other datasets
 };
 
-/// How many bytes filters make of one at most: deflate 1032 (zlib, "Technical Details"); others are limited by choice.
+/// How many bytes the filters of a dataset make of one at most.
 std::uint64_t most_expansion(hid_t properties) {
   std::uint64_t ratio = 1;
   for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
     std::size_t parameters = 0;
-    const H5Z_filter_t filter =
-        H5Pget_filter2(properties, static_cast<unsigned>(i), nullptr, &parameters, nullptr, 0, nullptr, nullptr);
-    const bool keeps_size = filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32;
-    ratio = std::max<std::uint64_t>(ratio, keeps_size ? 1 : filter == H5Z_FILTER_DEFLATE ? 1032 : kBestRatio);
+    ratio = std::max(ratio, most_expansion_by(H5Pget_filter2(properties, static_cast<unsigned>(i), nullptr, &parameters,
+                                                             nullptr, 0, nullptr, nullptr)));
   }
   return ratio;
 }
@@ -341,7 +343,7 @@ Stored stored_of(hid_t dataset, const std::array<hsize_t, 2>& size, std::size_t 
   } else if (layout == H5D_VIRTUAL) {
     result.is_virtual = true;
     result.stored = all_bytes;
-    result.ratio = kBestRatio;  // its sources may be compressed
+    result.ratio = kMostExpansion;  // its sources may be compressed
   }
   result.stored = std::min(result.stored, all_bytes);
   return result;
@@ -355,12 +357,12 @@ std::vector<std::uint64_t> H5File::claim(hid_t group, const char* name) {
   const StoredSizes it = stored(group, name);
   claimed_.bytes += it.bytes;
   claimed_.stored += it.stored;
-  if (claimed_.stored > bytes_ || claimed_.bytes / kBestRatio > bytes_)
+  if (claimed_.stored > bytes_ || claimed_.bytes / kMostExpansion > bytes_)
     fail(
         code_, path_,
         "dataset '{}' and those read before it take {} bytes, of which the file stores {}; expected at most {} and {}, "
         "for a file of {} bytes",
-        name, claimed_.bytes, claimed_.stored, kBestRatio * bytes_, bytes_, bytes_);
+        name, claimed_.bytes, claimed_.stored, kMostExpansion * bytes_, bytes_, bytes_);
   return it.sizes;
 }
 

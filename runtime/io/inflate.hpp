@@ -16,6 +16,8 @@ namespace tegl::io_detail {
 
 /// Deflate makes at most so many bytes of one.
 inline constexpr std::uint64_t kMostInflation = 1032;
+/// What other compressions are taken to make of one byte at most.
+inline constexpr std::uint64_t kMostExpansion = 4096;
 
 /// The decompressed bytes of the gzip (any number of members) or zlib stream that starts at byte `offset` of a file, in
 /// order. Bytes after the stream are ignored. Keeps the file open.

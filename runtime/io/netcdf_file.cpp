@@ -304,17 +304,15 @@ ValueArray NcFile::numeric_array(const NcVariable& variable) const {
 
 namespace {
 
-/// How many times its bytes in the file a variable may take: deflate makes at most 1 032 of one.
-std::uint64_t best_ratio(const NcVariable& variable) {
-  constexpr std::uint64_t kOfDeflate = 1032;
-  constexpr std::uint64_t kOfOthers = 4096;
-  constexpr unsigned kLastOfDeflate = 3;  // H5Z_FILTER_DEFLATE, _SHUFFLE and _FLETCHER32
+/// How many times its bytes in the file a variable may take.
+std::uint64_t most_expansion(const NcVariable& variable) {
+  std::uint64_t ratio = kMostInflation;
   std::size_t count = 0;
-  if (nc_inq_var_filter_ids(variable.group, variable.id, &count, nullptr) != NC_NOERR) return kOfDeflate;
+  if (nc_inq_var_filter_ids(variable.group, variable.id, &count, nullptr) != NC_NOERR || count == 0) return ratio;
   std::vector<unsigned> filters(count);
-  if (count == 0 || nc_inq_var_filter_ids(variable.group, variable.id, &count, filters.data()) != NC_NOERR)
-    return kOfDeflate;
-  return std::ranges::all_of(filters, [](unsigned id) { return id <= kLastOfDeflate; }) ? kOfDeflate : kOfOthers;
+  nc_inq_var_filter_ids(variable.group, variable.id, &count, filters.data());
+  for (const unsigned filter : filters) ratio = std::max(ratio, most_expansion_by(static_cast<H5Z_filter_t>(filter)));
+  return ratio;
 }
 
 }  // namespace
@@ -322,7 +320,7 @@ std::uint64_t best_ratio(const NcVariable& variable) {
 void NcFile::require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const {
   const std::uint64_t bytes = checked_bytes(sizes, item, path_);
   // More is a damaged header, not data.
-  const std::uint64_t ratio = best_ratio(variable);
+  const std::uint64_t ratio = most_expansion(variable);
   if (bytes / ratio > bytes_)
     fail(ErrorCode::MalformedFile, path_,
          "variable '{}' of {} samples takes {} bytes in a file of {}; expected at most {} times as many", variable.name,
