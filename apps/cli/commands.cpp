@@ -8,6 +8,20 @@
 
 namespace tegl::cli {
 
+namespace {
+
+/// How a file is read, as an image or a mesh.
+template <class Options>
+Options reading_options(const ImageOptions& given, Progress progress) {
+  Options options;
+  options.progress = std::move(progress);
+  options.allow_outside_paths = given.allow_outside_paths();
+  options.separate_process = given.separate_process();
+  return options;
+}
+
+}  // namespace
+
 Command::Command(CLI::App& program, const std::string& name, const std::string& description,
                  const std::string& file_help, Files files)
     : app_(program.add_subcommand(name, description)), files_kind_(files) {
@@ -19,26 +33,17 @@ Command::Command(CLI::App& program, const std::string& name, const std::string& 
       [this, files] { worked_on_ = files == Files::each ? std::vector{files_.front()} : files_; });
   app_->add_flag("--allow-outside-paths", images_.allow_outside_paths(),
                  "read further files that FILE names (samples of NRRD and MetaImage headers, glTF buffers, HDF5 links) "
-                 "wherever they "
-                 "lie, not only in its folder and below");
+                 "wherever they lie, not only in its folder and below");
   json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
   images_.add_in_process_to(*app_);
 }
 
 ReadImageOptions Command::image_options(Progress progress) const {
-  ReadImageOptions options;
-  options.progress = std::move(progress);
-  options.allow_outside_paths = images_.allow_outside_paths();
-  options.separate_process = images_.separate_process();
-  return options;
+  return reading_options<ReadImageOptions>(images_, std::move(progress));
 }
 
 ReadMeshOptions Command::mesh_options(Progress progress) const {
-  ReadMeshOptions options;
-  options.progress = std::move(progress);
-  options.allow_outside_paths = images_.allow_outside_paths();
-  options.separate_process = images_.separate_process();
-  return options;
+  return reading_options<ReadMeshOptions>(images_, std::move(progress));
 }
 
 void Command::add_quiet() {
