@@ -145,8 +145,8 @@ class H5File {
 /// How many bytes a filter makes of one at most: deflate kMostInflation; others are limited by choice.
 [[nodiscard]] std::uint64_t most_expansion_by(H5Z_filter_t filter);
 
-/// Memory that a chunk of a dataset takes, which is decompressed whole: at most twice that of the dataset, or 32 MiB.
-inline constexpr std::uint64_t kMostChunkBytes = std::uint64_t{1} << 25;
+/// Memory that a chunk of a dataset takes, which is decompressed whole: at most twice that of the dataset, or 16 MiB (the largest default of netCDF-4).
+inline constexpr std::uint64_t kMostChunkBytes = std::uint64_t{1} << 24;
 [[nodiscard]] inline bool is_chunk_too_large(std::uint64_t chunk_bytes, std::uint64_t dataset_bytes) {
   return chunk_bytes > kMostChunkBytes && chunk_bytes / 2 > dataset_bytes;
 }

@@ -261,12 +261,17 @@ void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::si
   std::size_t along = 0;
   while (along + 1 < rank && slab.count[along] == 1) ++along;
   std::size_t layer_bytes = item;
-  for (std::size_t d = along + 1; d < rank; ++d) layer_bytes *= slab.count[d];
-  // Blocks of whole chunks, so that none is decompressed twice.
+  std::size_t layer_chunks = 1;
+  for (std::size_t d = along + 1; d < rank; ++d) {
+    layer_bytes *= slab.count[d];
+    layer_chunks *= slab.count[d] / block_length(variable, d) + 1;
+  }
+  // Blocks of whole chunks, so that none is decompressed twice. HDF5 takes some 3 KiB for each chunk of a block.
   constexpr std::size_t kBlockBytes = std::size_t{1} << 24;
+  constexpr std::size_t kBlockChunks = std::size_t{1} << 12;
   const std::size_t block = block_length(variable, along);
-  std::size_t step = std::max<std::size_t>(1, kBlockBytes / std::max<std::size_t>(1, layer_bytes));
-  step = (step + block - 1) / block * block;
+  std::size_t step = std::min(kBlockBytes / std::max<std::size_t>(1, layer_bytes), kBlockChunks / layer_chunks * block);
+  step = std::max<std::size_t>(1, (step + block - 1) / block) * block;
   NcSlab part = slab;
   const std::size_t layers = slab.count[along];
   for (std::size_t first = 0; first < layers; first += step) {
@@ -335,6 +340,17 @@ void NcFile::require_stored(const NcVariable& variable, std::span<const std::uin
   if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(of_chunk, whole))
     fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} bytes in chunks of {} ({} bytes); expected at most {}",
          variable.name, whole, shape_text(chunks), of_chunk, std::max(kMostChunkBytes, 2 * whole));
+  // A chunk that is stored takes 16 bytes or more, with its entry in the index.
+  constexpr std::uint64_t kFewChunks = 4096;
+  const std::uint64_t most_chunks = std::max(kFewChunks, bytes_ / 16);
+  std::uint64_t count = 1;
+  for (std::size_t d = 0; d < sizes.size(); ++d) {
+    const std::uint64_t chunk = std::max<std::size_t>(1, chunks[d]);
+    count *= (sizes[d] + chunk - 1) / chunk;
+  }
+  if (count > most_chunks)
+    fail(ErrorCode::MalformedFile, path_, "variable '{}' has {} chunks of {} in a file of {} bytes; expected at most {}",
+         variable.name, count, shape_text(chunks), bytes_, most_chunks);
 }
 
 void NcFile::require_stored(const NcVariable& variable, const NcSlab& slab) const {

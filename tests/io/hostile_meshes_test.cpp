@@ -381,7 +381,7 @@ TEST(HostileMeshes, ChunksOfHdf5AreBoundedByTheirDataset) {
   write("small.vtkhdf", 1000);
   EXPECT_EQ(read_mesh(dir / "small.vtkhdf").coordinates.size(), 9U);
   write("large.vtkhdf", 2000000);
-  expect_refused(dir / "large.vtkhdf", ErrorCode::MalformedFile, {"'Points'", "chunks of 48000000", "at most 33554432"},
+  expect_refused(dir / "large.vtkhdf", ErrorCode::MalformedFile, {"'Points'", "chunks of 48000000", "at most 16777216"},
                  as_mesh);
 }
 
@@ -399,9 +399,23 @@ TEST(HostileMeshes, ChunksOfNetcdfAreBoundedByTheirVariable) {
     file.end();
     file.values(v, {4, 4, 4}, counting<double>(64));
   }
-  const std::vector<std::string> parts = {"'v' of 256 bytes", "1048576 x 4 x 4", "67108864 bytes", "at most 33554432"};
+  const std::vector<std::string> parts = {"'v' of 256 bytes", "1048576 x 4 x 4", "67108864 bytes", "at most 16777216"};
   expect_refused(dir / "chunk.nc", ErrorCode::MalformedFile, parts, as_image);
   expect_refused(dir / "chunk.nc", ErrorCode::MalformedFile, parts, as_layers);
+}
+
+TEST(HostileMeshes, ChunksOfNetcdfAreNoMoreThanTheFileHolds) {
+  TempDir dir;
+  {
+    NcWriter file(dir / "count.nc", NC_NETCDF4);
+    const int v = file.variable("v", NC_UBYTE, {file.dimension("y", 5000), file.dimension("x", 2)});
+    const std::array<std::size_t, 2> chunk{1, 1};
+    NcWriter::ok(nc_def_var_chunking(file.id(), v, NC_CHUNKED, chunk.data()));
+    file.end();
+  }
+  const std::vector<std::string> parts = {"'v' has 10000 chunks of 1 x 1", "expected at most 4096"};
+  expect_refused(dir / "count.nc", ErrorCode::MalformedFile, parts, as_image);
+  expect_refused(dir / "count.nc", ErrorCode::MalformedFile, parts, as_layers);
 }
 
 TEST(HostileMeshes, GroupsOfHdf5AreNotNestedDeeply) {

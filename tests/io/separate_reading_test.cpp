@@ -137,6 +137,7 @@ TEST(SeparateReading, ImagesAndLayersAreTheSame) {
       {.sizes = {3, 4, 5}},
       {.chunk = {1, 150, 200}, .deflate = 1},
       {.chunk = {7, 31, 64}, .deflate = 1},
+      {.sizes = {20000, 2, 2}, .chunk = {1, 1, 2}},  // as old netCDF-4 chunks an unlimited dimension
       {.type = NC_SHORT, .chunk = {40, 150, 200}, .deflate = 1, .packed = true},
       {.type = NC_DOUBLE, .sizes = {50, 90, 60}, .time_first = false},
       {.type = NC_BYTE, .sizes = {300, 90, 100}, .packed = true},
