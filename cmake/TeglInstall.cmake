@@ -82,7 +82,7 @@ function(tegl_install_component component)
   export(EXPORT tegl-${component} NAMESPACE tegl:: FILE ${PROJECT_BINARY_DIR}/tegl-${component}.cmake)
 endfunction()
 
-set(tegl_core_targets tegl tegl_facets)
+set(tegl_core_targets tegl tegl_tile)
 if(TARGET tegl_tables)
   list(APPEND tegl_core_targets tegl_tables)
 endif()
@@ -94,7 +94,7 @@ set(without_io_headers ${tegl_io_headers})
 list(TRANSFORM without_io_headers REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/tegl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT core
   FILES_MATCHING PATTERN "*.hpp" ${without_io_headers})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/generator/include/tegl/facets DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tile/include/tegl/facets DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tegl
   COMPONENT core)
 
 set(tegl_io_dependencies "")

@@ -28,6 +28,25 @@ function(tegl_precompile target)
   endif()
 endfunction()
 
+# tegl_test_precompile(target): the same for a test program. All of them share what one of them has read.
+function(tegl_test_precompile target)
+  if(NOT TEGL_PRECOMPILE_HEADERS OR CMAKE_CXX_COMPILER_LAUNCHER)
+    return()
+  endif()
+  if(NOT TARGET tegl_test_headers)
+    set(source ${PROJECT_BINARY_DIR}/tegl_test_headers.cpp)
+    if(NOT EXISTS ${source})
+      file(WRITE ${source} "int main() { return 0; }\n")
+    endif()
+    # A program, as tests are: objects of libraries have other flags.
+    add_executable(tegl_test_headers EXCLUDE_FROM_ALL ${source})
+    target_link_libraries(tegl_test_headers PRIVATE tegl::tegl GTest::gmock)
+    target_precompile_headers(tegl_test_headers PRIVATE <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
+      <functional> <map> <random> <set> <string> <vector> <gtest/gtest.h> <gmock/gmock.h> <Eigen/Core>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM tegl_test_headers)
+endfunction()
+
 # tegl_define_where_used(macro text SOURCES sources...): defines the macro as a string for those sources that name it. The
 # others compile to the same object files in every checkout, so that ccache has them for all checkouts at once.
 function(tegl_define_where_used macro text)
@@ -52,6 +71,7 @@ function(tegl_add_test name)
   tegl_define_where_used(TEGL_SOURCE_DIR "${PROJECT_SOURCE_DIR}" SOURCES ${arg_UNPARSED_ARGUMENTS})
   tegl_define_where_used(TEGL_SHARED_DATA_DIR "${PROJECT_SOURCE_DIR}/../shared/data" SOURCES ${arg_UNPARSED_ARGUMENTS})
   tegl_warnings(${name})
+  tegl_test_precompile(${name})
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 300)
   endif()

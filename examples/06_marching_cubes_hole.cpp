@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <fstream>
 
-#include <tegl/gen/pairs.hpp>
-#include <tegl/gen/picture.hpp>
-#include <tegl/gen/transversal.hpp>
+#include <filling/pairs.hpp>
+#include <pictures/picture.hpp>
+#include <symmetry/transversal.hpp>
 
 using namespace tegl::gen;
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The conditions of `tegl components --select`, and the tables and units of reports.
-#include "component_selection.hpp"
+#include "input/component_selection.hpp"
 
 #include <gmock/gmock.h>
 
+#include "base/table.hpp"
+#include "base/units.hpp"
 #include "errors.hpp"
-#include "table.hpp"
-#include "units.hpp"
 
 namespace tegl::cli {
 namespace {

@@ -14,16 +14,16 @@
 #include <string_view>
 #include <vector>
 
-#include "cuts.hpp"
-#include "exit_codes.hpp"
-#include "numbers.hpp"
-#include "output.hpp"
-#include "printable.hpp"
-#include "progress.hpp"
-#include "result.hpp"
-#include "suggestions.hpp"
-#include "table.hpp"
-#include "view_page.hpp"
+#include "base/exit_codes.hpp"
+#include "base/numbers.hpp"
+#include "base/printable.hpp"
+#include "base/progress.hpp"
+#include "base/suggestions.hpp"
+#include "base/table.hpp"
+#include "input/cuts.hpp"
+#include "output/output.hpp"
+#include "output/result.hpp"
+#include "view/view_page.hpp"
 
 namespace tegl::cli {
 namespace {

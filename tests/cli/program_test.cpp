@@ -2,7 +2,7 @@
 //
 // The command line as a whole: one word for one thing in all commands, and what is generated from the options: the
 // manual page and the completion of shells, as those who read them see them.
-#include "program.hpp"
+#include "program/program.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>

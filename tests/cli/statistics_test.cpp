@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Statistics and suggested isovalues, against direct computation.
-#include "statistics.hpp"
+#include "base/statistics.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-#include "output.hpp"
+#include "output/output.hpp"
 
 namespace tegl::cli {
 namespace {

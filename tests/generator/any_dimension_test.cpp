@@ -12,9 +12,9 @@
 #include <set>
 #include <tuple>
 
+#include "filling/facets.hpp"
 #include "tegl/facets/certificate.hpp"
 #include "tegl/facets/tile_certifier.hpp"
-#include "tegl/gen/facets.hpp"
 
 namespace tegl::facets {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The catalogue of cases in docs/ is what the generator writes, and its pictures show what they should.
-#include "tegl/gen/cases.hpp"
+#include "pictures/cases.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "tegl/gen/error.hpp"
+#include "base/error.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -2,7 +2,7 @@
 //
 // Orbit counts: golden values (computed independently, by explicit corner cycles in another language), cycle types
 // against the elements themselves, and Burnside's lemma against enumeration.
-#include "tegl/gen/counting.hpp"
+#include "symmetry/counting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <map>
 #include <string>
 
-#include "tegl/gen/error.hpp"
-#include "tegl/gen/transversal.hpp"
+#include "base/error.hpp"
+#include "symmetry/transversal.hpp"
 
 namespace tegl::gen {
 namespace {

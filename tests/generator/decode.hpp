@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tegl/gen/facets.hpp"
+#include "filling/facets.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::gen {

@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tegl/gen/facets.hpp"
-#include "tegl/gen/transversal.hpp"
+#include "filling/facets.hpp"
+#include "symmetry/transversal.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::gen {

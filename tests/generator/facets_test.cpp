@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Contours of single tiles against the theory's numbers, the certificate against deliberate faults, regions by volume.
-#include "tegl/gen/facets.hpp"
+#include "filling/facets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 #include <numeric>
 #include <set>
 
-#include "tegl/gen/certificate.hpp"
-#include "tegl/gen/error.hpp"
-#include "tegl/gen/regions.hpp"
-#include "tegl/gen/symmetry.hpp"
-#include "tegl/gen/table_set.hpp"
-#include "tegl/gen/transversal.hpp"
+#include "base/error.hpp"
+#include "filling/certificate.hpp"
+#include "filling/regions.hpp"
+#include "symmetry/symmetry.hpp"
+#include "symmetry/transversal.hpp"
+#include "tables/table_set.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -2,14 +2,14 @@
 //
 // Neighbours: that the consistent tables never leave a hole between two tiles, that the table by class with inversion
 // does, and that the check sees a hole where one was made.
-#include "tegl/gen/pairs.hpp"
+#include "filling/pairs.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "tegl/gen/error.hpp"
+#include "base/error.hpp"
 
 namespace tegl::gen {
 namespace {

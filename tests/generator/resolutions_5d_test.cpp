@@ -4,7 +4,7 @@
 // more than a minute on two processors.
 #include <gtest/gtest.h>
 
-#include "tegl/gen/resolutions.hpp"
+#include "filling/resolutions.hpp"
 
 namespace tegl::gen {
 namespace {

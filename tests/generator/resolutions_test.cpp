@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "parallel.hpp"
+#include "base/parallel.hpp"
+#include "filling/facets.hpp"
+#include "filling/resolutions.hpp"
+#include "symmetry/tile_symmetry.hpp"
 #include "tegl/facets/facets.hpp"
-#include "tegl/gen/facets.hpp"
-#include "tegl/gen/resolutions.hpp"
-#include "tegl/gen/tile_symmetry.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -12,10 +12,10 @@
 #include <set>
 #include <string>
 
+#include "base/lattice.hpp"
+#include "filling/resolutions.hpp"
+#include "filling/resolved_cube.hpp"
 #include "tegl/facets/certificate.hpp"
-#include "tegl/gen/lattice.hpp"
-#include "tegl/gen/resolutions.hpp"
-#include "tegl/gen/resolved_cube.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::gen {

@@ -2,7 +2,7 @@
 //
 // The symmetry group against its definition, which the code does not use: all signed permutations, and the
 // determinant by Leibniz' formula.
-#include "tegl/gen/symmetry.hpp"
+#include "symmetry/symmetry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-#include "tegl/gen/error.hpp"
+#include "base/error.hpp"
 
 namespace tegl::gen {
 namespace {

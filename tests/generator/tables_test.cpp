@@ -12,7 +12,8 @@
 #include <sstream>
 
 #include "decode.hpp"
-#include "tegl/gen/table_set.hpp"
+#include "tables/emit.hpp"
+#include "tables/table_set.hpp"
 #include "tegl/generated/tables.hpp"
 
 namespace tegl::gen {

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "tegl/gen/facets.hpp"
-#include "tegl/gen/lattice.hpp"
-#include "tegl/gen/symmetry.hpp"
-#include "tegl/gen/transversal.hpp"
+#include "base/lattice.hpp"
+#include "filling/facets.hpp"
+#include "symmetry/symmetry.hpp"
+#include "symmetry/transversal.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "tegl/gen/certificate.hpp"
-#include "tegl/gen/emit.hpp"
-#include "tegl/gen/error.hpp"
-#include "tegl/gen/facets.hpp"
-#include "tegl/gen/table_set.hpp"
-#include "tegl/gen/tile_symmetry.hpp"
+#include "base/error.hpp"
+#include "filling/certificate.hpp"
+#include "filling/facets.hpp"
+#include "symmetry/tile_symmetry.hpp"
+#include "tables/emit.hpp"
+#include "tables/table_set.hpp"
 
 namespace tegl::gen {
 namespace {

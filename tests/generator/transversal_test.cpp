@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a transversal promises, for every group and signature of dimension 1 to 4.
-#include "tegl/gen/transversal.hpp"
+#include "symmetry/transversal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "tegl/gen/error.hpp"
+#include "base/error.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tegl/gen/wide_uint.hpp"
+#include "base/wide_uint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tegl/gen/error.hpp"
+#include "base/error.hpp"
 
 namespace tegl::gen {
 namespace {

@@ -35,7 +35,7 @@ def compile_text(compiler, text, include, extra):
 
 def main(source, eigen, compilers):
     source = pathlib.Path(source)
-    roots = [source / "runtime/include", source / "generator/include"]
+    roots = [source / "runtime/include", source / "tile/include"]
     include = [f"-I{root}" for root in roots] + ["-isystem", eigen]
     headers = sorted(str(header.relative_to(root)) for root, below in zip(roots, ["tegl/*.hpp", "tegl/facets/*.hpp"])
                      for header in root.glob(below))
@@ -44,7 +44,7 @@ def main(source, eigen, compilers):
     alone = [(f"{header} by {compilers[0]}", compilers[0], f"#include \"{header}\"\n" * 2) for header in headers]
     together = [(f"all headers by {compiler}", compiler, "".join(f"#include \"{header}\"\n" for header in headers))
                 for compiler in compilers[1:]]
-    api = (source / "tests/runtime/api_test.cpp").read_text(encoding="utf-8")
+    api = (source / "tests/runtime/base/api_test.cpp").read_text(encoding="utf-8")
     sound = alone + together + [(f"api_test.cpp by {compiler}", compiler, api) for compiler in compilers]
     refused = [(text, words, compiler) for text, words in REFUSED for compiler in compilers]
     faults = []

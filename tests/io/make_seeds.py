@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""tests/io/make_seeds.py FOLDER: writes the small sound files that tests/io/fuzz_test.cpp mutates, tests/io/seeds. Each format is
+"""tests/io/make_seeds.py FOLDER: writes the small sound files that tests/io/hostile/fuzz_test.cpp mutates, tests/io/seeds. Each format is
 written by several programs, in old and new versions of the format, as text and binary, chunked and compressed, as each
 writer lays out its headers in its own way. The files are kept in the tree, as writers change; this script documents how
 they were made. It needs Debian's python3-h5py, python3-nibabel, python3-netcdf4, python3-pydicom, python3-meshio,

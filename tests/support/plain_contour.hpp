@@ -18,8 +18,8 @@
 #include <Eigen/LU>
 
 #include "fields.hpp"
+#include "filling/facets.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/gen/facets.hpp"
 #include "tegl/table_contract.hpp"
 
 namespace tegl::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The numbers of the page: unpacked, and put together again from the planes of bytes that apps/cli/view_page.cpp made.
+// The numbers of the page: unpacked, and put together again from the planes of bytes that apps/cli/view/view_page.cpp made.
 
 const TYPES = { f4: Float32Array, f8: Float64Array, u4: Uint32Array, i1: Int8Array };
 

@@ -11,11 +11,12 @@
 #include <vector>
 
 #include "../decode.hpp"
-#include "extract_tables.hpp"
+#include "base/lattice.hpp"
 #include "lookups.hpp"
-#include "tegl/gen/lattice.hpp"
-#include "tegl/gen/table_set.hpp"
+#include "tables/emit.hpp"
+#include "tables/table_set.hpp"
 #include "tegl/generated/tables.hpp"
+#include "tile/extract_tables.hpp"
 
 namespace tegl {
 namespace {

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace tegl::cli {
+
+Progress ProgressBar::stage(std::string name) {
+  InterruptHandler::throw_if_requested();
+  {
+    const std::lock_guard lock(mutex_);
+    name_ = std::move(name);
+    last_ = {};
+  }
+  if (draw_) draw(0);
+  return [this](double fraction) {
+    if (draw_) draw(fraction);
+    return !InterruptHandler::requested();
+  };
+}
+
+void ProgressBar::draw(double fraction) {
+  constexpr auto kInterval = std::chrono::milliseconds(50);
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) return;  // another thread is drawing just now
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < kInterval) return;
+  last_ = now;
+  visible_ = true;
+  console_->write("\r\x1b[K" + text(std::clamp(fraction, 0.0, 1.0)));
+}
+
+std::string ProgressBar::text(double fraction) const {
+  constexpr int kMostCells = 60;
+  const std::string share = fmt::format("{:3.0f} %", 100 * fraction);
+  const std::string name = fmt::format("{:<10}", name_);
+  // A line that is full goes on in the next one, where it stays.
+  const int room = console_->width() - 1;
+  const int cells = std::min(kMostCells, room - static_cast<int>(name.size() + share.size()) - 4);
+  if (cells >= 4) {
+    const auto full = static_cast<std::size_t>(fraction * cells);
+    return fmt::format("{} [{}{}] {}", name, std::string(full, '#'),
+                       std::string(static_cast<std::size_t>(cells) - full, '.'), share);
+  }
+  const std::string both = fmt::format("{} {}", name_, share);
+  for (const std::string& shorter : {both, share})
+    if (static_cast<int>(shorter.size()) <= room) return shorter;
+  return "";
+}
+
+void ProgressBar::clear() {
+  const std::lock_guard lock(mutex_);
+  if (visible_) console_->write("\r\x1b[K");
+  visible_ = false;
+}
+
+double Stopwatch::lap() {
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  start_ = now;
+  return seconds;
+}
+
+}  // namespace tegl::cli

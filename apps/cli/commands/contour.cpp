@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl contour: the contour of an image, in the dimension that the file holds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/numbers.hpp"
+#include "base/progress.hpp"
+#include "commands/facets.hpp"
+#include "commands/streaming.hpp"
+#include "input/attributes.hpp"
+#include "input/commands.hpp"
+#include "input/extraction.hpp"
+#include "output/output.hpp"
+#include "output/result.hpp"
+#include "tegl/active_tiles_io.hpp"
+#include "tegl/pick.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  tegl contour head.nii.gz --iso 60 -o head.ply\n"
+    "  tegl contour terrain.nrrd --iso 600 -o lines.glb --json\n"
+    "  tegl contour head.nii.gz --iso 60 --pick 12.5,-40,8 -o bone.ply\n"
+    "  tegl contour ocean.nc --var TEMP --iso 20 --close -o warm_water.vtkhdf\n"
+    "  tegl contour ocean.nc --iso 15,20,25 -o 'warm_{iso}.vtkhdf'       (a file each; --one-file: all in one)\n"
+    "  tegl contour frame_*.nrrd --sort name --time-step 0.5 --iso 60 -o film.vtkhdf\n"
+    "  tegl contour scans/ --series 2 --iso 300 -o skull.ply             (a folder of DICOM files)\n"
+    "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
+    "  tegl contour head.nii.gz --iso 60 --triangulation halving-chord -o head.ply\n"
+    "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
+    "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
+    "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
+
+/// Adds the vertices and simplices of a contour behind others, with the isovalue as an attribute of both.
+void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
+  const auto name = std::string("isovalue");
+  const std::size_t vertices =
+      all.space_dim == one.space_dim ? all.coordinates.size() / static_cast<std::size_t>(all.space_dim) : 0;
+  const std::size_t count = one.coordinates.size() / static_cast<std::size_t>(one.space_dim);
+  const std::size_t simplices = one.simplices.size() / static_cast<std::size_t>(one.dim + 1);
+  one.vertex_attributes.push_back({name, "", 1, Buffer<double>(count, isovalue)});
+  one.simplex_attributes.push_back({name, "", 1, Buffer<double>(simplices, isovalue)});
+  if (all.coordinates.empty()) {
+    all = std::move(one);
+    all.isovalue.reset();
+    return;
+  }
+  if (vertices + count > std::numeric_limits<Index>::max())
+    throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in one file; expected at most {}", vertices + count,
+                                                 std::numeric_limits<Index>::max()));
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  append(all.coordinates, one.coordinates);
+  append(all.normals, one.normals);
+  for (const Index vertex : one.simplices) all.simplices.push_back(static_cast<Index>(vertices + vertex));
+  for (std::size_t i = 0; i < all.vertex_attributes.size(); ++i)
+    append(all.vertex_attributes[i].values, one.vertex_attributes[i].values);
+  for (std::size_t i = 0; i < all.simplex_attributes.size(); ++i)
+    append(all.simplex_attributes[i].values, one.simplex_attributes[i].values);
+}
+
+class ContourCommand final : public Command {
+ public:
+  explicit ContourCommand(CLI::App& program)
+      : Command(program, "contour", "The contour of an image in 2D, 3D or 4D",
+                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); several files are "
+                "one image with an axis "
+                "more",
+                Files::image) {
+    options_.add_to(app(), true);
+    app()
+        .add_option("-o,--output", output_,
+                    std::string("the result: ") + kContourFiles +
+                        "; with --facets .vtu or, in 2D and 3D, .vtkhdf; with several isovalues {iso} in it stands for "
+                        "the number, {n} for its place")
+        ->type_name("FILE")
+        ->required();
+    app().add_flag("--one-file", one_file_,
+                   "several isovalues: all contours in one file, with the isovalue as an attribute");
+    app().add_flag("--facets", facets_, "the contour without triangulation: segments, polygons or polyhedra");
+    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    app()
+        .add_option("--index", index_, "an index of the image's active tiles that 'tegl index' wrote")
+        ->type_name("FILE");
+    app()
+        .add_option(
+            "--pick", pick_,
+            "this component only: the one nearest to the point x,y,z (x,y in 2D, x,y,z,t in 4D) in the units of "
+            "the image's axes")
+        ->type_name("X,Y,Z[,T]");
+    attributes_.add_to(app());
+    compress_.add_to(app());
+    app().add_flag("--stream", stream_,
+                   "read layer by layer and write as it comes, with little memory: one FILE of any format, --raw, or "
+                   "several FILEs, "
+                   "to .vtkhdf");
+    add_image_options();
+    add_quiet();
+    app().footer(kExamples);
+  }
+
+  ExitCode run(const Streams& streams) override {
+    const std::vector<SpelledNumber> isovalues = options_.isovalues();
+    if (!index_.empty() && facets_)
+      throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
+    const std::vector<double> point = picked_point();
+    ExtractOptions options = options_.library_options((!is_streamed() && index_.empty() && point.empty()) || facets_);
+    require_inputs();
+    require_one_file_of_several(isovalues.size());
+    const std::vector<std::string> outputs =
+        one_file_ ? std::vector(isovalues.size(), output_) : isovalue_outputs(output_, isovalues);
+    if (!one_file_) require_different_outputs(outputs);
+    if (facets_) return run_facets(streams, isovalues, outputs, options);
+    for (const std::string& output : outputs) {
+      require_output(output, files());
+      require_output_keeps(output, options_.normals(), attributes_.wanted() || one_file_);
+      compress_.require_known(output);
+    }
+    if (!index_.empty()) {
+      also_read({index_});
+      require_input(index_);
+      if (is_streamed())
+        throw Error(ErrorCode::InvalidArgument, "--index is for images in memory; expected no --stream");
+    }
+    also_read(attributes_.files());
+    attributes_.require_inputs();
+
+    ProgressBar bar(streams.err, wants_progress());
+    std::vector<ContourResult> results(isovalues.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (!point.empty()) results[i].picked = Picked{point, {}, 0, 0, 0};
+      results[i].output = outputs[i];
+      results[i].isovalue = isovalues[i].value;
+      results[i].compression = compress_.compression();
+    }
+    if (is_streamed())
+      stream(options, bar, results);
+    else
+      contour(options, bar, results);
+    bar.clear();
+    for (const ContourResult& result : results) remark(result.lost.remark(result.output));
+    return tell(streams, results);
+  }
+
+ private:
+  void require_one_file_of_several(std::size_t isovalues) const {
+    if (!one_file_) return;
+    if (isovalues < 2)
+      throw Error(ErrorCode::InvalidArgument, "--one-file with one isovalue; expected several, as in --iso 20,25,30");
+    if (is_streamed() || facets_)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--one-file with {}; expected a file for each isovalue, as in -o 'out_{{iso}}.vtkhdf'",
+                              facets_ ? "--facets" : "--stream"));
+    for (const char* const place : {"{iso}", "{n}"})
+      if (output_.find(place) != std::string::npos)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--output is '{}' with --one-file; expected a name without {}, as there is one file",
+                                output_, place));
+  }
+
+  /// One object for one isovalue, a list for several.
+  template <class Result>
+  ExitCode tell(const Streams& streams, const std::vector<Result>& results) const {
+    ExitCode exit = ExitCode::Ok;
+    Json list = Json::array();
+    for (const Result& result : results) {
+      exit = std::max(exit, result.exit_code());
+      if (json())
+        list.push_back(to_json(result));
+      else if (!quiet())
+        streams.out.write(to_text(streams.out, result));
+    }
+    if (json()) streams.out.write(dump(results.size() == 1 ? list.front() : list));
+    return exit;
+  }
+
+  void contour(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
+    Stopwatch watch;
+    ReadImageResult input = read(bar.stage("read"));
+    require_output_holds(results.front().output, image_dim(input.image) - 1);
+    for (ContourResult& result : results) {
+      result.input = inputs();
+      result.variable = input.info.variable;
+      result.image_dim = image_dim(input.image);
+      require_contour(input, *result.isovalue, options_.allows_empty());
+    }
+    results.front().seconds.read = watch.lap();  // once for all
+    WrittenFiles written;
+    const auto finished = [&](ContourResult& result) {
+      if (result.stats) result.seconds.add(*result.stats);
+      if (result.mesh.simplices.empty()) remark(remark_without_contour(input.image, *result.isovalue));
+      if (one_file_) return;
+      if (&result == &results.back()) input.image = AnyImage();  // its memory is of more use to the check
+      check_and_write(result, bar, written);
+    };
+    if (index_.empty()) {
+      for (ContourResult& result : results) {
+        make(input.image, options, bar, result);
+        finished(result);
+        if (!one_file_) leave_the_sizes(result);
+      }
+    } else {
+      by_index(input.image, options, bar, results, finished);
+    }
+    if (one_file_) results = {merged(results, bar, written)};
+    written.keep();
+  }
+
+  void check_and_write(ContourResult& result, ProgressBar& bar, WrittenFiles& written) const {
+    if (!no_check_) check_result(result, bar);
+    write_result(result, bar, written);
+  }
+
+  /// Of a mesh that is written what is told of it: others need the memory.
+  static void leave_the_sizes(ContourResult& result) {
+    result.streamed = result.size();
+    result.mesh = Mesh();
+  }
+
+  /// The contour of one isovalue, without an index.
+  void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+    options.progress = bar.stage("contour");
+    if (result.picked) return pick(image, options, bar, result);
+    ExtractStats& stats = result.stats.emplace();
+    if (const auto method = options_.polygon_triangulation()) {
+      auto polygons = triangulated_polygons(
+          image, {*result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()}, *method,
+          bar, stats);
+      result.mesh =
+          std::visit([&](auto& contour) { return with_additions(std::move(contour), options.threads, bar); }, polygons);
+      return;
+    }
+    result.mesh =
+        extract_any<Mesh>(image, *result.isovalue, options, options_.single_precision(), stats,
+                          [&](auto contour) { return with_additions(std::move(contour), options.threads, bar); });
+  }
+
+  /// All contours as one, with the isovalue of each vertex and simplex, checked and written.
+  ContourResult merged(std::vector<ContourResult>& results, ProgressBar& bar, WrittenFiles& written) const {
+    ContourResult all = results.front();
+    all.mesh = Mesh();
+    all.isovalue.reset();
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      ContourResult& one = results[i];
+      all.isovalues.push_back(*one.isovalue);
+      if (i > 0) {
+        all.seconds.classify += one.seconds.classify;
+        all.seconds.find += one.seconds.find;
+        all.seconds.generate += one.seconds.generate;
+        all.seconds.close += one.seconds.close;
+        if (all.stats) all.stats->active_tiles += one.stats->active_tiles;
+      }
+      append_mesh(all.mesh, std::exchange(one.mesh, Mesh()), *one.isovalue);
+    }
+    check_and_write(all, bar, written);
+    return all;
+  }
+
+  /// Whether layers come in and the contour goes out as it comes: if that is requested, and of raw values wherever it
+  /// can be done.
+  [[nodiscard]] bool is_streamed() const {
+    if (stream_ || !images().raw()) return stream_;
+    const bool needs_memory = !index_.empty() || facets_ || one_file_ || app().count("--pick") > 0 ||
+                              options_.wants_shape_normals() || attributes_.wanted() ||
+                              options_.polygon_triangulation();
+    return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
+  }
+
+  /// --pick as numbers; none without.
+  [[nodiscard]] std::vector<double> picked_point() const {
+    std::vector<double> point;
+    if (app().count("--pick") == 0) return point;
+    if (is_streamed() || !index_.empty() || facets_)
+      throw Error(ErrorCode::InvalidArgument,
+                  "--pick finds tiles from its point, in memory; expected no --index, --facets or --stream");
+    for (std::size_t at = 0; at <= pick_.size();) {
+      const std::size_t comma = std::min(pick_.find(',', at), pick_.size());
+      point.push_back(parse_finite("--pick", std::string_view(pick_).substr(at, comma - at)));
+      at = comma + 1;
+    }
+    return point;
+  }
+
+  /// The component nearest to the point of --pick.
+  void pick(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
+    Stopwatch watch;
+    Picked& picked = *result.picked;
+    const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+      if (picked.point.size() != N)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--pick {} has {} numbers; expected {}, one for each axis",
+                                                            pick_, picked.point.size(), N));
+      std::array<double, N> point;
+      std::copy_n(picked.point.begin(), N, point.begin());
+      PickReport<N> report;
+      const auto keep = [&](auto contour) {
+        picked.tile.assign(report.at.begin(), report.at.end());
+        picked.distance = report.distance;
+        picked.tiles = report.tiles;
+        picked.components = report.components;
+        return with_additions(std::move(contour), options.threads, bar);
+      };
+      return options_.single_precision()
+                 ? keep(extract_component<float>(owned.view(), *result.isovalue, point, options, &report))
+                 : keep(extract_component<double>(owned.view(), *result.isovalue, point, options, &report));
+    };
+    result.mesh = std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+    result.seconds.generate += watch.lap();
+  }
+
+  /// The contour with what --normals and --attribute add to it.
+  template <class AnyContour>
+  Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
+    options_.add_shape_normals(contour);
+    attributes_.sample_to(contour, image_options(), threads, bar);
+    return to_mesh(contour);
+  }
+
+  /// The contours by --index, which is read once; its reading counts as such.
+  template <class Finished>
+  void by_index(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results,
+                const Finished& finished) const {
+    const auto of_owned = [&](const auto& owned) {
+      Stopwatch watch;
+      const auto view = owned.view();
+      const auto active = read_active_tiles(index_, view, {.threads = options.threads, .progress = bar.stage("index")});
+      results.front().seconds.read += watch.lap();
+      for (ContourResult& result : results) {
+        options.progress = bar.stage("contour");
+        ExtractStats& stats = result.stats.emplace();
+        result.mesh =
+            options_.single_precision()
+                ? with_additions(extract<float>(view, *result.isovalue, options, *active, &stats), options.threads, bar)
+                : with_additions(extract<double>(view, *result.isovalue, options, *active, &stats), options.threads,
+                                 bar);
+      }
+    };
+    std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+    for (ContourResult& result : results) finished(result);
+  }
+
+  ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
+                      const std::vector<std::string>& outputs, const ExtractOptions& options) {
+    const auto given = options_.given();
+    if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--facets with {}; expected one of the two: facets are in memory and not triangulated",
+                              is_streamed() ? "--stream" : "--triangulation"));
+    if (options_.wants_shape_normals() || attributes_.wanted())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--facets with {}, which is for simplices; expected {}",
+                              attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
+                              attributes_.wanted() ? "none" : "--normals gradient or sobel"));
+    for (const std::string& output : outputs) {
+      require_facets_output(output, files());
+      compress_.require_known(output, true);
+    }
+    ProgressBar bar(streams.err, wants_progress());
+    Stopwatch watch;
+    const ReadImageResult input = read(bar.stage("read"));
+    std::vector<FacetsResult> results(isovalues.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      FacetsResult& result = results[i];
+      result.input = inputs();
+      result.variable = input.info.variable;
+      result.output = outputs[i];
+      result.image_dim = image_dim(input.image);
+      result.isovalue = isovalues[i].value;
+      require_output_holds_facets(result.output, result.image_dim);
+      require_contour(input, result.isovalue, options_.allows_empty());
+    }
+    results.front().seconds.read = watch.lap();
+    WrittenFiles written;
+    for (FacetsResult& result : results)
+      write_image_facets(input.image,
+                         {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()},
+                         bar, result, written);
+    written.keep();
+    bar.clear();
+    for (const FacetsResult& result : results)
+      if (result.facets[0] == 0) remark(remark_without_contour(input.image, result.isovalue));
+    return tell(streams, results);
+  }
+
+  void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
+    require_open_files(results.size());
+    for (const ContourResult& result : results) require_output_grows(result.output);
+    if (options_.wants_shape_normals() || attributes_.wanted())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
+                              attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
+                              attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
+    OpenLayersResult input = open();
+    for (ContourResult& result : results) {
+      result.input = inputs();
+      result.variable = input.info.variable;
+    }
+    options.progress = bar.stage("stream");
+    const StreamOptions streaming{options, options_.single_precision(), options_.allows_empty(),
+                                  compress_.compression()};
+    for (std::string& text : stream_contours(input, streaming, results)) remark(std::move(text));
+    for (ContourResult& result : results) result.output_bytes = std::filesystem::file_size(result.output);
+  }
+
+  static void require_output_grows(const std::string& output) {
+    const MeshFileFormat* const format = find_mesh_file_format(output);
+    if (format != nullptr && format->extension == ".vtkhdf") return;
+    throw Error(ErrorCode::WriteFailed,
+                fmt::format("{}: a streamed contour needs a file that can grow; expected .vtkhdf", output));
+  }
+
+  ExtractionOptions options_;
+  AttributeOptions attributes_;
+  CompressOption compress_;
+  std::string output_;
+  std::string index_;
+  bool stream_ = false;
+  bool one_file_ = false;
+  bool facets_ = false;
+  std::string pick_;
+  bool no_check_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_contour_command(CLI::App& program) { return std::make_unique<ContourCommand>(program); }
+
+}  // namespace tegl::cli

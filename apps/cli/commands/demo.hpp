@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl demo: what tegl does, shown on data that come with it.
+#pragma once
+
+#include <memory>
+
+#include "input/commands.hpp"
+
+namespace tegl::cli {
+
+std::unique_ptr<Command> make_demo_command(CLI::App& program);
+
+}  // namespace tegl::cli

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/facets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/numbers.hpp"
+#include "input/extraction.hpp"
+#include "output/output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::pair<const char*, const char*>, 4> kFacetNames = {
+    {{"point", "points"}, {"segment", "segments"}, {"polygon", "polygons"}, {"polyhedron", "polyhedra"}}};
+
+std::string facets_text(const FacetsResult& result) {
+  std::string text;
+  for (int k = 0; k < result.image_dim; ++k) {
+    const auto& [singular, plural] = kFacetNames.at(static_cast<std::size_t>(k));
+    text += (k == 0 ? "" : ", ") + counted(result.facets.at(static_cast<std::size_t>(k)), singular, plural);
+  }
+  return text;
+}
+
+std::string fault_text(const FacetReport& report) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
+  };
+  add(report.branching, "ridges that do not bound one or two facets");
+  add(report.conflicts, "orientation conflicts");
+  add(report.open_boundaries, "facets with an open boundary");
+  return text;
+}
+
+/// The polyhedra of another Euler characteristic than that of a ball; empty without any.
+std::string unlike_balls(const FacetReport& report) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, const char* of) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + counted(count, "polyhedron", "polyhedra") + of;
+  };
+  add(report.below_zero, " with several handles");
+  add(report.tori, " with one handle (as a solid torus)");
+  add(report.above_one, " with cavities");
+  return text;
+}
+
+template <int N, class Real>
+ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, double seconds) {
+  ExtractStats stats;
+  stats.tiles = 1;
+  for (const std::size_t size : facets.sizes) stats.tiles *= size - 1;
+  const auto& places = facets.levels[N - 1].places;
+  stats.active_tiles = static_cast<std::uint64_t>(std::count_if(
+      places.begin(), places.end(), [](const FacetPlace& place) { return place.number == 0 && !place.is_cap; }));
+  stats.generate_seconds = seconds;
+  return stats;
+}
+
+/// What `use` makes of the facets of an image.
+template <class Result, class T, int N, class Use>
+Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const ExtractOptions& options,
+                  const Use& use) {
+  if (work.single_precision) return use(extract_facets<float>(image.view(), work.isovalue, options));
+  return use(extract_facets<double>(image.view(), work.isovalue, options));
+}
+
+template <int N, class Real>
+void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& work, ProgressBar& bar,
+                     FacetsResult& result, WrittenFiles& written) {
+  for (int k = 0; k < N; ++k) result.facets.at(static_cast<std::size_t>(k)) = facets.count(k);
+  Stopwatch watch;
+  if (!work.no_check) {
+    const Progress progress = bar.stage("check");
+    result.report = check(facets);
+    progress(1);
+    result.seconds.check = watch.lap();
+  }
+  const Progress progress = bar.stage("write");
+  result.output_bytes =
+      written.write(result.output, [&](const auto& file) { write_facets(facets, file, progress, work.compression); });
+  result.seconds.write = watch.lap();
+}
+
+[[noreturn]] void fail_output(const fs::path& output, std::string_view why) {
+  throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", output.string(), why));
+}
+
+bool has_extension(const fs::path& output, std::string_view extension) {
+  return equal_ignoring_case(output.extension().string(), extension);
+}
+
+}  // namespace
+
+Json to_json(const FacetsResult& result) {
+  Json json;
+  json["input"] = result.input.json();
+  json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
+  json["output"] = result.output;
+  json["image_dim"] = result.image_dim;
+  json["isovalue"] = result.isovalue;
+  Json& facets = json["facets"];
+  for (int k = 0; k < result.image_dim; ++k)
+    facets[kFacetNames.at(static_cast<std::size_t>(k)).second] = result.facets.at(static_cast<std::size_t>(k));
+  const auto of = [&](auto member) { return result.report ? Json((*result.report).*member) : Json(nullptr); };
+  json["components"] = of(&FacetReport::components);
+  json["euler"] = of(&FacetReport::euler);
+  json["unlike_balls"] = {{"euler_below_0", of(&FacetReport::below_zero)},
+                          {"euler_0", of(&FacetReport::tori)},
+                          {"euler_above_1", of(&FacetReport::above_one)}};
+  json["boundary_facets"] = of(&FacetReport::border);
+  json["nonmanifold_facets"] = of(&FacetReport::branching);
+  json["orientation_conflicts"] = of(&FacetReport::conflicts);
+  json["open_boundaries"] = of(&FacetReport::open_boundaries);
+  json["tiles"] = result.stats.tiles;
+  json["active_tiles"] = result.stats.active_tiles;
+  json["seconds"] = {{"read", result.seconds.read},
+                     {"generate", result.seconds.generate},
+                     {"check", result.seconds.check},
+                     {"write", result.seconds.write},
+                     {"total", result.seconds.total()}};
+  return json;
+}
+
+std::string to_text(const Console& console, const FacetsResult& result) {
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("Facets of the contour in {}D of the isovalue {}",
+                                                                  result.image_dim, number(result.isovalue))));
+  text += input_line(result.input, result.variable);
+  text += report_line("tiles",
+                      fmt::format("{} active of {}", grouped(result.stats.active_tiles), grouped(result.stats.tiles)));
+  text += report_line("facets", facets_text(result));
+  if (result.report) {
+    const FacetReport& report = *result.report;
+    text += report_line("components", grouped(report.components));
+    text += report_line("Euler", fmt::format("{}", report.euler));
+    const std::string others = unlike_balls(report);
+    if (!others.empty()) text += report_line("", others);
+    const auto& [singular, plural] = kFacetNames.at(static_cast<std::size_t>(result.image_dim - 2));
+    text += report_line("border", report.border == 0 ? "none: closed" : counted(report.border, singular, plural));
+    const std::string faults = fault_text(report);
+    text += report_line("check",
+                        faults.empty() ? console.green("facets meet two by two, oriented alike") : console.red(faults));
+  } else {
+    text += report_line("check", "left out");
+  }
+  text += report_line("seconds", fmt::format("{:.3f}", result.seconds.total()));
+  return text + report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
+}
+
+void require_facets_output(const fs::path& output, const std::vector<std::string>& inputs) {
+  if (!has_extension(output, ".vtu") && !has_extension(output, ".vtkhdf"))
+    fail_output(output, fmt::format("'{}' cannot hold facets; expected .vtu, or for 2D and 3D images .vtkhdf",
+                                    output.extension().string()));
+  require_text_output(output, inputs);
+}
+
+void require_output_holds_facets(const fs::path& output, int image_dim) {
+  if (image_dim == 4 && !has_extension(output, ".vtu"))
+    fail_output(output, fmt::format("'{}' cannot hold the polyhedra of a 4D contour; expected .vtu",
+                                    output.extension().string()));
+}
+
+void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
+                        WrittenFiles& written) {
+  ExtractOptions options = work.options;
+  options.progress = bar.stage("facets");
+  Stopwatch watch;
+  const auto of_owned = [&](const auto& owned) {
+    use_facets<void>(owned, work, options, [&](const auto& facets) {
+      result.seconds.generate = watch.lap();
+      result.stats = stats_of(facets, result.seconds.generate);
+      check_and_write(facets, work, bar, result, written);
+    });
+  };
+  std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+}
+
+std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
+                                                                          PolygonTriangulation method, ProgressBar& bar,
+                                                                          ExtractStats& stats) {
+  using Triangles = std::variant<Contour<3, float>, Contour<3, double>>;
+  const auto* const typed = std::get_if<AnyImageN<3>>(&image);
+  if (typed == nullptr)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--triangulation is for polygons, and the contour of a {}D image has none; expected "
+                            "compact or barycentric",
+                            image_dim(image)));
+  ExtractOptions options = work.options;
+  options.progress = bar.stage("facets");
+  Stopwatch watch;
+  return std::visit(
+      [&](const auto& owned) {
+        return use_facets<Triangles>(owned, work, options, [&](const auto& facets) -> Triangles {
+          auto contour = triangulate(facets, method, {work.options.threads, bar.stage("triangles")});
+          stats = stats_of(facets, watch.lap());
+          return contour;
+        });
+      },
+      *typed);
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours as facets: `tegl contour --facets`, which writes them without triangulation, and contours of 3D images
+// whose polygons are triangulated.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "base/progress.hpp"
+#include "output/output.hpp"
+#include "output/result.hpp"
+#include "tegl/facet_hierarchy.hpp"
+#include "tegl/io.hpp"
+#include "tegl/polygons.hpp"
+
+namespace tegl::cli {
+
+/// A contour of facets, made and written.
+struct FacetsResult {
+  InputFiles input;
+  std::string variable;
+  std::string output;
+  std::uint64_t output_bytes = 0;
+  int image_dim = 0;
+  double isovalue = 0;
+  ExtractStats stats;
+  std::array<std::uint64_t, 4> facets{};  ///< by dimension
+  std::optional<FacetReport> report;      ///< none with --no-check
+  StageSeconds seconds;
+
+  [[nodiscard]] ExitCode exit_code() const {
+    return report && report->branching + report->conflicts + report->open_boundaries > 0 ? ExitCode::Faults
+                                                                                         : ExitCode::Ok;
+  }
+};
+
+Json to_json(const FacetsResult& result);
+std::string to_text(const Console& console, const FacetsResult& result);
+
+/// Throws WriteFailed unless facets can be written there: .vtu, or .vtkhdf. As for the dimension of the image, once
+/// that is known.
+void require_facets_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
+void require_output_holds_facets(const std::filesystem::path& output, int image_dim);
+
+/// How contours are made and what becomes of them.
+struct FacetsWork {
+  double isovalue = 0;
+  ExtractOptions options;
+  bool single_precision = false;
+  bool no_check = false;
+  Compression compression = Compression::none;
+};
+
+/// Makes the facets of an image, checks them and writes them to result.output, one of the files written; fills the rest
+/// of the result.
+void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
+                        WrittenFiles& written);
+
+/// The contour of a 3D image from its polygons. Throws InvalidArgument for an image of other dimensions.
+std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
+                                                                          PolygonTriangulation method, ProgressBar& bar,
+                                                                          ExtractStats& stats);
+
+}  // namespace tegl::cli

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl index: an index of the active tiles of an image, for contours at many isovalues.
+#include "commands/index.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/numbers.hpp"
+#include "base/progress.hpp"
+#include "input/commands.hpp"
+#include "input/extraction.hpp"
+#include "output/output.hpp"
+#include "output/result.hpp"
+#include "tegl/active_tiles_io.hpp"
+#include "tegl/seed_set.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  tegl index head.nii.gz\n"
+    "  tegl contour head.nii.gz --index head.nii.gz.tindex --iso 60 -o head.ply\n"
+    "  tegl index ocean.nc --var TEMP --method min-max-tree -o ocean.tindex\n"
+    "  tegl info ocean.tindex\n"
+    "An index finds the tiles that a contour passes without looking at all of them. It belongs to one image: the\n"
+    "same values, in the same order.";
+
+/// What was built and written.
+struct IndexResult {
+  InputFiles input;
+  std::string variable, output, method;
+  int image_dim = 0;
+  std::uint64_t tiles = 0;
+  std::uint64_t memory_bytes = 0, output_bytes = 0;
+  double read_seconds = 0, build_seconds = 0, write_seconds = 0;
+
+  [[nodiscard]] double total_seconds() const { return read_seconds + build_seconds + write_seconds; }
+};
+
+Json to_json(const IndexResult& result) {
+  Json json;
+  json["input"] = result.input.json();
+  json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
+  json["output"] = result.output;
+  json["image_dim"] = result.image_dim;
+  json["method"] = result.method;
+  json["tiles"] = result.tiles;
+  json["memory_bytes"] = result.memory_bytes;
+  json["output_bytes"] = result.output_bytes;
+  json["seconds"] = {{"read", result.read_seconds},
+                     {"build", result.build_seconds},
+                     {"write", result.write_seconds},
+                     {"total", result.total_seconds()}};
+  return json;
+}
+
+std::string to_text(const Console& console, const IndexResult& result) {
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("Index of {}", result.input.text())));
+  if (!result.variable.empty()) text += report_line("variable", result.variable);
+  text += report_line("method", result.method);
+  text += report_line("tiles", fmt::format("{} in {}D", grouped(result.tiles), result.image_dim));
+  text += report_line("memory", byte_size(result.memory_bytes));
+  text += report_line("output", fmt::format("{}, {}", result.output, byte_size(result.output_bytes)));
+  return text + report_line("seconds",
+                            fmt::format("{:.3f} = read {:.3f} + build {:.3f} + write {:.3f}", result.total_seconds(),
+                                        result.read_seconds, result.build_seconds, result.write_seconds));
+}
+
+class IndexCommand final : public Command {
+ public:
+  explicit IndexCommand(CLI::App& program)
+      : Command(program, "index", "An index of an image's active tiles, for contours at many isovalues",
+                "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder)", Files::image) {
+    std::vector<std::string> names;
+    for (const ActiveMethod method : active_methods()) names.emplace_back(active_method_name(method));
+    app().add_option("-o,--output", output_, "the index; FILE with .tindex behind it if left out")->type_name("FILE");
+    app()
+        .add_option("--method", method_,
+                    "how active tiles are to be found: docs/active-tiles.md says when to use which")
+        ->check(CLI::IsMember(names))
+        ->capture_default_str();
+    std::vector<std::string> seeds;
+    for (const SeedMethod method : seed_methods()) seeds.emplace_back(seed_method_name(method));
+    app()
+        .add_option("--seeds", seeds_, "with --method seed-set: how seeds are found (docs/seed-sets.md)")
+        ->check(CLI::IsMember(seeds))
+        ->capture_default_str();
+    app()
+        .add_option(
+            "--scan-order", scan_order_,
+            "with --method seed-set: the axes, the one that a scan runs along first, such as 2,0,1; 'cover' and "
+            "'volume-thinning' do not depend on it")
+        ->type_name("AXES")
+        ->delimiter(',');
+    app()
+        .add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
+        ->type_name("COUNT")
+        ->check(CLI::Range(0u, 4096u).description(""))
+        ->capture_default_str();
+    add_image_options();
+    add_quiet();
+    app().footer(kExamples);
+  }
+
+  ExitCode run(const Streams& streams) override {
+    IndexResult result;
+    result.output = output_.empty() ? default_output() : output_;
+    result.method = method_;
+    require_inputs();
+    if (method_ != active_method_name(ActiveMethod::seed_set) &&
+        (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--seeds and --scan-order are for --method seed-set; the method is {}", method_));
+    if (!is_index_file(result.output))
+      throw Error(ErrorCode::WriteFailed, fmt::format("{}: expected a file named *{}", result.output, kIndexExtension));
+    require_text_output(result.output, files());
+    ProgressBar bar(streams.err, wants_progress());
+    Stopwatch watch;
+    const ReadImageResult input = read(bar.stage("read"));
+    result.input = inputs();
+    result.variable = input.info.variable;
+    result.image_dim = image_dim(input.image);
+    result.read_seconds = watch.lap();
+    std::visit([&](const auto& typed) { std::visit([&](const auto& owned) { build(owned, bar, result); }, typed); },
+               input.image);
+    bar.clear();
+    if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
+    return ExitCode::Ok;
+  }
+
+ private:
+  /// FILE with .tindex behind it; of a folder, beside it.
+  [[nodiscard]] std::string default_output() const {
+    std::string name = file();
+    while (name.size() > 1 && name.back() == '/') name.pop_back();
+    return name + kIndexExtension;
+  }
+
+  template <class Owned>
+  void build(const Owned& owned, ProgressBar& bar, IndexResult& result) const {
+    Stopwatch watch;
+    const std::vector<ActiveMethod> methods = active_methods();
+    const ActiveMethod method = *std::find_if(methods.begin(), methods.end(),
+                                              [&](ActiveMethod each) { return active_method_name(each) == method_; });
+    const std::vector<SeedMethod> seeds = seed_methods();
+    ActiveTilesOptions options{.threads = threads_, .progress = bar.stage("build")};
+    options.seed_method =
+        *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return seed_method_name(each) == seeds_; });
+    options.scan_order = scan_order_;
+    const auto index = build_active_tiles(owned.view(), method, options);
+    result.tiles = index->grid().count();
+    result.memory_bytes = index->memory_bytes();
+    result.build_seconds = watch.lap();
+    const Progress writing = bar.stage("write");
+    write_active_tiles(*index, result.output);
+    writing(1);
+    result.output_bytes = std::filesystem::file_size(result.output);
+    result.write_seconds = watch.lap();
+  }
+
+  std::string output_;
+  std::string method_{active_method_name(ActiveMethod::span_space)};
+  std::string seeds_{seed_method_name(SeedMethod::cover)};
+  std::vector<int> scan_order_;
+  unsigned threads_ = 0;
+};
+
+}  // namespace
+
+bool is_index_file(const std::filesystem::path& path) {
+  return equal_ignoring_case(path.extension().string(), kIndexExtension);
+}
+
+std::string index_info(const Console& console, const std::filesystem::path& path, bool json) {
+  const ActiveTilesHead head = check_active_tiles(path);
+  const std::uint64_t bytes = std::filesystem::file_size(path);
+  if (json) {
+    Json document;
+    document["input"] = path.string();
+    document["format"] = "tindex";
+    document["version"] = head.version;
+    document["method"] = active_method_name(head.method);
+    document["image"] = {{"sizes", head.sizes},
+                         {"type", head.value_type},
+                         {"digest", fmt::format("{:016x}", head.digest)},
+                         {"any_missing", head.any_missing}};
+    document["bytes"] = bytes;
+    return dump(document);
+  }
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: index of active tiles", path.string())));
+  text += report_line("method", active_method_name(head.method));
+  text += report_line("image", fmt::format("{} {}{}", fmt::join(head.sizes, " x "), head.value_type,
+                                           head.any_missing ? ", some missing" : ""));
+  text += report_line("digest", fmt::format("{:016x}", head.digest));
+  return text + report_line("size", fmt::format("{}, version {}", byte_size(bytes), head.version));
+}
+
+std::unique_ptr<Command> make_index_command(CLI::App& program) { return std::make_unique<IndexCommand>(program); }
+
+}  // namespace tegl::cli

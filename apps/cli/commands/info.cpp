@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl info: what is in a file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers.hpp"
+#include "base/progress.hpp"
+#include "base/statistics.hpp"
+#include "commands/index.hpp"
+#include "input/commands.hpp"
+#include "output/output.hpp"
+#include "output/result.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  tegl info brain.nii.gz\n"
+    "  tegl info ocean.nc --var TEMP --json\n"
+    "  tegl info ensemble.nc --fix member=3\n"
+    "Suggested values: 'otsu' splits the values into two classes best, 'contrast' has the steepest mean step\n"
+    "along its contour, 'median' and 'percentile p' leave 50 or p % of the samples below. 'edges' is the number\n"
+    "of grid edges that the contour cuts: about the number of its vertices.";
+constexpr std::size_t kJsonBins = 256;
+constexpr std::size_t kTextBins = 16;
+constexpr std::size_t kMostAxes = 4;
+
+template <class T>
+constexpr const char* kTypeName = "";
+template <>
+constexpr const char* kTypeName<std::uint8_t> = "uint8";
+template <>
+constexpr const char* kTypeName<std::int8_t> = "int8";
+template <>
+constexpr const char* kTypeName<std::uint16_t> = "uint16";
+template <>
+constexpr const char* kTypeName<std::int16_t> = "int16";
+template <>
+constexpr const char* kTypeName<std::int32_t> = "int32";
+template <>
+constexpr const char* kTypeName<float> = "float";
+template <>
+constexpr const char* kTypeName<double> = "double";
+
+/// What `info` reports, without the type and dimension in its own type.
+struct Description {
+  ImageInfo info;
+  std::string value_type;
+  std::vector<Axis> axes;
+  std::vector<std::vector<double>> linear;  ///< empty where the axes are the world's
+  std::vector<double> offset;
+  ValueStatistics values;
+  double read_seconds = 0;
+  double statistics_seconds = 0;
+};
+
+template <class T, int N>
+void describe_grid(const OwnedImage<T, N>& image, Description& description) {
+  description.value_type = kTypeName<T>;
+  description.axes.assign(image.grid.axes.begin(), image.grid.axes.end());
+  if (!image.grid.has_world_map()) return;
+  for (int row = 0; row < N; ++row) {
+    description.linear.emplace_back();
+    for (int column = 0; column < N; ++column) description.linear.back().push_back(image.grid.linear(row, column));
+    description.offset.push_back(image.grid.offset(row));
+  }
+}
+
+/// Where an axis grows to, in a word; empty where the file does not say.
+std::string_view direction_name(const ImageInfo& info, std::size_t axis) {
+  if (axis >= info.axis_directions.size()) return "";
+  switch (info.axis_directions[axis]) {
+    case AxisDirection::up:
+      return "up";
+    case AxisDirection::down:
+      return "down";
+    default:
+      return "";
+  }
+}
+
+Json axis_json(const Description& description, std::size_t at) {
+  const Axis& axis = description.axes[at];
+  Json json;
+  json["name"] = axis_label(axis.name, at);
+  json["unit"] = axis.unit;
+  const std::string_view direction = direction_name(description.info, at);
+  json["direction"] = direction.empty() ? Json(nullptr) : Json(direction);
+  json["size"] = axis.size();
+  json["first"] = axis[0];
+  json["last"] = axis[axis.size() - 1];
+  json["uniform"] = axis.is_uniform();
+  if (axis.is_uniform()) {
+    json["step"] = axis.step();
+  } else {
+    Json& coordinates = json["coordinates"] = Json::array();
+    for (std::size_t i = 0; i < axis.size(); ++i) coordinates.push_back(axis[i]);
+  }
+  return json;
+}
+
+Json values_json(const ValueStatistics& values) {
+  Json json;
+  json["samples"] = values.samples;
+  json["missing"] = values.missing;
+  json["infinite"] = values.infinite;
+  json["min"] = values.min;
+  json["max"] = values.max;
+  json["mean"] = values.mean;
+  json["std"] = values.deviation;
+  Json& percentiles = json["percentiles"] = Json::object();
+  for (const auto& [percent, value] : values.percentiles) percentiles[fmt::format("{}", percent)] = value;
+  const Histogram histogram = values.histogram.coarser(kJsonBins);
+  json["histogram"] = {{"low", histogram.low}, {"width", histogram.width}, {"counts", histogram.counts}};
+  Json& suggested = json["suggested"] = Json::array();
+  for (const Suggestion& suggestion : values.suggestions) {
+    suggested.push_back(
+        {{"value", suggestion.value}, {"method", suggestion.method}, {"edges", suggestion.critical_edges}});
+  }
+  return json;
+}
+
+Json to_json(const Description& description, const InputFiles& input) {
+  const ImageInfo& info = description.info;
+  Json json;
+  json["input"] = input.json();
+  json["format"] = info.format;
+  json["variable"] = info.variable;
+  json["variables"] = info.variables;
+  json["value_name"] = info.value_name;
+  json["value_unit"] = info.value_unit;
+  json["remarks"] = info.remarks;
+  json["stored_type"] = info.stored_type;
+  json["value_type"] = description.value_type;
+  json["image_dim"] = description.axes.size();
+  Json& axes = json["axes"] = Json::array();
+  for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
+  json["world_frame"] = info.world_frame;
+  json["world"] = nullptr;
+  if (!description.linear.empty()) {
+    json["world"] = {{"linear", description.linear}, {"offset", description.offset}};
+  }
+  json.update(values_json(description.values));
+  json["seconds"] = {{"read", description.read_seconds}, {"statistics", description.statistics_seconds}};
+  return json;
+}
+
+std::string axis_text(const Description& description, std::size_t at) {
+  const Axis& axis = description.axes[at];
+  const std::string unit = axis.unit.empty() ? "" : " " + axis.unit;
+  const std::string_view direction = direction_name(description.info, at);
+  std::string text =
+      fmt::format("{:<6} {:>6} samples, {} .. {}{}{}", axis_label(axis.name, at), axis.size(), number(axis[0]),
+                  number(axis[axis.size() - 1]), unit, direction.empty() ? "" : fmt::format(" ({}wards)", direction));
+  if (axis.size() < 2) return text;
+  if (axis.is_uniform()) return text + fmt::format(", step {}", number(axis.step()));
+  double least = std::abs(axis[1] - axis[0]);
+  double most = least;
+  for (std::size_t i = 2; i < axis.size(); ++i) {
+    least = std::min(least, std::abs(axis[i] - axis[i - 1]));
+    most = std::max(most, std::abs(axis[i] - axis[i - 1]));
+  }
+  // Times in floating point are often uniform but for their last digits.
+  if (number(least) == number(most)) return text + fmt::format(", steps of about {}", number(most));
+  return text + fmt::format(", steps {} to {}", number(least), number(most));
+}
+
+/// An entry of a matrix whose largest has this size. What is nothing beside it, as rounding leaves where a 0 is meant,
+/// has one digit: it is there, and of what size is all that can be said of it.
+std::string matrix_entry(double value, double largest) {
+  constexpr double kRounding = 1e-9;
+  return value != 0.0 && std::abs(value) < kRounding * largest ? fmt::format("{:.0e}", value) : number(value);
+}
+
+/// Lines of cells in columns as wide as their widest cell, aligned to the right, with two blanks between them.
+std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::string> lines(rows.size());
+  for (std::size_t column = 0; column < rows.front().size(); ++column) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, row[column].size());
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      lines[row] += fmt::format("{}{:>{}}", column == 0 ? "" : "  ", rows[row][column], width);
+  }
+  return lines;
+}
+
+std::string world_text(const Description& description) {
+  const std::string& frame = description.info.world_frame;
+  if (description.linear.empty()) return report_line("world", frame.empty() ? "the axes themselves" : frame);
+  double largest = 0.0;
+  for (const auto& row : description.linear)
+    for (const double value : row) largest = std::max(largest, std::abs(value));
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t row = 0; row < description.linear.size(); ++row) {
+    auto& cells = rows.emplace_back();
+    for (const double value : description.linear[row]) cells.push_back(matrix_entry(value, largest));
+    cells.emplace_back("|");
+    cells.push_back(number(description.offset[row]));
+  }
+  const std::vector<std::string> lines = aligned(rows);
+  std::string text;
+  for (std::size_t row = 0; row < lines.size(); ++row)
+    text += report_line(row == 0 ? "world" : "", lines[row] + (row == 0 && !frame.empty() ? "  " + frame : ""));
+  return text;
+}
+
+/// Bars as wide as the terminal allows. Their length follows the square root of the count: backgrounds
+/// are often a hundred times as frequent as what is looked for.
+std::string histogram_text(const Histogram& fine, int width) {
+  const Histogram histogram = fine.coarser(kTextBins);
+  const std::uint64_t most = *std::max_element(histogram.counts.begin(), histogram.counts.end());
+  constexpr int kBesideBars = 30;
+  const double cells = std::clamp(width - kBesideBars, 10, 100);
+  std::string text;
+  for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+    const std::uint64_t count = histogram.counts[i];
+    const double share = std::sqrt(static_cast<double>(count) / static_cast<double>(most));
+    // At least one cell: a value that occurs is seen.
+    const auto length = count == 0 ? 0 : static_cast<std::size_t>(std::max(1.0, std::round(share * cells)));
+    text += fmt::format("  {:>12} {} {}\n", number(histogram.low + static_cast<double>(i) * histogram.width),
+                        std::string(length, '#'), grouped(count));
+  }
+  return text;
+}
+
+std::string values_text(const Console& console, const Description& description) {
+  const ValueStatistics& values = description.values;
+  const std::string unit = description.info.value_unit.empty() ? "" : " " + description.info.value_unit;
+  std::string text =
+      report_line("samples", fmt::format("{}, {} missing", grouped(values.samples), grouped(values.missing)));
+  if (values.infinite > 0)
+    text += report_line("", fmt::format("{} infinite, left out below", grouped(values.infinite)));
+  if (values.finite() == 0) return text + report_line("values", "none: all samples are missing or infinite");
+  text += report_line("values", fmt::format("{} .. {}{}, mean {}, std {}", number(values.min), number(values.max), unit,
+                                            number(values.mean), number(values.deviation)));
+  std::string percentiles;
+  for (const auto& [percent, value] : values.percentiles) {
+    percentiles += fmt::format("{}{} %: {}", percentiles.empty() ? "" : ", ", percent, number(value));
+  }
+  text += report_line("percentiles", percentiles);
+  text += fmt::format("\n{}\n", console.bold("Histogram (from each value on; bars: square root of the count)"));
+  text += histogram_text(values.histogram, console.width());
+  if (values.suggestions.empty())
+    return text +
+           (values.min == values.max
+                ? "\nAll values are equal: there is nothing to contour.\n"
+                : "\nNo two neighbours differ (samples are missing between them): there is nothing to contour.\n");
+  text += fmt::format("\n{}\n", console.bold("Suggested values"));
+  for (const Suggestion& suggestion : values.suggestions) {
+    text += fmt::format("  {:>12} {:<14} {} edges\n", number(suggestion.value), suggestion.method,
+                        grouped(suggestion.critical_edges));
+  }
+  return text;
+}
+
+std::string to_text(const Console& console, const Description& description, const std::string& file) {
+  const ImageInfo& info = description.info;
+  std::string text =
+      fmt::format("{}\n", console.bold(fmt::format("{}: {}D {}", file, description.axes.size(), info.format)));
+  if (!info.variable.empty()) {
+    text += report_line("variable", info.value_name.empty() ? info.variable : info.variable + ": " + info.value_name);
+  }
+  if (info.variables.size() > 1) text += report_line("variables", fmt::format("{}", fmt::join(info.variables, ", ")));
+  for (std::size_t i = 0; i < description.axes.size(); ++i) {
+    text += report_line(i == 0 ? "axes" : "", axis_text(description, i));
+  }
+  text += world_text(description);
+  text += report_line("type", info.stored_type.empty() || info.stored_type == description.value_type
+                                  ? description.value_type
+                                  : fmt::format("{}, read as {}", info.stored_type, description.value_type));
+  text += values_text(console, description);
+  return text + fmt::format("\n  {:<12} read {:.3f} + statistics {:.3f}\n", "seconds", description.read_seconds,
+                            description.statistics_seconds);
+}
+
+/// "5 x 4 x 3 x 2 x 6 (x, y, z, time, member)", with the names of variables only that are images only if an index of a
+/// dimension is chosen.
+std::string variable_shape(const ImageVariable& variable) {
+  const std::string sizes = fmt::format("{}", fmt::join(variable.sizes, " x "));
+  return variable.sizes.size() > kMostAxes ? fmt::format("{} ({})", sizes, fmt::join(variable.axes, ", ")) : sizes;
+}
+
+/// What is said of a file with several variables, or one of more axes than an image, when none was chosen.
+std::string choice_text(const Console& console, const InputFiles& input, const std::vector<ImageVariable>& variables) {
+  const std::string option = ImageOptions::choosing_option(input.names);
+  const std::string title = variables.size() == 1  ? fmt::format("a variable of {} axes", variables[0].sizes.size())
+                            : option == "--series" ? "several series"
+                                                   : "several variables";
+  std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: {}", input.text(), title)));
+  std::size_t number = 0;  // what --series takes
+  for (const ImageVariable& variable : variables) {
+    const std::string name = option == "--series" ? fmt::format("{:>2}  {}", ++number, variable.name) : variable.name;
+    text += report_line(
+        name, fmt::format("{}{}{}", variable_shape(variable), variable.unit.empty() ? "" : " " + variable.unit,
+                          variable.long_name.empty() ? "" : ", " + variable.long_name));
+  }
+  text += "\n";
+  if (variables.size() > 1)
+    text += fmt::format("Choose one with {}{}.\n", option, number > 0 ? ", by its number or name" : "");
+  const auto large = std::ranges::find_if(variables, [](const auto& one) { return one.sizes.size() > kMostAxes; });
+  if (large != variables.end())
+    text += fmt::format("Images have 2 to {} axes: choose an index of a dimension, as with --fix {}=0.\n", kMostAxes,
+                        large->axes.empty() ? "DIM" : large->axes.back());
+  return text;
+}
+
+Json choice_json(const InputFiles& input, const std::vector<ImageVariable>& variables) {
+  Json json;
+  json["input"] = input.json();
+  json["variable"] = nullptr;
+  json["variables"] = Json::array();
+  json["shapes"] = Json::object();
+  json["dimensions"] = Json::object();
+  for (const ImageVariable& variable : variables) {
+    json["variables"].push_back(variable.name);
+    json["shapes"][variable.name] = variable.sizes;
+    json["dimensions"][variable.name] = variable.axes;
+  }
+  return json;
+}
+
+class InfoCommand final : public Command {
+ public:
+  explicit InfoCommand(CLI::App& program)
+      : Command(
+            program, "info", "What is in a file: axes, values, histogram, isovalues worth a try",
+            "the image: NIfTI, NRRD, MetaImage, netCDF (.nc, also gzipped) or DICOM (a folder); or an index (.tindex)",
+            Files::image) {
+    add_image_options();
+    app().footer(kExamples);
+  }
+
+  ExitCode run(const Streams& streams) override {
+    require_inputs();
+    if (is_index_file(file())) {
+      if (const auto given = images().given(); !given.empty() || files().size() > 1)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("{} is an index, which has no variables; expected it alone, without {}", file(),
+                                given.empty() ? "other files" : given.front()));
+      streams.out.write(index_info(streams.out, file(), json()));
+      return ExitCode::Ok;
+    }
+    if (images().variable().empty() && !images().has_fixed()) {
+      const std::vector<ImageVariable> variables = images().variables(files());
+      if (variables.size() > 1 || (variables.size() == 1 && variables[0].sizes.size() > kMostAxes)) {
+        streams.out.write(json() ? dump(choice_json(inputs(), variables))
+                                 : choice_text(streams.out, inputs(), variables));
+        return ExitCode::Ok;
+      }
+    }
+    ProgressBar bar(streams.err, wants_progress());
+    Stopwatch watch;
+    const ReadImageResult image = read(bar.stage("read"));
+    Description description;
+    description.info = image.info;
+    description.read_seconds = watch.lap();
+    InterruptHandler::throw_if_requested();
+    std::visit(
+        [&](const auto& typed) { std::visit([&](const auto& owned) { describe_grid(owned, description); }, typed); },
+        image.image);
+    description.values = value_statistics(image.image);
+    description.statistics_seconds = watch.lap();
+    bar.clear();
+    streams.out.write(json() ? dump(to_json(description, inputs()))
+                             : to_text(streams.out, description, inputs().text()));
+    return ExitCode::Ok;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_info_command(CLI::App& program) { return std::make_unique<InfoCommand>(program); }
+
+}  // namespace tegl::cli

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl simplify: the same contour with fewer simplices, and a bound of how far it is from what it was.
+#include "tegl/simplify.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/numbers.hpp"
+#include "base/units.hpp"
+#include "input/commands.hpp"
+#include "input/contour_input.hpp"
+#include "output/output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  tegl simplify head.nii.gz --iso 60 --max-error 0.5 -o head.ply\n"
+    "  tegl simplify skull.ply --ratio 0.1 -o tenth.ply\n"
+    "  tegl simplify ocean.vtkhdf --count 20000 --scale auto -o small.vtkhdf\n"
+    "  tegl simplify head.ply --method fast --ratio 0.05 -o preview.glb\n"
+    "Error and bound are distances: no point of either contour is farther from the other. The result has the bound of\n"
+    "each vertex as the attribute 'simplification_error'. Where axes differ in their units, --scale says what is as "
+    "long as what.";
+
+const std::map<std::string, SimplifyMethod> kMethods = {{"quadric", SimplifyMethod::quadric},
+                                                        {"facets", SimplifyMethod::facets},
+                                                        {"vertices", SimplifyMethod::vertices},
+                                                        {"fast", SimplifyMethod::fast}};
+const std::map<std::string, SimplifyBorder> kBorders = {{"fixed", SimplifyBorder::fixed},
+                                                        {"within", SimplifyBorder::within}};
+
+class SimplifyCommand final : public ContourInputCommand {
+ public:
+  explicit SimplifyCommand(CLI::App& program)
+      : ContourInputCommand(program, "simplify", "Fewer simplices, the same manifold, and a bound of the error") {
+    app()
+        .add_option("--method", method_,
+                    "quadric: edges, by quadrics; facets: by curvature; vertices: by distance, keeps places; "
+                    "fast: triangles by meshoptimizer")
+        ->check(CLI::IsMember(kMethods))
+        ->capture_default_str();
+    app()
+        .add_option("--ratio", ratio_,
+                    "as many simplices as this share of those there are, 0 to 1, with the least error found; "
+                    "that takes rounds, in 4D minutes (see --no-bound)")
+        ->type_name("NUMBER");
+    app().add_option("--count", count_, "so many simplices")->type_name("COUNT");
+    app().add_option("--max-error", max_error_, "no farther than this from the original")->type_name("NUMBER");
+    app()
+        .add_option("--max-curvature", max_curvature_, "facets: none of more curvature (1 / radius) goes")
+        ->type_name("NUMBER");
+    app()
+        .add_option("--border", border_, "of open contours; fixed: untouched; within: vertices move along it")
+        ->check(CLI::IsMember(kBorders))
+        ->capture_default_str();
+    app()
+        .add_option(
+            "--scale", scale_,
+            "a number for each axis, by which its lengths count: 1,1,1,0.5; or auto: axes with other units than "
+            "the first by how fine the contour is along them")
+        ->type_name("NUMBERS|auto");
+    app().add_flag(
+        "--no-bound", no_bound_,
+        "leave out the bound of the error (and that of an earlier simplification), and the rounds that make it small");
+    app().add_flag("--allow-nonmanifold", allow_nonmanifold_, "fast: write what is no manifold, too");
+    app()
+        .add_option("-o,--output", output_, std::string("the result: ") + kContourFiles)
+        ->type_name("FILE")
+        ->required();
+    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    compress_.add_to(app());
+    app().footer(kExamples);
+  }
+
+  ExitCode run(const Streams& streams) override {
+    require_inputs();
+    require_output(output_, files());
+    compress_.require_known(output_);
+    require_output_keeps(output_, normals(), false);
+    require_goal();
+    ProgressBar bar(streams.err, wants_progress());
+    ContourInput input = read_contour(bar, true);
+    require_output_holds(output_, input.space_dim() - 1);
+    SimplifyStats stats;
+    ContourResult result = input.to_result();
+    result.output = output_;
+    result.compression = compress_.compression();
+    std::visit([&](const auto& contour) { result.mesh = to_mesh(simplified(contour, input, stats, bar)); },
+               input.contour);
+    input.contour = AnyContour();
+    if (!no_check_) check_result(result, bar);
+    write_result(result, bar);
+    remark(result.lost.remark(output_));
+    bar.clear();
+    if (json())
+      streams.out.write(dump(document(result, stats)));
+    else if (!quiet())
+      streams.out.write(text(streams.out, result, stats, input));
+    return allow_nonmanifold_ ? ExitCode::Ok : result.exit_code();
+  }
+
+ private:
+  void require_goal() const {
+    if (ratio_.empty() && count_.empty() && max_error_.empty() && max_curvature_.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  "no goal; expected --ratio, --count or --max-error (or --method facets with --max-curvature)");
+    if (no_bound_ && !max_error_.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  "--no-bound with --max-error, which needs the bound; expected one of them");
+    const auto require_method = [&](bool given, const char* option, const char* method) {
+      if (given && method_ != method)
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format("{} is for --method {}, not for {}; expected the one or the other", option, method, method_));
+    };
+    require_method(!max_curvature_.empty(), "--max-curvature", "facets");
+    if (!ratio_.empty()) require_between("--ratio", ratio_, 0.0, 1.0);
+    if (!max_error_.empty()) require_between("--max-error", max_error_, 0.0);
+    if (!max_curvature_.empty()) require_between("--max-curvature", max_curvature_, 0.0);
+    require_method(allow_nonmanifold_, "--allow-nonmanifold", "fast");
+  }
+
+  static void require_between(const char* option, const std::string& text, double least,
+                              double most = std::numeric_limits<double>::infinity()) {
+    const double value = parse_finite(option, text);
+    if (value >= least && value <= most) return;
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected {}", option, text,
+                                                        std::isinf(most) ? fmt::format("{} or more", least)
+                                                                         : fmt::format("{} to {}", least, most)));
+  }
+
+  /// In the words of the command line.
+  template <int N>
+  static Contour<N, double> simplify_or_explain(const Contour<N, double>& contour, const SimplifyOptions<N>& options,
+                                                SimplifyStats& stats) {
+    try {
+      return tegl::simplify(contour, options, &stats);
+    } catch (const Error& error) {
+      if (options.method != SimplifyMethod::fast || error.code() != ErrorCode::UnsupportedData) throw;
+      throw Error(error.code(), fmt::format("{} (on the command line: --allow-nonmanifold, --method)", error.what()));
+    }
+  }
+
+  template <int N>
+  Contour<N, double> simplified(const Contour<N, double>& contour, const ContourInput& input, SimplifyStats& stats,
+                                ProgressBar& bar) {
+    if (contour.simplices.empty()) return contour;
+    SimplifyOptions<N> options;
+    options.method = kMethods.at(method_);
+    options.border = kBorders.at(border_);
+    if (!ratio_.empty()) options.ratio = parse_finite("--ratio", ratio_);
+    if (!count_.empty()) options.count = parse_count();
+    if (!max_error_.empty()) options.max_error = parse_finite("--max-error", max_error_);
+    if (!max_curvature_.empty()) options.max_curvature = parse_finite("--max-curvature", max_curvature_);
+    options.measure = !no_bound_;
+    options.allow_nonmanifold = allow_nonmanifold_;
+    options.threads = threads();
+    options.scale = scale(contour);
+    used_scale_.assign(options.scale.begin(), options.scale.end());
+    if (input.image) options.planes = planes<N>(input.image->image);
+    options.progress = bar.stage("simplify");
+    return simplify_or_explain(contour, options, stats);
+  }
+
+  [[nodiscard]] std::uint64_t parse_count() const {
+    const double count = parse_finite("--count", count_);
+    if (count >= 0.0 && count == std::floor(count) && count < 1e18) return static_cast<std::uint64_t>(count);
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--count is '{}'; expected a whole number, 0 or more", count_));
+  }
+
+  /// The border of the image, where the grid is not parallel to the axes (else the contour itself tells).
+  template <int N>
+  static std::vector<Hyperplane<N>> planes(const AnyImage& image) {
+    return std::visit(
+        [](const auto& typed) {
+          return std::visit(
+              [](const auto& owned) -> std::vector<Hyperplane<N>> {
+                if constexpr (std::tuple_size_v<decltype(owned.grid.axes)> == N) return border_planes(owned.grid);
+                return {};
+              },
+              typed);
+        },
+        image);
+  }
+
+  template <int N>
+  [[nodiscard]] std::array<double, N> scale(const Contour<N, double>& contour) const {
+    std::array<double, N> result;
+    result.fill(1.0);
+    if (scale_.empty()) return result;
+    if (scale_ == "auto") return automatic_scale(contour);
+    std::size_t given = 0;
+    for (std::size_t first = 0; first <= scale_.size();) {
+      const std::size_t comma = std::min(scale_.find(',', first), scale_.size());
+      const double factor = parse_finite("--scale", std::string_view(scale_).substr(first, comma - first));
+      if (!(factor > 0.0))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--scale has '{}'; expected positive numbers", scale_.substr(first, comma - first)));
+      if (given < N) result[given] = factor;
+      ++given;
+      first = comma + 1;
+    }
+    if (given != N)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--scale {} has {}; expected {}, one for each axis, or auto",
+                                                          scale_, counted(given, "number", "numbers"), N));
+    return result;
+  }
+
+  static const char* name_of(SimplifyEnd end) {
+    switch (end) {
+      case SimplifyEnd::count:
+        return "count";
+      case SimplifyEnd::error:
+        return "error";
+      case SimplifyEnd::shape:
+        return "shape";
+      case SimplifyEnd::rounds:
+        break;
+    }
+    return "rounds";
+  }
+
+  /// Why there are more simplices than were asked for, or as many as there were; empty if there is nothing to say.
+  [[nodiscard]] std::string why_not_fewer(const SimplifyStats& stats) const {
+    const bool by_count = !ratio_.empty() || !count_.empty();
+    if (stats.end == SimplifyEnd::rounds)
+      return fmt::format("none of {} rounds kept --max-error {}, and the contour is left as it was", stats.rounds,
+                         max_error_);
+    if (stats.end == SimplifyEnd::shape)
+      return "what is left may not go, for the topology, the border or the shapes of simplices";
+    if (stats.end == SimplifyEnd::error && stats.simplices_after == stats.simplices_before && !max_error_.empty())
+      return fmt::format("nothing may go within --max-error {}", max_error_);
+    if (stats.end == SimplifyEnd::error && by_count)
+      return fmt::format("fewer would go beyond {}", max_error_.empty() ? "--max-curvature" : "--max-error");
+    return {};
+  }
+
+  [[nodiscard]] Json document(const ContourResult& result, const SimplifyStats& stats) const {
+    const auto or_null = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
+    Json json = to_json(result);
+    Json seconds = json["seconds"];
+    json.erase("seconds");
+    json["method"] = method_;
+    json["vertices_before"] = stats.vertices_before;
+    json["simplices_before"] = stats.simplices_before;
+    json["scale"] = used_scale_;
+    json["error"] = or_null(stats.error());
+    json["error_of_original"] = or_null(stats.error_of_original);
+    json["error_of_result"] = or_null(stats.error_of_result);
+    json["end"] = name_of(stats.end);
+    json["rounds"] = stats.rounds;
+    seconds["simplify"] = stats.simplify_seconds;
+    seconds["bound"] = stats.measure_seconds;
+    seconds["total"] = result.seconds.total() + stats.simplify_seconds + stats.measure_seconds;
+    json["seconds"] = seconds;
+    return json;
+  }
+
+  [[nodiscard]] std::string text(const Console& console, const ContourResult& result, const SimplifyStats& stats,
+                                 const ContourInput& input) const {
+    const int dim = result.mesh.dim;
+    const double share = stats.simplices_before == 0
+                             ? 1.0
+                             : static_cast<double>(stats.simplices_after) / static_cast<double>(stats.simplices_before);
+    std::string lines = fmt::format("{}\n", console.bold(fmt::format("Simplified contour in {}D", result.image_dim)));
+    lines += input_line(input.file, input.variable);
+    lines += report_line("before", fmt::format("{}, {}", counted(stats.vertices_before, "vertex", "vertices"),
+                                               counted_simplices(dim, stats.simplices_before)));
+    lines += report_line("method", fmt::format("{}: {:.3g} % of the simplices are left", method_, 100.0 * share));
+    const std::string why = why_not_fewer(stats);
+    if (!why.empty()) lines += report_line("stopped", fmt::format("at {:.3g} %: {}", 100.0 * share, why));
+    if (stats.error()) {
+      // Scaled lengths are in no unit of the axes.
+      const auto unit = scale_.empty() ? measure_unit(result.mesh.axis_units, 1) : std::nullopt;
+      lines += report_line("error", fmt::format("at most {} (of the original {}, of the result {})",
+                                                with_unit(number(*stats.error()), unit),
+                                                number(*stats.error_of_original), number(*stats.error_of_result)));
+      if (!unit && scale_.empty())
+        lines += report_line("", "the axes have different units, which this mixes; --scale says how");
+      if (!scale_.empty()) lines += report_line("scale", fmt::format("{:.4g}", fmt::join(used_scale_, ", ")));
+    }
+    lines += check_text(console, result.size(), result.report);
+    lines += report_line("seconds", fmt::format("simplify {:.3f} + bound {:.3f} + others {:.3f}",
+                                                stats.simplify_seconds, stats.measure_seconds, result.seconds.total()));
+    lines += report_line("output", fmt::format("{} ({})", result.output, byte_size(result.output_bytes)));
+    return lines;
+  }
+
+  std::string method_ = "quadric";
+  std::string border_ = "fixed";
+  std::string ratio_, count_, max_error_, max_curvature_, scale_, output_;
+  std::vector<double> used_scale_;
+  bool no_bound_ = false;
+  bool allow_nonmanifold_ = false;
+  bool no_check_ = false;
+  CompressOption compress_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_simplify_command(CLI::App& program) { return std::make_unique<SimplifyCommand>(program); }
+
+}  // namespace tegl::cli

@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// tegl slice: what the contour of a 4D image, or a saved 4D contour, looks like at one time or several, or along any
+// hyperplane.
+#include "tegl/slice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "base/numbers.hpp"
+#include "base/progress.hpp"
+#include "input/attributes.hpp"
+#include "input/commands.hpp"
+#include "input/contour_input.hpp"
+#include "input/cuts.hpp"
+#include "input/extraction.hpp"
+#include "output/output.hpp"
+#include "output/result.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  tegl slice heart.nii.gz --iso 400 --at t=7.3 -o heart.ply\n"
+    "  tegl contour ocean.nc --iso 20 -o ocean.vtkhdf\n"
+    "  tegl slice ocean.vtkhdf --at t=1.5,3.25,7.3 -o 'ocean_{t}.ply'\n"
+    "  tegl slice ocean.vtkhdf --at t=1:12:45 -o 'film_{n}.glb'      (45 times from 1 to 12: film_01 to film_45)\n"
+    "  tegl slice ocean.vtkhdf --at x=329.5 -o meridian.vtkhdf       (a surface in y, z and t)\n"
+    "  tegl slice ocean.vtkhdf --at t=7.3 --attribute ocean.nc -o july.ply\n"
+    "  tegl slice ocean.vtkhdf --plane 1,0,0,5=200 --scale t=10 -o moving.vtkhdf   (where x + 5 t = 200)\n"
+    "An axis goes by the file's name for it or by x, y, z, t; numbers are in its own unit, whole or not. Across an "
+    "axis\n"
+    "the cut has the other axes as its coordinates; else orthonormal ones, which --json reports as 'frame'.\n"
+    "Of an image, the layers beside each cut alone are contoured (of --plane, all of it); a saved contour is cut as "
+    "it\n"
+    "is, all cuts of one direction in one pass.";
+
+void require_cuttable(int dim, std::string_view what) {
+  if (dim == 3 || dim == 4) return;
+  throw Error(ErrorCode::UnsupportedData, fmt::format("holds a {}D {}; expected a 4D one (or a 3D one)", dim, what));
+}
+
+/// The hyperplane of a cut where axis a is stretched by factors[a].
+template <int N>
+Hyperplane<N> hyperplane_of(const Cut& cut, const std::vector<double>& factors) {
+  // Across an axis by the product that vertices have too, to meet those that lie there.
+  if (cut.across)
+    return Hyperplane<N>::across(*cut.across,
+                                 cut.level.value_or(cut.value) * factors[static_cast<std::size_t>(*cut.across)]);
+  Hyperplane<N> hyperplane;
+  for (int a = 0; a < N; ++a)
+    hyperplane.normal[a] = cut.normal[static_cast<std::size_t>(a)] / factors[static_cast<std::size_t>(a)];
+  hyperplane.offset = cut.value;
+  return hyperplane;
+}
+
+/// The frame of a hyperplane, for reports; none across an axis, where the coordinates say it all.
+template <int N>
+std::optional<CutFrame> frame_for_report(const Cut& cut, const std::vector<double>& factors) {
+  if (cut.across) return std::nullopt;
+  const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(cut, factors));
+  CutFrame result{{frame.origin.begin(), frame.origin.end()}, {}};
+  for (int i = 0; i < N - 1; ++i) result.axes.emplace_back(frame.axes.col(i).begin(), frame.axes.col(i).end());
+  return result;
+}
+
+template <int N, class Real>
+void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
+  const Eigen::Map<const Eigen::Matrix<double, N, 1>> by_axis(factors.data());
+  if ((by_axis.array() != 1.0).any()) scale_axes<N, Real>(contour, by_axis);
+}
+
+/// Cuts of a contour whose axes are to be stretched first: those of one direction after the other in one pass.
+template <int N, class Real>
+void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
+                    std::vector<ContourResult>& results, ProgressBar& bar) {
+  stretch(contour, factors);
+  for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
+    const Hyperplane<N> hyperplane = hyperplane_of<N>(*results[first].cut, factors);
+    const Cut& like = *results[first].cut;
+    std::vector<double> offsets;
+    for (end = first;
+         end < results.size() && results[end].cut->normal == like.normal && results[end].cut->across == like.across;
+         ++end)
+      offsets.push_back(hyperplane_of<N>(*results[end].cut, factors).offset);
+    Stopwatch watch;
+    auto cuts = slice_stack(contour, hyperplane.normal, offsets, {own.threads(), bar.stage("slice")});
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      ContourResult& result = results[first + i];
+      result.image_dim = N;
+      auto cut = std::exchange(cuts[i], {});
+      own.add_shape_normals(cut);
+      result.mesh = to_mesh(cut);
+      result.cut->frame = frame_for_report<N>(*result.cut, factors);
+    }
+    // What one of them took of the pass is anyone's guess: an equal part.
+    const double seconds = watch.lap() / static_cast<double>(offsets.size());
+    for (std::size_t i = first; i < end; ++i) results[i].seconds.slice = seconds;
+  }
+}
+
+/// Whether the layers beside a cut across an axis can be contoured alone.
+bool is_apart(const AnyImage& image, int axis) {
+  const auto of_owned = [&](const auto& owned) {
+    bool apart = true;
+    for (int a = 0; a < owned.grid.linear.rows(); ++a)
+      apart = apart && (a == axis || (owned.grid.linear(axis, a) == 0.0 && owned.grid.linear(a, axis) == 0.0));
+    return apart;
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+/// A cut outside of an image, with names and units of its axes.
+template <int N, class Real>
+Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
+  Contour<N, Real> cut;
+  for (int a = 0, b = 0; a <= N; ++a) {
+    if (a == across) continue;
+    cut.axis_names[static_cast<std::size_t>(b)] = grid.axes[static_cast<std::size_t>(a)].name;
+    cut.axis_units[static_cast<std::size_t>(b++)] = grid.axes[static_cast<std::size_t>(a)].unit;
+  }
+  return cut;
+}
+
+template <class Real>
+Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const std::vector<double>& factors,
+                const ExtractionOptions& own, const ExtractOptions& options, ExtractStats& stats) {
+  const auto of_owned = [&](const auto& owned) -> Mesh {
+    constexpr int kDim = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>);
+    if constexpr (kDim >= 3) {
+      if (cut.is_outside) return to_mesh(empty_cut<kDim - 1, Real>(owned.grid, *cut.across));
+      auto contour = slice_image_across<Real>(owned.view(), isovalue, *cut.across, cut.value, options, &stats);
+      std::vector<double> others = factors;
+      others.erase(others.begin() + *cut.across);
+      stretch(contour, others);
+      own.add_shape_normals(contour);
+      return to_mesh(contour);
+    } else {
+      throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // require_cuttable was first
+    }
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+/// The points of a cut's vertices in the space that was cut.
+template <int N>
+void append_points(const ContourResult& result, const std::vector<double>& factors, Contour<N, double>& points) {
+  const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(*result.cut, factors));
+  const auto& coordinates = result.mesh.coordinates;
+  for (std::size_t i = 0; i < coordinates.size(); i += N - 1) {
+    const Eigen::Map<const Eigen::Matrix<double, N - 1, 1>> within(coordinates.data() + i);
+    const Eigen::Matrix<double, N, 1> x = frame.origin + frame.axes * within;
+    auto& point = points.vertices.emplace_back();
+    for (int a = 0; a < N; ++a) point[a] = x[a] / factors[static_cast<std::size_t>(a)];
+  }
+}
+
+/// Gives the cuts the values of other images at their vertices.
+template <int N>
+void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& reading,
+                    const std::vector<double>& factors, unsigned threads, std::vector<ContourResult>& results,
+                    ProgressBar& bar) {
+  Contour<N, double> points;  // of all cuts, so that each image is read once
+  for (const ContourResult& result : results) append_points<N>(result, factors, points);
+  attributes.sample_to(points, reading, threads, bar);
+  for (const Attribute& all : points.vertex_attributes) {
+    std::size_t first = 0;
+    for (ContourResult& result : results) {
+      auto& own = result.mesh.vertex_attributes;
+      if (std::any_of(own.begin(), own.end(), [&](const Attribute& other) { return other.name == all.name; }))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--attribute: the contour has an attribute '{}' already; expected another", all.name));
+      const std::size_t end = first + result.mesh.coordinates.size() / (N - 1);
+      own.push_back({all.name,
+                     all.unit,
+                     all.width,
+                     {all.values.begin() + static_cast<std::ptrdiff_t>(first),
+                      all.values.begin() + static_cast<std::ptrdiff_t>(end)}});
+      first = end;
+    }
+  }
+}
+
+class SliceCommand final : public Command {
+ public:
+  explicit SliceCommand(CLI::App& program)
+      : Command(program, "slice", "A cut of a 4D contour at a time, or by any other hyperplane",
+                "a 4D image, or a 4D contour that 'tegl contour' saved (.vtkhdf); or a 3D one", Files::image) {
+    app()
+        .add_option("--at", at_, "where to cut an axis: t=7.3, x=2; t=1,2.5 for several; t=0:10:21 for 21 from 0 to 10")
+        ->allow_extra_args(false)
+        ->type_name("AXIS=NUMBERS");
+    app()
+        .add_option("--plane", planes_,
+                    "cuts by the hyperplane with this normal: 1,0,0,5=2 is where x + 5 t = 2; several as with --at")
+        ->allow_extra_args(false)
+        ->type_name("A,B,..=NUMBERS");
+    app()
+        .add_option("--scale", scale_, "stretches axes, so that lengths along all of them compare: t=10,z=2")
+        ->allow_extra_args(false)
+        ->type_name("AXIS=FACTOR");
+    options_.add_to(app(), false);
+    attributes_.add_to(app());
+    compress_.add_to(app());
+    app()
+        .add_option("-o,--output", output_,
+                    std::string("the result: ") + kContourFiles +
+                        "; {t} in it stands for the number, {axis} for its axis, {n} for 1, 2, 3 ... with zeros in "
+                        "front, so that films sort")
+        ->type_name("FILE")
+        ->required();
+    app().add_flag("--no-check", no_check_, "leave out the check of the result");
+    add_image_options();
+    add_quiet();
+    app().footer(kExamples);
+  }
+
+  ExitCode run(const Streams& streams) override {
+    std::vector<Cut> cuts = parse_cuts(at_);
+    for (Cut& cut : parse_planes(planes_)) cuts.push_back(std::move(cut));
+    if (cuts.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  "neither --at nor --plane is given; expected a place to cut, as in --at t=7.3");
+    outputs_ = cut_outputs(output_, cuts);
+    require_inputs();
+    for (const std::string& output : outputs_) {
+      require_output(output, files());
+      require_output_keeps(output, options_.normals(), attributes_.wanted());
+      compress_.require_known(output);
+    }
+    require_different_outputs(outputs_);
+    also_read(attributes_.files());
+    attributes_.require_inputs();
+    ProgressBar bar(streams.err, wants_progress());
+    std::vector<ContourResult> results =
+        find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
+    if (attributes_.wanted() && results[0].image_dim == 4)
+      add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), results, bar);
+    else if (attributes_.wanted())
+      add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), results, bar);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      results[i].input = inputs();
+      results[i].output = outputs_[i];
+      results[i].compression = compress_.compression();
+      if (!no_check_) check_result(results[i], bar);
+    }
+    write_all(results, bar);
+    bar.clear();
+    for (const ContourResult& result : results) remark(result.lost.remark(result.output));
+    if (json()) {
+      streams.out.write(dump(document(results)));
+    } else if (!quiet()) {
+      for (const ContourResult& result : results) streams.out.write(to_text(streams.out, result));
+    }
+    ExitCode exit = ExitCode::Ok;
+    for (const ContourResult& result : results) exit = std::max(exit, result.exit_code());
+    return exit;
+  }
+
+ private:
+  /// One object for one cut, a list for several.
+  static Json document(const std::vector<ContourResult>& results) {
+    if (results.size() == 1) return to_json(results.front());
+    Json list = Json::array();
+    for (const ContourResult& result : results) list.push_back(to_json(result));
+    return list;
+  }
+
+  /// Of an image or a contour of this dimension.
+  void require_cuts(int dim, std::string_view what) const {
+    require_cuttable(dim, what);
+    for (const std::string& output : outputs_) require_output_holds(output, dim - 2);
+  }
+
+  /// A result for each cut, with what is known before it is made.
+  [[nodiscard]] std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) const {
+    std::vector<ContourResult> results;
+    for (Cut& cut : resolve(std::move(cuts), space, options_.allows_empty()))
+      results.emplace_back().cut = std::move(cut);
+    return results;
+  }
+
+  std::vector<ContourResult> cut_image(std::vector<Cut> cuts, ProgressBar& bar) {
+    const double isovalue = options_.isovalue();
+    Stopwatch watch;
+    const ReadImageResult input = read(bar.stage("read"));
+    require_cuts(image_dim(input.image), "image");
+    require_contour(input, isovalue, options_.allows_empty());
+    const CutSpace space = space_of(input.image);
+    factors_ = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(std::move(cuts), space);
+    const double read_seconds = watch.lap();
+    std::vector<ContourResult> of_whole;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      ContourResult& result = results[i];
+      result.variable = input.info.variable;
+      result.isovalue = isovalue;
+      result.image_dim = image_dim(input.image);
+      result.seconds.read = read_seconds;
+      if (result.cut->across && is_apart(input.image, *result.cut->across)) {
+        cut_slab(input.image, result, bar);
+        continue;
+      }
+      of_whole.push_back(result);
+      places.push_back(i);
+    }
+    if (!of_whole.empty()) cut_whole(input.image, of_whole, bar);
+    for (std::size_t i = 0; i < places.size(); ++i) results[places[i]] = std::move(of_whole[i]);
+    return results;
+  }
+
+  /// A cut whose layers alone are contoured.
+  void cut_slab(const AnyImage& image, ContourResult& result, ProgressBar& bar) const {
+    ExtractOptions options = options_.library_options();
+    options.progress = bar.stage("slice");
+    ExtractStats& stats = result.stats.emplace();
+    Stopwatch watch;
+    result.mesh = options_.single_precision()
+                      ? slice_mesh<float>(image, *result.isovalue, *result.cut, factors_, options_, options, stats)
+                      : slice_mesh<double>(image, *result.isovalue, *result.cut, factors_, options_, options, stats);
+    const double seconds = watch.lap();
+    result.seconds.add(stats);
+    // The slab's extraction is a part of it; what is left is the cut proper.
+    result.seconds.slice = std::max(0.0, seconds - (result.seconds.total() - result.seconds.read));
+  }
+
+  /// Cuts of the contour of the whole image.
+  void cut_whole(const AnyImage& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
+    ExtractOptions options = options_.library_options();
+    options.progress = bar.stage("contour");
+    ExtractStats stats;
+    struct Nothing {};
+    (void)extract_any<Nothing>(image, *results[0].isovalue, options, options_.single_precision(), stats,
+                               [&]<int N, class Real>(Contour<N, Real>&& contour) {
+                                 if constexpr (N == 3 || N == 4)
+                                   cut_contour_of(std::move(contour), factors_, options_, results, bar);
+                                 return Nothing();
+                               });
+    for (ContourResult& result : results) {
+      result.stats = stats;
+      result.seconds.add(stats);
+    }
+  }
+
+  std::vector<ContourResult> cut_contour(std::vector<Cut> cuts, ProgressBar& bar) {
+    std::vector<std::string> given = options_.given();
+    std::erase(given, "--threads");
+    refuse_image_options(files(), given, images(),
+                         "--at, --plane, --scale, --threads, --allow-empty and --output alone");
+    Stopwatch watch;
+    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), options_.allows_empty());
+    require_cuts(mesh.space_dim, "contour");
+    const CutSpace space = space_of(mesh);
+    factors_ = parse_scale(scale_, space);
+    std::vector<ContourResult> results = results_for(std::move(cuts), space);
+    const double read_seconds = watch.lap();
+    for (ContourResult& result : results) {
+      result.seconds.read = read_seconds;
+      result.isovalue = mesh.isovalue;
+    }
+    if (mesh.space_dim == 4)
+      cut_contour_of(to_contour<4>(mesh), factors_, options_, results, bar);
+    else
+      cut_contour_of(to_contour<3>(mesh), factors_, options_, results, bar);
+    return results;
+  }
+
+  /// All or nothing.
+  static void write_all(std::vector<ContourResult>& results, ProgressBar& bar) {
+    WrittenFiles written;
+    for (ContourResult& result : results) write_result(result, bar, written);
+    written.keep();
+  }
+
+  ExtractionOptions options_;
+  AttributeOptions attributes_;
+  CompressOption compress_;
+  std::vector<double> factors_;  ///< of --scale, by axis
+  std::vector<std::string> at_, planes_, scale_;
+  std::string output_;                ///< with placeholders
+  std::vector<std::string> outputs_;  ///< of each cut
+  bool no_check_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_slice_command(CLI::App& program) { return std::make_unique<SliceCommand>(program); }
+
+}  // namespace tegl::cli

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "commands/streaming.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "base/numbers.hpp"
+#include "base/progress.hpp"
+#include "input/extraction.hpp"
+#include "output/output.hpp"
+#include "tegl/stream_several.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+/// Layers whose values are counted in until samples lie on both sides of every isovalue.
+template <class T, int N>
+class RangedLayers final : public LayerReader<T, N> {
+ public:
+  RangedLayers(LayerReader<T, N>& layers, const std::vector<ContourResult>& results)
+      : layers_(layers), least_(*results.front().isovalue), most_(least_) {
+    for (const ContourResult& result : results) {
+      least_ = std::min(least_, *result.isovalue);
+      most_ = std::max(most_, *result.isovalue);
+    }
+    for (int a = 0; a + 1 < N; ++a) layer_size_ *= grid().axes[static_cast<std::size_t>(a)].size();
+  }
+
+  [[nodiscard]] const Grid<N>& grid() const noexcept override { return layers_.grid(); }
+  void read(std::size_t k, T* to) override {
+    layers_.read(k, to);
+    if (range_.min < least_ && most_ <= range_.max) return;
+    for (std::size_t i = 0; i < layer_size_; ++i) {
+      const auto value = static_cast<double>(to[i]);
+      if (std::isnan(value)) continue;
+      range_.min = std::fmin(range_.min, value);
+      range_.max = std::fmax(range_.max, value);
+    }
+  }
+  /// Of the values read so far, complete if an isovalue lies outside of it.
+  [[nodiscard]] const ValueRange& range() const noexcept { return range_; }
+
+ private:
+  LayerReader<T, N>& layers_;
+  double least_, most_;
+  std::size_t layer_size_ = 1;
+  ValueRange range_{static_cast<double>(NAN), static_cast<double>(NAN)};
+};
+
+template <int N, class Real, class T>
+std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
+                                      std::vector<ContourResult>& results) {
+  for (int a = 0; a < N; ++a)
+    if (source.grid().axes[a].size() < 2)
+      throw Error(ErrorCode::EmptyResult,
+                  fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
+                              axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
+  RangedLayers<T, N> layers(source, results);
+  std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
+  std::vector<StreamedContour<N, Real>> contours;
+  std::vector<std::string> remarks;
+  WrittenFiles written;
+  Stopwatch watch;
+  for (const ContourResult& result : results) {
+    const std::filesystem::path file = written.stage(result.output);
+    written.with_target_names([&] {
+      files.push_back(
+          std::make_unique<ContourFile<N, Real>>(file, layers.grid(), result.isovalue, options.compression));
+    });
+    contours.push_back({*result.isovalue, files.back().get(), {}, {}});
+  }
+  written.with_target_names([&] {
+    extract_streamed_several<Real, T, N>(layers, contours, options.extract);
+    for (const auto& contour : contours) {
+      const bool outside = is_outside(contour.isovalue, layers.range());
+      if (outside && !options.allow_empty) throw outside_error(contour.isovalue, layers.range(), unit);
+      if (!outside && contour.size.simplices == 0) remarks.push_back(remark_on_missing(contour.isovalue));
+    }
+    for (const auto& file : files) file->commit();
+  });
+  written.keep();
+  const double seconds = watch.lap();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].image_dim = N;
+    results[i].stats = contours[i].stats;
+    results[i].streamed = MeshSize{N - 1, contours[i].size.vertices, contours[i].size.simplices};
+    results[i].seconds.add(contours[i].stats);
+    results[i].seconds.write = std::max(0.0, seconds - results[i].seconds.total());
+  }
+  return remarks;
+}
+
+}  // namespace
+
+void require_open_files(std::size_t contours) {
+  constexpr rlim_t kOthers = 32;  // standard streams, inputs, what libraries have open
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  const rlim_t needed = contours + kOthers;
+  if (needed <= limit.rlim_cur) return;
+  const rlim_t own = limit.rlim_cur;
+  limit.rlim_cur = std::min(needed, limit.rlim_max);
+  if (needed <= limit.rlim_max && setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  const rlim_t most = std::max(own, limit.rlim_max);
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("--iso has {} numbers to be streamed in one pass, each into a file that is open all along, and "
+                  "the system allows {} open files (ulimit -n); expected at most {}: more in several runs",
+                  contours, most, most > kOthers ? most - kOthers : 1));
+}
+
+std::vector<std::string> stream_contours(OpenLayersResult& input, const StreamOptions& options,
+                                         std::vector<ContourResult>& results) {
+  const auto typed = [&]<class T, int N>(const std::unique_ptr<LayerReader<T, N>>& layers) {
+    return options.single_precision ? stream_typed<N, float>(*layers, input.info.value_unit, options, results)
+                                    : stream_typed<N, double>(*layers, input.info.value_unit, options, results);
+  };
+  return std::visit([&](const auto& any) { return std::visit(typed, any); }, input.layers);
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/attributes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "input/extraction.hpp"
+#include "output/output.hpp"
+#include "tegl/sample.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "salinity" for "data/salinity.nii.gz".
+std::string stem(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.substr(0, std::max<std::size_t>(1, std::min(name.find('.', 1), name.size())));
+}
+
+ReadImageResult read_attribute(const std::string& file, const ReadImageOptions& options) {
+  try {
+    return read_image(file, options);
+  } catch (const Error& error) {
+    throw Error(error.code(), with_option_names(error.what()));
+  }
+}
+
+}  // namespace
+
+FileAndVariable parse_file_and_variable(const std::string& text) {
+  std::error_code ignored;
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0 || fs::exists(text, ignored)) return {text, {}};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+void AttributeOptions::add_to(CLI::App& app) {
+  app.add_option("--attribute", texts_,
+                 "values of another image at the vertices: FILE, or FILE:VARIABLE (netCDF); may be given again")
+      ->allow_extra_args(false)
+      ->type_name("FILE[:VAR]");
+}
+
+std::vector<std::string> AttributeOptions::files() const {
+  std::vector<std::string> files;
+  for (const std::string& text : texts_) files.push_back(parse_file_and_variable(text).file);
+  return files;
+}
+
+void AttributeOptions::require_inputs() const {
+  for (const std::string& file : files()) require_input(file, Folders::allowed);
+}
+
+template <int N, class Real>
+void AttributeOptions::sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads,
+                                 ProgressBar& bar) const {
+  for (const std::string& text : texts_) {
+    const FileAndVariable from = parse_file_and_variable(text);
+    const Progress progress = bar.stage("attribute");
+    reading.variable = from.variable;
+    reading.progress = [&](double fraction) { return progress(0.7 * fraction); };
+    const ReadImageResult input = read_attribute(from.file, reading);
+    if (image_dim(input.image) != N)
+      throw Error(ErrorCode::UnsupportedData,
+                  fmt::format("{}: an image of {} dimensions on a contour in {}D; expected {}", from.file,
+                              image_dim(input.image), N, N));
+    const std::string name = input.info.variable.empty() ? stem(from.file) : input.info.variable;
+    for (const Attribute& other : contour.vertex_attributes)
+      if (other.name == name)
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format("--attribute {}: the contour has an attribute '{}' already; expected each once", text, name));
+    const auto sampling = [&](double fraction) { return progress(0.7 + 0.3 * fraction); };
+    const auto sample_owned = [&](const auto& owned) {
+      contour.vertex_attributes.push_back(
+          sample(owned.view(), contour, name, input.info.value_unit, {.threads = threads, .progress = sampling}));
+    };
+    std::visit(sample_owned, std::get<AnyImageN<N>>(input.image));
+  }
+}
+
+template void AttributeOptions::sample_to(Contour<2, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<2, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<3, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<3, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<4, float>&, ReadImageOptions, unsigned, ProgressBar&) const;
+template void AttributeOptions::sample_to(Contour<4, double>&, ReadImageOptions, unsigned, ProgressBar&) const;
+
+}  // namespace tegl::cli

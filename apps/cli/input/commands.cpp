@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/commands.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "output/output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+/// How a file is read, as an image or a mesh.
+template <class Options>
+Options reading_options(const ImageOptions& given, Progress progress) {
+  Options options;
+  options.progress = std::move(progress);
+  options.allow_outside_paths = given.allow_outside_paths();
+  options.separate_process = given.separate_process();
+  return options;
+}
+
+}  // namespace
+
+Command::Command(CLI::App& program, const std::string& name, const std::string& description,
+                 const std::string& file_help, Files files)
+    : app_(program.add_subcommand(name, description)), files_kind_(files) {
+  if (files == Files::one)
+    app_->add_option("FILE", files_.front(), file_help)->required();
+  else
+    app_->add_option("FILE", files_, file_help)->required();
+  app_->parse_complete_callback(
+      [this, files] { worked_on_ = files == Files::each ? std::vector{files_.front()} : files_; });
+  app_->add_flag("--allow-outside-paths", images_.allow_outside_paths(),
+                 "read further files that FILE names (samples of NRRD and MetaImage headers, glTF buffers, HDF5 links) "
+                 "wherever they lie, not only in its folder and below");
+  json_option_ = app_->add_flag("--json", json_, "the report as JSON on standard output; errors as JSON too");
+  images_.add_in_process_to(*app_);
+}
+
+ReadImageOptions Command::image_options(Progress progress) const {
+  return reading_options<ReadImageOptions>(images_, std::move(progress));
+}
+
+ReadMeshOptions Command::mesh_options(Progress progress) const {
+  return reading_options<ReadMeshOptions>(images_, std::move(progress));
+}
+
+void Command::add_quiet() {
+  app_->add_flag("-q,--quiet", quiet_, "no report and no progress bar")->excludes(json_option_);
+}
+
+unsigned Command::threads_wanted() const {
+  const CLI::Option* const option = app_->get_option_no_throw("--threads");
+  return option == nullptr || option->count() == 0 ? 0 : option->as<unsigned>();
+}
+
+ReadImageResult Command::read(const Progress& progress) {
+  ReadSeriesResult result = images_.read(worked_on_, progress);
+  take_order(result.files);
+  return {std::move(result.image), std::move(result.info)};
+}
+
+OpenLayersResult Command::open() {
+  OpenSeriesResult result = images_.open(worked_on_);
+  take_order(result.files);
+  return {std::move(result.layers), std::move(result.info)};
+}
+
+void Command::take_order(const std::vector<std::filesystem::path>& files) {
+  std::transform(files.begin(), files.end(), worked_on_.begin(),
+                 [](const std::filesystem::path& file) { return file.string(); });
+}
+
+void Command::require_inputs() const {
+  for (const std::string& name : worked_on_)
+    require_input(name, files_kind_ == Files::one ? Folders::refused : Folders::allowed);
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/contour_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/numbers.hpp"
+#include "output/output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+/// The contour with coordinates in double.
+template <int N, class Real>
+Contour<N, double> widened(Contour<N, Real> contour) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return contour;
+  } else {
+    const auto widen = [](const auto& from, auto& to) {
+      to.resize(from.size());
+      for (std::size_t i = 0; i < from.size(); ++i) std::copy(from[i].begin(), from[i].end(), to[i].begin());
+    };
+    Contour<N, double> result;
+    widen(contour.vertices, result.vertices);
+    widen(contour.normals, result.normals);
+    result.simplices = std::move(contour.simplices);
+    result.axis_names = std::move(contour.axis_names);
+    result.axis_units = std::move(contour.axis_units);
+    result.direction = contour.direction;
+    result.vertex_attributes = std::move(contour.vertex_attributes);
+    result.simplex_attributes = std::move(contour.simplex_attributes);
+    return result;
+  }
+}
+
+}  // namespace
+
+Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
+  Mesh mesh = read_mesh(file, options);
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  const auto first = std::find_if_not(mesh.coordinates.begin(), mesh.coordinates.end(), is_finite);
+  if (first == mesh.coordinates.end()) return mesh;
+  const auto others = mesh.coordinates.end() - first - 1 - std::count_if(first + 1, mesh.coordinates.end(), is_finite);
+  throw Error(ErrorCode::MalformedFile,
+              fmt::format("a coordinate of vertex {} is {} ({} others like that); expected finite ones",
+                          (first - mesh.coordinates.begin()) / mesh.space_dim,
+                          std::isnan(*first) ? std::abs(*first) : *first, others));  // the sign of nan means nothing
+}
+
+Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty) {
+  Mesh mesh = read_finite_mesh(file, options);
+  if (mesh.simplices.empty() && !allow_empty)
+    throw Error(ErrorCode::EmptyResult,
+                "the saved contour is empty; expected one with simplices (--allow-empty: an empty result)");
+  return mesh;
+}
+
+AnyContour to_any_contour(const Mesh& mesh) {
+  // Segments of a planar mesh come back from some formats with a third coordinate, 0.
+  const int dim = mesh.dim == 1 ? 2 : mesh.space_dim;
+  if (dim == 2) return to_contour<2>(mesh);
+  if (dim == 3) return to_contour<3>(mesh);
+  return to_contour<4>(mesh);
+}
+
+MeshSize ContourInput::size() const {
+  return std::visit(
+      [&](const auto& any) {
+        return MeshSize{space_dim() - 1, any.vertices.size(), any.simplices.size()};
+      },
+      contour);
+}
+
+std::string ContourInput::axis_name(int axis) const {
+  const auto a = static_cast<std::size_t>(axis);
+  return std::visit([&](const auto& any) { return axis_label(any.axis_names.at(a), a); }, contour);
+}
+
+std::string ContourInput::axis_unit(int axis) const {
+  return std::visit([&](const auto& any) { return any.axis_units.at(static_cast<std::size_t>(axis)); }, contour);
+}
+
+ContourResult ContourInput::to_result() const {
+  ContourResult result;
+  result.input = file;
+  result.variable = variable;
+  result.image_dim = space_dim();
+  result.isovalue = isovalue;
+  result.stats = stats;
+  result.seconds = seconds;
+  return result;
+}
+
+void add_input_keys(Json& json, const ContourInput& input) {
+  json["input"] = input.file.json();
+  json["variable"] = input.variable.empty() ? Json(nullptr) : Json(input.variable);
+  json["image_dim"] = input.space_dim();
+  json["isovalue"] = input.isovalue ? Json(*input.isovalue) : Json(nullptr);
+}
+
+std::string input_text(const ContourInput& input) {
+  std::string text = input_line(input.file, input.variable);
+  if (input.isovalue) text += report_line("isovalue", number(*input.isovalue));
+  const MeshSize size = input.size();
+  text += report_line("contour", fmt::format("{}, {}", counted(size.vertices, "vertex", "vertices"),
+                                             counted_simplices(size.dim, size.simplices)));
+  return text;
+}
+
+void refuse_image_options(const std::vector<std::string>& files, std::vector<std::string> refused,
+                          const ImageOptions& images, const std::string& expected) {
+  const std::string& file = files.front();
+  if (files.size() > 1)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} is a saved contour, one of {} files; expected one, or images alone", file, files.size()));
+  for (std::string& option : images.given()) refused.push_back(std::move(option));
+  if (refused.empty()) return;
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{} is a saved contour, which {} cannot change; expected {}",
+                                                      file, fmt::join(refused, ", "), expected));
+}
+
+std::pair<std::optional<double>, std::optional<double>> ends_of_last_axis(const AnyImage& image) {
+  using Ends = std::pair<std::optional<double>, std::optional<double>>;
+  const auto of_owned = [](const auto& owned) -> Ends {
+    constexpr int kLast = static_cast<int>(std::tuple_size_v<decltype(owned.grid.axes)>) - 1;
+    for (int a = 0; a < kLast; ++a)
+      if (owned.grid.linear(kLast, a) != 0) return {};
+    const Axis& axis = owned.grid.axes[kLast];
+    const auto world = [&](double at) { return owned.grid.linear(kLast, kLast) * at + owned.grid.offset(kLast); };
+    return std::minmax({world(axis[0]), world(axis[axis.size() - 1])});
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+ContourInputCommand::ContourInputCommand(CLI::App& program, const std::string& name, const std::string& description,
+                                         Files files)
+    : Command(program, name, description,
+              "an image (with --iso), or a contour that 'tegl contour' saved (.vtkhdf, .ply, .glb ...)", files) {
+  options_.add_to(app(), false);
+  add_image_options();
+  add_quiet();
+}
+
+ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image) {
+  require_inputs();
+  ContourInput result;
+  result.file = inputs();
+  Stopwatch watch;
+  if (find_mesh_file_format(file()) != nullptr) {
+    std::vector<std::string> given = options_.given();
+    std::erase(given, "--threads");
+    refuse_image_options(files(), given, images(), "none of the options for images but --threads");
+    const Mesh mesh = read_saved_contour(file(), mesh_options(bar.stage("read")), allows_empty());
+    result.contour = to_any_contour(mesh);
+    result.isovalue = mesh.isovalue;
+    result.seconds.read = watch.lap();
+    return result;
+  }
+  result.isovalue = options_.isovalue();
+  ExtractOptions options = options_.library_options();
+  ReadImageResult input = read(bar.stage("read"));
+  result.file = inputs();
+  result.variable = input.info.variable;
+  require_contour(input, *result.isovalue, allows_empty());
+  result.last_axis = space_of(input.image).axes.back();
+  result.single_precision = options_.single_precision();
+  result.seconds.read = watch.lap();
+  options.progress = bar.stage("contour");
+  result.contour = extract_any<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
+                                           result.stats.emplace(), [&](auto contour) {
+                                             options_.add_shape_normals(contour);
+                                             return AnyContour(widened(std::move(contour)));
+                                           });
+  if (result.size().simplices == 0) remark(remark_without_contour(input.image, *result.isovalue));
+  result.seconds.add(*result.stats);
+  if (keep_image) result.image = std::move(input);
+  return result;
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/extraction.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers.hpp"
+#include "base/statistics.hpp"
+#include "output/output.hpp"
+#include "tegl/normals.hpp"
+
+namespace tegl::cli {
+
+void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
+  // All are known everywhere, to say who takes them; help shows those that will do.
+  CLI::Validator triangulations =
+      CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"});
+  if (!of_images_alone) triangulations.description("{compact,barycentric}");
+  options_ = {
+      app.add_option("--iso", isos_,
+                     of_images_alone ? "the isovalue: samples at or above it are inside; or several: 20,25,30, or "
+                                       "FIRST:LAST:COUNT"
+                                     : "the isovalue: samples at or above it are inside")
+          ->allow_extra_args(false)
+          ->type_name(of_images_alone ? "NUMBERS" : "NUMBER"),
+      app.add_option("--triangulation", triangulation_,
+                     of_images_alone
+                         ? "compact: few simplices; barycentric: even ones; of the polygons of 3D images: fan, zigzag, "
+                           "halving-chord, halving-kink"
+                         : "compact: few simplices; barycentric: even ones")
+          ->check(triangulations)
+          ->capture_default_str(),
+      app.add_option("--ambiguity", ambiguity_,
+                     "samples inside that meet across a diagonal: low parts, high joins them; from the data: mean (by "
+                     "the mean of the samples around) or saddle (as the multilinear interpolant has it)")
+          ->check(CLI::IsMember({"low", "high", "mean", "saddle"}))
+          ->capture_default_str(),
+      app.add_flag("--close", close_, "close the contour at the image's border"),
+      app.add_flag(
+             "--normals{gradient}", normals_,
+             "normals: along the image's gradient (gradient, or sobel for noisy images), of the contour's shape at "
+             "its vertices (geometric) or its simplices (flat); gradient if nothing follows")
+          ->check(CLI::IsMember({"gradient", "sobel", "geometric", "flat"})),
+      app.add_option("--gradient-direction", direction_, "the contour faces lower (descent) or higher values (ascent)")
+          ->check(CLI::IsMember({"descent", "ascent"}))
+          ->capture_default_str(),
+      app.add_option("--epsilon", epsilon_, "keep vertices this share of an edge away from the samples, in [0, 0.5)")
+          ->type_name("NUMBER")
+          ->capture_default_str(),
+      app.add_option("--threads", threads_, "how many threads work; 0: all that the machine has")
+          ->type_name("COUNT")
+          ->check(CLI::Range(0u, 4096u).description(""))
+          ->capture_default_str(),
+      app.add_option("--precision", precision_, "arithmetic of the vertices")
+          ->check(CLI::IsMember({"float", "double"}))
+          ->capture_default_str(),
+  };
+  options_.front()->required(of_images_alone);
+  app.add_flag("--allow-empty", allow_empty_, "a value outside of the data gives an empty result, not an error");
+}
+
+std::vector<std::string> ExtractionOptions::given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options_) {
+    if (option->count() > 0) names.push_back(option->get_name());
+  }
+  return names;
+}
+
+double ExtractionOptions::isovalue() const {
+  const std::vector<SpelledNumber> all = isovalues();
+  if (all.size() > 1)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("--iso has {} numbers, {} and others; expected one: 'tegl contour' makes contours at several",
+                    all.size(), all.front().text));
+  return all.front().value;
+}
+
+std::vector<SpelledNumber> ExtractionOptions::isovalues() const {
+  if (options_.front()->count() == 0)
+    throw Error(ErrorCode::InvalidArgument, "--iso is missing; expected the isovalue, as in --iso 20");
+  std::vector<SpelledNumber> all;
+  for (const std::string& text : isos_)
+    for (SpelledNumber& number : parse_spelled_numbers("--iso", text)) {
+      if (std::any_of(all.begin(), all.end(), [&](const SpelledNumber& other) { return other.value == number.value; }))
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--iso has {} twice; expected it once", number.text));
+      all.push_back(std::move(number));
+    }
+  return all;
+}
+
+std::optional<PolygonTriangulation> ExtractionOptions::polygon_triangulation() const {
+  if (triangulation_ == "fan") return PolygonTriangulation::fan;
+  if (triangulation_ == "zigzag") return PolygonTriangulation::zigzag;
+  if (triangulation_ == "halving-chord") return PolygonTriangulation::halving_chord;
+  if (triangulation_ == "halving-kink") return PolygonTriangulation::halving_kink;
+  return std::nullopt;
+}
+
+ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
+  if (polygon_triangulation() && !knows_polygons)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--triangulation {} is for the polygons of 3D images in memory, by 'tegl contour' without "
+                            "--stream, --index and --pick; expected compact or barycentric",
+                            triangulation_));
+  ExtractOptions options;
+  options.triangulation = triangulation_ == "compact" ? Triangulation::compact : Triangulation::barycentric;
+  options.ambiguity = ambiguity_ == "low"    ? Ambiguity::low
+                      : ambiguity_ == "high" ? Ambiguity::high
+                      : ambiguity_ == "mean" ? Ambiguity::mean
+                                             : Ambiguity::saddle;
+  options.direction = direction_ == "descent" ? GradientDirection::descent : GradientDirection::ascent;
+  options.close = close_;
+  options.normals = normals_ == "gradient" || normals_ == "sobel";
+  options.gradient = normals_ == "sobel" ? GradientKind::sobel : GradientKind::differences;
+  options.threads = threads_;
+  options.epsilon = parse_finite("--epsilon", epsilon_);
+  if (options.epsilon < 0 || options.epsilon >= 0.5) {
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--epsilon is {}; expected 0 <= epsilon < 0.5", epsilon_));
+  }
+  return options;
+}
+
+template <int N, class Real>
+void ExtractionOptions::add_shape_normals(Contour<N, Real>& contour) const {
+  if (normals_ == "geometric") contour.normals = geometric_normals(contour, NormalWeights::angle, {threads_});
+  if (normals_ != "flat") return;
+  Attribute attribute{"normal", "", N, {}};
+  for (const auto& normal : flat_normals(contour, {threads_}))
+    attribute.values.insert(attribute.values.end(), normal.begin(), normal.end());
+  contour.simplex_attributes.push_back(std::move(attribute));
+}
+
+template void ExtractionOptions::add_shape_normals(Contour<2, float>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<2, double>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<3, float>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<3, double>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<4, float>&) const;
+template void ExtractionOptions::add_shape_normals(Contour<4, double>&) const;
+
+int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
+
+bool is_outside(double isovalue, const ValueRange& range) { return !(isovalue > range.min && isovalue <= range.max); }
+
+Error outside_error(double isovalue, const ValueRange& range, const std::string& unit) {
+  constexpr const char* kAllow = "(--allow-empty: an empty result)";
+  if (std::isnan(range.min))
+    return {ErrorCode::EmptyResult,
+            fmt::format("all samples are missing; a contour needs values on both sides of it {}", kAllow)};
+  if (range.min == range.max) {
+    const auto texts = numbers_apart({range.min, isovalue});
+    return {ErrorCode::EmptyResult,
+            fmt::format("all values are {}; a contour needs values on both sides of the isovalue {} {}", texts[0],
+                        texts[1], kAllow)};
+  }
+  const auto texts = numbers_apart({isovalue, range.min, range.max});
+  return {ErrorCode::EmptyResult, fmt::format("the isovalue {0} lies outside of the values, which are {1} .. {2}{3}; "
+                                              "expected {1} < isovalue <= {2} {4}",
+                                              texts[0], texts[1], texts[2], unit.empty() ? "" : " " + unit, kAllow)};
+}
+
+void require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
+  const auto require_tiles = [](const auto& owned) {
+    for (std::size_t a = 0; a < owned.grid.axes.size(); ++a) {
+      if (owned.grid.axes[a].size() > 1) continue;
+      throw Error(ErrorCode::EmptyResult,
+                  fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
+                              axis_label(owned.grid.axes[a].name, a)));
+    }
+  };
+  std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
+  if (allow_empty) return;
+  const ValueRange range = value_range(input.image);
+  if (is_outside(isovalue, range)) throw outside_error(isovalue, range, input.info.value_unit);
+}
+
+std::string remark_without_contour(const AnyImage& image, double isovalue) {
+  return is_outside(isovalue, value_range(image)) ? std::string() : remark_on_missing(isovalue);
+}
+
+std::string remark_on_missing(double isovalue) {
+  return fmt::format("no contour at {}: every tile that it passes touches a missing sample", number(isovalue));
+}
+
+void check_result(ContourResult& result, ProgressBar& bar) {
+  Stopwatch watch;
+  result.report = check_mesh(result.mesh, bar.stage("check"));
+  result.seconds.check = watch.lap();
+}
+
+void write_result(ContourResult& result, ProgressBar& bar) {
+  WrittenFiles written;
+  write_result(result, bar, written);
+  written.keep();
+}
+
+void write_result(ContourResult& result, ProgressBar& bar, WrittenFiles& written) {
+  const Progress progress = bar.stage("write");
+  Stopwatch watch;
+  result.mesh.isovalue = result.isovalue;
+  result.output_bytes = written.write(
+      result.output, [&](const auto& file) { write_mesh(result.mesh, file, progress, result.compression); });
+  result.lost = lost_vertices(result.mesh, result.output);
+  result.seconds.write = watch.lap();
+}
+
+}  // namespace tegl::cli

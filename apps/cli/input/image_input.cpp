@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/image_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "base/numbers.hpp"
+#include "input/cuts.hpp"
+#include "output/output.hpp"
+
+namespace tegl::cli {
+
+namespace {
+
+/// "64x64x64x400" as numbers.
+std::vector<std::size_t> parse_sizes(const std::string& text) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('x', begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    const std::optional<double> size = parse_number(part);
+    constexpr double kMost = 0x1p48;
+    if (!size || !(*size >= 1 && *size <= kMost) || *size != static_cast<double>(static_cast<std::size_t>(*size)))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--raw is '{}'; expected sizes such as 64x64x64x400, the one that runs fastest first", text));
+    sizes.push_back(static_cast<std::size_t>(*size));
+    begin = end + 1;
+  }
+  return sizes;
+}
+
+/// "member=3", "depth=0" as dimensions and indices. Names may have an equals sign in them.
+std::vector<FixedIndex> parse_fixed(const std::vector<std::string>& texts) {
+  std::vector<FixedIndex> fixed;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    const std::optional<double> index =
+        equals == std::string::npos ? std::nullopt : parse_number(std::string_view(text).substr(equals + 1));
+    constexpr double kMost = 0x1p48;
+    if (!index || equals == 0 || !(*index >= 0 && *index <= kMost) || *index != std::floor(*index))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--fix is '{}'; expected the name of a dimension and an index from 0 on, as in member=3", text));
+    fixed.push_back({text.substr(0, equals), static_cast<std::size_t>(*index)});
+  }
+  return fixed;
+}
+
+constexpr SeriesWords kWords{"--times",     "--time-step", "--time-unit", "--sort",
+                             "--sort time", "--sort name", "--sort given"};
+
+std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& files) {
+  return {files.begin(), files.end()};
+}
+
+/// What --var is for is said where it is missing, and which options contradict each other where files do not follow
+/// each other.
+template <class Read>
+auto with_hint(const std::string& variable, const std::vector<std::string>& files, const SeriesOptions& options,
+               const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
+      throw Error(error.code(), error.what() + hint);
+    if (error.code() != ErrorCode::VariableNotFound || !variable.empty())
+      throw Error(error.code(), with_option_names(error.what()));
+    throw Error(error.code(),
+                fmt::format("{} (choose it with {})", error.what(), ImageOptions::choosing_option(files)));
+  }
+}
+
+}  // namespace
+
+std::string with_option_names(std::string message) {
+  if (message.find("a fixed index of another dimension") != std::string::npos) message += " (--fix DIMENSION=INDEX)";
+  return message;
+}
+
+void ImageOptions::add_to(CLI::App& app) {
+  options_ = {
+      app.add_option("--var", variable_, "netCDF: the variable to read; needed where the file has several")
+          ->type_name("NAME"),
+      app.add_option("--series", series_,
+                     "DICOM: the series to read, by its UID, its description or its number in the list that "
+                     "'tegl info' shows; needed where a folder has several")
+          ->type_name("SERIES"),
+      app.add_option("--times", times_,
+                     "of several FILEs: where each one lies along the new axis, in the order in which they are listed: "
+                     "0,0.5,2; or FIRST:LAST:COUNT; without, as the files say, else 0, 1, 2 ...")
+          ->type_name("NUMBERS"),
+      app.add_option("--time-step", time_step_,
+                     "of several FILEs: they lie at 0, this, twice this ..., in the order of --sort")
+          ->type_name("NUMBER"),
+      app.add_option(
+             "--time-unit", time_unit_,
+             "of several FILEs: the unit of the new axis; times of headers in another unit of time are converted")
+          ->type_name("UNIT"),
+      app.add_option("--sort", sort_,
+                     "of several FILEs: by the numbers in their names, by their times (--times, which go with them, "
+                     "or those in their headers), or as given")
+          ->check(CLI::IsMember({"given", "name", "time"})),
+      app.add_option("--fix", fixed_,
+                     "netCDF: reads one index of this dimension, as in member=3, from 0 on; may be given again. Needed "
+                     "for variables of more than 4 axes")
+          ->allow_extra_args(false)
+          ->type_name("DIM=INDEX"),
+  };
+  options_[1]->excludes(options_[0]);
+  add_raw_to(app);
+}
+
+void ImageOptions::add_raw_to(CLI::App& app) {
+  raw_option_ = app.add_option("--raw", raw_, "FILE is raw values of these sizes, the axis that runs fastest first")
+                    ->type_name("XxYxZ[xT]");
+  CLI::Option* const type = app.add_option("--raw-type", raw_type_, "their type")
+                                ->check(CLI::IsMember({"uint8", "int8", "uint16", "int16", "int32", "float", "double"}))
+                                ->needs(raw_option_);
+  raw_option_->needs(type);
+  options_.push_back(raw_option_);
+  options_.push_back(type);
+  options_.push_back(app.add_option("--raw-offset", raw_offset_, "bytes before the first value")
+                         ->needs(raw_option_)
+                         ->check(whole_number(0, std::uint64_t{1} << 62))
+                         ->type_name("BYTES")
+                         ->capture_default_str());
+  options_.push_back(
+      app.add_flag("--raw-big-endian", raw_big_endian_, "the values' first byte is the highest")->needs(raw_option_));
+  const auto add_of_axes = [&](const char* name, std::string& text, const char* type_name, const char* help) {
+    options_.push_back(app.add_option(name, text, help)->needs(raw_option_)->type_name(type_name));
+  };
+  add_of_axes("--spacing,--step", spacing_, "NUMBERS",
+              "of --raw: distance of neighbouring samples, a number for each axis or one for all: 0.8,0.8,3");
+  add_of_axes("--origin", origin_, "NUMBERS",
+              "of --raw: coordinates of the first sample, a number for each axis or one for all");
+  add_of_axes("--axis-names", axis_names_, "NAMES", "of --raw: a name for each axis, as lon,lat,depth,month");
+  add_of_axes("--axis-units", axis_units_, "UNITS", "of --raw: a unit for each axis, as mm,mm,mm,s; nothing for none");
+}
+
+void ImageOptions::add_in_process_to(CLI::App& app) {
+  app.add_flag("--in-process", in_process_,
+               "read netCDF-4, VTKHDF and DICOM in this process, not in a child process: a damaged file may end "
+               "the program");
+}
+
+std::vector<std::string> ImageOptions::given() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : options_)
+    if (option->count() > 0) names.push_back(option->get_name());
+  return names;
+}
+
+std::string ImageOptions::choosing_option(const std::vector<std::string>& files) {
+  const std::vector<std::filesystem::path> first = {files.front()};
+  return std::filesystem::is_directory(first[0]) || are_dicom_files(first) ? "--series" : "--var";
+}
+
+void ImageOptions::require_fitting_choice(const std::vector<std::string>& files) const {
+  if (raw() || variable().empty()) return;
+  const std::string given = series_.empty() ? "--var" : "--series";
+  const std::string expected = choosing_option(files);
+  if (given == expected) return;
+  throw Error(ErrorCode::InvalidArgument, fmt::format("{} {} with {}, which is {}DICOM; expected {}", given, variable(),
+                                                      files.front(), expected == "--series" ? "" : "no ", expected));
+}
+
+SeriesOptions ImageOptions::series_options(const std::vector<std::string>& files) const {
+  require_fitting_choice(files);
+  if (raw() && !variable().empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} {} with --raw; expected no variable: raw values have no name",
+                            series_.empty() ? "--var" : "--series", variable()));
+  const auto names = given();
+  const auto is_given = [&](const char* option) {
+    return std::find(names.begin(), names.end(), option) != names.end();
+  };
+  SeriesRequest request;
+  request.variable = variable();
+  if (is_given("--times")) request.times = parse_numbers("--times", times_);
+  if (is_given("--time-step")) request.time_step = parse_finite("--time-step", time_step_);
+  if (is_given("--time-unit")) request.time_unit = time_unit_;
+  if (is_given("--sort"))
+    request.sort = sort_ == "name"   ? SeriesOrder::by_name
+                   : sort_ == "time" ? SeriesOrder::coordinate
+                                     : SeriesOrder::given;
+  request.fixed = parse_fixed(fixed_);
+  request.allow_outside_paths = allow_outside_paths_;
+  if (raw()) request.raw = raw_layout();
+  return tegl::series_options(paths_of(files), request, kWords);
+}
+
+RawLayout ImageOptions::raw_layout() const {
+  RawLayout layout{parse_sizes(raw_), raw_type_, raw_offset_, raw_big_endian_, {}, {}, {}, {}};
+  const std::size_t axes = layout.sizes.size();
+  const auto require_axes = [&](const char* option, const std::string& text, std::size_t count) {
+    if (count != axes)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("{} {} has {}; expected {}, one for each axis of --raw {}",
+                                                          option, text, counted(count, "part", "parts"), axes, raw_));
+  };
+  const auto numbers = [&](const char* option, const std::string& text) {
+    if (text.empty()) return std::vector<double>();
+    std::vector<double> values;
+    for (const std::string_view part : split(text, ',')) values.push_back(parse_finite(option, part));
+    if (values.size() == 1) values.resize(axes, values.front());
+    require_axes(option, text, values.size());
+    return values;
+  };
+  const auto words = [&](const char* option, const std::string& text) {
+    if (text.empty()) return std::vector<std::string>();
+    const std::vector<std::string_view> parts = split(text, ',');
+    require_axes(option, text, parts.size());
+    return std::vector<std::string>(parts.begin(), parts.end());
+  };
+  layout.spacing = numbers("--spacing", spacing_);
+  layout.origin = numbers("--origin", origin_);
+  layout.axis_names = words("--axis-names", axis_names_);
+  layout.axis_units = words("--axis-units", axis_units_);
+  for (const double step : layout.spacing)
+    if (step == 0.0) throw Error(ErrorCode::InvalidArgument, fmt::format("--spacing is '{}'; expected no 0", spacing_));
+  for (std::size_t a = 0; a < layout.axis_names.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      if (!layout.axis_names[a].empty() && equal_ignoring_case(layout.axis_names[a], layout.axis_names[b]))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("--axis-names has the axis {} twice; expected it once", layout.axis_names[a]));
+  return layout;
+}
+
+ReadSeriesResult ImageOptions::read(const std::vector<std::string>& files, const Progress& progress) const {
+  for (const std::string& file : files) require_input(file, Folders::allowed);
+  SeriesOptions options = series_options(files);
+  options.progress = progress;
+  options.separate_process = separate_process();
+  return remembered(with_hint(variable(), files, options, [&] { return read_series(paths_of(files), options); }));
+}
+
+OpenSeriesResult ImageOptions::open(const std::vector<std::string>& files) const {
+  for (const std::string& file : files) require_input(file, Folders::allowed);
+  SeriesOptions options = series_options(files);
+  options.separate_process = separate_process();
+  return remembered(with_hint(variable(), files, options, [&] { return open_series(paths_of(files), options); }));
+}
+
+std::vector<ImageVariable> ImageOptions::variables(const std::vector<std::string>& files) const {
+  if (raw()) return {};
+  ReadImageOptions options;
+  options.allow_outside_paths = allow_outside_paths_;
+  options.separate_process = separate_process();
+  return list_image_variables(files.front(), options);
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program/program.hpp"
+
+#include "commands/demo.hpp"
+
+namespace tegl::cli {
+
+std::vector<std::unique_ptr<Command>> add_commands(CLI::App& program, const std::string& version) {
+  program.description(
+      "Contours of images in 2, 3 and 4 dimensions: closed, manifold, oriented.\n"
+      "Reads NIfTI, NRRD, MetaImage, netCDF and DICOM; writes PLY, STL, OBJ, glTF and VTKHDF.");
+  program.set_version_flag("--version", "tegl " + version);
+  program.require_subcommand(1);
+  program.footer(
+      "New here? 'tegl demo' shows what it does. 'tegl COMMAND --help' has examples. 'tegl --man' is the manual\n"
+      "page, 'tegl --completion bash' (zsh, fish) what completes commands and options in that shell.\n\n" +
+      exit_code_help());
+  std::vector<std::unique_ptr<Command>> commands;
+  commands.push_back(make_info_command(program));
+  commands.push_back(make_contour_command(program));
+  commands.push_back(make_slice_command(program));
+  commands.push_back(make_elements_command(program));
+  commands.push_back(make_check_command(program));
+  commands.push_back(make_project_command(program));
+  commands.push_back(make_index_command(program));
+  commands.push_back(make_components_command(program));
+  commands.push_back(make_measure_command(program));
+  commands.push_back(make_track_command(program));
+  commands.push_back(make_simplify_command(program));
+  commands.push_back(make_view_command(program, version));
+  commands.push_back(make_demo_command(program));
+  return commands;
+}
+
+}  // namespace tegl::cli

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tiles of every dimension by their kind: corners, edges, and the faces as tiles of one dimension less.
+#include "base/lattice.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "base/determinant.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+/// Inserts a bit of value `bit` at position `at`.
+std::uint32_t spread(std::uint32_t v, int at, std::uint32_t bit) {
+  const std::uint32_t below = v & ((1u << at) - 1);
+  return ((v & ~((1u << at) - 1)) << 1) | (bit << at) | below;
+}
+
+std::string edge_name(int n, int axis, std::uint32_t base) {
+  std::string name;
+  for (int i = n - 1; i >= 0; --i) name += i == axis ? 'e' : ((base >> i) & 1) != 0 ? '1' : '0';
+  return name;
+}
+
+Tile make_cube(int n, const Tile* face) {
+  Tile tile;
+  tile.dim = n;
+  for (std::uint32_t v = 0; v < 1u << n; ++v) {
+    std::array<double, 4> x{};
+    for (int i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = (v >> i) & 1;
+    tile.corners.push_back(x);
+  }
+  const std::uint32_t half = n > 0 ? 1u << (n - 1) : 0;
+  for (int axis = 0; axis < n; ++axis)
+    for (std::uint32_t rest = 0; rest < half; ++rest) {
+      const std::uint32_t base = spread(rest, axis, 0);
+      tile.edges.push_back({static_cast<std::uint8_t>(base), static_cast<std::uint8_t>(base | (1u << axis))});
+      tile.edge_names.push_back(edge_name(n, axis, base));
+    }
+  for (int axis = 0; axis < n; ++axis)
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      SubTile sub{face, {}, {}, (axis % 2 == 0) == (side == 1) ? 1 : -1};
+      for (std::uint32_t v = 0; v < half; ++v) sub.corner.push_back(static_cast<std::uint8_t>(spread(v, axis, side)));
+      for (const auto& ends : face->edges)
+        for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
+          if (tile.edges[e][0] == sub.corner[ends[0]] && tile.edges[e][1] == sub.corner[ends[1]])
+            sub.edge.push_back(static_cast<std::uint8_t>(e));
+      tile.faces.push_back(std::move(sub));
+    }
+  return tile;
+}
+
+using Coordinates = std::array<double, 4>;
+
+Coordinates difference(const Coordinates& a, const Coordinates& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+}
+
+Coordinates centre_of(const std::vector<Coordinates>& corners, const std::vector<std::uint8_t>& chosen) {
+  Coordinates sum{};
+  for (const std::uint8_t v : chosen)
+    for (std::size_t i = 0; i < 4; ++i) sum[i] += corners[v][i] / static_cast<double>(chosen.size());
+  return sum;
+}
+
+/// Adds the pairs of corners for which `joined` holds as edges.
+template <class Joined>
+void add_edges(Tile& tile, const Joined& joined) {
+  for (std::uint8_t a = 0; a < tile.corner_count(); ++a)
+    for (std::uint8_t b = static_cast<std::uint8_t>(a + 1); b < tile.corner_count(); ++b)
+      if (joined(a, b)) {
+        tile.edges.push_back({a, b});
+        tile.edge_names.push_back(std::to_string(a) + std::to_string(b));
+      }
+}
+
+/// Adds the simplex with these corners, ascending, as a face. Its sign is that of its own frame behind the outward
+/// normal.
+void add_face(Tile& tile, const Tile* face, std::vector<std::uint8_t> corner) {
+  std::vector<std::uint8_t> all;
+  for (std::uint8_t v = 0; v < tile.corner_count(); ++v) all.push_back(v);
+  std::array<Coordinates, 4> frame{difference(centre_of(tile.corners, corner), centre_of(tile.corners, all))};
+  for (std::size_t i = 1; i < corner.size(); ++i)
+    frame[i] = difference(tile.corners[corner[i]], tile.corners[corner[0]]);
+  SubTile sub{face, std::move(corner), {}, determinant(frame, tile.dim) > 0 ? 1 : -1};
+  for (const auto& ends : face->edges)
+    for (std::uint32_t e = 0; e < tile.edge_count(); ++e)
+      if (tile.edges[e][0] == sub.corner[ends[0]] && tile.edges[e][1] == sub.corner[ends[1]])
+        sub.edge.push_back(static_cast<std::uint8_t>(e));
+  tile.faces.push_back(std::move(sub));
+}
+
+Tile make_simplex(int n, const Tile* face) {
+  Tile tile;
+  tile.kind = TileKind::simplex;
+  tile.dim = n;
+  for (int v = 0; v <= n; ++v) {
+    Coordinates x{};
+    if (v > 0) x[static_cast<std::size_t>(v - 1)] = 1;
+    tile.corners.push_back(x);
+  }
+  add_edges(tile, [](int, int) { return true; });
+  for (int without = 0; n > 0 && without <= n; ++without) {
+    std::vector<std::uint8_t> corner;
+    for (int v = 0; v <= n; ++v)
+      if (v != without) corner.push_back(static_cast<std::uint8_t>(v));
+    add_face(tile, face, std::move(corner));
+  }
+  return tile;
+}
+
+Tile make_octahedron(const Tile* triangle) {
+  Tile tile;
+  tile.kind = TileKind::octahedron;
+  tile.dim = 3;
+  for (std::size_t v = 0; v < 6; ++v) {
+    Coordinates x{};
+    x[v / 2] = v % 2 == 0 ? -1 : 1;
+    tile.corners.push_back(x);
+  }
+  add_edges(tile, [](int a, int b) { return a / 2 != b / 2; });
+  for (std::uint8_t f = 0; f < 8; ++f)
+    add_face(tile, triangle,
+             {static_cast<std::uint8_t>(f & 1u), static_cast<std::uint8_t>(2 + (f >> 1 & 1)),
+              static_cast<std::uint8_t>(4 + (f >> 2 & 1))});
+  return tile;
+}
+
+}  // namespace
+
+Signature Tile::restrict_to(std::uint32_t f, Signature signature) const {
+  const auto& corner = faces[f].corner;
+  Signature result = 0;
+  for (std::size_t v = 0; v < corner.size(); ++v) result |= ((signature >> corner[v]) & 1u) << v;
+  return result;
+}
+
+std::vector<std::uint8_t> edge_permutation(const Tile& tile, std::span<const std::uint32_t> corner_images) {
+  std::vector<std::uint8_t> result;
+  for (const auto& [a, b] : tile.edges) {
+    const std::uint32_t to_a = corner_images[a], to_b = corner_images[b];
+    for (std::uint8_t e = 0; e < tile.edge_count(); ++e)
+      if ((tile.edges[e][0] == to_a && tile.edges[e][1] == to_b) ||
+          (tile.edges[e][0] == to_b && tile.edges[e][1] == to_a))
+        result.push_back(e);
+  }
+  return result;
+}
+
+const char* tile_kind_name(TileKind kind) noexcept {
+  return kind == TileKind::cube ? "cube" : kind == TileKind::simplex ? "simplex" : "octahedron";
+}
+
+Lattice::Lattice(TileKind kind, int n) {
+  if (n < 1 || n > 4 || (kind == TileKind::octahedron && n != 3))
+    throw std::invalid_argument("face lattice: dimension must be 1 to 4, that of an octahedron 3");
+  tiles_.reserve(static_cast<std::size_t>(n) + 1);  // faces point at their tiles: no reallocation
+  tiles_.push_back(kind == TileKind::cube ? make_cube(0, nullptr) : make_simplex(0, nullptr));
+  for (int k = 1; k <= n; ++k) {
+    const Tile* const face = &tiles_.back();
+    tiles_.push_back(kind == TileKind::cube                   ? make_cube(k, face)
+                     : kind == TileKind::octahedron && k == n ? make_octahedron(face)
+                                                              : make_simplex(k, face));
+  }
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Filling Sigma, component by component. A sphere is coned, from its barycentre (barycentric) or from one of
+// its own vertices (compact); a component of higher genus is filled by a copy of one side of the tile's
+// boundary. A simplex that lies in the tile's boundary must belong to Sigma's own triangulation, because the
+// neighbour may draw it too: that is what restricts the choice of chords and apexes below.
+//
+// Based on: M. Liversage, thesis, 1994, sections 8.1.18 and 10.1.3 (cones).
+#include "filling/filling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+
+#include "filling/shelling.hpp"
+#include "filling/side_filling.hpp"
+#include "filling/sigma_complex.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+struct Component {
+  std::vector<Simplex> boundary;
+  std::vector<std::uint8_t> vertices;  // ascending
+  int euler = 0;
+};
+
+/// Disjoint sets over local vertices.
+class VertexSets {
+ public:
+  VertexSets() { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(int a, int b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
+
+ private:
+  std::array<int, 256> parent_{};
+};
+
+int euler_of(int vertices_per_simplex, const Component& c) {
+  const int v = static_cast<int>(c.vertices.size());
+  const int f = static_cast<int>(c.boundary.size());
+  return vertices_per_simplex == 2 ? v - f : v - 3 * f / 2 + f;  // Sigma is closed: 3 F = 2 E
+}
+
+/// Components of Sigma by their smallest vertex; spheres first, so that cone vertices precede side vertices.
+std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary) {
+  VertexSets sets;
+  for (const Simplex& s : boundary)
+    for (int i = 1; i < n - 1; ++i) sets.join(s[0], s[i]);
+  std::array<int, 256> number;
+  number.fill(-1);
+  std::vector<Component> components;
+  std::vector<std::uint8_t> order;
+  for (const Simplex& s : boundary) order.push_back(static_cast<std::uint8_t>(sets.find(s[0])));
+  std::vector<std::uint8_t> roots(order);
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  for (const std::uint8_t r : roots) {
+    number[r] = static_cast<int>(components.size());
+    components.emplace_back();
+  }
+  for (std::size_t i = 0; i < boundary.size(); ++i) components[number[order[i]]].boundary.push_back(boundary[i]);
+  for (Component& c : components) {
+    std::set<std::uint8_t> vertices;
+    for (const Simplex& s : c.boundary) vertices.insert(s.begin(), s.begin() + (n - 1));
+    c.vertices.assign(vertices.begin(), vertices.end());
+    c.euler = euler_of(n - 1, c);
+  }
+  const int sphere = n == 3 ? 0 : 2;
+  std::stable_partition(components.begin(), components.end(), [&](const Component& c) { return c.euler == sphere; });
+  return components;
+}
+
+/// The closed polygon of a 3-tile's component, from its smallest vertex along its orientation.
+std::vector<std::uint8_t> cycle_of(const Component& c) {
+  std::array<std::uint8_t, 256> next{};
+  for (const Simplex& s : c.boundary) next[s[0]] = s[1];
+  std::vector<std::uint8_t> cycle{c.vertices.front()};
+  while (next[cycle.back()] != cycle.front()) cycle.push_back(next[cycle.back()]);
+  if (cycle.size() != c.boundary.size()) throw std::logic_error("a component of a 3-tile's Sigma is not one cycle");
+  return cycle;
+}
+
+/// Cuts a polygon by chords that do not lie in the tile's boundary: as a fan from its smallest vertex if that can be,
+/// else with the shortest chords (at the edges' midpoints; ties go to the first). A fan from the smallest vertex in
+/// every cube is what lets a convex facet of a 4-tile be coned from its own smallest vertex in turn.
+class ChordTriangulation {
+ public:
+  ChordTriangulation(const FaceContours& faces, std::vector<std::uint8_t> polygon)
+      : faces_(faces), polygon_(std::move(polygon)) {}
+
+  /// Triangles as positions in the polygon; empty if every triangulation has a forbidden chord.
+  std::vector<std::array<std::size_t, 3>> best() {
+    std::vector<std::array<std::size_t, 3>> fan;
+    double cost = 0;
+    for (std::size_t k = 1; k + 1 < polygon_.size(); ++k) {
+      fan.push_back({0, k, k + 1});
+      cost += chord(0, k);
+    }
+    if (cost < kForbidden) return fan;
+    const auto result = solve(0, polygon_.size() - 1);
+    return result.cost < kForbidden ? result.triangles : std::vector<std::array<std::size_t, 3>>{};
+  }
+
+ private:
+  static constexpr double kForbidden = 1e9;
+  struct Result {
+    double cost;
+    std::vector<std::array<std::size_t, 3>> triangles;
+  };
+
+  double chord(std::size_t i, std::size_t j) const {
+    if (j == i + 1 || (i == 0 && j + 1 == polygon_.size())) return 0;  // a side
+    const std::uint8_t a = polygon_[i], b = polygon_[j];
+    if ((faces_.faces_of(a) & faces_.faces_of(b)) != 0) return kForbidden;  // it would lie in a face
+    const Tile& tile = faces_.tile();
+    double sum = 0;
+    for (int k = 0; k < tile.dim; ++k) {
+      const auto mid = [&](std::uint8_t e) {
+        return 0.5 * (tile.corners[tile.edges[e][0]][k] + tile.corners[tile.edges[e][1]][k]);
+      };
+      sum += (mid(a) - mid(b)) * (mid(a) - mid(b));
+    }
+    return sum;
+  }
+
+  Result solve(std::size_t i, std::size_t j) const {
+    if (j < i + 2) return {0, {}};
+    Result best{2 * kForbidden, {}};
+    for (std::size_t k = i + 1; k < j; ++k) {
+      const double own = chord(i, k) + chord(k, j);
+      if (own >= kForbidden) continue;
+      Result left = solve(i, k), right = solve(k, j);
+      const double cost = own + left.cost + right.cost;
+      if (cost >= best.cost) continue;
+      best.cost = cost;
+      best.triangles = {{i, k, j}};
+      best.triangles.insert(best.triangles.end(), left.triangles.begin(), left.triangles.end());
+      best.triangles.insert(best.triangles.end(), right.triangles.begin(), right.triangles.end());
+    }
+    return best;
+  }
+
+  const FaceContours& faces_;
+  std::vector<std::uint8_t> polygon_;
+};
+
+bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& cycle, Facet& facet) {
+  // Both orientations of a polygon must get the same triangles: start at the smallest vertex and walk
+  // towards the smaller neighbour; turn the triangles round where that was against the orientation.
+  std::vector<std::uint8_t> polygon(cycle);
+  const bool turned = polygon.back() < polygon[1];
+  if (turned) std::reverse(polygon.begin() + 1, polygon.end());
+  const auto triangles = ChordTriangulation(faces, polygon).best();
+  for (const auto& t : triangles) {
+    Simplex simplex{polygon[t[0]], polygon[t[1]], polygon[t[2]]};
+    if (turned) std::swap(simplex[1], simplex[2]);
+    facet.simplices.push_back(simplex);
+  }
+  return !triangles.empty();
+}
+
+/// The cone from one of the component's own vertices: over all simplices that do not contain it.
+std::vector<Simplex> pulled_cone(const Component& c, std::uint8_t apex) {
+  std::vector<Simplex> cone;
+  for (const Simplex& s : c.boundary)
+    if (s[0] != apex && s[1] != apex && s[2] != apex) cone.push_back({apex, s[0], s[1], s[2]});
+  return cone;
+}
+
+bool pull(const FaceContours& faces, const Component& c, Facet& facet) {
+  const SigmaComplex sigma(faces, c.boundary);
+  for (const std::uint8_t apex : c.vertices) {
+    auto cone = pulled_cone(c, apex);
+    if (!facet.simplices.empty() && cone.size() >= facet.simplices.size()) continue;
+    if (std::all_of(cone.begin(), cone.end(), [&](const Simplex& s) { return sigma.allows(s); }))
+      facet.simplices = std::move(cone);
+  }
+  return !facet.simplices.empty();
+}
+
+/// The cone from an added vertex.
+std::vector<Simplex> cone(int n, const Component& c, std::uint8_t apex) {
+  std::vector<Simplex> result;
+  for (const Simplex& s : c.boundary) {
+    Simplex simplex{apex};
+    std::copy_n(s.begin(), n - 1, simplex.begin() + 1);
+    result.push_back(simplex);
+  }
+  return result;
+}
+
+using SignedFace = std::pair<Simplex, int>;
+
+/// A simplex with ascending vertices and the sign of the permutation.
+SignedFace sorted_face(Simplex s, int count) {
+  int sign = 1;
+  for (int i = 1; i < count; ++i)
+    for (int j = i; j > 0 && s[j] < s[j - 1]; --j) {
+      std::swap(s[j], s[j - 1]);
+      sign = -sign;
+    }
+  return {s, sign};
+}
+
+/// True if the oriented boundary of the n-vertex simplices is exactly `boundary`.
+bool is_bounded_by(int n, const std::vector<Simplex>& simplices, const std::vector<Simplex>& boundary) {
+  std::map<Simplex, int> sum;
+  for (const Simplex& s : simplices)
+    for (int drop = 0; drop < n; ++drop) {
+      Simplex face{};
+      for (int i = 0, k = 0; i < n; ++i)
+        if (i != drop) face[k++] = s[i];
+      const auto [key, sign] = sorted_face(face, n - 1);
+      sum[key] += drop % 2 == 0 ? sign : -sign;
+    }
+  std::erase_if(sum, [](const auto& entry) { return entry.second == 0; });
+  if (sum.size() != boundary.size()) return false;
+  return std::all_of(boundary.begin(), boundary.end(), [&](Simplex s) {
+    for (int i = n - 1; i < 4; ++i) s[i] = 0;
+    const auto [key, sign] = sorted_face(s, n - 1);
+    const auto found = sum.find(key);
+    return found != sum.end() && found->second == sign;
+  });
+}
+
+/// The part of the hull's contour that a component bounds, if it bounds one.
+bool take_from_hull(int n, const std::vector<Simplex>& hull, const Component& c, Facet& facet) {
+  std::vector<Simplex> part;
+  for (const Simplex& s : hull) {
+    const auto inside = std::count_if(s.begin(), s.begin() + n, [&](std::uint8_t v) {
+      return std::binary_search(c.vertices.begin(), c.vertices.end(), v);
+    });
+    if (inside == n) part.push_back(s);
+    if (inside != 0 && inside != n) return false;  // the hull joins what the rule keeps apart
+  }
+  if (!is_bounded_by(n, part, c.boundary)) return false;
+  facet.simplices = std::move(part);
+  return true;
+}
+
+/// The corners of `inside` that are joined with `corner` by edges and by the diagonals of squares.
+Signature joined_with(const Tile& tile, Signature inside, std::uint8_t corner) {
+  const auto near = [&](std::uint32_t a, std::uint32_t b) {
+    int distance = 0;
+    for (int i = 0; i < tile.dim; ++i) distance += tile.corners[a][i] != tile.corners[b][i] ? 1 : 0;
+    return distance <= 2;
+  };
+  Signature reached = Signature{1} << corner;
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (std::uint32_t a = 0; a < tile.corner_count(); ++a)
+      for (std::uint32_t b = 0; b < tile.corner_count(); ++b)
+        if (((reached >> a) & 1u) != 0 && ((inside >> b) & 1u) != 0 && ((reached >> b) & 1u) == 0 && near(a, b)) {
+          reached |= Signature{1} << b;
+          grown = true;
+        }
+  }
+  return reached;
+}
+
+/// Fills a component from the hull of the side that the alternative joins; where that hull joins more than the rule
+/// does, from the hull of the component's own part of that side.
+bool fill_from_hull(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
+                    Facet& facet) {
+  const Tile& tile = faces.tile();
+  const bool low = faces.alternative() == Alternative::low;
+  const Signature inside = low ? ~signature & tile.full() : signature;
+  const auto [a, b] = tile.edges[facet.points.front()];
+  const Signature own = joined_with(tile, inside, ((inside >> a) & 1u) != 0 ? a : b);
+  for (const Signature corners : {inside, own}) {
+    auto hull = hulls.contour(corners);
+    if (!low)  // out of the hull is towards low
+      for (Simplex& s : hull) std::swap(s[tile.dim - 1], s[tile.dim - 2]);
+    if (take_from_hull(tile.dim, hull, c, facet)) return true;
+  }
+  return false;
+}
+
+/// Number of facets of the tile's faces that lie in a component.
+std::uint32_t facets_around(const FaceContours& faces, Signature signature, const Component& c) {
+  std::uint32_t count = 0;
+  for (std::uint32_t f = 0; f < faces.tile().faces.size(); ++f)
+    for (const Facet& facet : faces.face_contour(f, signature).facets)
+      if (std::binary_search(c.vertices.begin(), c.vertices.end(), faces.lift(f, facet.points.front()))) ++count;
+  return count;
+}
+
+/// A component that is a simplex's boundary is filled by that simplex.
+bool fill_simplex(int n, const Component& c, Facet& facet) {
+  if (c.vertices.size() != static_cast<std::size_t>(n)) return false;
+  facet.simplices = n == 3 ? std::vector{Simplex{facet.points[0], facet.points[1], facet.points[2]}}
+                           : pulled_cone(c, c.vertices.front());
+  return true;
+}
+
+/// Orients tetrahedra that fill a component so that its triangles are their boundary.
+std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& c) {
+  std::map<Simplex, int> known;  // triangles by ascending vertices, with the sign that a tetrahedron on them needs
+  for (const Simplex& s : c.boundary) {
+    const auto [key, sign] = sorted_face({s[0], s[1], s[2], 0}, 3);
+    known[key] = sign;
+  }
+  std::vector<Simplex> result;
+  while (!tetrahedra.empty()) {
+    const std::size_t before = tetrahedra.size();
+    std::erase_if(tetrahedra, [&](const Simplex& t) {
+      std::array<SignedFace, 4> faces;
+      int sign = 0;
+      for (int drop = 0; drop < 4; ++drop) {
+        Simplex face{};
+        for (int i = 0, k = 0; i < 4; ++i)
+          if (i != drop) face[k++] = t[i];
+        faces[drop] = sorted_face(face, 3);
+        if (drop % 2 != 0) faces[drop].second = -faces[drop].second;
+        const auto found = known.find(faces[drop].first);
+        if (found != known.end() && sign == 0) sign = found->second * faces[drop].second;
+      }
+      if (sign == 0) return false;
+      for (const auto& [face, own] : faces) known.try_emplace(face, -sign * own);  // for the one on the other side
+      result.push_back(t);
+      if (sign < 0) std::swap(result.back()[2], result.back()[3]);
+      return true;
+    });
+    if (tetrahedra.size() == before) throw std::logic_error("a filling that does not hang together");
+  }
+  return result;
+}
+
+/// Fills without adding a vertex: from the hull, or as a cone from one of the component's own vertices (a polygon: by
+/// chords), whichever needs fewer simplices.
+bool fill_compact(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
+                  std::uint8_t own_vertex, Facet& facet) {
+  Facet other;
+  facet.filling = Filling::pulled;
+  const bool from_hull = fill_from_hull(faces, hulls, signature, c, facet);
+  const bool from_own = faces.dim() == 3 ? !from_hull && cut_by_chords(faces, facet.points, other)
+                        : c.euler == 2   ? pull(faces, c, other)
+                                         : false;
+  if (from_own && (!from_hull || other.simplices.size() < facet.simplices.size()))
+    facet.simplices = std::move(other.simplices);
+  if (faces.dim() == 4 && c.euler == 2) {
+    const std::size_t limit = facet.simplices.empty() ? c.boundary.size() - 1 : facet.simplices.size() - 1;
+    Shelling shelled = shell_sphere(c.boundary, SigmaComplex(faces, c.boundary), limit);
+    if (!shelled.empty()) {
+      for (const Simplex& t : shelled.rest)
+        shelled.tetrahedra.push_back({own_vertex, t[0], t[1], t[2]});  // the cone vertex first
+      facet.simplices = oriented(std::move(shelled.tetrahedra), c);
+      facet.filling = shelled.rest.empty() ? Filling::pulled : Filling::cone;
+    }
+  }
+  return !facet.simplices.empty();
+}
+
+}  // namespace
+
+void fill(const FaceContours& faces, const FillingSources& sources, Signature signature, TileContour& contour) {
+  const int n = faces.dim();
+  const bool compact = faces.triangulation() == Triangulation::compact;
+  for (const Component& c : components_of(n, contour.boundary)) {
+    Facet facet;
+    facet.boundary_euler = c.euler;
+    facet.boundary_facets = facets_around(faces, signature, c);
+    for (const std::uint8_t v : c.vertices)
+      if (v < faces.tile().edge_count()) facet.points.push_back(v);
+    if (n == 3) facet.points = cycle_of(c);
+    if (fill_simplex(n, c, facet)) {
+      facet.filling = Filling::simplex;
+    } else if (const auto own = static_cast<std::uint8_t>(faces.own_base() + contour.cone_vertices);
+               compact && fill_compact(faces, *sources.hulls, signature, c, own, facet)) {
+      if (facet.filling == Filling::cone) ++contour.cone_vertices;
+    } else if (n == 4 && c.euler != 2) {
+      facet.filling = Filling::side;
+      fill_by_side(faces, *sources.side_regions, signature, c.boundary, contour, facet);
+    } else {
+      facet.filling = Filling::cone;
+      facet.simplices = cone(n, c, static_cast<std::uint8_t>(faces.own_base() + contour.cone_vertices++));
+    }
+    contour.facets.push_back(std::move(facet));
+  }
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contours from convex hulls (private to the generator).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "filling/tile_contour.hpp"
+
+namespace tegl::gen {
+
+/// All hyperplanes through the midpoints of a tile's edges, ready to be asked for the hulls of its signatures.
+class HullContours {
+ public:
+  explicit HullContours(const Tile& tile);
+
+  /// The facets of the convex hull of the `inside` corners and of the midpoints of the critical edges that do not lie
+  /// in the tile's boundary, triangulated without further vertices: every face of the hull is coned from its smallest
+  /// vertex, so the triangulation in a face of the tile is that of the face's own hull. Vertices are edges. Oriented
+  /// so that the positive side faces out of the hull.
+  [[nodiscard]] std::vector<Simplex> contour(Signature inside) const;
+
+ private:
+  using Point = std::array<int, 4>;
+  using Edges = std::uint64_t;  ///< set of edges
+  struct Hyperplane {
+    Point normal;
+    Edges on = 0, above = 0, below = 0;  ///< midpoints
+    Signature corners_above = 0, corners_below = 0;
+  };
+  struct Facet {
+    Edges vertices;
+    Point outward;
+  };
+
+  void add_hyperplanes(std::vector<std::uint8_t>& chosen);
+  [[nodiscard]] Point normal_of(const std::vector<std::uint8_t>& chosen) const;
+  [[nodiscard]] bool spans_facet(Edges vertices) const;
+  void pull(Edges face, int dim, const std::vector<Edges>& all, int depth, Simplex& simplex, const Point& outward,
+            std::vector<Simplex>& result) const;
+  void emit(Simplex simplex, const Point& outward, std::vector<Simplex>& result) const;
+
+  const Tile& tile_;
+  std::vector<Point> corners_, midpoints_;  ///< coordinates times 2
+  std::vector<Edges> tile_faces_;
+  std::vector<Hyperplane> hyperplanes_;
+};
+
+}  // namespace tegl::gen

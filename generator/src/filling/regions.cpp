@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The contours of the tile and of its faces come from ContourBuilder.
+#include "filling/regions.hpp"
+
+#include "filling/facets.hpp"
+
+namespace tegl::gen {
+
+RegionBuilder::RegionBuilder(const Lattice& lattice, int k, Alternative alternative, Triangulation triangulation,
+                             RegionStyle style)
+    : SignatureRegions(lattice, k, contours_by_dimension(lattice, k, alternative, triangulation), style) {}
+
+}  // namespace tegl::gen

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Work is cut into units that threads take one by one; figures are sums, so that their order does not matter.
+#include "filling/resolutions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "symmetry/tile_symmetry.hpp"
+#include "tegl/facets/tile_certifier.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+using facets::Alternative;
+using facets::Choice;
+using facets::FaceLattice;
+using facets::Fault;
+using facets::TileCertifier;
+using FacetSignature = facets::Signature;
+
+std::string text_of(const FaceLattice& lattice, FacetSignature signature, const facets::Resolution& resolution,
+                    Fault fault) {
+  std::string choices;
+  for (std::size_t f = 0; f < resolution.choices.size(); ++f)
+    if (lattice.faces()[f].dim >= 2) choices += "slh"[static_cast<std::size_t>(resolution.choices[f])];
+  return fmt::format("signature {}, faces resolved {} (s separate, l low, h high), {} alternative: {}", signature,
+                     choices, resolution.alternative == Alternative::low ? "low" : "high", facets::fault_name(fault));
+}
+
+/// What one thread works with.
+class Worker {
+ public:
+  explicit Worker(const FaceLattice& lattice) : certifier_(lattice), choices_(lattice.faces().size()) {}
+
+  std::vector<Choice>& choices() { return choices_; }
+  [[nodiscard]] const ResolutionFigures& figures() const { return figures_; }
+
+  /// Certifies one tile; each of its components counts `weight` times. Has it one that is no sphere?
+  bool certify(FacetSignature signature, Alternative alternative, std::uint64_t weight) {
+    const facets::Resolution resolution{choices_, alternative};
+    const Fault fault = certifier_.certify(signature, resolution);
+    const FaceLattice& lattice = certifier_.lattice();
+    if (fault != Fault::none) throw Error(ErrorCode::CertificateFailed, text_of(lattice, signature, resolution, fault));
+    const facets::TileFacets& tile = certifier_.tile();
+    std::uint64_t simplices = 0;
+    for (const facets::Facet& facet : tile.facets) simplices += facet.simplices.size();
+    figures_.tiles += 1;
+    figures_.simplices += simplices;
+    figures_.max_simplices = std::max(figures_.max_simplices, simplices);
+    for (const facets::Facet& facet : tile.facets) ++figures_.by_filling[static_cast<std::size_t>(facet.filling)];
+    bool others = false;
+    for (const int euler : tile.sigma_euler) {
+      if (weight > 0) figures_.euler[euler] += weight;
+      // Of a Sigma of odd dimension the Euler characteristic is 0, whatever it is.
+      others |= lattice.dim() % 2 == 0 && lattice.dim() > 2 && euler != 2;
+    }
+    return others;
+  }
+
+  /// A pair that stands for `alike` ones of its signature, which has an orbit of `orbit`.
+  void count_pair(std::uint64_t orbit, std::uint64_t alike, bool non_spherical) {
+    figures_.pairs += orbit * alike;
+    figures_.pairs_by_class += alike;
+    figures_.orbits += 1;
+    if (non_spherical) figures_.non_spherical += orbit * alike;
+  }
+
+ private:
+  TileCertifier certifier_;
+  std::vector<Choice> choices_;
+  ResolutionFigures figures_;
+};
+
+void add(ResolutionFigures& to, const ResolutionFigures& more) {
+  to.orbits += more.orbits;
+  to.pairs += more.pairs, to.pairs_by_class += more.pairs_by_class, to.tiles += more.tiles;
+  to.non_spherical += more.non_spherical, to.simplices += more.simplices;
+  to.max_simplices = std::max(to.max_simplices, more.max_simplices);
+  for (std::size_t k = 0; k < to.by_filling.size(); ++k) to.by_filling[k] += more.by_filling[k];
+  for (const auto& [euler, count] : more.euler) to.euler[euler] += count;
+}
+
+/// Does `work(worker, unit)` for all units on some threads, and adds up.
+template <class Work>
+ResolutionFigures on_threads(const FaceLattice& lattice, std::uint64_t units, unsigned threads,
+                             const Progress& progress, const Work& work) {
+  std::mutex guard;
+  std::uint64_t done = 0;
+  ResolutionFigures total;
+  const auto one = [&](Worker& worker, std::uint64_t unit) {
+    work(worker, unit);
+    if (!progress) return;
+    const std::lock_guard lock(guard);
+    progress(static_cast<double>(++done) / static_cast<double>(units));
+  };
+  in_parallel(
+      units, 1, threads, [&] { return Worker(lattice); }, one,
+      [&](const Worker& worker) { add(total, worker.figures()); });
+  return total;
+}
+
+/// The resolutions of one signature up to the symmetries that keep it: how its stabiliser moves the ambiguous polygons.
+/// A resolution is a set of polygons, those with a high centre, as bits.
+class ResolutionOrbits {
+ public:
+  ResolutionOrbits(const FaceLattice& lattice, FacetSignature signature, const std::vector<std::uint32_t>& polygons,
+                   const std::vector<TileSymmetry>& elements) {
+    for (const TileSymmetry& g : elements) {
+      const auto image = [&g](FacetSignature corners) {
+        FacetSignature moved = 0;
+        for (std::size_t c = 0; c < g.corner.size(); ++c) moved |= ((corners >> c) & 1u) << g.corner[c];
+        return moved;
+      };
+      if (g.inverts || image(signature) != signature) continue;
+      std::vector<std::size_t> to;
+      for (const std::uint32_t f : polygons) {
+        const FacetSignature moved = image(lattice.faces()[f].corners);
+        to.push_back(static_cast<std::size_t>(
+            std::find_if(polygons.begin(), polygons.end(),
+                         [&](std::uint32_t h) { return lattice.faces()[h].corners == moved; }) -
+            polygons.begin()));
+      }
+      // By bytes, so that a set is moved by three look-ups.
+      Permutation& permutation = permutations_.emplace_back();
+      for (std::size_t byte = 0; byte < permutation.size(); ++byte)
+        for (std::uint32_t value = 0; value < 256; ++value)
+          for (std::size_t i = 8 * byte; i < std::min(polygons.size(), 8 * byte + 8); ++i)
+            if (((value >> (i - 8 * byte)) & 1u) != 0) permutation[byte][value] |= std::uint32_t{1} << to[i];
+    }
+  }
+
+  /// How many resolutions the orbit has, if this is its smallest; else 0.
+  [[nodiscard]] std::uint64_t length_if_smallest(std::uint32_t resolution) const {
+    std::uint64_t keep = 0;
+    for (const Permutation& p : permutations_) {
+      const std::uint32_t moved =
+          p[0][resolution & 0xffu] | p[1][resolution >> 8 & 0xffu] | p[2][resolution >> 16 & 0xffu];
+      if (moved < resolution) return 0;
+      keep += moved == resolution ? 1 : 0;
+    }
+    return permutations_.size() / keep;
+  }
+
+ private:
+  using Permutation = std::array<std::array<std::uint32_t, 256>, 3>;
+  std::vector<Permutation> permutations_;
+};
+
+/// Some resolutions of one class's signature.
+struct Unit {
+  std::size_t index;  ///< of the class
+  std::uint64_t begin, end;
+};
+
+/// A counter through a sequence of its own for every number: splitmix64.
+class Sequence {
+ public:
+  using result_type = std::uint64_t;
+  Sequence(std::uint64_t seed, std::uint64_t number) : state_(seed) { state_ = (*this)() ^ (number * kStep); }
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return ~result_type{0}; }
+  result_type operator()() {
+    std::uint64_t z = state_ += kStep;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+
+ private:
+  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15u;
+  std::uint64_t state_;
+};
+
+}  // namespace
+
+FaceLattice face_lattice(TileKind kind, int n) {
+  switch (kind) {
+    case TileKind::simplex:
+      return FaceLattice::simplex(n);
+    case TileKind::octahedron:
+      return FaceLattice::octahedron(n);
+    case TileKind::cube:
+      break;
+  }
+  return FaceLattice::cube(n);
+}
+
+std::vector<std::uint32_t> ambiguous_polygons(const FaceLattice& lattice, FacetSignature signature) {
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t f = 0; f < lattice.faces().size(); ++f) {
+    const facets::Face& face = lattice.faces()[f];
+    if (face.dim != 2) continue;
+    const auto changes = std::count_if(face.faces.begin(), face.faces.end(), [&](std::uint32_t edge) {
+      return std::popcount(signature & lattice.faces()[edge].corners) == 1;
+    });
+    if (changes > 2) result.push_back(f);
+  }
+  return result;
+}
+
+ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads, const Progress& progress) {
+  constexpr std::uint64_t kUnit = 4096;
+  if (n < 2 || n > kMaxEnumeratedDim)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("all resolutions in dimension {}: expected 2 to {}", n, kMaxEnumeratedDim));
+  const Lattice tiles(kind, n);
+  const FaceLattice lattice = face_lattice(kind, n);
+  const auto elements = symmetries(tiles.tile(n), GroupKind::Full, false);
+  const Transversal classes = transversal(tiles.tile(n), elements);
+  std::vector<std::vector<std::uint32_t>> ambiguous;
+  std::vector<ResolutionOrbits> orbits;
+  std::vector<Unit> units;
+  for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
+    ambiguous.push_back(ambiguous_polygons(lattice, classes.representatives[c]));
+    orbits.emplace_back(lattice, classes.representatives[c], ambiguous[c], elements);
+    const std::uint64_t resolutions = std::uint64_t{1} << ambiguous[c].size();
+    for (std::uint64_t begin = 0; begin < resolutions; begin += kUnit)
+      units.push_back({c, begin, std::min(resolutions, begin + kUnit)});
+  }
+  std::vector<std::atomic<bool>> with_others(classes.representatives.size());
+  const auto work = [&](Worker& worker, std::uint64_t number) {
+    const auto& [c, begin, end] = units[number];
+    const std::uint64_t orbit = classes.orbit_length[c];
+    for (std::uint64_t r = begin; r < end; ++r) {
+      const std::uint64_t alike = orbits[c].length_if_smallest(static_cast<std::uint32_t>(r));
+      if (alike == 0) continue;
+      std::fill(worker.choices().begin(), worker.choices().end(), Choice::separate);
+      for (std::size_t i = 0; i < ambiguous[c].size(); ++i)
+        worker.choices()[ambiguous[c][i]] = ((r >> i) & 1u) != 0 ? Choice::high : Choice::low;
+      const bool others = worker.certify(classes.representatives[c], Alternative::low, orbit * alike);
+      if (others) worker.certify(classes.representatives[c], Alternative::high, 0);
+      if (others) with_others[c] = true;
+      worker.count_pair(orbit, alike, others);
+    }
+  };
+  ResolutionFigures figures = on_threads(lattice, units.size(), threads, progress, work);
+  figures.classes = classes.representatives.size();
+  for (const auto& others : with_others) figures.classes_with_non_spherical += others ? 1 : 0;
+  return figures;
+}
+
+ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std::uint64_t seed, unsigned threads,
+                                 const Progress& progress) {
+  const FaceLattice lattice = face_lattice(kind, n);
+  const std::uint64_t unit = n < 5 ? 256 : 1;
+  const auto work = [&](Worker& worker, std::uint64_t number) {
+    for (std::uint64_t i = number * unit; i < std::min(count, (number + 1) * unit); ++i) {
+      Sequence random(seed, i);
+      // Where half of the corners are high, nearly all of a tile of five or more dimensions hangs together: in every
+      // other tile fewer of them are, or fewer are low, so that there are tiles with several components, too.
+      FacetSignature signature = random();
+      if (const std::uint64_t dice = random(); (dice & 1u) != 0) {
+        for (std::uint64_t times = dice >> 1 & 3u; times > 0; --times) signature &= random();
+        if ((dice & 8u) != 0) signature = ~signature;
+      }
+      signature &= lattice.faces().back().corners;
+      for (std::size_t f = 0; f < lattice.faces().size(); ++f)
+        worker.choices()[f] = lattice.faces()[f].dim < 2 ? Choice::separate : static_cast<Choice>(random() % 3);
+      const Alternative alternative = (random() & 1u) != 0 ? Alternative::high : Alternative::low;
+      worker.count_pair(1, 1, worker.certify(signature, alternative, 1));
+    }
+  };
+  return on_threads(lattice, (count + unit - 1) / unit, threads, progress, work);
+}
+
+}  // namespace tegl::gen

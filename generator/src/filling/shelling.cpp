@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The search for a short order of tetrahedra that takes a ball apart.
+#include "filling/shelling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <set>
+
+namespace tegl::gen {
+
+namespace {
+
+constexpr std::size_t kMost = 32;  // vertices of a component
+constexpr std::uint8_t kNone = 0xff;
+
+/// Numbers that are the same everywhere (G. Marsaglia, Xorshift RNGs, 2003).
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : state_(seed) {}
+  std::uint32_t below(std::uint32_t n) {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 17;
+    state_ ^= state_ << 5;
+    return state_ % n;
+  }
+
+ private:
+  std::uint32_t state_;
+};
+
+/// The sphere around what is left of the ball.
+class Front {
+ public:
+  Front(const std::vector<std::uint8_t>& vertices, const std::vector<std::array<std::uint8_t, 3>>& triangles,
+        const SigmaComplex& sigma)
+      : vertices_(vertices), sigma_(&sigma), left_(vertices.size()) {
+    for (auto& row : third_) row.fill(kNone);
+    for (const auto& t : triangles) add(t[0], t[1], t[2]);
+  }
+
+  [[nodiscard]] std::size_t vertices_left() const { return left_; }
+  [[nodiscard]] unsigned degree(std::uint8_t v) const { return degree_[v]; }
+  [[nodiscard]] const std::vector<Simplex>& tetrahedra() const { return tetrahedra_; }
+
+  /// Takes off the tetrahedron around a vertex of degree 3; what is left is a tetrahedron if there were 4.
+  bool remove(std::uint8_t v) {
+    const std::uint8_t a = neighbour(v), b = third_[v][a], c = third_[v][b];
+    if (left_ == 4) return take(v, a, b, c);
+    if (used_triangles_.test(triangle_key(a, b, c)) || !take(v, a, b, c)) return false;
+    drop(v, a, b);
+    drop(v, b, c);
+    drop(v, c, a);
+    add(a, b, c);
+    --left_;
+    return true;
+  }
+
+  /// Exchanges the edge v-w for the other diagonal.
+  bool flip(std::uint8_t v, std::uint8_t w) {
+    const std::uint8_t a = third_[v][w], b = third_[w][v];
+    if (a == b || used_edges_.test(a * kMost + b) || !take(v, w, a, b)) return false;
+    drop(v, w, a);
+    drop(w, v, b);
+    add(v, b, a);
+    add(w, a, b);
+    return true;
+  }
+
+  /// The vertices around v, in cyclic order.
+  void ring(std::uint8_t v, std::vector<std::uint8_t>& out) const {
+    out.clear();
+    const std::uint8_t first = neighbour(v);
+    std::uint8_t at = first;
+    do {
+      out.push_back(at);
+      at = third_[v][at];
+    } while (at != first);
+  }
+
+  /// Its triangles, by ascending vertices.
+  [[nodiscard]] std::vector<Simplex> triangles() const {
+    std::vector<Simplex> result;
+    for (std::uint8_t a = 0; a < vertices_.size(); ++a)
+      for (std::uint8_t b = 0; b < vertices_.size(); ++b)
+        if (const std::uint8_t c = third_[a][b]; c != kNone && a < b && a < c) {
+          Simplex t{vertices_[a], vertices_[b], vertices_[c], 0};
+          std::sort(t.begin(), t.begin() + 3);
+          if (std::find(result.begin(), result.end(), t) == result.end()) result.push_back(t);
+        }
+    return result;
+  }
+
+  /// A tetrahedron, when nothing but its boundary is left.
+  bool take_last() {
+    for (std::uint8_t v = 0; v < vertices_.size(); ++v)
+      if (degree_[v] == 3) return remove(v);
+    return false;
+  }
+
+ private:
+  static std::size_t triangle_key(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
+    std::array<std::uint8_t, 3> t{a, b, c};
+    std::sort(t.begin(), t.end());
+    return (t[0] * kMost + t[1]) * kMost + t[2];
+  }
+  [[nodiscard]] std::uint8_t neighbour(std::uint8_t v) const {
+    std::uint8_t w = 0;
+    while (third_[v][w] == kNone) ++w;
+    return w;
+  }
+  void add(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
+    third_[a][b] = c, third_[b][c] = a, third_[c][a] = b;
+    ++degree_[a], ++degree_[b], ++degree_[c];
+    for (const auto& [x, y] : {std::pair{a, b}, {b, c}, {c, a}}) {
+      used_edges_.set(x * kMost + y);
+      used_edges_.set(y * kMost + x);
+    }
+    used_triangles_.set(triangle_key(a, b, c));
+  }
+  void drop(std::uint8_t a, std::uint8_t b, std::uint8_t c) {
+    third_[a][b] = third_[b][c] = third_[c][a] = kNone;
+    --degree_[a], --degree_[b], --degree_[c];
+  }
+  bool take(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) {
+    Simplex t{vertices_[a], vertices_[b], vertices_[c], vertices_[d]};
+    std::sort(t.begin(), t.end());
+    if (!sigma_->allows(t)) return false;
+    tetrahedra_.push_back(t);
+    return true;
+  }
+
+  const std::vector<std::uint8_t>& vertices_;
+  const SigmaComplex* sigma_;
+  std::size_t left_;
+  std::array<std::array<std::uint8_t, kMost>, kMost> third_;  ///< by directed edge: the triangle's other vertex
+  std::array<std::uint8_t, kMost> degree_{};
+  std::bitset<kMost * kMost> used_edges_;  ///< that the ball has, or had
+  std::bitset<kMost * kMost * kMost> used_triangles_;
+  std::vector<Simplex> tetrahedra_;
+};
+
+/// One step: the vertex of least degree, or often so, loses an edge, or goes. False at a dead end.
+bool step(Front& front, std::size_t vertices, Dice& dice) {
+  unsigned least = kMost;
+  const unsigned slack = dice.below(4) == 0 ? 1 : 0;
+  for (std::uint8_t v = 0; v < vertices; ++v)
+    if (front.degree(v) >= 3) least = std::min(least, front.degree(v));
+  std::vector<std::uint8_t> ties, ring;
+  for (std::uint8_t v = 0; v < vertices; ++v)
+    if (front.degree(v) >= 3 && front.degree(v) <= least + slack) ties.push_back(v);
+  for (std::size_t tries = 0; tries < 2 * ties.size(); ++tries) {
+    const std::uint8_t v = ties[dice.below(static_cast<std::uint32_t>(ties.size()))];
+    if (front.degree(v) == 3) {
+      if (front.remove(v)) return true;
+      continue;
+    }
+    front.ring(v, ring);
+    const auto start = dice.below(static_cast<std::uint32_t>(ring.size()));
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      if (front.flip(v, ring[(start + i) % ring.size()])) return true;
+  }
+  return false;
+}
+
+/// The triangles with consistent orientation, in an order and with a sign that do not depend on how they were given.
+std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<Simplex>& sphere,
+                                                   const std::vector<std::uint8_t>& vertices) {
+  const auto number = [&](std::uint8_t v) {
+    return static_cast<std::uint8_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+  };
+  std::vector<std::array<std::uint8_t, 3>> triangles;
+  for (const Simplex& s : sphere) {
+    std::array<std::uint8_t, 3> t{number(s[0]), number(s[1]), number(s[2])};
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    triangles.push_back(t);
+  }
+  std::sort(triangles.begin(), triangles.end());
+  // Of the two orientations: the one in which the first triangle, by its vertices, ascends.
+  const auto first = *std::min_element(triangles.begin(), triangles.end(), [](auto a, auto b) {
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    return a < b;
+  });
+  if (first[1] > first[2])
+    for (auto& t : triangles) std::swap(t[1], t[2]);
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
+}
+
+}  // namespace
+
+Shelling shell_sphere(const std::vector<Simplex>& sphere, const SigmaComplex& sigma, std::size_t limit) {
+  std::set<std::uint8_t> seen;
+  for (const Simplex& s : sphere) seen.insert(s.begin(), s.begin() + 3);
+  const std::vector<std::uint8_t> vertices(seen.begin(), seen.end());
+  if (vertices.size() < 5 || vertices.size() > kMost) return {};
+  const Front start(vertices, canonical(sphere, vertices), sigma);
+  constexpr int kTries = 40;
+  Dice dice(0x9e3779b9u);
+  Shelling best;
+  for (int i = 0; i < kTries && limit + 3 >= vertices.size(); ++i) {
+    Front front = start;
+    while (front.tetrahedra().size() + front.vertices_left() <= limit + 3) {
+      if (front.vertices_left() == 4 ? front.take_last() : !step(front, vertices.size(), dice)) {
+        if (front.vertices_left() == 4 && front.tetrahedra().size() <= limit) {
+          best = {front.tetrahedra(), {}};
+          limit = best.tetrahedra.size() - 1;
+        }
+        break;
+      }
+      const std::size_t coned = front.tetrahedra().size() + 2 * front.vertices_left() - 4;
+      if (front.vertices_left() == 4 || coned > limit) continue;
+      best = {front.tetrahedra(), front.triangles()};
+      limit = coned - 1;
+    }
+  }
+  std::sort(best.tetrahedra.begin(), best.tetrahedra.end());
+  return best;
+}
+
+}  // namespace tegl::gen

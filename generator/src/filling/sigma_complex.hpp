@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sigma as a complex (private to the generator).
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <vector>
+
+#include "filling/face_contours.hpp"
+#include "filling/tile_contour.hpp"
+
+namespace tegl::gen {
+
+/// The triangulation of one component of a 4-tile's Sigma, to be asked what a filling may draw.
+class SigmaComplex {
+ public:
+  SigmaComplex(const FaceContours& faces, const std::vector<Simplex>& component);
+
+  /// True if no edge, triangle or whole of the tetrahedron lies in a face of the tile without being Sigma's.
+  [[nodiscard]] bool allows(const Simplex& tetrahedron) const;
+
+ private:
+  [[nodiscard]] bool allows_triangle(std::uint8_t a, std::uint8_t b, std::uint8_t c) const;
+
+  const FaceContours& faces_;
+  std::array<std::bitset<256>, 256> adjacent_;
+  std::vector<std::array<std::uint8_t, 3>> triangles_;  // ascending vertices, sorted
+};
+
+}  // namespace tegl::gen

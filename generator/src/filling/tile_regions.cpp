@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Regions by the same recursion as facets: the high parts of a tile's faces and the tile's own facets close up
+// to spheres; each is coned.
+#include "filling/tile_regions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "tegl/table_contract.hpp"
+
+namespace tegl::gen {
+
+SignatureRegions::SignatureRegions(const Lattice& lattice, int k, std::span<const std::vector<TileContour>> contours,
+                                   RegionStyle style)
+    : tile_(&lattice.tile(k)), style_(style) {
+  if (k > 1) of_faces_ = std::make_unique<SignatureRegions>(lattice, k - 1, contours, style);
+  const std::vector<TileContour>& own = contours[static_cast<std::size_t>(k) - 1];
+  for (Signature s = 0; s <= tile_->full(); ++s) regions_.push_back(build(s, own[s]));
+}
+
+std::uint32_t SignatureRegions::own_base() const {
+  return tables::first_region_vertex(static_cast<std::uint32_t>(tile_->dim));
+}
+
+std::uint8_t SignatureRegions::lift(std::uint32_t f, std::uint8_t vertex) const {
+  const SubTile& face = tile_->faces[f];
+  const std::uint32_t corners = face.tile->corner_count();
+  if (vertex < corners) return face.corner[vertex];
+  if (vertex < corners + face.tile->edge_count())
+    return static_cast<std::uint8_t>(tile_->corner_count() + face.edge[vertex - corners]);
+  if (tile_->dim != 3 || vertex != of_faces_->own_base())
+    throw std::logic_error("a square has more than one region that is no triangle");
+  return static_cast<std::uint8_t>(own_base() - tile_->faces.size() + f);
+}
+
+std::uint32_t SignatureRegions::mask_of(Signature signature, std::uint8_t vertex) const {
+  const std::uint32_t points = tile_->corner_count() + tile_->edge_count();
+  if (vertex < points) return 1u << vertex;
+  if (vertex >= own_base()) return regions_[signature].own_masks[vertex - own_base()];
+  const std::uint32_t f = vertex - (own_base() - static_cast<std::uint32_t>(tile_->faces.size()));
+  const std::uint32_t in_face =
+      of_faces_->mask_of(tile_->restrict_to(f, signature), static_cast<std::uint8_t>(of_faces_->own_base()));
+  std::uint32_t mask = 0;
+  for (std::uint8_t v = 0; v < tile_->faces[f].tile->corner_count() + tile_->faces[f].tile->edge_count(); ++v)
+    if (((in_face >> v) & 1u) != 0) mask |= 1u << lift(f, v);
+  return mask;
+}
+
+/// The oriented boundary of the high part: the faces' regions, and the tile's facets. As the boundary of the
+/// high part a facet has the sign (-1)^k: its own convention puts the direction towards high last.
+std::vector<Simplex> SignatureRegions::boundary(Signature signature, const TileContour& contour) const {
+  const int k = tile_->dim;
+  std::vector<Simplex> result;
+  const auto add = [&](Simplex simplex, int sign) {
+    if (sign < 0) std::swap(simplex[k - 1], simplex[k - 2]);
+    result.push_back(simplex);
+  };
+  for (std::uint32_t f = 0; f < tile_->faces.size(); ++f)
+    for (Simplex simplex : of_faces_->regions(tile_->restrict_to(f, signature)).simplices) {
+      for (int i = 0; i < k; ++i) simplex[i] = lift(f, simplex[i]);
+      add(simplex, tile_->faces[f].sign);
+    }
+  for (const Facet& facet : contour.facets)
+    for (Simplex simplex : facet.simplices) {
+      for (int i = 0; i < k; ++i) simplex[i] = static_cast<std::uint8_t>(simplex[i] + tile_->corner_count());
+      add(simplex, k % 2 == 0 ? 1 : -1);
+    }
+  return result;
+}
+
+namespace {
+
+TileRegions regions_of_edge(Signature signature) {
+  TileRegions result;
+  if (signature == 1) result.simplices = {Simplex{0, 2}};
+  if (signature == 2) result.simplices = {Simplex{2, 1}};
+  if (signature == 3) result.simplices = {Simplex{0, 1}};
+  return result;
+}
+
+/// Splits a closed complex into connected components, by smallest vertex.
+std::vector<std::vector<Simplex>> split(std::vector<Simplex> rest, int vertices_per_simplex) {
+  std::vector<std::vector<Simplex>> components;
+  while (!rest.empty()) {
+    std::array<bool, 256> reached{};
+    std::uint8_t smallest = 255;
+    for (const Simplex& s : rest)
+      smallest = std::min(smallest, *std::min_element(s.begin(), s.begin() + vertices_per_simplex));
+    reached[smallest] = true;
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (const Simplex& s : rest)
+        if (std::any_of(s.begin(), s.begin() + vertices_per_simplex, [&](std::uint8_t v) { return reached[v]; }))
+          for (int i = 0; i < vertices_per_simplex; ++i) {
+            grown |= !reached[s[i]];
+            reached[s[i]] = true;
+          }
+    }
+    auto& component = components.emplace_back();
+    const auto kept = std::stable_partition(rest.begin(), rest.end(), [&](const Simplex& s) { return !reached[s[0]]; });
+    component.assign(kept, rest.end());
+    rest.erase(kept, rest.end());
+  }
+  return components;
+}
+
+}  // namespace
+
+TileRegions SignatureRegions::build(Signature signature, const TileContour& contour) const {
+  const int k = tile_->dim;
+  if (k == 1) return regions_of_edge(signature);
+  TileRegions result;
+  for (const auto& component : split(boundary(signature, contour), k)) {
+    std::uint32_t mask = 0;
+    std::uint8_t lowest = 255;
+    std::array<bool, 256> seen{};
+    std::size_t vertices = 0;
+    for (const Simplex& s : component)
+      for (int i = 0; i < k; ++i) {
+        vertices += seen[s[i]] ? 0 : 1;
+        seen[s[i]] = true;
+        lowest = std::min(lowest, s[i]);
+        if (s[i] < tile_->corner_count() + tile_->edge_count()) mask |= 1u << s[i];
+      }
+    const bool simplex = vertices == static_cast<std::size_t>(k) + 1 && component.size() == vertices;
+    const bool from_own_vertex = simplex || (k == 2 && style_ == RegionStyle::fan);
+    std::uint8_t apex = lowest;
+    if (!from_own_vertex) {
+      apex = static_cast<std::uint8_t>(own_base() + result.own_masks.size());
+      result.own_masks.push_back(mask);
+    }
+    for (const Simplex& s : component) {
+      if (std::find(s.begin(), s.begin() + k, apex) != s.begin() + k) continue;
+      Simplex cone{apex};
+      std::copy_n(s.begin(), k, cone.begin() + 1);
+      result.simplices.push_back(cone);
+    }
+  }
+  return result;
+}
+
+}  // namespace tegl::gen

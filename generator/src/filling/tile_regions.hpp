@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The high part of a tile, triangulated: what a contour bounds. Made from the contours of the tile and of its faces.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "filling/tile_contour.hpp"
+
+namespace tegl::gen {
+
+/// cone: every region that is no simplex is coned from its barycentre; no chord ever joins two points of the
+/// contour. fan: regions of squares are fans from a corner instead.
+enum class RegionStyle { cone, fan };
+
+/// The high part of a k-tile (k <= 3): disjoint balls. Local vertices as in the table contract.
+struct TileRegions {
+  std::vector<Simplex> simplices;        ///< k + 1 vertices each, det > 0
+  std::vector<std::uint32_t> own_masks;  ///< one per own vertex: corners (bit v) and edges (bit 2^k + e)
+};
+
+/// The regions of every signature of a k-tile, k = 1, 2, 3.
+class SignatureRegions {
+ public:
+  /// For k-tiles of a lattice, which must outlive it. `contours[d - 1]`: those of every signature of the d-tile, for d
+  /// = 1 to k.
+  SignatureRegions(const Lattice& lattice, int k, std::span<const std::vector<TileContour>> contours,
+                   RegionStyle style);
+
+  /// Those of a signature.
+  [[nodiscard]] const TileRegions& regions(Signature signature) const { return regions_[signature]; }
+  [[nodiscard]] const Tile& tile() const { return *tile_; }  ///< what is built
+  [[nodiscard]] std::uint32_t own_base() const;              ///< first local number of a tile's own vertices
+  /// The corners (bit v) and edge points (bit 2^k + e) whose mean a local vertex is, for any but the barycentres of
+  /// the contour's facets.
+  [[nodiscard]] std::uint32_t mask_of(Signature signature, std::uint8_t vertex) const;
+
+ private:
+  [[nodiscard]] TileRegions build(Signature signature, const TileContour& contour) const;
+  [[nodiscard]] std::vector<Simplex> boundary(Signature signature, const TileContour& contour) const;
+  [[nodiscard]] std::uint8_t lift(std::uint32_t f, std::uint8_t vertex) const;
+
+  const Tile* tile_;
+  RegionStyle style_;
+  std::unique_ptr<SignatureRegions> of_faces_;  ///< k > 1
+  std::vector<TileRegions> regions_;
+};
+
+}  // namespace tegl::gen

@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The parser is one table of options: what each is called, whether it takes a value, which commands know it, and
+// what it does to Options. The generator links nothing but fmt, hence no parser library.
+#include "program/cli.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "symmetry/transversal.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::gen {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw Error(ErrorCode::InvalidArgument, message + "; see gen --help");
+}
+
+/// The value among `choices` that has this name.
+template <typename Value, std::size_t Count>
+Value choose(std::string_view option, std::string_view given,
+             const std::array<std::pair<std::string_view, Value>, Count>& choices) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, value] : choices) {
+    if (name == given) {
+      return value;
+    }
+    names.push_back(name);
+  }
+  refuse(fmt::format("{} {}: expected {}", option, given, fmt::join(names, " or ")));
+}
+
+using Apply = void (*)(Options&, std::string_view);
+
+template <typename Number>
+void set_number(std::string_view option, std::string_view given, Number& number, Number least) {
+  const char* const end = given.data() + given.size();
+  const auto [stop, error] = std::from_chars(given.data(), end, number);
+  const bool in_range = error == std::errc{} && stop == end && number >= least;
+  if (in_range) return;
+  if (least == std::numeric_limits<Number>::min() && std::is_signed_v<Number>) {
+    refuse(fmt::format("{} {}: expected a whole number", option, given));
+  }
+  refuse(fmt::format("{} {}: expected a whole number from {} to {}", option, given, least,
+                     std::numeric_limits<Number>::max()));
+}
+
+void set_dim(Options& options, std::string_view given) {
+  set_number("--dim", given, options.dim, std::numeric_limits<int>::min());
+}
+
+void set_sample(Options& options, std::string_view given) {
+  set_number("--sample", given, options.sample, std::uint64_t{1});
+}
+
+void set_seed(Options& options, std::string_view given) { set_number("--seed", given, options.seed, std::uint64_t{0}); }
+
+void set_threads(Options& options, std::string_view given) { set_number("--threads", given, options.threads, 1U); }
+
+void set_group(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, GroupKind>;
+  options.group =
+      choose("--group", given, std::array{Pair{"full", GroupKind::Full}, Pair{"rotations", GroupKind::Rotations}});
+}
+
+void set_tile(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, TileKind>;
+  options.tile = choose("--tile", given,
+                        std::array{Pair{"cube", TileKind::cube}, Pair{"simplex", TileKind::simplex},
+                                   Pair{"octahedron", TileKind::octahedron}});
+}
+
+void set_alternative(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, Alternative>;
+  options.alternative =
+      choose("--alternative", given, std::array{Pair{"low", Alternative::low}, Pair{"high", Alternative::high}});
+}
+
+void set_layout(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, LayoutChoice>;
+  options.layout = choose("--layout", given,
+                          std::array{Pair{"class", LayoutChoice::Class}, Pair{"flat", LayoutChoice::Flat},
+                                     Pair{"auto", LayoutChoice::Auto}});
+}
+
+void set_triangulation(Options& options, std::string_view given) {
+  using Pair = std::pair<std::string_view, TriangulationChoice>;
+  options.triangulation =
+      choose("--triangulation", given,
+             std::array{Pair{"barycentric", TriangulationChoice::Barycentric},
+                        Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}});
+}
+
+/// Names separated by commas, in any order, each once.
+void set_languages(Options& options, std::string_view given) {
+  options.languages.clear();
+  for (std::size_t first = 0; first <= given.size();) {
+    const std::size_t end = std::min(given.find(',', first), given.size());
+    const std::string_view name = given.substr(first, end - first);
+    const auto* const found = std::find_if(std::begin(kLanguages), std::end(kLanguages),
+                                           [name](Language l) { return language_name(l) == name; });
+    if (found == std::end(kLanguages)) {
+      std::vector<std::string_view> names;
+      for (const Language l : kLanguages) {
+        names.push_back(language_name(l));
+      }
+      refuse(fmt::format("--language {}: '{}' is none: expected one or several, separated by commas, of {}", given,
+                         name, fmt::join(names, ", ")));
+    }
+    if (std::find(options.languages.begin(), options.languages.end(), *found) != options.languages.end()) {
+      refuse(fmt::format("--language {}: {} twice: expected each once", given, name));
+    }
+    options.languages.push_back(*found);
+    first = end + 1;
+  }
+}
+
+/// A set of commands, as bits.
+constexpr unsigned bit(Command command) { return 1U << static_cast<unsigned>(command); }
+constexpr unsigned kCount = bit(Command::Count);
+constexpr unsigned kTransversal = bit(Command::Transversal);
+constexpr unsigned kClasses = bit(Command::Classes);
+constexpr unsigned kCertify = bit(Command::Certify);
+constexpr unsigned kOut = bit(Command::Out);
+constexpr unsigned kCases = bit(Command::Cases);
+
+struct OptionSpec {
+  std::string_view name;
+  bool takes_value;
+  std::optional<Command> command;  ///< set if the option is itself a command
+  unsigned known_to;               ///< otherwise: the commands that know it
+  Apply apply;                     ///< null where naming the command is all it does
+};
+
+constexpr std::array kOptions{
+    OptionSpec{"--version", false, Command::Version, 0, nullptr},
+    OptionSpec{"--count", false, Command::Count, 0, nullptr},
+    OptionSpec{"--transversal", false, Command::Transversal, 0, nullptr},
+    OptionSpec{"--classes", false, Command::Classes, 0, nullptr},
+    OptionSpec{"--certify", false, Command::Certify, 0, nullptr},
+    OptionSpec{"--out", true, Command::Out, 0, [](Options& o, std::string_view given) { o.out = given; }},
+    OptionSpec{"--cases", true, Command::Cases, 0, [](Options& o, std::string_view given) { o.out = given; }},
+    OptionSpec{"--dim", true, std::nullopt, kCount | kTransversal | kClasses | kCertify | kOut | kCases, set_dim},
+    OptionSpec{"--tile", true, std::nullopt, kCount | kClasses | kCertify | kOut, set_tile},
+    OptionSpec{"--group", true, std::nullopt, kCount | kTransversal | kCertify, set_group},
+    OptionSpec{"--list", false, std::nullopt, kTransversal, [](Options& o, std::string_view) { o.list = true; }},
+    OptionSpec{"--inversion", false, std::nullopt, kCount | kCertify,
+               [](Options& o, std::string_view) { o.inversion = true; }},
+    OptionSpec{"--table-by-class", false, std::nullopt, kCertify,
+               [](Options& o, std::string_view) { o.table_by_class = true; }},
+    OptionSpec{"--all", false, std::nullopt, kCertify, [](Options& o, std::string_view) { o.all_resolutions = true; }},
+    OptionSpec{"--sample", true, std::nullopt, kCertify, set_sample},
+    OptionSpec{"--seed", true, std::nullopt, kCertify, set_seed},
+    OptionSpec{"--threads", true, std::nullopt, kCertify, set_threads},
+    OptionSpec{"--alternative", true, std::nullopt, kClasses, set_alternative},
+    OptionSpec{"--json", false, std::nullopt, kCount | kTransversal | kClasses | kCertify,
+               [](Options& o, std::string_view) { o.json = true; }},
+    OptionSpec{"--layout", true, std::nullopt, kOut, set_layout},
+    OptionSpec{"--language", true, std::nullopt, kOut, set_languages},
+    OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
+};
+
+/// The names of the options for which `wanted` holds, for messages.
+template <typename Predicate>
+std::string names_of(Predicate wanted) {
+  std::vector<std::string_view> names;
+  for (const OptionSpec& spec : kOptions) {
+    if (wanted(spec)) {
+      names.push_back(spec.name);
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// An option as given, and its value if it takes one.
+struct Given {
+  const OptionSpec* spec;
+  std::string_view value;
+};
+
+std::vector<Given> split(std::span<const std::string_view> arguments) {
+  std::vector<Given> result;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::size_t equals = arguments[i].find('=');
+    const std::string_view name = arguments[i].substr(0, equals);
+    const auto* const spec = std::find_if(kOptions.begin(), kOptions.end(),
+                                          [name](const OptionSpec& candidate) { return candidate.name == name; });
+    if (spec == kOptions.end()) {
+      refuse(fmt::format("unknown option '{}': expected one of --help, {}", arguments[i],
+                         names_of([](const OptionSpec&) { return true; })));
+    }
+    std::string_view value;
+    if (equals != std::string_view::npos) {
+      value = arguments[i].substr(equals + 1);
+    } else if (spec->takes_value && i + 1 < arguments.size() && !arguments[i + 1].starts_with("--")) {
+      value = arguments[++i];
+    }
+    if (spec->takes_value && value.empty()) {
+      refuse(fmt::format("{} has no value: expected one after it", name));
+    }
+    if (!spec->takes_value && equals != std::string_view::npos) {
+      refuse(fmt::format("{} takes no value, but '{}' was given", name, value));
+    }
+    result.push_back({spec, value});
+  }
+  return result;
+}
+
+/// The one option that is a command. Refuses none and several.
+const OptionSpec& command_of(const std::vector<Given>& given) {
+  const OptionSpec* command = nullptr;
+  for (const Given& option : given) {
+    if (!option.spec->command) {
+      continue;
+    }
+    if (command != nullptr && command != option.spec) {
+      refuse(fmt::format("{} and {} were both given: expected one command", command->name, option.spec->name));
+    }
+    command = option.spec;
+  }
+  if (command == nullptr) {
+    refuse(fmt::format("no command was given: expected one of --help, {}",
+                       names_of([](const OptionSpec& spec) { return spec.command.has_value(); })));
+  }
+  return *command;
+}
+
+/// Highest dimension in which single tiles are built.
+constexpr int kMaxSampledDim = 6;
+
+/// The dimensions that a command works in.
+void check_dim(const Options& options, std::string_view command) {
+  if (options.command == Command::Version) {
+    return;
+  }
+  const bool count = options.command == Command::Count;
+  const int lowest = count ? 1 : 2;
+  const bool sample = options.sample > 0 && options.tile == TileKind::cube;
+  const int highest = count                                           ? kMaxDim
+                      : options.command == Command::Transversal       ? kMaxSignatureDim
+                      : options.command == Command::Certify && sample ? kMaxSampledDim
+                                                                      : kMaxEnumeratedDim;
+  if (options.dim < lowest || options.dim > highest) {
+    const bool could_sample = options.command == Command::Certify && options.tile == TileKind::cube;
+    refuse(fmt::format("--dim {}: {} expects {} to {}{}", options.dim, command, lowest, highest,
+                       could_sample && !sample ? fmt::format(", with --sample to {}", kMaxSampledDim) : ""));
+  }
+}
+
+/// The dimensions that a tile other than the cube has, and what it goes with.
+void check_tile(const Options& options) {
+  if (options.tile == TileKind::cube) {
+    return;
+  }
+  const char* const name = tile_kind_name(options.tile);
+  const bool octahedron = options.tile == TileKind::octahedron;
+  if (octahedron ? options.dim != 3 : options.dim < 2 || options.dim > 4) {
+    refuse(fmt::format("--dim {}: --tile {} expects {}", options.dim, name, octahedron ? "3" : "2 to 4"));
+  }
+  if (options.table_by_class || options.layout == LayoutChoice::Class) {
+    refuse(fmt::format("--tile {} does not go with {}: expected a cube", name,
+                       options.table_by_class ? "--table-by-class" : "--layout class"));
+  }
+  for (const Language language : options.languages) {
+    if (language != Language::cpp && language != Language::json) {
+      refuse(
+          fmt::format("--tile {} does not go with --language {}: expected cpp or json", name, language_name(language)));
+    }
+  }
+}
+
+/// What goes with what in `--certify`: groups with the table by class alone, and that table in the dimensions that have
+/// one; a seed with a sample; threads with what takes time.
+void check_certify(const Options& options, const std::vector<const OptionSpec*>& seen) {
+  if (options.command != Command::Certify) {
+    return;
+  }
+  if (options.table_by_class && options.dim > 3) {
+    refuse(fmt::format("--dim {}: --table-by-class expects 2 or 3", options.dim));
+  }
+  const bool resolutions = options.all_resolutions || options.sample > 0;
+  if (options.all_resolutions && options.sample > 0) {
+    refuse("--all and --sample were both given: expected one of them");
+  }
+  if (options.table_by_class && resolutions) {
+    refuse(fmt::format("{} does not go with --table-by-class", options.sample > 0 ? "--sample" : "--all"));
+  }
+  for (const OptionSpec* const spec : seen) {
+    if (spec->name == "--seed" && options.sample == 0) {
+      refuse("--seed does not go with --certify without --sample");
+    }
+    if (spec->name == "--threads" && !resolutions) {
+      refuse("--threads does not go with --certify without --all or --sample");
+    }
+    if (!options.table_by_class && (spec->name == "--group" || spec->name == "--inversion")) {
+      refuse(fmt::format("{} does not go with --certify without --table-by-class", spec->name));
+    }
+  }
+}
+
+}  // namespace
+
+Options parse(std::span<const std::string_view> arguments) {
+  Options options;
+  for (const std::string_view argument : arguments) {
+    if (argument == "--help" || argument == "-h") {
+      return options;
+    }
+  }
+  const std::vector<Given> given = split(arguments);
+  const OptionSpec& command = command_of(given);
+  options.command = *command.command;
+  std::vector<const OptionSpec*> seen;
+  for (const Given& option : given) {
+    if (std::find(seen.begin(), seen.end(), option.spec) != seen.end()) {
+      refuse(fmt::format("{} was given more than once", option.spec->name));
+    }
+    seen.push_back(option.spec);
+    if (!option.spec->command && (option.spec->known_to & bit(options.command)) == 0) {
+      const unsigned command_bit = bit(options.command);
+      const std::string known = names_of([=](const OptionSpec& spec) { return (spec.known_to & command_bit) != 0; });
+      refuse(fmt::format("{} does not go with {}: expected {}", option.spec->name, command.name,
+                         known.empty() ? "nothing else" : "only " + known));
+    }
+    if (option.spec->apply != nullptr) {
+      option.spec->apply(options, option.value);
+    }
+  }
+  const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
+  if (!has_dim && options.command != Command::Version) {
+    refuse(fmt::format("{} without --dim: expected --dim N", command.name));
+  }
+  check_dim(options, command.name);
+  if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
+  check_certify(options, seen);
+  check_tile(options);
+  return options;
+}
+
+std::string version_text() {
+  return fmt::format("gen {} (table contract {})\n", TEGL_VERSION, tables::kContractVersion);
+}
+
+std::string help_text() {
+  return R"(gen: counts, proves and writes the tables that contours of n-dimensional images are built from.
+
+usage: gen --dim N COMMAND [OPTIONS]
+
+commands (one of)
+  --count          orbits of the 2^(2^N) signatures under the cube's symmetries, by Burnside's lemma (N = 1 ... 8)
+                   and, for N up to 4, by enumeration too: the two must agree
+  --transversal    the smallest signature of every class and its orbit's length (N = 2 ... 5), checked by Burnside's
+                   lemma and by the sum of the lengths; prints how many classes have orbits of which length
+  --classes        every class of signatures under all 2^N N! symmetries (N = 2 ... 4): its smallest signature,
+                   orbit length, stabiliser order, facets, components, Euler characteristics, ambiguous faces
+  --certify        proves every signature of both alternatives (N = 2 ... 4): closed, manifold, oriented, matching
+                   its neighbours; prints the figures. With --table-by-class: the pairs of neighbours in a table
+                   that has one entry per class
+  --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
+  --cases DIR      writes the catalogue of cases (N = 2 ... 4) into DIR: a Markdown page and its pictures
+  --help, -h       this text
+  --version        version of the program and of the tables' layout
+
+options of --count, --classes, --certify, --out
+  --tile cube|simplex|octahedron    what the tile is (default cube): simplices have N = 2 (triangle), 3 (tetrahedron) and
+                                    4, the octahedron has N = 3; their tables are written as C++ and JSON
+
+options of --count
+  --group full|rotations            all symmetries (default) or those of determinant +1
+  --inversion                       the exchange of high and low is a symmetry too
+  --json                            one object: dim, group, inversion, order, orbits. All numbers are plain JSON
+                                    integers; from N = 7 on orbits exceeds 2^53, so read it as a big integer
+
+options of --transversal
+  --group full|rotations            as above
+  --list                            prints the signatures instead, ascending, each with its orbit's length
+  --json                            for machines
+
+options of --classes
+  --alternative low|high            which corners stay connected in an ambiguous face (default low)
+  --json                            for machines
+
+options of --certify
+  --table-by-class                  builds the table that a group of symmetries suggests (N = 2, 3): every signature
+                                    takes its class's contour. --group and --inversion choose the group; with inversion
+                                    it is the table of the original marching cubes, and has holes (exit status 4)
+  --all                             every resolution of the ambiguous squares of every class (N = 2 ... 4), one tile for
+                                    all that are the same up to symmetry: in 4D 134 683 for 48 453 090, half a minute;
+                                    prints the histogram of Euler characteristics
+  --sample COUNT                    so many tiles, N = 2 ... 6, signatures and choices in all faces at random
+  --seed S                          which sample (default 1)
+  --threads T                       with --all and --sample (default: one per processor)
+  --json                            for machines
+
+options of --out
+  --layout class|flat|auto          one list of simplices per class or per signature; auto (default): the one that
+                                    measured faster for this dimension
+  --triangulation barycentric|compact|all
+                                    which triangulations to write (default all)
+  --language cpp|json|glsl|wgsl|cuda
+                                    what to write them in (default cpp); several with commas: json,glsl
+
+Facets are cycles of edges, each written as a ternary number, axis N-1 first, with e for the axis along the edge: in 3D
+1e0 is the edge along y at x = 0, z = 1. High corners are on a facet's positive side: on the left in 2D, where the
+right-hand normal points in 3D.
+
+examples
+  gen --dim 3 --count                                the 22 classes of marching cubes
+  gen --dim 3 --count --group rotations --inversion  its famous 15
+  gen --dim 8 --count --json
+  gen --dim 3 --classes
+  gen --dim 3 --tile octahedron --classes
+  gen --dim 4 --certify
+  gen --dim 4 --certify --all
+  gen --dim 5 --certify --sample 10000 --seed 7
+  gen --dim 4 --out tables
+  gen --dim 3 --certify --group rotations --inversion --table-by-class
+
+exit status
+  0  done
+  1  a fault in the generator itself, or memory exhausted
+  2  the command line: unknown, repeated, missing or contradictory options or values
+  3  the two counts disagree
+  4  a certificate failed; nothing was written
+  5  output could not be written
+)";
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// `gen --classes`, `--out` and `--cases`.
+#include "program/commands.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.hpp"
+#include "filling/facets.hpp"
+#include "pictures/cases.hpp"
+#include "program/print_figures.hpp"
+#include "symmetry/tile_symmetry.hpp"
+#include "symmetry/transversal.hpp"
+#include "tables/emit.hpp"
+#include "tables/table_set.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+std::vector<std::string> edge_names(const Tile& tile, const std::vector<std::uint8_t>& points) {
+  std::vector<std::string> names;
+  for (const std::uint8_t e : points) names.push_back(tile.edge_names[e]);
+  return names;
+}
+
+struct ClassReport {
+  Signature signature;
+  std::uint32_t orbit, stabiliser;
+  TileContour contour;
+  std::vector<std::uint32_t> ambiguous;
+};
+
+std::string json_of(const Tile& tile, const ClassReport& c) {
+  std::vector<std::string> facets, euler;
+  for (const Facet& facet : c.contour.facets) {
+    facets.push_back(fmt::format("[\"{}\"]", fmt::join(edge_names(tile, facet.points), "\", \"")));
+    euler.push_back(fmt::format("{}", facet.boundary_euler));
+  }
+  std::vector<std::string> ambiguous;
+  for (std::size_t k = 2; k < c.ambiguous.size(); ++k)
+    ambiguous.push_back(fmt::format("\"{}\": {}", k, c.ambiguous[k]));
+  return fmt::format(
+      "{{\"signature\": {}, \"orbit_length\": {}, \"stabiliser\": {}, \"components\": {}, \"facets\": [{}], "
+      "\"boundary_euler\": [{}], \"ambiguous_faces\": {{{}}}}}",
+      c.signature, c.orbit, c.stabiliser, c.contour.facets.size(), fmt::join(facets, ", "), fmt::join(euler, ", "),
+      fmt::join(ambiguous, ", "));
+}
+
+std::string text_of(const Tile& tile, const ClassReport& c) {
+  std::vector<std::string> facets, euler;
+  for (const Facet& facet : c.contour.facets) {
+    facets.push_back(fmt::format("({})", fmt::join(edge_names(tile, facet.points), " ")));
+    euler.push_back(fmt::format("{}", facet.boundary_euler));
+  }
+  std::vector<std::string> ambiguous;
+  for (std::size_t k = 2; k < c.ambiguous.size(); ++k) ambiguous.push_back(fmt::format("{}", c.ambiguous[k]));
+  return fmt::format("{:>9} {:>6} {:>10} {:>10}  {:<10} {:<10} {}", c.signature, c.orbit, c.stabiliser,
+                     c.contour.facets.size(), euler.empty() ? "-" : fmt::format("{}", fmt::join(euler, " ")),
+                     fmt::format("{}", fmt::join(ambiguous, " ")), fmt::join(facets, " "));
+}
+
+/// Seconds since the last call.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// A file to write, and the seconds that its text took.
+struct TimedFile {
+  EmittedFile file;
+  double seconds;
+};
+
+/// The files of all languages, each once.
+std::vector<TimedFile> emit_all(const TableSet& set, const std::vector<Language>& languages) {
+  std::vector<TimedFile> files;
+  for (const Language language : languages) {
+    Stopwatch watch;
+    std::vector<EmittedFile> emitted = emit(set, language);
+    const double seconds = watch.lap();
+    double bytes = 0;
+    for (const EmittedFile& file : emitted) bytes += static_cast<double>(file.text.size());
+    for (EmittedFile& file : emitted) {
+      // The words for a shader's storage buffer are the same file in GLSL and WGSL.
+      const auto same = [&file](const TimedFile& other) { return other.file.name == file.name; };
+      if (std::any_of(files.begin(), files.end(), same)) continue;
+      const double share = static_cast<double>(file.text.size()) / bytes;  // texts take time by their length
+      files.push_back({std::move(file), seconds * share});
+    }
+  }
+  return files;
+}
+
+/// Writes every file beside its target first and renames at the end: a failure leaves no half-written table. Adds the
+/// time that writing takes.
+void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& files) {
+  const auto part = [&](const TimedFile& timed) { return folder / (timed.file.name + ".part"); };
+  const auto fail = [&](const std::filesystem::path& path, const std::string& why) {
+    for (const TimedFile& timed : files) {
+      std::error_code ignored;
+      std::filesystem::remove(part(timed), ignored);
+    }
+    throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", path.string(), why));
+  };
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(folder, "cannot make the folder: " + error.message());
+  for (TimedFile& timed : files) {
+    const auto target = folder / timed.file.name;
+    std::filesystem::create_directories(target.parent_path(), error);
+    if (error) fail(target, "cannot make its folder: " + error.message());
+    if (std::filesystem::is_directory(target, error)) fail(target, "is a directory; expected a file, or nothing");
+    Stopwatch watch;
+    std::ofstream out(part(timed), std::ios::binary);
+    out.write(timed.file.text.data(), static_cast<std::streamsize>(timed.file.text.size()));
+    out.close();
+    if (!out) fail(target, "cannot be written");
+    timed.seconds += watch.lap();
+  }
+  for (const TimedFile& timed : files) {
+    std::filesystem::rename(part(timed), folder / timed.file.name, error);
+    if (error) fail(folder / timed.file.name, error.message());
+  }
+}
+
+}  // namespace
+
+int run_classes(const Options& options) {
+  const Lattice lattice(options.tile, options.dim);
+  const Alternative alternative = options.alternative;
+  const ContourBuilder builder(lattice, options.dim, alternative, Triangulation::barycentric);
+  const auto elements = symmetries(lattice.tile(options.dim), GroupKind::Full, false);
+  const Transversal classes = transversal(lattice.tile(options.dim), elements);
+  require_burnside_count(classes, elements);
+  if (options.json)
+    fmt::print(
+        "{{\"tile\": \"{}\", \"dim\": {}, \"alternative\": \"{}\", \"group\": \"full\", \"order\": {}, \"classes\": [",
+        tile_kind_name(options.tile), options.dim, alternative_name(alternative), elements.size());
+  else
+    fmt::print("signature  orbit stabiliser components  Euler      ambiguous  facets\n");
+  for (std::size_t c = 0; c < classes.representatives.size(); ++c) {
+    const Signature s = classes.representatives[c];
+    const ClassReport report{s, classes.orbit_length[c],
+                             static_cast<std::uint32_t>(elements.size() / classes.orbit_length[c]), builder.build(s),
+                             ambiguous_faces(lattice, options.dim, s)};
+    if (options.json)
+      fmt::print("{}\n  {}", c == 0 ? "" : ",", json_of(builder.tile(), report));
+    else
+      fmt::print("{}\n", text_of(builder.tile(), report));
+  }
+  if (options.json) fmt::print("\n]}}\n");
+  return 0;
+}
+
+int run_cases(const Options& options) {
+  std::vector<TimedFile> files;
+  for (EmittedFile& file : emit_cases(options.dim)) files.push_back({std::move(file), 0.0});
+  write_files(options.out, files);
+  fmt::print("wrote {} and {} pictures\n", files.front().file.name, files.size() - 1);
+  return 0;
+}
+
+int run_out(const Options& options) {
+  TableRequest request;
+  request.tile = options.tile;
+  request.dim = options.dim;
+  request.command = fmt::format("gen --dim {}", options.dim);
+  if (options.tile != TileKind::cube) request.command += fmt::format(" --tile {}", tile_kind_name(options.tile));
+  if (options.triangulation != TriangulationChoice::All)
+    request.triangulations = {options.triangulation == TriangulationChoice::Compact ? Triangulation::compact
+                                                                                    : Triangulation::barycentric};
+  if (options.triangulation != TriangulationChoice::All)
+    request.command += fmt::format(" --triangulation {}", triangulation_name(request.triangulations.front()));
+  if (options.layout == LayoutChoice::Class && options.dim > 2 &&
+      options.triangulation != TriangulationChoice::Barycentric)
+    throw Error(ErrorCode::InvalidArgument,
+                "--layout class with compact tables: their triangulation does not move with the symmetries, so they "
+                "have one list per signature; expected --triangulation barycentric beside it");
+  if (options.layout != LayoutChoice::Auto) {
+    const Layout layout = options.layout == LayoutChoice::Class ? Layout::by_class : Layout::flat;
+    request.layout = [layout](Triangulation) { return layout; };
+    request.command += fmt::format(" --layout {}", layout_name(layout));
+  }
+  Stopwatch watch;
+  const TableSet set = make_table_set(request);
+  for (const CertifiedFigures& f : set.figures) print_figures(options.tile, options.dim, f);
+  if (set.resolved)
+    fmt::print("{}-tile, every ambiguity resolved freely\n  certified    {} entries, 3 ways each\n", options.dim,
+               set.resolved->entries.size());
+  fmt::print("made and certified in {:.2f} s\n", watch.lap());
+  std::vector<TimedFile> files = emit_all(set, options.languages);
+  write_files(options.out, files);
+  for (const auto& [file, seconds] : files)
+    fmt::print("wrote {}: {} bytes in {:.3f} s\n", file.name, file.text.size(), seconds);
+  return 0;
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the command line of `gen` asks for, as plain data. Filled and checked by parse() (cli.hpp), read by
+// the commands (commands.hpp). A member that its comment ties to certain commands cannot be given with
+// another one: the parser refuses it, so a command may rely on every option it gets being meant.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/lattice.hpp"
+#include "filling/tile_contour.hpp"
+#include "symmetry/symmetry.hpp"
+#include "tables/language.hpp"
+
+namespace tegl::gen {
+
+/// What to do. Exactly one is given.
+enum class Command {
+  Help,         ///< --help
+  Version,      ///< --version
+  Count,        ///< --count, dim 1 ... 8
+  Transversal,  ///< --transversal, dim 2 ... 5
+  Classes,      ///< --classes, dim 2 ... 4
+  Certify,      ///< --certify, dim 2 ... 4, with --sample 2 ... 6
+  Out,          ///< --out DIR, dim 2 ... 4
+  Cases,        ///< --cases DIR, dim 2 ... 4
+};
+
+/// How emitted tables are stored.
+enum class LayoutChoice {
+  Class,  ///< one list per symmetry class and a group element per signature
+  Flat,   ///< one list per signature
+  Auto,   ///< the one that measured faster for this dimension
+};
+
+/// Which triangulations are emitted.
+enum class TriangulationChoice { Barycentric, Compact, All };
+
+/// One checked command line. Defaults are those of the command line.
+struct Options {
+  Command command = Command::Help;                               ///< what to do
+  int dim = 0;                                                   ///< --dim; 0 for --help and --version
+  TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal
+  GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class
+  bool inversion = false;                                        ///< --inversion; --count, table_by_class
+  bool table_by_class = false;                                   ///< --table-by-class; --certify, dim 2 and 3
+  bool all_resolutions = false;                                  ///< --all; --certify only
+  std::uint64_t sample = 0;                                      ///< --sample; --certify only, not with --all; 0: none
+  std::uint64_t seed = 1;                                        ///< --seed; with --sample
+  unsigned threads = 0;                                          ///< --threads; with --all or --sample; 0: all
+  bool list = false;                                             ///< --list; --transversal only
+  bool json = false;                                             ///< --json; all but --out, and not with --list
+  Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
+  std::string out;                                               ///< DIR of --out and --cases
+  LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only
+  TriangulationChoice triangulation = TriangulationChoice::All;  ///< --triangulation; --out only
+  std::vector<Language> languages{Language::cpp};                ///< --language, as given; --out only
+};
+
+}  // namespace tegl::gen

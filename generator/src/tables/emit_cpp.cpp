@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The C++ tables and the manifest.
+#include "tables/emit.hpp"
+#include "tables/emit_text.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+/// `const TYPE NAME[] = {...};`, some 110 columns wide.
+template <class T>
+void array(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values) {
+  if (values.empty()) return;
+  fmt::format_to(Out(text), "\n// {}\nconst {} {}[{}] = {{", comment, type, name, values.size());
+  std::size_t line = text.size();
+  for (const T v : values) {
+    if (text.size() - line > 110 || line == text.size()) {
+      text += "\n    ";
+      line = text.size();
+    }
+    fmt::format_to(Out(text), std::is_same_v<T, std::uint64_t> ? "{:#x}," : "{},", v);
+  }
+  text += "};\n";
+}
+
+/// Bytes as string literals: compilers read these a hundred times faster than lists of numbers.
+void bytes(std::string& text, const char* name, const std::string& comment, const std::vector<std::uint8_t>& values,
+           std::size_t per_line) {
+  fmt::format_to(Out(text), "\n// {}\nconst char {}[] =", comment, name);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i % per_line == 0) text += i == 0 ? "\n    \"" : "\"\n    \"";
+    fmt::format_to(Out(text), "\\{:o}", values[i]);
+  }
+  text += values.empty() ? " \"\";\n" : "\";\n";
+}
+
+/// The banner and what every C++ file of tables begins with.
+std::string opening(const TableSet& set, const std::string& what) {
+  const char* const header = set.tile == TileKind::cube ? "tegl/generated/tables.hpp" : "tegl/table_contract.hpp";
+  return banner(set, Language::cpp, what) +
+         fmt::format(
+             "\n#include \"{}\"\n\nnamespace tegl::tables {{\n\n"
+             "static_assert(kContractVersion == {}u, \"tables of another contract version\");\n\nnamespace {{\n",
+             header, tables::kContractVersion);
+}
+
+void lists(std::string& text, const std::vector<tables::List>& values) {
+  fmt::format_to(Out(text),
+                 "\n// first simplex, simplices, cone vertices, side vertices, first side mask\n"
+                 "const List kLists[{}] = {{\n",
+                 values.size());
+  std::size_t column = 0;
+  for (const tables::List& l : values) {
+    fmt::format_to(Out(text), "{}{{{},{},{},{},{}}},", column == 0 ? "    " : "", l.first_simplex, l.simplex_count,
+                   l.cone_vertices, l.side_vertices, l.first_side);
+    if (++column == 6) text += '\n', column = 0;
+  }
+  text += "};\n";
+}
+
+std::string variable_name(const TileTables& table) {
+  return fmt::format("k{}{}", upper_camel(tile_name(table.tile, table.dim)),
+                     upper_camel(triangulation_name(table.triangulation)));
+}
+
+EmittedFile tile_file(const TableSet& set, const TileTables& table) {
+  const auto name = variable_name(table);
+  std::string text =
+      opening(set, fmt::format("Contours of the {}-tile, low-connected alternative, {} triangulation, {} layout.",
+                               table.dim, triangulation_name(table.triangulation), layout_name(table.layout)));
+  array(text, "std::uint16_t", "kListOf", "signature -> list", table.list_of);
+  array(text, "std::uint16_t", "kElementOf", "signature -> group element", table.element_of);
+  array(text, "std::uint8_t", "kSlotSwaps", "signature -> cubes whose barycentre slots change places",
+        table.slot_swaps);
+  array(text, "std::uint8_t", "kPermutations", "group element x (corners, edges, cube slots)", table.permutations);
+  array(text, "std::uint8_t", "kReverses", "group element -> does it reverse the orientation", table.reverses);
+  lists(text, table.lists);
+  bytes(text, "kSimplices", fmt::format("#simplices x {} local vertices, octal", table.dim), table.simplices,
+        static_cast<std::size_t>(table.dim) * 8);
+  array(text, "std::uint64_t", "kSideMasks", "side vertex -> corners and edges", table.side_masks);
+  const auto or_null = [](const auto& values, const char* n) { return values.empty() ? "nullptr" : n; };
+  fmt::format_to(Out(text),
+                 "\n}}  // namespace\n\n{}const TileTable {} = {{\n    {}u, {}u, {}u, {}u, {}u, {}u, {}u, {}u,\n    "
+                 "kListOf, {}, {}, "
+                 "{}, {}, kLists,\n    reinterpret_cast<const std::uint8_t*>(kSimplices), {}}};\n\n}}  // namespace "
+                 "tegl::tables\n",
+                 set.tile == TileKind::cube ? "" : fmt::format("extern const TileTable {};\n", name), name,
+                 tables::kContractVersion, table.dim, table.lists.size(),
+                 table.simplices.size() / static_cast<std::size_t>(table.dim), table.reverses.size(),
+                 table.permutation_stride, table.max_simplices, table.max_tile_vertices,
+                 or_null(table.element_of, "kElementOf"), or_null(table.slot_swaps, "kSlotSwaps"),
+                 or_null(table.permutations, "kPermutations"), or_null(table.reverses, "kReverses"),
+                 or_null(table.side_masks, "kSideMasks"));
+  return {fmt::format("{}_{}.cpp", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
+          std::move(text)};
+}
+
+void region_table(std::string& text, const RegionTables& table) {
+  const auto suffix =
+      upper_camel(triangulation_name(table.triangulation)) + upper_camel(alternative_name(table.alternative));
+  fmt::format_to(Out(text),
+                 "\n// first simplex, simplices, own vertices, first mask\nconst RegionList kLists{}[{}] = {{", suffix,
+                 table.lists.size());
+  for (std::size_t i = 0; i < table.lists.size(); ++i) {
+    const tables::RegionList& l = table.lists[i];
+    fmt::format_to(Out(text), "{}{{{},{},{},{}}},", i % 8 == 0 ? "\n    " : "", l.first_simplex, l.simplex_count,
+                   l.own_vertices, l.first_mask);
+  }
+  text += "};\n";
+  bytes(text, fmt::format("kSimplices{}", suffix).c_str(), fmt::format("#simplices x {}, octal", table.dim + 1),
+        table.simplices, (static_cast<std::size_t>(table.dim) + 1) * 8);
+  array(text, "std::uint32_t", fmt::format("kMasks{}", suffix).c_str(), "own vertex -> corners and edges", table.masks);
+}
+
+EmittedFile region_file(const TableSet& set) {
+  std::string text = opening(set, fmt::format("High regions of the {}-tile: what closes a contour of a {}-dimensional "
+                                              "image at its border.",
+                                              set.dim - 1, set.dim));
+  for (const RegionTables& table : set.regions) region_table(text, table);
+  text += "\n}  // namespace\n";
+  for (const RegionTables& table : set.regions) {
+    const auto suffix =
+        upper_camel(triangulation_name(table.triangulation)) + upper_camel(alternative_name(table.alternative));
+    fmt::format_to(Out(text),
+                   "\nconst RegionTable kRegion{}{} = {{{}u, {}u, {}u, kLists{}, reinterpret_cast<const "
+                   "std::uint8_t*>(kSimplices{}), {}}};\n",
+                   table.dim, suffix, tables::kContractVersion, table.dim, table.max_own_vertices, suffix, suffix,
+                   table.masks.empty() ? std::string("nullptr") : "kMasks" + suffix);
+  }
+  text += "\n}  // namespace tegl::tables\n";
+  return {fmt::format("region{}.cpp", set.dim - 1), std::move(text)};
+}
+
+EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
+  std::string text =
+      opening(set, "The cube with every ambiguity resolved freely. " + resolved_certificate(table) + ".");
+  array(text, "std::uint16_t", "kFirstEntry", "signature -> entry of resolution 0", table.first_entry);
+  array(text, "std::uint8_t", "kAmbiguousSquares", "signature -> set of squares", table.ambiguous);
+  fmt::format_to(Out(text),
+                 "\n// separate, low, high: first triangle, triangles, own vertices, first mask; polygons\n"
+                 "const ResolvedEntry kEntries[{}] = {{",
+                 table.entries.size());
+  const auto list = [](const tables::ResolvedList& l) {
+    return fmt::format("{{{},{},{},{}}}", l.first_triangle, l.triangle_count, l.own_vertices, l.first_mask);
+  };
+  for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    const tables::ResolvedEntry& e = table.entries[i];
+    fmt::format_to(Out(text), "{}{{{},{},{},{}}},", i % 4 == 0 ? "\n    " : "", list(e.separate), list(e.low),
+                   list(e.high), e.components);
+  }
+  text += "};\n";
+  bytes(text, "kTriangles", "#triangles x 3 local vertices, octal", table.triangles, 36);
+  array(text, "std::uint32_t", "kMasks", "own vertex -> corners and edges", table.masks);
+  fmt::format_to(Out(text),
+                 "\n}}  // namespace\n\nconst ResolvedTable kTile3Resolved = {{\n    {}u, {}u, kFirstEntry, "
+                 "kAmbiguousSquares, kEntries,\n    reinterpret_cast<const std::uint8_t*>(kTriangles), kMasks}};\n\n"
+                 "}}  // namespace tegl::tables\n",
+                 tables::kContractVersion, table.entries.size());
+  return {"tile3_resolved.cpp", std::move(text)};
+}
+
+}  // namespace
+
+std::vector<EmittedFile> emit_cpp(const TableSet& set) {
+  std::vector<EmittedFile> files;
+  for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
+  if (!set.regions.empty()) files.push_back(region_file(set));
+  if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
+  return files;
+}
+
+EmittedFile emit_manifest(const TableSet& set) {
+  std::string text;
+  fmt::format_to(Out(text),
+                 "{{\n  \"dim\": {},\n  \"contract_version\": {},\n  \"command\": \"{}\",\n  \"group_order\": {},\n"
+                 "  \"orbits\": {},\n  \"certified\": [",
+                 set.dim, tables::kContractVersion, set.command, set.group_order, set.orbits);
+  const char* separator = "\n";
+  for (const CertifiedFigures& f : set.figures) {
+    fmt::format_to(
+        Out(text),
+        "{}    {{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"facets\": {}, "
+        "\"spherical\": {}, \"non_spherical\": {}, \"signatures_with_non_spherical\": {}, \"simplices\": {}, "
+        "\"max_simplices\": {}, \"mean_simplices\": {:.4f}}}",
+        separator, alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures, f.facets,
+        f.spheres, f.others, f.signatures_with_others, f.simplices, f.max_simplices,
+        static_cast<double>(f.simplices) / static_cast<double>(f.signatures));
+    separator = ",\n";
+  }
+  text += "\n  ],\n  \"tables\": [";
+  separator = "\n";
+  for (const TileTables& t : set.tiles) {
+    fmt::format_to(Out(text),
+                   "{}    {{\"name\": \"{}\", \"layout\": \"{}\", \"lists\": {}, \"stored_simplices\": {}, "
+                   "\"max_tile_vertices\": {}, \"fnv1a\": \"{:016x}\"}}",
+                   separator, variable_name(t), layout_name(t.layout), t.lists.size(),
+                   t.simplices.size() / static_cast<std::size_t>(t.dim), t.max_tile_vertices, digest(t));
+    separator = ",\n";
+  }
+  for (const RegionTables& t : set.regions)
+    fmt::format_to(Out(text), "{}    {{\"name\": \"kRegion{}{}{}\", \"stored_simplices\": {}, \"fnv1a\": \"{:016x}\"}}",
+                   separator, t.dim, upper_camel(triangulation_name(t.triangulation)),
+                   upper_camel(alternative_name(t.alternative)),
+                   t.simplices.size() / (static_cast<std::size_t>(t.dim) + 1), digest(t));
+  if (set.resolved)
+    fmt::format_to(Out(text),
+                   "{}    {{\"name\": \"kTile3Resolved\", \"entries\": {}, \"stored_simplices\": {}, \"fnv1a\": "
+                   "\"{:016x}\"}}",
+                   separator, set.resolved->entries.size(), set.resolved->triangles.size() / 3, digest(*set.resolved));
+  text += "\n  ]\n}\n";
+  return {set.tile == TileKind::cube ? fmt::format("manifest{}.json", set.dim)
+                                     : fmt::format("manifest_{}.json", tile_name(set.tile, set.dim)),
+          std::move(text)};
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tables as JSON: the contract's arrays by their names there. The schema is in docs/tables.md.
+#include <fmt/ranges.h>
+
+#include "tables/emit.hpp"
+#include "tables/emit_text.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+/// `"name": [...]` in lines of some 110 columns.
+template <class T>
+void array(std::string& text, const char* name, const std::vector<T>& values) {
+  fmt::format_to(Out(text), ",\n  \"{}\": [", name);
+  std::size_t line = text.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0) text += ',';
+    if (i == 0 || text.size() - line > 110) {
+      text += "\n    ";
+      line = text.size();
+    }
+    fmt::format_to(Out(text), "{}", values[i]);
+  }
+  text += ']';
+}
+
+/// Rows of numbers under their names' list: `"name": {"columns": [...], "rows": [[...], ...]}`.
+template <class T, class Row>
+void rows(std::string& text, const char* name, const char* columns, const std::vector<T>& values, const Row& row) {
+  fmt::format_to(Out(text), ",\n  \"{}\": {{\"columns\": [{}], \"rows\": [", name, columns);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    fmt::format_to(Out(text), "{}{}[{}]", i == 0 ? "" : ",", i % 6 == 0 ? "\n    " : " ",
+                   fmt::join(row(values[i]), ","));
+  text += "]}";
+}
+
+/// What every file begins with: an object, opened.
+std::string opening(const TableSet& set, const char* kind, int dim) {
+  std::string text;
+  fmt::format_to(Out(text),
+                 "{{\n  \"generated_by\": \"{}\",\n  \"license\": \"BSD-3-Clause\",\n  \"kind\": \"{}\",\n"
+                 "  \"contract_version\": {},\n  \"dim\": {},\n  \"group_order\": {},\n  \"orbits\": {},\n"
+                 "  \"certified\": [",
+                 command_for(set, Language::json), kind, tables::kContractVersion, dim, set.group_order, set.orbits);
+  const char* separator = "\n";
+  for (const CertifiedFigures& f : set.figures) {
+    fmt::format_to(Out(text),
+                   "{}    {{\"alternative\": \"{}\", \"triangulation\": \"{}\", \"signatures\": {}, \"facets\": {}, "
+                   "\"spherical\": {}, \"non_spherical\": {}, \"simplices\": {}}}",
+                   separator, alternative_name(f.alternative), triangulation_name(f.triangulation), f.signatures,
+                   f.facets, f.spheres, f.others, f.simplices);
+    separator = ",\n";
+  }
+  text += "\n  ]";
+  return text;
+}
+
+/// Corners, edges and faces, so that the numbering need not be known from elsewhere.
+void shape(std::string& text, const TileTables& table) {
+  std::vector<std::string> corners, edges, faces;
+  for (const auto& x : table.corners)
+    corners.push_back(fmt::format("[{}]", fmt::join(x.begin(), x.begin() + table.dim, ",")));
+  for (const auto& ends : table.edges) edges.push_back(fmt::format("[{}]", fmt::join(ends, ",")));
+  for (const auto& face : table.faces) faces.push_back(fmt::format("[{}]", fmt::join(face, ",")));
+  fmt::format_to(Out(text), ",\n  \"tile\": \"{}\",\n  \"corners\": [{}],\n  \"edges\": [{}],\n  \"faces\": [{}]",
+                 tile_kind_name(table.tile), fmt::join(corners, ", "), fmt::join(edges, ", "), fmt::join(faces, ", "));
+}
+
+EmittedFile tile_file(const TableSet& set, const TileTables& table) {
+  std::string text = opening(set, "tile", table.dim);
+  shape(text, table);
+  fmt::format_to(Out(text),
+                 ",\n  \"triangulation\": \"{}\",\n  \"alternative\": \"low\",\n  \"layout\": \"{}\",\n"
+                 "  \"fnv1a\": \"{:016x}\",\n  \"edge_count\": {},\n  \"first_tile_vertex\": {},\n"
+                 "  \"permutation_stride\": {},\n  \"max_simplices\": {},\n  \"max_tile_vertices\": {}",
+                 triangulation_name(table.triangulation), layout_name(table.layout), digest(table), table.edges.size(),
+                 table.first_tile_vertex, table.permutation_stride, table.max_simplices, table.max_tile_vertices);
+  array(text, "list_of", table.list_of);
+  array(text, "element_of", table.element_of);
+  array(text, "slot_swaps", table.slot_swaps);
+  array(text, "permutations", table.permutations);
+  array(text, "reverses", table.reverses);
+  rows(text, "lists", "\"first_simplex\", \"simplex_count\", \"cone_vertices\", \"side_vertices\", \"first_side\"",
+       table.lists, [](const tables::List& l) {
+         return std::array<std::uint32_t, 5>{l.first_simplex, l.simplex_count, l.cone_vertices, l.side_vertices,
+                                             l.first_side};
+       });
+  array(text, "simplices", table.simplices);
+  array(text, "side_masks", table.side_masks);
+  text += "\n}\n";
+  return {fmt::format("{}_{}.json", tile_name(table.tile, table.dim), triangulation_name(table.triangulation)),
+          std::move(text)};
+}
+
+EmittedFile region_file(const TableSet& set, const RegionTables& table) {
+  std::string text = opening(set, "region", table.dim);
+  fmt::format_to(Out(text),
+                 ",\n  \"triangulation\": \"{}\",\n  \"alternative\": \"{}\",\n  \"fnv1a\": \"{:016x}\",\n"
+                 "  \"first_region_vertex\": {},\n  \"max_own_vertices\": {}",
+                 triangulation_name(table.triangulation), alternative_name(table.alternative), digest(table),
+                 tables::first_region_vertex(static_cast<std::uint32_t>(table.dim)), table.max_own_vertices);
+  rows(text, "lists", "\"first_simplex\", \"simplex_count\", \"own_vertices\", \"first_mask\"", table.lists,
+       [](const tables::RegionList& l) {
+         return std::array<std::uint32_t, 4>{l.first_simplex, l.simplex_count, l.own_vertices, l.first_mask};
+       });
+  array(text, "simplices", table.simplices);
+  array(text, "masks", table.masks);
+  text += "\n}\n";
+  return {fmt::format("region{}_{}_{}.json", table.dim, triangulation_name(table.triangulation),
+                      alternative_name(table.alternative)),
+          std::move(text)};
+}
+
+EmittedFile resolved_file(const TableSet& set, const ResolvedCube& table) {
+  std::string text = opening(set, "resolved", 3);
+  std::vector<std::string> squares;
+  for (const auto& square : table.squares) squares.push_back(fmt::format("[{}]", fmt::join(square, ",")));
+  fmt::format_to(Out(text), ",\n  \"certified_entries\": {},\n  \"squares\": [{}],\n  \"fnv1a\": \"{:016x}\"",
+                 table.entries.size(), fmt::join(squares, ", "), digest(table));
+  array(text, "first_entry", table.first_entry);
+  array(text, "ambiguous_squares", table.ambiguous);
+  std::string columns = "\"components\"";
+  for (const char* const centre : {"separate", "low", "high"})
+    for (const char* const column : {"first_triangle", "triangle_count", "own_vertices", "first_mask"})
+      columns += fmt::format(", \"{}_{}\"", centre, column);
+  rows(text, "entries", columns.c_str(), table.entries, [](const tables::ResolvedEntry& e) {
+    std::vector<std::uint32_t> row = {e.components};
+    for (const tables::ResolvedList& l : {e.separate, e.low, e.high})
+      row.insert(row.end(), {l.first_triangle, l.triangle_count, l.own_vertices, l.first_mask});
+    return row;
+  });
+  array(text, "triangles", table.triangles);
+  array(text, "masks", table.masks);
+  text += "\n}\n";
+  return {"tile3_resolved.json", std::move(text)};
+}
+
+}  // namespace
+
+std::vector<EmittedFile> emit_json(const TableSet& set) {
+  std::vector<EmittedFile> files;
+  for (const TileTables& table : set.tiles) files.push_back(tile_file(set, table));
+  for (const RegionTables& table : set.regions) files.push_back(region_file(set, table));
+  if (set.resolved) files.push_back(resolved_file(set, *set.resolved));
+  return files;
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The order of things: contours, certificates, tables, regions.
+#include "tables/table_set.hpp"
+
+#include <bit>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "filling/facets.hpp"
+#include "filling/regions.hpp"
+#include "symmetry/counting.hpp"
+#include "symmetry/tile_symmetry.hpp"
+#include "symmetry/transversal.hpp"
+
+namespace tegl::gen {
+
+namespace {
+
+/// Throws unless every pair of neighbours matches.
+PairFigures matching_pairs(const ContourBuilder& builder, const std::vector<TileContour>& contours) {
+  const PairFigures pairs = certify_pairs(builder, contours);
+  if (pairs.unmatched != 0) throw Error(ErrorCode::CertificateFailed, unmatched_text(builder.dim(), pairs));
+  return pairs;
+}
+
+/// Both alternatives of one triangulation, certified and compared; returns the low-connected one.
+std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high, bool pairs,
+                                       std::vector<CertifiedFigures>& figures) {
+  CertifiedFigures of_low, of_high;
+  auto contours = certified_contours(low, of_low);
+  const auto high_contours = certified_contours(high, of_high);
+  check_inversion(low.dim(), contours, high_contours);
+  if (pairs) {
+    of_low.pairs = matching_pairs(low, contours);
+    of_high.pairs = matching_pairs(high, high_contours);
+  }
+  figures.push_back(of_low);
+  figures.push_back(of_high);
+  return contours;
+}
+
+}  // namespace
+
+Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation) {
+  return tile == TileKind::cube && dim == 4 && triangulation == Triangulation::barycentric ? Layout::by_class
+                                                                                           : Layout::flat;
+}
+
+TableSet make_table_set(const TableRequest& request) {
+  const Lattice lattice(request.tile, request.dim);
+  TableSet set;
+  set.tile = request.tile;
+  set.dim = request.dim;
+  set.command = request.command;
+  const auto elements = symmetries(lattice.tile(request.dim), GroupKind::Full, false);
+  set.group_order = elements.size();
+  const Transversal classes = transversal(lattice.tile(request.dim), elements);
+  require_burnside_count(classes, elements);
+  set.orbits = classes.representatives.size();
+  for (const Triangulation t : request.triangulations) {
+    const ContourBuilder low(lattice, request.dim, Alternative::low, t);
+    const ContourBuilder high(lattice, request.dim, Alternative::high, t);
+    const auto contours = certified_low(low, high, false, set.figures);
+    set.tiles.push_back(make_tile_tables(
+        low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t)));
+    if (request.tile != TileKind::cube) continue;  // regions close the contours of images, whose tiles are cubes
+    for (const Alternative a : {Alternative::low, Alternative::high}) {
+      const RegionStyle style = t == Triangulation::compact ? RegionStyle::fan : RegionStyle::cone;
+      set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, style), t, a));
+    }
+  }
+  if (request.tile == TileKind::cube && request.dim == 3) set.resolved = make_resolved_cube();
+  return set;
+}
+
+std::vector<CertifiedFigures> certify_all(int dim, TileKind tile) {
+  const Lattice lattice(tile, dim);
+  std::vector<CertifiedFigures> figures;
+  for (const Triangulation t : {Triangulation::barycentric, Triangulation::compact})
+    certified_low(ContourBuilder(lattice, dim, Alternative::low, t), ContourBuilder(lattice, dim, Alternative::high, t),
+                  tile == TileKind::cube, figures);
+  return figures;
+}
+
+std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature) {
+  const auto is_diagonal = [](const Tile& tile, Signature s) {
+    if (std::popcount(s) != 2) return false;  // the two ends, and the tile's centre between them
+    for (std::size_t i = 0; i < 4; ++i) {
+      double ends = 0, all = 0;
+      for (std::uint32_t v = 0; v < tile.corner_count(); ++v) {
+        all += tile.corners[v][i];
+        if (((s >> v) & 1u) != 0) ends += tile.corners[v][i];
+      }
+      if (std::abs(ends * tile.corner_count() - 2 * all) > 1e-9) return false;
+    }
+    return true;
+  };
+  struct Face {
+    std::vector<std::uint8_t> corners;  // as the whole tile numbers them
+    Signature own;                      // in the face's own frame
+  };
+  std::vector<std::uint32_t> result(static_cast<std::size_t>(dim) + 1, 0);
+  std::vector<std::uint8_t> all(lattice.tile(dim).corner_count());
+  std::iota(all.begin(), all.end(), std::uint8_t{0});
+  std::map<Signature, Face> level{{lattice.tile(dim).full(), {all, signature}}};  // by set of corners
+  for (int k = dim; k >= 2; --k) {
+    const Tile& tile = lattice.tile(k);
+    std::map<Signature, Face> next;
+    for (const auto& [set, face] : level) {
+      if (is_diagonal(tile, face.own) || is_diagonal(tile, ~face.own & tile.full()))
+        ++result[static_cast<std::size_t>(k)];
+      for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
+        Face sub{{}, tile.restrict_to(f, face.own)};
+        Signature corners = 0;
+        for (const std::uint8_t v : tile.faces[f].corner) {
+          sub.corners.push_back(face.corners[v]);
+          corners |= 1u << face.corners[v];
+        }
+        next.emplace(corners, std::move(sub));
+      }
+    }
+    level = std::move(next);
+  }
+  return result;
+}
+
+}  // namespace tegl::gen

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// JPEG 2000 in builds without OpenJPEG: an error that says so.
+#include "dicom/jpeg2000.hpp"
+#include "tegl/error.hpp"
+
+namespace tegl::io_detail {
+
+bool has_jpeg2000() noexcept { return false; }
+
+bool begins_jpeg2000(std::span<const unsigned char>) noexcept { return false; }
+
+Jpeg2000Image decode_jpeg2000(std::span<const unsigned char>, std::size_t, std::size_t, const std::string& label) {
+  throw Error(ErrorCode::UnsupportedFormat,
+              label +
+                  ": JPEG 2000, which this build cannot decompress; expected one with OpenJPEG (libopenjp2-7-dev) "
+                  "at hand when it was configured");
+}
+
+}  // namespace tegl::io_detail

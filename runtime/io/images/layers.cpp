@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Images that are read layer by layer.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "base/common.hpp"
+#include "base/raw_image.hpp"
+#include "base/readers.hpp"
+#include "base/sample_reader.hpp"
+#include "process/separate_reading.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+/// Shows the values that `read` gives, and keeps them until the next call.
+std::function<ValueView(std::size_t, std::size_t)> keeping(std::function<ValueArray(std::size_t, std::size_t)> read) {
+  return [read = std::move(read), kept = std::make_shared<ValueArray>()](std::size_t first, std::size_t count) {
+    *kept = ValueArray();  // one block at a time
+    *kept = read(first, count);
+    return std::visit(
+        []<class Stored>(const ValueVector<Stored>& values) -> ValueView { return std::span<const Stored>(values); },
+        *kept);
+  };
+}
+
+/// Reads in blocks of the file, so that none is decompressed once per layer; holds one.
+template <Value T, int N>
+class BlockLayers final : public LayerReader<T, N> {
+ public:
+  BlockLayers(RawLayers source, std::size_t block)
+      : grid_(fixed_grid<N>(source.grid)),
+        look_(source.look ? std::move(source.look) : keeping(std::move(source.read))),
+        block_(block) {
+    for (int a = 0; a < N - 1; ++a) layer_size_ *= grid_.axes[a].size();
+  }
+
+  [[nodiscard]] const Grid<N>& grid() const noexcept override { return grid_; }
+
+  void read(std::size_t k, T* to) override {
+    const std::size_t first = k / block_ * block_;
+    if (first != first_) {
+      first_ = kNone;
+      values_ = read_block(first, std::min(block_, grid_.axes[N - 1].size() - first));
+      first_ = first;
+    }
+    std::visit(
+        [&](const auto& values) {
+          const auto begin = values.begin() + static_cast<std::ptrdiff_t>((k - first_) * layer_size_);
+          std::transform(begin, begin + static_cast<std::ptrdiff_t>(layer_size_), to,
+                         [](auto value) { return static_cast<T>(value); });
+        },
+        values_);
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  ValueView read_block(std::size_t first, std::size_t count) const {
+    try {
+      return look_(first, count);
+    } catch (const Error& error) {
+      throw Error(error.code(), count == 1
+                                    ? fmt::format("{} (layer {})", error.what(), first)
+                                    : fmt::format("{} (layers {} to {})", error.what(), first, first + count - 1));
+    }
+  }
+
+  Grid<N> grid_;
+  std::function<ValueView(std::size_t, std::size_t)> look_;
+  std::size_t block_;
+  std::size_t layer_size_ = 1;
+  ValueView values_;
+  std::size_t first_ = kNone;
+};
+
+/// Bytes of a block beyond which layers are read one by one.
+constexpr std::uint64_t kMostBlockBytes = std::uint64_t{1} << 28;
+
+template <int N>
+AnyLayersN<N> with_dimension(RawLayers&& source, const fs::path& path) {
+  return std::visit(
+      [&]<class Stored>(const ValueVector<Stored>&) -> AnyLayersN<N> {
+        using T = std::conditional_t<Value<Stored>, Stored, double>;
+        std::vector<std::uint64_t> sizes;
+        for (const Axis& axis : source.grid.axes) sizes.push_back(axis.size());
+        sizes.back() = source.block;
+        const std::size_t block = checked_bytes(sizes, sizeof(Stored), path) <= kMostBlockBytes ? source.block : 1;
+        return std::unique_ptr<LayerReader<T, N>>(std::make_unique<BlockLayers<T, N>>(std::move(source), block));
+      },
+      source.read(0, 0));
+}
+
+std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
+  constexpr std::array<std::string_view, 7> kNames = {"uint8", "int8", "uint16", "int16", "int32", "float", "double"};
+  const auto* const found = std::ranges::find(kNames, layout.type);
+  if (found == kNames.end())
+    fail(ErrorCode::InvalidArgument, path, "values of type '{}'; expected one of {}", layout.type,
+         fmt::join(kNames, ", "));
+  return *found;
+}
+
+/// A list of a layout that has an item for each axis, or none.
+template <class Item>
+const Item& item_of(const std::vector<Item>& items, std::size_t axis, const Item& other) {
+  return items.empty() ? other : items[axis];
+}
+
+/// The axes of a layout. Throws InvalidArgument.
+std::vector<Axis> raw_axes(const RawLayout& layout, const fs::path& path) {
+  const auto require_count = [&](std::size_t count, const char* what) {
+    if (count != 0 && count != layout.sizes.size())
+      fail(ErrorCode::InvalidArgument, path, "{} of {} axes, and sizes of {}; expected one for each axis", what, count,
+           layout.sizes.size());
+  };
+  require_count(layout.spacing.size(), "spacings");
+  require_count(layout.origin.size(), "origins");
+  require_count(layout.axis_names.size(), "names");
+  require_count(layout.axis_units.size(), "units");
+  std::vector<Axis> axes;
+  for (std::size_t a = 0; a < layout.sizes.size(); ++a) {
+    const std::size_t size = layout.sizes[a];
+    const double step = item_of(layout.spacing, a, 1.0);
+    const double first = item_of(layout.origin, a, 0.0);
+    if (size == 0) fail(ErrorCode::InvalidArgument, path, "sizes {}; expected no 0", shape_text(layout.sizes));
+    if (!std::isfinite(step) || step == 0.0)
+      fail(ErrorCode::InvalidArgument, path, "a spacing of {}; expected a finite number other than 0", step);
+    const double last = first + step * static_cast<double>(size - 1);
+    if (!std::isfinite(first) || !std::isfinite(last) || first + step == first || last + step == last)
+      fail(ErrorCode::InvalidArgument, path,
+           "an axis from {} in {} steps of {}; expected coordinates that are finite "
+           "and differ",
+           first, size - 1, step);
+    axes.push_back(Axis::uniform(size, first, step));
+    axes.back().name = item_of(layout.axis_names, a, std::string());
+    axes.back().unit = item_of(layout.axis_units, a, std::string());
+  }
+  return axes;
+}
+
+}  // namespace
+
+OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& path) {
+  ImageInfo info = source.info;
+  switch (source.grid.axes.size()) {
+    case 2:
+      return {with_dimension<2>(std::move(source), path), std::move(info)};
+    case 3:
+      return {with_dimension<3>(std::move(source), path), std::move(info)};
+    case 4:
+      return {with_dimension<4>(std::move(source), path), std::move(info)};
+    default:
+      fail_axes(source.grid, path);
+  }
+}
+
+OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
+  ReadImageOptions silent = options;  // what opens takes no time, and a child must not call the caller's functions
+  silent.progress = nullptr;
+  const auto open = [&] { return LayersOfFiles{open_any_layers(path, silent), {path}}; };
+  const bool separate = options.separate_process && needs_separate_process(path);
+  return to_open_layers(std::move((separate ? open_separately(path, open) : open()).layers), path);
+}
+
+OpenLayersResult open_layers(const fs::path& path, const std::string& variable) {
+  ReadImageOptions options;
+  options.variable = variable;
+  return open_layers(path, options);
+}
+
+RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
+  require_readable_file(path);
+  const std::string_view type = stored_name(layout, path);
+  RawLayers source;
+  source.grid.axes = raw_axes(layout, path);
+  if (layout.sizes.size() < 2 || layout.sizes.size() > 4)
+    fail(ErrorCode::InvalidArgument, path, "{} sizes; expected those of 2, 3 or 4 axes", layout.sizes.size());
+  const auto n = static_cast<Eigen::Index>(layout.sizes.size());
+  source.grid.linear = Eigen::MatrixXd::Identity(n, n);
+  source.grid.offset = Eigen::VectorXd::Zero(n);
+  name_axes(source.grid);
+  const std::uint64_t per_layer =
+      checked_bytes(std::vector<std::uint64_t>(layout.sizes.begin(), layout.sizes.end() - 1), 1, path);
+  StoredSamples samples;
+  samples.path = path;
+  samples.offset = layout.offset;
+  samples.type = type;
+  samples.sizes.assign(layout.sizes.begin(), layout.sizes.end());
+  samples.swapped = layout.big_endian != (std::endian::native == std::endian::big);
+  source.read = [reader = std::make_shared<SampleReader>(std::move(samples)), per_layer](std::size_t first,
+                                                                                         std::size_t count) {
+    return reader->read(first * per_layer, count * per_layer, {});
+  };
+  source.info.format = "raw";
+  source.info.stored_type = type;
+  return source;
+}
+
+OpenLayersResult open_raw_layers(const fs::path& path, const RawLayout& layout) {
+  return to_open_layers(open_raw(path, layout), path);
+}
+
+}  // namespace tegl

@@ -1,0 +1,456 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// netCDF variables as images: which variable, its coordinate variables as axes, packing and missing values.
+//
+// Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
+// conventions of the NetCDF Users' Guide.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include <fmt/ranges.h>
+
+#include "base/common.hpp"
+#include "base/readers.hpp"
+#include "base/reading_process.hpp"
+#include "images/netcdf_file.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+/// How stored values become numbers: v * scale + offset, missing where the attributes say so.
+struct Packing {
+  double scale = 1;
+  double offset = 0;
+  bool scaled = false;
+  std::vector<double> missing;  ///< stored values that mean "none"
+  double least = -std::numeric_limits<double>::infinity();
+  double greatest = std::numeric_limits<double>::infinity();
+  bool any_attribute = false;
+};
+
+Packing read_packing(const NcFile& file, const NcVariable& variable) {
+  Packing packing;
+  const auto scale = file.number(variable, "scale_factor");
+  const auto offset = file.number(variable, "add_offset");
+  packing.scale = scale.value_or(1.0);
+  packing.offset = offset.value_or(0.0);
+  packing.scaled = scale.has_value() || offset.has_value();
+  const auto fill = file.numbers(variable, "_FillValue");
+  packing.missing = fill;
+  for (const double value : file.numbers(variable, "missing_value")) packing.missing.push_back(value);
+  packing.any_attribute = packing.scaled || !packing.missing.empty();
+  const auto range = file.numbers(variable, "valid_range");
+  const auto limit = [&](const char* name, std::size_t index, double& value) {
+    if (range.size() == 2) value = range[index];
+    if (const auto single = file.number(variable, name)) value = *single;
+    packing.any_attribute |= std::isfinite(value);
+  };
+  limit("valid_min", 0, packing.least);
+  limit("valid_max", 1, packing.greatest);
+  // Without a fill value of their own, floats that were never written have the library's.
+  if (fill.empty() && variable.type == NC_FLOAT) packing.missing.push_back(NC_FILL_FLOAT);
+  if (fill.empty() && variable.type == NC_DOUBLE) packing.missing.push_back(NC_FILL_DOUBLE);
+  return packing;
+}
+
+template <class Real, class T>
+Real unpack_one(T stored, const Packing& packing) {
+  // Attributes are compared in the variable's own type: a fill value of -1e34 is not the same number as a float.
+  for (const double value : packing.missing)
+    if (stored == static_cast<T>(value)) return std::numeric_limits<Real>::quiet_NaN();
+  const auto value = static_cast<double>(stored);
+  if (value < packing.least || value > packing.greatest) return std::numeric_limits<Real>::quiet_NaN();
+  return packing.scaled ? static_cast<Real>(value * packing.scale + packing.offset) : static_cast<Real>(stored);
+}
+
+template <class Real, class T>
+ValueVector<Real> unpack_all(const ValueVector<T>& stored, const Packing& packing) {
+  ValueVector<Real> result(stored.size());
+  std::transform(stored.begin(), stored.end(), result.begin(),
+                 [&](T value) { return unpack_one<Real>(value, packing); });
+  return result;
+}
+
+/// Float for what float holds exactly, integers of up to 16 bits included; double for the others.
+ValueArray unpack(ValueArray&& values, Packing packing) {
+  return std::visit(
+      [&]<class T>(ValueVector<T>& stored) -> ValueArray {
+        // A value that the type cannot hold is never met, and casting it would be undefined.
+        std::erase_if(packing.missing, [](double value) {
+          constexpr auto kLowest = static_cast<double>(std::numeric_limits<T>::lowest());
+          constexpr auto kHighest = static_cast<double>(std::numeric_limits<T>::max());
+          return !(value >= kLowest && value <= kHighest) || (std::is_integral_v<T> && value >= 0x1p63);
+        });
+        if constexpr (std::is_floating_point_v<T>) {
+          for (T& value : stored) value = unpack_one<T>(value, packing);
+          return std::move(stored);
+        } else {
+          if (!packing.any_attribute) return std::move(stored);
+          if constexpr (sizeof(T) <= 2) return unpack_all<float>(stored, packing);
+          return unpack_all<double>(stored, packing);
+        }
+      },
+      values);
+}
+
+/// Number of dimensions longer than 1.
+std::size_t rank(const std::vector<std::size_t>& sizes) {
+  return static_cast<std::size_t>(std::count_if(sizes.begin(), sizes.end(), [](std::size_t size) { return size > 1; }));
+}
+
+bool is_image_rank(std::size_t axes) { return axes >= 2 && axes <= 4; }
+
+/// Names and sizes of the dimensions longer than 1, the one that runs fastest first.
+ImageVariable describe(const NcFile& file, const NcVariable& variable) {
+  ImageVariable result;
+  result.name = variable.name;
+  for (std::size_t d = variable.sizes.size(); d-- > 0;) {
+    if (variable.sizes[d] == 1) continue;
+    result.sizes.push_back(variable.sizes[d]);
+    result.axes.push_back(file.dimension_name(variable, d));
+  }
+  return result;
+}
+
+/// The samples of a variable at the fixed indices of its dimensions. Dimensions that it does not have are left aside.
+NcSlab slab_of(const NcFile& file, const NcVariable& variable, const std::vector<FixedIndex>& fixed) {
+  NcSlab slab = whole(variable);
+  for (std::size_t d = 0; d < variable.sizes.size() && !fixed.empty(); ++d) {
+    const std::string name = file.dimension_name(variable, d);
+    for (const FixedIndex& one : fixed) {
+      if (one.dimension != name) continue;
+      if (one.index >= variable.sizes[d])
+        fail(ErrorCode::InvalidArgument, file.path(), "{}={}; expected an index from 0 to {} of the dimension of '{}'",
+             name, one.index, variable.sizes[d] - std::min<std::size_t>(variable.sizes[d], 1), variable.name);
+      slab.start[d] = one.index;
+      slab.count[d] = 1;
+    }
+  }
+  return slab;
+}
+
+/// Throws unless the variable has the dimensions that are fixed, each once.
+void require_dimensions(const NcFile& file, const NcVariable& variable, const std::vector<FixedIndex>& fixed) {
+  std::vector<std::string> names;
+  for (std::size_t d = 0; d < variable.sizes.size(); ++d) names.push_back(file.dimension_name(variable, d));
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    const std::string& name = fixed[i].dimension;
+    if (std::ranges::find(names, name) == names.end())
+      fail(ErrorCode::InvalidArgument, file.path(), "variable '{}' has no dimension '{}'; expected one of {}",
+           variable.name, name, fmt::join(names, ", "));
+    for (std::size_t j = 0; j < i; ++j)
+      if (fixed[j].dimension == name)
+        fail(ErrorCode::InvalidArgument, file.path(), "two indices of the dimension '{}', {} and {}; expected one",
+             name, fixed[j].index, fixed[i].index);
+  }
+}
+
+/// Variables that are images, or are with some of their dimensions fixed.
+std::vector<NcVariable> image_variables(const NcFile& file, const std::vector<NcVariable>& all) {
+  std::set<std::string, std::less<>> auxiliary;  // named by others as their bounds or coordinates
+  for (const NcVariable& variable : all)
+    for (const char* attribute : {"bounds", "climatology", "coordinates", "cell_measures", "grid_mapping"}) {
+      const std::string names = file.text(variable, attribute);
+      for (const std::string_view word : words(names)) auxiliary.emplace(word);
+    }
+  std::vector<NcVariable> result;
+  for (const NcVariable& variable : all) {
+    const std::string plain = variable.name.substr(variable.name.rfind('/') + 1);
+    const bool empty = std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end();
+    if (is_numeric(variable.type) && rank(variable.sizes) >= 2 && !empty && !auxiliary.contains(plain))
+      result.push_back(variable);
+  }
+  return result;
+}
+
+/// Sizes of all dimensions, the one that runs fastest first, as of an image.
+std::string image_shape(const NcVariable& variable) {
+  return shape_text(std::vector<std::size_t>(variable.sizes.rbegin(), variable.sizes.rend()));
+}
+
+std::string listing(const std::vector<NcVariable>& variables) {
+  std::vector<std::string> items;
+  for (const NcVariable& variable : variables)
+    items.push_back(fmt::format("{} ({})", variable.name, image_shape(variable)));
+  return fmt::format("{}", fmt::join(items, ", "));
+}
+
+NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const std::vector<NcVariable>& candidates,
+                  const ReadImageOptions& options) {
+  const std::string& wanted = options.variable;
+  if (!wanted.empty()) {
+    for (const NcVariable& variable : all)
+      if (variable.name == wanted || variable.name == "/" + wanted) return variable;
+    fail(ErrorCode::VariableNotFound, file.path(), "no variable '{}'; expected one of {}", wanted,
+         candidates.empty() ? "none: no variable here has 2 or more axes" : listing(candidates));
+  }
+  if (candidates.size() == 1) return candidates[0];
+  std::vector<NcVariable> fitting;
+  for (const NcVariable& variable : candidates)
+    if (is_image_rank(rank(slab_of(file, variable, options.fixed).count))) fitting.push_back(variable);
+  if (fitting.size() == 1) return fitting[0];
+  if (candidates.empty())
+    fail(ErrorCode::UnsupportedData, file.path(), "no variable with 2 to 4 axes longer than 1; it has {}",
+         all.empty() ? "no variables" : listing(all));
+  fail(ErrorCode::VariableNotFound, file.path(), "{} variables, and none chosen; expected one of {}", candidates.size(),
+       listing(candidates));
+}
+
+/// Uniform if, and only if, that gives the same coordinates bit by bit.
+Axis make_axis(std::vector<double> coordinates) {
+  const std::size_t size = coordinates.size();
+  if (size >= 2)
+    for (const double step :
+         {coordinates[1] - coordinates[0], (coordinates[size - 1] - coordinates[0]) / static_cast<double>(size - 1)}) {
+      if (step == 0.0 || !std::isfinite(step) || !std::isfinite(coordinates[0])) continue;
+      const Axis uniform = Axis::uniform(size, coordinates[0], step);
+      bool equal = true;
+      for (std::size_t i = 0; i < size && equal; ++i) equal = uniform[i] == coordinates[i];
+      if (equal) return uniform;
+    }
+  return Axis::rectilinear(std::move(coordinates));
+}
+
+/// By the attribute "positive" of a vertical coordinate; without it, pressures grow downwards (CF conventions, section
+/// 4.3).
+AxisDirection direction_of(const NcFile& file, const NcVariable& coordinate) {
+  static constexpr std::array<std::string_view, 21> kPressures = {
+      "pa",         "pascal",      "pascals", "hpa",  "hectopascal", "hectopascals", "kpa",
+      "kilopascal", "kilopascals", "bar",     "bars", "mb",          "mbar",         "mbars",
+      "millibar",   "millibars",   "db",      "dbar", "dbars",       "decibar",      "decibars"};
+  const std::string positive = lower(file.text(coordinate, "positive"));
+  if (positive == "down") return AxisDirection::down;
+  if (positive == "up") return AxisDirection::up;
+  const std::string unit = lower(file.text(coordinate, "units"));
+  return std::ranges::find(kPressures, unit) != kPressures.end() ? AxisDirection::down : AxisDirection::unknown;
+}
+
+/// Whether "days since 1-1-1" counts from before 1582-10-15, until when the standard calendar is the Julian one.
+bool starts_before_the_reform(const std::string& unit) {
+  int year = 0;
+  int month = 1;
+  int day = 1;
+  const std::size_t start = unit.find(" since ");
+  if (start == std::string::npos || std::sscanf(unit.c_str() + start + 7, "%d-%d-%d", &year, &month, &day) < 1)
+    return true;
+  return std::tuple(year, month, day) < std::tuple(1582, 10, 15);
+}
+
+/// With the calendar, where time is counted in one that is not everybody's (CF conventions, section 4.4.1): nobody may
+/// take "days since 2000-01-01 (noleap)" for a date, nor "days since 0001-01-01 (proleptic_gregorian)" for a Julian
+/// one.
+std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
+  const std::string unit = file.text(coordinate, "units");
+  const std::string calendar = file.text(coordinate, "calendar");
+  const std::string known = lower(calendar);
+  const bool is_common = known.empty() || known == "standard" || known == "gregorian" ||
+                         (known == "proleptic_gregorian" && !starts_before_the_reform(unit));
+  return is_common || unit.find(" since ") == std::string::npos ? unit : fmt::format("{} ({})", unit, calendar);
+}
+
+/// An axis, and what the file says of it.
+struct AxisOfFile {
+  Axis axis;
+  AxisDirection direction = AxisDirection::unknown;
+  bool is_time = false;
+};
+
+AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t dimension) {
+  const std::string name = file.dimension_name(variable, dimension);
+  const auto coordinate = file.coordinate(variable, dimension);
+  Axis axis = Axis::uniform(variable.sizes[dimension]);
+  std::string unit;
+  std::string role;
+  AxisDirection direction = AxisDirection::unknown;
+  if (coordinate) {
+    std::vector<double> values =
+        std::visit([](const auto& stored) { return std::vector<double>(stored.begin(), stored.end()); },
+                   unpack(file.values(*coordinate, whole(*coordinate)), read_packing(file, *coordinate)));
+    try {
+      axis = make_axis(std::move(values));
+    } catch (const Error& e) {
+      fail(e.code(), file.path(), "coordinate variable '{}': {}", coordinate->name, e.what());
+    }
+    unit = unit_of(file, *coordinate);
+    direction = direction_of(file, *coordinate);
+    role = file.text(*coordinate, "axis") + " " + file.text(*coordinate, "standard_name") + " ";
+  }
+  axis.name = name;
+  axis.unit = unit;
+  const bool is_time = role.starts_with("T ") || role.ends_with(" time ") ||
+                       unit.find(" since ") != std::string::npos || lower(name) == "t" || lower(name) == "time";
+  return {std::move(axis), direction, is_time};
+}
+
+/// Where the samples lie along a dimension of which one index is read, times first. Whatever is wrong with its
+/// coordinate is none of the image's business.
+void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::size_t index,
+                std::vector<SingleAxis>& singles) {
+  try {
+    const AxisOfFile all = read_axis(file, variable, dimension);
+    Axis axis = Axis::uniform(1, all.axis[index]);
+    axis.name = all.axis.name;
+    axis.unit = all.axis.unit;
+    singles.insert(all.is_time ? singles.begin() : singles.end(), SingleAxis{std::move(axis), all.direction});
+  } catch (const Error&) {
+    return;
+  }
+}
+
+/// The grid of a variable, and which of its dimensions is the image's last axis: time, else the slowest one.
+struct VariableGrid {
+  RawGrid grid;
+  std::vector<AxisDirection> directions;  ///< of the grid's axes
+  std::size_t last_dimension = 0;
+  std::size_t time_axis = 0;  ///< where the last axis lies in the file, counted from the fastest
+};
+
+VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
+  VariableGrid result;
+  std::vector<Axis>& axes = result.grid.axes;
+  std::vector<bool> is_time;
+  std::vector<std::size_t> dimension_of;
+  for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
+    if (slab.count[d] == 1) {
+      add_single(file, variable, d, slab.start[d], result.grid.single);
+      continue;
+    }
+    AxisOfFile read = read_axis(file, variable, d);
+    axes.push_back(std::move(read.axis));
+    result.directions.push_back(read.direction);
+    is_time.push_back(read.is_time);
+    dimension_of.push_back(d);
+  }
+  const auto found = is_time.back() ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
+  const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
+  const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
+  move_last(axes);
+  move_last(result.directions);
+  result.time_axis = static_cast<std::size_t>(last);
+  result.last_dimension = dimension_of[result.time_axis];
+  const auto n = static_cast<Eigen::Index>(axes.size());
+  result.grid.linear = Eigen::MatrixXd::Identity(n, n);
+  result.grid.offset = Eigen::VectorXd::Zero(n);
+  return result;
+}
+
+/// Values as the file has them, `count` along the grid's last axis, with that axis behind the others.
+ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t count) {
+  const std::vector<Axis>& axes = grid.grid.axes;
+  std::size_t inner = 1;
+  std::size_t outer = 1;
+  for (std::size_t a = 0; a + 1 < axes.size(); ++a) (a < grid.time_axis ? inner : outer) *= axes[a].size();
+  return outer == 1 || count == 1 ? std::move(values) : with_axis_last(values, inner, count, outer);
+}
+
+struct Found {
+  NcVariable variable;
+  NcSlab slab;
+  ImageInfo info;
+};
+
+/// Throws unless the chosen samples of a variable are an image.
+void require_image(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
+  if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected at least one sample", variable.name,
+         image_shape(variable));
+  const std::size_t axes = rank(slab.count);
+  if (is_image_rank(axes)) return;
+  const bool is_fixed = axes < rank(variable.sizes);
+  if (axes < 2)
+    fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}{}; expected 2 to 4 axes longer than 1",
+         variable.name, variable.sizes.empty() ? "a single value" : image_shape(variable),
+         is_fixed ? fmt::format(", which leaves {} beside the fixed indices", axes) : "");
+  const ImageVariable described = describe(file, variable);
+  fail(ErrorCode::UnsupportedData, file.path(),
+       "variable '{}' is {} ({}){}; expected 2 to 4 axes longer than 1 ({}), or a fixed index of another dimension, "
+       "such "
+       "as {}=0",
+       variable.name, shape_text(described.sizes), fmt::join(described.axes, ", "),
+       is_fixed ? fmt::format(", which leaves {} beside the fixed indices", axes) : "", kMoreAxes,
+       described.axes.back());
+}
+
+/// The variable that is asked for, if it can be an image.
+Found find_variable(const NcFile& file, const ReadImageOptions& options) {
+  const auto all = file.variables();
+  const auto candidates = image_variables(file, all);
+  const NcVariable variable = choose(file, all, candidates, options);
+  require_dimensions(file, variable, options.fixed);
+  const NcSlab slab = slab_of(file, variable, options.fixed);
+  require_image(file, variable, slab);
+  ImageInfo info;
+  info.format = "netCDF";
+  info.variable = variable.name;
+  for (const NcVariable& candidate : candidates) info.variables.push_back(candidate.name);
+  info.value_unit = file.text(variable, "units");
+  info.value_name = file.text(variable, "long_name");
+  if (info.value_name.empty()) info.value_name = file.text(variable, "standard_name");
+  info.stored_type = nc_type_name(variable.type);
+  return {variable, slab, info};
+}
+
+/// `count` layers of the samples along a dimension, from number `first` on.
+NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::size_t count) {
+  slab.start[dimension] = first;
+  slab.count[dimension] = count;
+  return slab;
+}
+
+}  // namespace
+
+RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
+  const NcFile file(path, options.progress, options.allow_outside_paths);
+  Found found = find_variable(file, options);
+  VariableGrid grid = read_grid(file, found.variable, found.slab);
+  found.info.axis_directions = std::move(grid.directions);
+  RawImage image;
+  const Packing packing = read_packing(file, found.variable);
+  const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;
+  image.values = unpack(file.values(found.variable, slab, options.progress), packing);
+  if (extent == Extent::whole) image.values = in_order(std::move(image.values), grid, grid.grid.axes.back().size());
+  image.grid = std::move(grid.grid);
+  image.info = std::move(found.info);
+  return image;
+}
+
+RawLayers open_netcdf_layers(const std::filesystem::path& path, const ReadImageOptions& options) {
+  const auto file = std::make_shared<const NcFile>(path, options.progress, options.allow_outside_paths);
+  if (file->is_compressed())
+    fail(ErrorCode::UnsupportedData, path,
+         "compressed as a whole, so that it cannot be read layer by layer; expected it unpacked");
+  Found found = find_variable(*file, options);
+  file->require_stored(found.variable, found.slab);
+  const VariableGrid grid = read_grid(*file, found.variable, found.slab);
+  found.info.axis_directions = grid.directions;
+  const Packing packing = read_packing(*file, found.variable);
+  expect_memory(2 * file->chunk_bytes(found.variable, sizeof(double)));
+  return {grid.grid, found.info, file->block_length(found.variable, grid.last_dimension),
+          [file, packing, grid, variable = found.variable, slab = found.slab](std::size_t first, std::size_t count) {
+            const NcSlab layers = layers_of(slab, grid.last_dimension, first, count);
+            return in_order(unpack(file->values(variable, layers), packing), grid, count);
+          }};
+}
+
+std::vector<ImageVariable> list_netcdf(const std::filesystem::path& path, bool allow_outside_paths) {
+  const NcFile file(path, {}, allow_outside_paths);
+  std::vector<ImageVariable> result;
+  for (const NcVariable& variable : image_variables(file, file.variables())) {
+    ImageVariable& entry = result.emplace_back(describe(file, variable));
+    entry.unit = file.text(variable, "units");
+    entry.long_name = file.text(variable, "long_name");
+  }
+  return result;
+}
+
+}  // namespace tegl::io_detail

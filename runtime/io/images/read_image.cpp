@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// read_image: which format a file has, and the steps that all formats share.
+#include <array>
+#include <memory>
+#include <new>
+#include <string_view>
+
+#include "base/common.hpp"
+#include "base/inflate.hpp"
+#include "base/raw_image.hpp"
+#include "base/readers.hpp"
+#include "base/sample_reader.hpp"
+#include "process/separate_reading.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+enum class Format { Nifti, Nrrd, MetaImage, NetCdf };
+
+struct Extension {
+  std::string_view text;
+  Format format;
+};
+
+constexpr std::array<Extension, 17> kExtensions = {{{".nii", Format::Nifti},
+                                                    {".nii.gz", Format::Nifti},
+                                                    {".hdr", Format::Nifti},
+                                                    {".hdr.gz", Format::Nifti},
+                                                    {".img", Format::Nifti},
+                                                    {".img.gz", Format::Nifti},
+                                                    {".nrrd", Format::Nrrd},
+                                                    {".nhdr", Format::Nrrd},
+                                                    {".mha", Format::MetaImage},
+                                                    {".mhd", Format::MetaImage},
+                                                    {".nc", Format::NetCdf},
+                                                    {".nc.gz", Format::NetCdf},
+                                                    {".cdf", Format::NetCdf},
+                                                    {".cdf.gz", Format::NetCdf},
+                                                    {".nc4", Format::NetCdf},
+                                                    {".nc4.gz", Format::NetCdf},
+                                                    {".netcdf", Format::NetCdf}}};
+
+/// By extension, as users mean it; a file without a known one, by its first bytes.
+Format format_of(const fs::path& path) {
+  const std::string name = lower_name(path);
+  for (const Extension& extension : kExtensions)
+    if (name.ends_with(extension.text)) return extension.format;
+  const auto prefix = read_prefix(path, 348);
+  const std::string_view start(reinterpret_cast<const char*>(prefix.data()), prefix.size());
+  if (start.starts_with("NRRD000")) return Format::Nrrd;
+  if (start.starts_with("CDF") || start.starts_with("\x89HDF")) return Format::NetCdf;
+  if (start.size() == 348 && (start.substr(344, 3) == "n+1" || start.substr(344, 3) == "ni1")) return Format::Nifti;
+  fail(ErrorCode::UnsupportedFormat, path,
+       "no image format known by its name or first bytes {}; expected NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, "
+       ".nhdr), MetaImage (.mha, .mhd), netCDF (.nc, .cdf, .nc4, also gzipped) or DICOM (.dcm, a folder)",
+       shown(std::span(prefix).first(std::min<std::size_t>(8, prefix.size()))));
+}
+
+StoredImage open_stored(const fs::path& path, Format format, const ReadImageOptions& options) {
+  if (!options.variable.empty())
+    fail(ErrorCode::InvalidArgument, path, "variable '{}' asked of a file that holds one image without a name",
+         options.variable);
+  if (!options.fixed.empty())
+    fail(ErrorCode::InvalidArgument, path,
+         "an index of the dimension '{}' for a file whose dimensions have no names; expected none, or a netCDF file",
+         options.fixed[0].dimension);
+  switch (format) {
+    case Format::Nifti:
+      return open_nifti(path);
+    case Format::Nrrd:
+      return open_nrrd(path, options.allow_outside_paths);
+    default:
+      return open_metaimage(path, options.allow_outside_paths);
+  }
+}
+
+RawImage read_stored(StoredImage&& stored, Extent extent, const Progress& progress) {
+  SampleReader reader(std::move(stored.samples));
+  const std::vector<std::uint64_t>& sizes = reader.samples().sizes;
+  const std::uint64_t count = extent == Extent::whole ? checked_bytes(sizes, 1, reader.samples().path) : 0;
+  ValueArray values;
+  try {
+    values = reader.read(0, count, progress);
+  } catch (const std::bad_alloc&) {
+    fail(ErrorCode::TooLarge, reader.samples().path, "{} values of type {} do not fit into memory", count,
+         reader.samples().type);
+  }
+  if (stored.list_axis && extent == Extent::whole) {
+    std::uint64_t inner = 1;
+    for (std::size_t a = 0; a < *stored.list_axis; ++a) inner *= sizes[a];
+    const std::uint64_t outer = count / sizes[*stored.list_axis] / inner;
+    values = with_axis_last(values, inner, sizes[*stored.list_axis], outer);
+  }
+  if (stored.convert) values = stored.convert(std::move(values));
+  return {std::move(stored.grid), std::move(values), std::move(stored.info)};
+}
+
+RawLayers open_stored_layers(StoredImage&& stored, const fs::path& path) {
+  if (stored.list_axis)
+    fail(ErrorCode::UnsupportedData, path,
+         "a list of images along axis {} of {} in the file cannot be read layer by layer; expected the list along the "
+         "last axis",
+         *stored.list_axis, stored.samples.sizes.size());
+  const std::uint64_t per_layer = checked_bytes(stored.samples.sizes, 1, path) / stored.grid.axes.back().size();
+  RawLayers layers;
+  layers.grid = std::move(stored.grid);
+  layers.info = std::move(stored.info);
+  layers.read = [reader = std::make_shared<SampleReader>(std::move(stored.samples)), per_layer,
+                 convert = std::move(stored.convert)](std::size_t first, std::size_t count) {
+    ValueArray values = reader->read(first * per_layer, count * per_layer, {});
+    return convert ? convert(std::move(values)) : values;
+  };
+  return layers;
+}
+
+RawLayers open_dicom_with(const fs::path& path, const ReadImageOptions& options) {
+  if (!options.fixed.empty())
+    fail(ErrorCode::InvalidArgument, path,
+         "an index of the dimension '{}' for DICOM, whose dimensions have no names; expected none, or a netCDF file",
+         options.fixed[0].dimension);
+  return open_dicom(std::span(&path, 1), options.variable, options.progress);
+}
+
+}  // namespace
+
+RawImage io_detail::read_any(const fs::path& path, Extent extent, const ReadImageOptions& options) {
+  if (is_dicom(path)) {
+    RawLayers layers = open_dicom_with(path, options);
+    const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
+    ValueArray values = layers.read(0, count);
+    return {std::move(layers.grid), std::move(values), std::move(layers.info)};
+  }
+  require_readable_file(path);
+  const Format format = format_of(path);
+  RawImage image = format == Format::NetCdf ? read_netcdf(path, extent, options)
+                                            : read_stored(open_stored(path, format, options), extent, options.progress);
+  drop_trailing_axes(image.grid, image.info);
+  return image;
+}
+
+RawLayers io_detail::open_any_layers(const fs::path& path, const ReadImageOptions& options) {
+  if (is_dicom(path)) return open_dicom_with(path, options);
+  require_readable_file(path);
+  const Format format = format_of(path);
+  if (format == Format::NetCdf) return open_netcdf_layers(path, options);
+  StoredImage stored = open_stored(path, format, options);
+  drop_trailing_axes(stored.grid, stored.info);
+  return open_stored_layers(std::move(stored), path);
+}
+
+ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options) {
+  tick(options.progress, 0.0, path);
+  const auto read = [&](const Progress& progress) {
+    ReadImageOptions own = options;
+    own.progress = progress;
+    return ImageOfFiles{read_any(path, Extent::whole, own), {}};
+  };
+  const bool separate = options.separate_process && needs_separate_process(path);
+  RawImage image = (separate ? read_separately(path, options.progress, read) : read(options.progress)).image;
+  ImageInfo info = std::move(image.info);
+  AnyImage result = to_any_image(std::move(image), path);
+  tick(options.progress, 1.0, path);
+  return {std::move(result), std::move(info)};
+}
+
+std::vector<ImageVariable> list_image_variables(const fs::path& path, const ReadImageOptions& options) {
+  if (options.separate_process && needs_separate_process(path))
+    return read_separately(path, [&] {
+      ReadImageOptions own = options;
+      own.separate_process = false;
+      return list_image_variables(path, own);
+    });
+  if (is_dicom(path)) return list_dicom(path);
+  require_readable_file(path);
+  return format_of(path) == Format::NetCdf ? list_netcdf(path, options.allow_outside_paths)
+                                           : std::vector<ImageVariable>();
+}
+
+}  // namespace tegl

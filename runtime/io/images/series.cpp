@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Series of files as one image: what fits together, where each file lies along the new axis, and the values one file
+// after the other.
+#include "tegl/series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "base/common.hpp"
+#include "base/raw_image.hpp"
+#include "base/readers.hpp"
+#include "base/reading_process.hpp"
+#include "base/time_units.hpp"
+#include "process/separate_reading.hpp"
+
+namespace tegl {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace io_detail;
+
+/// One file of the series without its values.
+struct Member {
+  fs::path path;
+  RawGrid grid;
+  ImageInfo info;
+  std::size_t type = 0;  ///< index of ValueArray
+  double at = 0;         ///< where it lies along the new axis
+};
+
+ReadImageOptions member_options(const SeriesOptions& options, const Progress& progress) {
+  return {options.variable, progress, options.fixed, options.allow_outside_paths};
+}
+
+RawImage read_member(const fs::path& path, Extent extent, const SeriesOptions& options, const Progress& progress) {
+  if (!options.raw) return read_any(path, extent, member_options(options, progress));
+  const RawLayers layers = open_raw(path, *options.raw);
+  const std::size_t count = extent == Extent::whole ? layers.grid.axes.back().size() : 0;
+  RawImage image{layers.grid, layers.read(0, count), layers.info};
+  drop_trailing_axes(image.grid, image.info);
+  return image;
+}
+
+std::vector<std::size_t> sizes_of(const RawGrid& grid) {
+  std::vector<std::size_t> sizes;
+  for (const Axis& axis : grid.axes) sizes.push_back(axis.size());
+  return sizes;
+}
+
+const char* name_of_type(std::size_t type) {
+  ValueArray array;
+  const auto search = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    ((I == type ? (void)(array = ValueArray(std::in_place_index<I>)) : void()), ...);
+  };
+  search(std::make_index_sequence<std::variant_size_v<ValueArray>>());
+  return type_name(array);
+}
+
+/// Throws unless `member` has the samples of `first` at the same places.
+void require_same_grid(const Member& member, const Member& first) {
+  if (sizes_of(member.grid) != sizes_of(first.grid))
+    fail(ErrorCode::UnsupportedData, member.path, "has {} samples; expected {}, as {}",
+         shape_text(sizes_of(member.grid)), shape_text(sizes_of(first.grid)), first.path.string());
+  constexpr double kTolerance = 1e-3;  // of a step: what writers lose by rounding
+  for (std::size_t a = 0; a < first.grid.axes.size(); ++a) {
+    const Axis& axis = member.grid.axes[a];
+    const Axis& expected = first.grid.axes[a];
+    const std::string label = expected.name.empty() ? fmt::format("{}", a) : "'" + expected.name + "'";
+    if (axis.unit != expected.unit)
+      fail(ErrorCode::UnsupportedData, member.path, "has the axis {} in '{}'; expected '{}', as {}", label, axis.unit,
+           expected.unit, first.path.string());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const double step = expected.size() < 2 ? expected.step()
+                          : i == 0            ? expected[1] - expected[0]
+                                              : expected[i] - expected[i - 1];
+      if (std::abs(axis[i] - expected[i]) <= kTolerance * std::abs(step)) continue;
+      if (i == 0)
+        fail(ErrorCode::UnsupportedData, member.path, "has the origin {} along axis {}; expected {}, as {}", axis[0],
+             label, expected[0], first.path.string());
+      fail(ErrorCode::UnsupportedData, member.path,
+           "has other steps along axis {}: sample {} lies at {}; expected {}, as {}", label, i, axis[i], expected[i],
+           first.path.string());
+    }
+  }
+  // How far the farthest corner may be displaced, in steps of the finest axis.
+  double least = std::abs(first.grid.axes[0].step());
+  double extent = 1;
+  for (const Axis& axis : first.grid.axes) {
+    least = std::min(least, std::abs(axis.step()));
+    extent = std::max(extent, static_cast<double>(axis.size()) * std::abs(axis.step()));
+  }
+  const bool turned = ((member.grid.linear - first.grid.linear).array().abs() * extent > kTolerance * least).any();
+  const bool shifted = ((member.grid.offset - first.grid.offset).array().abs() > kTolerance * least).any();
+  if (turned || shifted)
+    fail(ErrorCode::UnsupportedData, member.path, "has another {} in space than {}; expected the same",
+         turned ? "orientation" : "origin", first.path.string());
+}
+
+void require_same(const Member& member, const Member& first) {
+  if (member.type != first.type)
+    fail(ErrorCode::UnsupportedData, member.path, "has values of type {}; expected {}, as {}",
+         name_of_type(member.type), name_of_type(first.type), first.path.string());
+  if (member.info.value_unit != first.info.value_unit)
+    fail(ErrorCode::UnsupportedData, member.path, "has values in '{}'; expected '{}', as {}", member.info.value_unit,
+         first.info.value_unit, first.path.string());
+  if (member.info.world_frame != first.info.world_frame)
+    fail(ErrorCode::UnsupportedData, member.path, "is in the frame '{}'; expected '{}', as {}", member.info.world_frame,
+         first.info.world_frame, first.path.string());
+  require_same_grid(member, first);
+}
+
+/// Where the files lie along the first of the axes that they leave out and differ along; empty if there is none. The
+/// axis points to where all files say that it does.
+std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAxis& found) {
+  const std::vector<SingleAxis>& singles = members.front().grid.single;
+  for (std::size_t s = 0; s < singles.size(); ++s) {
+    const std::string& unit = singles[s].axis.unit;
+    std::vector<double> coordinates;
+    for (const Member& member : members) {
+      if (member.grid.single.size() != singles.size()) return {};
+      const Axis& axis = member.grid.single[s].axis;
+      // Many files count from a day of their own, at which all of them are 0.
+      const std::optional<double> at = convert_time(axis[0], axis.unit, unit);
+      if (!at)
+        fail(
+            ErrorCode::UnsupportedData, member.path,
+            "lies along '{}' in '{}'; expected '{}', as {}, what can be converted to it, or coordinates that are given",
+            axis.name, axis.unit, unit, members.front().path.string());
+      coordinates.push_back(*at);
+    }
+    if (std::all_of(coordinates.begin(), coordinates.end(), [&](double c) { return c == coordinates[0]; })) continue;
+    found = singles[s];
+    for (const Member& member : members)
+      if (member.grid.single[s].direction != found.direction) found.direction = AxisDirection::unknown;
+    return coordinates;
+  }
+  return {};
+}
+
+/// Who says where the members lie.
+enum class Says { header, step, caller };
+
+void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder order) {
+  const bool descending = members[1].at < members[0].at;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Member& member = members[i];
+    if (!std::isfinite(member.at))
+      fail(ErrorCode::InvalidArgument, member.path, "lies at {} along the new axis; expected a finite number",
+           member.at);
+    if (i == 0 || (descending ? member.at < members[i - 1].at : member.at > members[i - 1].at)) continue;
+    if (order == SeriesOrder::by_name && says == Says::caller)
+      fail(ErrorCode::InvalidArgument, member.path,
+           "lies at {} by the coordinates that are given, behind {} at {} by the order of their names; expected "
+           "coordinates that rise or fall strictly in that order",
+           member.at, members[i - 1].path.string(), members[i - 1].at);
+    fail(says == Says::header ? ErrorCode::UnsupportedData : ErrorCode::InvalidArgument, member.path,
+         "lies at {} along the new axis{}, behind {} at {}; expected strictly {} coordinates{}", member.at,
+         says == Says::header ? " by its header" : "", members[i - 1].path.string(), members[i - 1].at,
+         descending ? "descending" : "ascending", says == Says::header ? ", or files in their order" : "");
+  }
+}
+
+/// Where the members lie, in a unit that is asked for instead of that of their headers, and its name: hours since the
+/// same day for days since then.
+std::string converted(std::vector<Member>& members, const std::string& own, const std::string& asked) {
+  if (own == asked) return own;
+  const std::string since = split_time_unit(own).since;
+  const TimeUnit wanted = split_time_unit(asked);
+  const std::string unit = wanted.since.empty() && !since.empty() ? asked + " since " + since : asked;
+  if ((!wanted.since.empty() && wanted.since != since) || !convert_time(0, own, unit))
+    fail(ErrorCode::InvalidArgument, members.front().path,
+         "lies along the new axis in '{}' by its header; expected no other unit than that, or one of ms, s, min, h, d "
+         "and weeks that it can be converted to, not '{}'",
+         own, asked);
+  for (Member& member : members) member.at = *convert_time(member.at, own, unit);
+  return unit;
+}
+
+/// The new axis. Says where each member lies, and sorts them by that if it is asked for.
+SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
+  SingleAxis found;
+  const bool by_coordinate = options.order == SeriesOrder::coordinate;
+  Says says = options.coordinates.empty() ? Says::step : Says::caller;
+  if (says == Says::step) {
+    const auto own = options.step ? std::vector<double>() : own_coordinates(members, found);
+    if (own.empty() && by_coordinate)
+      fail(ErrorCode::UnsupportedData, members.front().path,
+           "does not say where it lies along a further axis, or all say the same; expected files that do, to be "
+           "ordered by that");
+    if (!own.empty()) says = Says::header;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      members[i].at = own.empty() ? static_cast<double>(i) * options.step.value_or(1.0) : own[i];
+  }
+  if (by_coordinate)
+    std::stable_sort(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.at < b.at; });
+  require_monotone(members, says, options.order);
+  if (!options.unit.empty())
+    found.axis.unit = found.axis.unit.empty() ? options.unit : converted(members, found.axis.unit, options.unit);
+  std::vector<double> coordinates;
+  for (const Member& member : members) coordinates.push_back(member.at);
+  Axis axis = axis_of(coordinates);
+  axis.name = found.axis.name.empty() ? (members.front().grid.axes.size() == 3 ? "t" : "z") : found.axis.name;
+  axis.unit = found.axis.unit;
+  return {std::move(axis), found.direction};
+}
+
+void require_sound(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (files.empty()) throw Error(ErrorCode::InvalidArgument, "no files; expected at least one");
+  if (!options.coordinates.empty() && options.step)
+    throw Error(ErrorCode::InvalidArgument, "coordinates and a step; expected one of the two");
+  if (!options.coordinates.empty() && options.coordinates.size() != files.size())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} coordinates for {} files; expected one for each",
+                                                        options.coordinates.size(), files.size()));
+  if (options.step && !std::isnormal(*options.step))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("a step of {}; expected a finite number, of a size of at least {:.2g}", *options.step,
+                            std::numeric_limits<double>::min()));
+}
+
+/// The headers of all files in their order, compared; a coordinate that is given goes with its file.
+std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOptions& options) {
+  std::vector<std::size_t> order(files.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (options.order == SeriesOrder::by_name)
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return natural_less(files[a].native(), files[b].native()); });
+  std::vector<Member> members;
+  for (const std::size_t i : order) {
+    const fs::path& path = files[i];
+    tick(options.progress, 0.0, path);
+    RawImage header = read_member(path, Extent::header, options, {});
+    members.push_back({path, std::move(header.grid), std::move(header.info), header.values.index(),
+                       options.coordinates.empty() ? 0.0 : options.coordinates[i]});
+    const std::size_t axes = members.back().grid.axes.size();
+    if (axes != 2 && axes != 3)
+      fail(ErrorCode::UnsupportedData, path,
+           "has {} axes, one of several files; expected 2 or 3, which become one more", axes);
+    require_same(members.back(), members.front());
+  }
+  return members;
+}
+
+/// Adds the values of a file behind those of others.
+void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::path& path) {
+  std::visit(
+      [&]<class T>(ValueVector<T>& values) {
+        const auto* const added = std::get_if<ValueVector<T>>(&from);
+        if (added == nullptr || added->size() != expected)
+          fail(ErrorCode::MalformedFile, path, "has changed since its header was read");
+        values.insert(values.end(), added->begin(), added->end());
+      },
+      to);
+}
+
+/// The series as layers, a file each.
+LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options) {
+  std::vector<Member> members = read_headers(files, options);
+  auto [last, direction] = make_axis(members, options);
+  RawLayers result;
+  const RawGrid& first = members.front().grid;
+  result.grid = with_last_axis(first, std::move(last));
+  result.info = members.front().info;
+  if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
+  std::vector<fs::path> paths;
+  for (const Member& member : members) paths.push_back(member.path);
+  const auto sizes = sizes_of(first);
+  const std::size_t layer =
+      std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });
+  result.read = [paths, layer, type = members.front().type, own = options](std::size_t begin, std::size_t count) {
+    ValueArray values = array_of_type(name_of_type(type));
+    expect_memory(kBytesPerValue * count * layer);
+    std::visit([&](auto& all) { all.reserve(count * layer); }, values);
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      Progress progress;
+      if (own.progress)
+        progress = [&](double share) {
+          return own.progress((static_cast<double>(i - begin) + share) / static_cast<double>(count));
+        };
+      append(values, read_member(paths[i], Extent::whole, own, progress).values, layer, paths[i]);
+      tick(progress, 1.0, paths[i]);
+    }
+    return values;
+  };
+  return {std::move(result), std::move(paths)};
+}
+
+RawLayers open_dicom_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (!options.coordinates.empty() || options.step || !options.unit.empty() || options.order != SeriesOrder::given)
+    fail(ErrorCode::InvalidArgument, files[0],
+         "is a DICOM file, which says itself where it lies; expected neither coordinates, nor a step, unit or order");
+  if (!options.fixed.empty())
+    fail(ErrorCode::InvalidArgument, files[0], "is a DICOM file, which has no dimension '{}'; expected no fixed index",
+         options.fixed[0].dimension);
+  return open_dicom(files, options.variable, options.progress);
+}
+
+LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (options.raw || !are_dicom_files(files)) return open_members(files, options);
+  return {open_dicom_files(files, options), {files.begin(), files.end()}};
+}
+
+/// One file or several, in this process.
+ImageOfFiles read_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (files.size() == 1) return {read_member(files[0], Extent::whole, options, options.progress), {files[0]}};
+  auto [layers, order] = open_several(files, options);
+  ImageOfFiles result;
+  result.image.values = layers.read(0, layers.grid.axes.back().size());
+  result.image.grid = std::move(layers.grid);
+  result.image.info = std::move(layers.info);
+  result.files = std::move(order);
+  return result;
+}
+
+LayersOfFiles open_files(std::span<const fs::path> files, const SeriesOptions& options) {
+  if (files.size() > 1) return open_several(files, options);
+  return {options.raw ? open_raw(files[0], *options.raw) : open_any_layers(files[0], member_options(options, {})),
+          {files[0]}};
+}
+
+bool is_read_separately(std::span<const fs::path> files, const SeriesOptions& options) {
+  return options.separate_process && !options.raw && needs_separate_process(files);
+}
+
+/// Throws for what only several files can be asked for.
+void require_several(std::span<const fs::path> files, const SeriesRequest& request, const SeriesWords& words) {
+  if (files.size() != 1) return;
+  for (const auto& [is_given, word] :
+       {std::pair(request.times.has_value(), &words.times), std::pair(request.time_step.has_value(), &words.time_step),
+        std::pair(request.time_unit.has_value(), &words.time_unit), std::pair(request.sort.has_value(), &words.sort)})
+    if (is_given)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("{} with one file, {}; expected several files that become one image", *word, files[0].string()));
+}
+
+/// Throws if these are in a shell's order, which puts frame_10 before frame_2.
+void require_order_that_is_meant(std::span<const fs::path> files, const SeriesWords& words) {
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const std::string& a = files[i - 1].native();
+    const std::string& b = files[i].native();
+    if (a < b && natural_less(b, a))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("{} comes before {}, as shells list names; expected {} for the order of the numbers in "
+                              "them, or {} for this one",
+                              a, b, words.by_name, words.given));
+  }
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+SeriesOptions series_options(std::span<const fs::path> files, const SeriesRequest& request, const SeriesWords& words) {
+  const auto refuse = [](const std::string& text) { throw Error(ErrorCode::InvalidArgument, text); };
+  require_several(files, request, words);
+  if (request.times && request.time_step)
+    refuse(fmt::format("{} with {}; expected one of the two", words.times, words.time_step));
+  if (request.sort == SeriesOrder::coordinate && request.time_step)
+    refuse(fmt::format("{} with {}, which follows the order; expected {}, or those of the headers", words.by_time,
+                       words.time_step, words.times));
+  if (request.times && request.times->size() != files.size())
+    refuse(fmt::format("{} has {} numbers for {} files; expected one for each", words.times, request.times->size(),
+                       files.size()));
+  if (request.time_step && std::isfinite(*request.time_step) && !std::isnormal(*request.time_step))
+    refuse(fmt::format("{} is {}; expected a number of a size of at least {:.2g}", words.time_step, *request.time_step,
+                       std::numeric_limits<double>::min()));
+  if (request.raw && !request.fixed.empty())
+    refuse(fmt::format("an index of the dimension '{}' with raw values, whose dimensions have no names; expected none",
+                       request.fixed[0].dimension));
+  if (!request.sort && (request.raw || !are_dicom_files(files))) require_order_that_is_meant(files, words);
+  SeriesOptions options;
+  options.variable = request.variable;
+  options.coordinates = request.times.value_or(std::vector<double>());
+  options.step = request.time_step;
+  options.unit = request.time_unit.value_or("");
+  options.order = request.sort.value_or(SeriesOrder::given);
+  options.raw = request.raw;
+  options.fixed = request.fixed;
+  options.allow_outside_paths = request.allow_outside_paths;
+  return options;
+}
+
+std::string series_hint(const Error& error, const SeriesOptions& options, const SeriesWords& words) {
+  if (error.code() != ErrorCode::InvalidArgument || options.order != SeriesOrder::by_name ||
+      options.coordinates.empty())
+    return "";
+  return fmt::format(" ({}, with {}, which go with the files as listed)", words.by_name, words.times);
+}
+
+ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOptions& options) {
+  require_sound(files, options);
+  const auto read = [&](const Progress& progress) {
+    SeriesOptions own = options;
+    own.progress = progress;
+    return read_files(files, own);
+  };
+  auto [image, order] =
+      is_read_separately(files, options) ? read_separately(files[0], options.progress, read) : read(options.progress);
+  ImageInfo info = std::move(image.info);
+  AnyImage result = to_any_image(std::move(image), files[0]);
+  tick(options.progress, 1.0, files[0]);
+  return {{std::move(result), std::move(info)}, std::move(order)};
+}
+
+OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
+  require_sound(files, options);
+  SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
+  silent.progress = nullptr;
+  const auto open = [&] { return open_files(files, silent); };
+  LayersOfFiles opened = is_read_separately(files, options) ? open_separately(files[0], open) : open();
+  return {to_open_layers(std::move(opened.layers), files[0]), std::move(opened.files)};
+}
+
+bool are_dicom_files(std::span<const fs::path> files) {
+  return std::all_of(files.begin(), files.end(),
+                     [](const fs::path& file) { return is_dicom(file) && !fs::is_directory(file); });
+}
+
+bool natural_less(std::string_view a, std::string_view b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!is_digit(a[i]) || !is_digit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+      continue;
+    }
+    const auto run = [](std::string_view text, std::size_t& at) {
+      while (at < text.size() && text[at] == '0') ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && is_digit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string_view left = run(a, i);
+    const std::string_view right = run(b, j);
+    if (left.size() != right.size()) return left.size() < right.size();
+    if (left != right) return left < right;
+  }
+  if ((a.size() - i) != (b.size() - j)) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
+}  // namespace tegl

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// glTF 2.0: .glb, and .gltf with the buffer inside as base64, so that it is one file. Coordinates are float, as the
+// format has no other; axis names and what is needed to read a mesh back are in asset.extras. Without normals viewers
+// shade faces flat, as the specification asks. Vertex attributes of up to four numbers become _NAME attributes, whose
+// names and units are in the mesh's extras; the format has no place for others.
+//
+// Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "base/common.hpp"
+#include "base/mesh_formats.hpp"
+#include "base/output_file.hpp"
+#include "meshes/attributes.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Positions {
+  std::vector<std::array<float, 3>> values;
+  std::vector<std::array<float, 3>> normals;  ///< as many, or none
+  std::array<float, 3> low{};
+  std::array<float, 3> high{};
+};
+
+Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
+  Positions result;
+  result.low.fill(std::numeric_limits<float>::infinity());
+  result.high.fill(-std::numeric_limits<float>::infinity());
+  result.values.resize(vertex_count(mesh));
+  for (std::size_t v = 0; v < result.values.size(); ++v) {
+    result.values[v] = float_position(mesh, v, path);
+    for (std::size_t a = 0; a < 3; ++a) {
+      result.low[a] = std::min(result.low[a], result.values[v][a]);
+      result.high[a] = std::max(result.high[a], result.values[v][a]);
+    }
+  }
+  return result;
+}
+
+/// Normals have to be of length 1 in glTF: those of length 0 become (0, 0, 1).
+std::vector<std::array<float, 3>> normals(const Mesh& mesh) {
+  std::vector<std::array<float, 3>> result(mesh.normals.size() / static_cast<std::size_t>(mesh.space_dim));
+  for (std::size_t v = 0; v < result.size(); ++v) {
+    const auto row = normal(mesh, v);
+    for (std::size_t a = 0; a < 3; ++a) result[v][a] = static_cast<float>(row[a]);
+    if (row == std::array<double, 3>{}) result[v][2] = 1.0F;
+  }
+  return result;
+}
+
+/// The vertex attributes that glTF has a place for, as float.
+struct GltfAttribute {
+  std::string semantic;
+  const Attribute* attribute;
+  std::vector<float> values;
+};
+
+bool is_color(const Attribute& attribute) {
+  return attribute.name == kColorName && attribute.width == 3 &&
+         std::all_of(attribute.values.begin(), attribute.values.end(),
+                     [](double value) { return value >= 0.0 && value <= 1.0; });
+}
+
+/// Colours of vertices are linear in glTF (section 3.7.2.1): the numbers are decoded as IEC 61966-2-1 has it.
+std::vector<float> linear(const Attribute& attribute) {
+  std::vector<float> result;
+  for (const double value : attribute.values)
+    result.push_back(static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4)));
+  return result;
+}
+
+/// Of up to four numbers; names start with an underscore (section 3.7.2.1) and are spelled with plain capitals.
+std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesystem::path& path) {
+  std::vector<GltfAttribute> result;
+  FileNames names({});
+  for (const Attribute& attribute : mesh.vertex_attributes) {
+    constexpr int kMostNumbers = 4;
+    if (attribute.width > kMostNumbers) continue;
+    std::string word = as_word(attribute.name);
+    for (char& c : word)
+      if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    if (is_color(attribute)) result.push_back({"COLOR_0", &attribute, linear(attribute)});
+    GltfAttribute& added = result.emplace_back(GltfAttribute{names.make("_" + word), &attribute, {}});
+    added.values.reserve(attribute.values.size());
+    for (const double value : attribute.values) {
+      if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
+        fail(ErrorCode::UnsupportedData, path, "vertex {} has {} as '{}'; expected what float holds",
+             added.values.size() / static_cast<std::size_t>(attribute.width), value, attribute.name);
+      added.values.push_back(static_cast<float>(value));
+    }
+  }
+  return result;
+}
+
+/// Everything that the buffer holds, in its order.
+struct Content {
+  const Mesh& mesh;
+  Positions points;
+  std::vector<GltfAttribute> attributes;
+};
+
+Json asset(const Mesh& mesh) {
+  Json extras = {{"dim", mesh.dim}, {"space_dim", mesh.space_dim}};
+  extras["axis_names"] = mesh.axis_names;
+  extras["axis_units"] = mesh.axis_units;
+  if (mesh.isovalue) extras["isovalue"] = *mesh.isovalue;
+  return {{"version", "2.0"}, {"generator", "tegl"}, {"extras", {{"tegl", extras}}}};
+}
+
+/// Everything but the buffer itself. glTF allows no empty accessor: an empty mesh is a scene without nodes.
+Json document(const Content& content, std::size_t buffer_bytes) {
+  const auto& [mesh, points, attributes] = content;
+  Json json = {{"asset", asset(mesh)}, {"scene", 0}};
+  if (points.values.empty() || mesh.simplices.empty()) {
+    json["scenes"] = Json::array({Json{{"name", "empty contour"}}});
+    return json;
+  }
+  constexpr int kLines = 1;
+  constexpr int kTriangles = 4;
+  constexpr int kFloat = 5126;
+  constexpr int kUint32 = 5125;
+  constexpr int kVertexBuffer = 34962;
+  constexpr int kIndexBuffer = 34963;
+  const std::size_t position_bytes = points.values.size() * sizeof(points.values[0]);
+  const std::size_t index_bytes = mesh.simplices.size() * sizeof(Index);
+  Json primitive = {{"attributes", {{"POSITION", 0}}},
+                    {"indices", 1},
+                    {"material", 0},
+                    {"mode", mesh.dim == 1 ? kLines : kTriangles}};
+  if (!points.normals.empty()) primitive["attributes"]["NORMAL"] = 2;
+  json["scenes"] = Json::array({Json{{"nodes", {0}}}});
+  json["nodes"] = Json::array({Json{{"mesh", 0}, {"name", "contour"}}});
+  json["meshes"] = Json::array({Json{{"name", "contour"}, {"primitives", Json::array({primitive})}}});
+  json["materials"] = Json::array({Json{{"name", "contour"}, {"doubleSided", true}}});
+  json["accessors"] = Json::array(
+      {Json{{"bufferView", 0},
+            {"componentType", kFloat},
+            {"count", points.values.size()},
+            {"type", "VEC3"},
+            {"min", points.low},
+            {"max", points.high}},
+       Json{{"bufferView", 1}, {"componentType", kUint32}, {"count", mesh.simplices.size()}, {"type", "SCALAR"}}});
+  json["bufferViews"] = Json::array(
+      {Json{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", kVertexBuffer}},
+       Json{{"buffer", 0}, {"byteOffset", position_bytes}, {"byteLength", index_bytes}, {"target", kIndexBuffer}}});
+  if (!points.normals.empty()) {
+    json["accessors"].push_back(
+        {{"bufferView", 2}, {"componentType", kFloat}, {"count", points.normals.size()}, {"type", "VEC3"}});
+    json["bufferViews"].push_back({{"buffer", 0},
+                                   {"byteOffset", position_bytes + index_bytes},
+                                   {"byteLength", position_bytes},
+                                   {"target", kVertexBuffer}});
+  }
+  std::size_t offset = position_bytes + index_bytes + (points.normals.empty() ? 0 : position_bytes);
+  for (const GltfAttribute& added : attributes) {
+    constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    const std::size_t view = json["bufferViews"].size();
+    json["meshes"][0]["primitives"][0]["attributes"][added.semantic] = json["accessors"].size();
+    json["accessors"].push_back({{"bufferView", view},
+                                 {"componentType", kFloat},
+                                 {"count", points.values.size()},
+                                 {"type", kTypes[static_cast<std::size_t>(added.attribute->width) - 1]}});
+    const std::size_t bytes = added.values.size() * sizeof(float);
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", kVertexBuffer}});
+    offset += bytes;
+    if (!added.semantic.starts_with('_')) continue;  // COLOR_0 is there a second time, by its name
+    Json& texts = json["meshes"][0]["extras"]["tegl"]["attributes"];
+    texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
+  }
+  json["buffers"] = Json::array({Json{{"byteLength", buffer_bytes}}});
+  return json;
+}
+
+/// base64 in pieces of a multiple of 3 bytes, as the two parts of the buffer come one after the other.
+std::string base64(std::span<const unsigned char> bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) group = group << 8 | (j < count ? bytes[i + j] : 0U);
+    for (std::size_t j = 0; j < 4; ++j) text += j <= count ? kDigits[group >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+template <class Range>
+std::span<const unsigned char> as_raw(const Range& range) {
+  return {reinterpret_cast<const unsigned char*>(range.data()), range.size() * sizeof(range[0])};
+}
+
+/// What the buffer holds, part after part.
+std::vector<std::span<const unsigned char>> buffer_parts(const Content& content) {
+  std::vector<std::span<const unsigned char>> parts = {as_raw(content.points.values), as_raw(content.mesh.simplices),
+                                                       as_raw(content.points.normals)};
+  for (const GltfAttribute& added : content.attributes) parts.push_back(as_raw(added.values));
+  return parts;
+}
+
+std::size_t buffer_size(const Content& content) {
+  std::size_t bytes = 0;
+  for (const auto part : buffer_parts(content)) bytes += part.size();
+  return bytes;
+}
+
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+void write_text(const Content& content, Json json, OutputFile& file) {
+  if (json.contains("buffers")) {
+    std::vector<unsigned char> buffer;
+    for (const auto part : buffer_parts(content)) buffer.insert(buffer.end(), part.begin(), part.end());
+    json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(buffer);
+  }
+  file.write(dumped(json));
+}
+
+void write_binary(const Content& content, const Json& json, OutputFile& file) {
+  constexpr std::uint32_t kMagic = 0x46546C67;      // "glTF"
+  constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
+  constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
+  std::string text = dumped(json);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const bool has_buffer = json.contains("buffers");
+  const std::uint64_t buffer_bytes = has_buffer ? buffer_size(content) : 0;
+  const std::uint64_t total = 12 + 8 + text.size() + (has_buffer ? 8 + buffer_bytes : 0);
+  if (total > std::numeric_limits<std::uint32_t>::max())
+    fail(ErrorCode::TooLarge, file.target(), "{} bytes as .glb; expected at most 2^32 - 1 (write .ply or .vtkhdf)",
+         total);
+  const auto word = [&](std::uint64_t value) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    file.write(&bits, sizeof(bits));
+  };
+  constexpr std::uint32_t kVersion = 2;
+  for (const std::uint64_t value :
+       {std::uint64_t{kMagic}, std::uint64_t{kVersion}, total, std::uint64_t{text.size()}, std::uint64_t{kJsonChunk}})
+    word(value);
+  file.write(text);
+  if (!has_buffer) return;
+  word(buffer_bytes);
+  word(kBinChunk);
+  for (const auto part : buffer_parts(content)) file.write_range(part);
+}
+
+}  // namespace
+
+void write_gltf(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
+  OutputFile file(path);
+  Content content{mesh, positions(mesh, path), gltf_attributes(mesh, path)};
+  content.points.normals = normals(mesh);
+  tick(progress, 0.5, path);
+  const Json json = document(content, buffer_size(content));
+  if (lower_name(path).ends_with(".glb"))
+    write_binary(content, json, file);
+  else
+    write_text(content, json, file);
+  tick(progress, 1.0, path);
+  file.commit();
+}
+
+}  // namespace tegl::io_detail

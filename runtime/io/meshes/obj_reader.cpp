@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Wavefront OBJ, of any program: vertices by number as the file has them, triangles or, where there are none, segments.
+// Numbers are read as double, each digit of them; nothing is joined, sorted or left out, so that what the writer wrote
+// comes back bit by bit. Colours, texture coordinates, groups, materials and free-form surfaces have no place in a mesh
+// and are passed over.
+//
+// Based on: Wavefront Technologies, "The Advanced Visualizer", appendix B1, "Object Files (.obj)", 1991.
+#include "meshes/obj_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/common.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Takes the first word off a line; empty at its end.
+std::string_view next_word(std::string_view& line) {
+  constexpr std::string_view kBlanks = " \t\r\v\f";
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+class ObjReader {
+ public:
+  ObjReader(const fs::path& path, ReadProgress& progress)
+      : path_(path), progress_(progress), bytes_(read_bytes(path, 0, static_cast<std::size_t>(size_of_file(path)))) {}
+
+  Mesh run() {
+    text_ = std::string_view(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+    while (!text_.empty()) read_statement(next_statement());
+    require_present(vertex_reference_, rows(mesh_.coordinates));
+    require_present(normal_reference_, rows(mesh_.normals));
+    if (triangles_.empty() && segments_.empty())
+      fail(ErrorCode::UnsupportedData, path_, "no triangles, no lines; expected a surface");
+    mesh_.dim = triangles_.empty() ? 1 : 2;
+    mesh_.simplices = std::move(triangles_.empty() ? segments_ : triangles_);
+    // Lines have no way to name normals: theirs are those by their vertices' numbers.
+    const bool is_by_vertex = mesh_.dim == 1 || normals_by_vertex_;
+    if (!is_by_vertex || mesh_.normals.size() != mesh_.coordinates.size()) mesh_.normals = {};
+    mesh_.axis_names.resize(3);
+    mesh_.axis_units.resize(3);
+    return std::move(mesh_);
+  }
+
+ private:
+  /// What a kind of numbers refers to: v or vn. The greatest number there is, and where, as what it names may follow.
+  struct Reference {
+    std::string_view what;
+    std::uint64_t greatest = 0;
+    std::uint64_t line = 0;
+  };
+  struct Corner {
+    Index vertex = 0;
+    std::optional<Index> normal;
+  };
+
+  static std::size_t rows(const Buffer<double>& numbers) { return numbers.size() / 3; }
+
+  template <class... Args>
+  [[noreturn]] void bad(fmt::format_string<Args...> format, Args&&... args) const {
+    fail(ErrorCode::MalformedFile, path_, "line {}: {}", line_, fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  /// The next line without its comment, with those behind it that a backslash at the end makes one with it. In a
+  /// comment it makes nothing: names of folders end so, too.
+  std::string_view next_statement() {
+    line_ = lines_ + 1;
+    joined_.clear();
+    for (;;) {
+      const std::size_t end = text_.find('\n');
+      std::string_view line = text_.substr(0, end);
+      text_.remove_prefix(std::min(line.size() + 1, text_.size()));
+      ++lines_;
+      progress_.add(line.size() + 1);
+      const std::size_t comment = line.find('#');
+      line = line.substr(0, comment);
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      const bool goes_on = comment == std::string_view::npos && line.ends_with('\\');
+      if (!goes_on && joined_.empty()) return line;
+      joined_.append(line.substr(0, line.size() - (goes_on ? 1 : 0))) += ' ';
+      if (!goes_on || text_.empty()) return joined_;
+    }
+  }
+
+  void read_statement(std::string_view line) {
+    const std::string_view key = next_word(line);
+    if (key == "v")
+      read_vertex(line);
+    else if (key == "vn")
+      read_row("vn", line, mesh_.normals);
+    else if (key == "f" || key == "fo")  // the latter in files of old
+      read_face(line);
+    else if (key == "l")
+      read_line(line);
+  }
+
+  double number(std::string_view word) const {
+    double value = 0;
+    if (parse_number(word, value)) return value;
+    const std::string_view digits = without_plus(word);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const bool is_number = error == std::errc::result_out_of_range && end == digits.data() + digits.size();
+    bad("{}; expected a number{}", shown(word), is_number ? " that double holds" : "");
+  }
+
+  void read_row(std::string_view key, std::string_view line, Buffer<double>& numbers) {
+    std::size_t count = 0;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+      const double value = number(word);
+      if (count++ < 3) numbers.push_back(value);  // a weight or a colour may follow
+    }
+    if (count < 3) bad("'{}' with {} numbers; expected 3 or more", key, count);
+  }
+
+  void read_vertex(std::string_view line) {
+    read_row("v", line, mesh_.coordinates);
+    if (rows(mesh_.coordinates) > std::numeric_limits<Index>::max())
+      fail(ErrorCode::TooLarge, path_, "line {}: {} vertices; expected at most {}", line_, rows(mesh_.coordinates),
+           std::numeric_limits<Index>::max());
+  }
+
+  /// What a number stands for, from 0: those of files count from 1, negative ones back from where they stand.
+  Index resolve(std::string_view text, Reference& reference, std::size_t present) const {
+    std::int64_t value = 0;
+    if (!parse_number(text, value)) bad("{}; expected the number of a {}", shown(text), reference.what);
+    const auto count = static_cast<std::int64_t>(present);
+    if (value == 0) bad("{} number 0; expected 1 or more, or less than 0", reference.what);
+    if (value < -count) bad("{} number {}; expected at least {}, the number so far", reference.what, value, -count);
+    if (value < 0) return static_cast<Index>(count + value);
+    constexpr Index kMost = std::numeric_limits<Index>::max();
+    if (value > kMost) bad("{} number {}; expected at most {}", reference.what, value, kMost);
+    if (static_cast<std::uint64_t>(value) > reference.greatest)
+      reference.greatest = static_cast<std::uint64_t>(value), reference.line = line_;
+    return static_cast<Index>(value - 1);
+  }
+
+  void require_present(const Reference& reference, std::size_t present) const {
+    if (reference.greatest > present)
+      fail(ErrorCode::MalformedFile, path_, "line {}: {} number {}; expected at most {}, as many as there are",
+           reference.line, reference.what, reference.greatest, present);
+  }
+
+  /// "7", "7/2", "7/2/5" or "7//5": a vertex, a point of a texture, a normal.
+  Corner corner(std::string_view word) {
+    const std::size_t slash = word.find('/');
+    Corner result;
+    result.vertex = resolve(word.substr(0, slash), vertex_reference_, rows(mesh_.coordinates));
+    if (slash == std::string_view::npos) return result;
+    const std::size_t second = word.find('/', slash + 1);
+    if (second != std::string_view::npos && second + 1 < word.size())
+      result.normal = resolve(word.substr(second + 1), normal_reference_, rows(mesh_.normals));
+    return result;
+  }
+
+  /// A polygon, as the fan of triangles from its first corner.
+  void read_face(std::string_view line) {
+    std::size_t count = 0;
+    Index first = 0;
+    Index last = 0;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+      const Corner at = corner(word);
+      if (!at.normal || *at.normal != at.vertex) normals_by_vertex_ = false;
+      if (++count > 2)
+        for (const Index vertex : {first, last, at.vertex}) triangles_.push_back(vertex);
+      if (count == 1) first = at.vertex;
+      last = at.vertex;
+    }
+    if (count < 3) bad("face of {} vertices; expected 3 or more", count);
+  }
+
+  void read_line(std::string_view line) {
+    std::size_t count = 0;
+    Index last = 0;
+    for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+      const Index vertex = corner(word).vertex;
+      if (++count > 1)
+        for (const Index end : {last, vertex}) segments_.push_back(end);
+      last = vertex;
+    }
+    if (count < 2) bad("line of {} vertices; expected 2 or more", count);
+  }
+
+  const fs::path& path_;
+  ReadProgress& progress_;
+  std::vector<unsigned char> bytes_;
+  std::string_view text_;    ///< what is left to read
+  std::uint64_t lines_ = 0;  ///< read
+  std::uint64_t line_ = 0;   ///< the statement's first
+  std::string joined_;       ///< a statement of several lines
+  Reference vertex_reference_{"vertex"};
+  Reference normal_reference_{"normal"};
+  Buffer<Index> triangles_;
+  Buffer<Index> segments_;
+  bool normals_by_vertex_ = true;  ///< every corner names the normal of its vertex's number
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh read_obj(const fs::path& path, ReadProgress& progress) { return ObjReader(path, progress).run(); }
+
+}  // namespace tegl::io_detail

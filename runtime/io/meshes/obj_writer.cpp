@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Wavefront OBJ, text: vertices (v), normals if there are any (vn), and segments (l) or triangles (f) by the numbers of
+// their vertices, from 1. Numbers have as many digits as it takes to read the same double again (of a mesh in single
+// precision: the same float). The format has no place for units, names, the isovalue or attributes.
+//
+// Based on: Wavefront Technologies, "The Advanced Visualizer", appendix B1, "Object Files (.obj)", 1991.
+#include <cmath>
+
+#include "base/block_writer.hpp"
+#include "base/mesh_formats.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+/// A line of a vertex or normal.
+void put_row(BlockWriter& out, std::string_view key, const std::array<double, 3>& row, bool single_precision) {
+  if (single_precision)
+    out.put_format("{} {} {} {}\n", key, static_cast<float>(row[0]), static_cast<float>(row[1]),
+                   static_cast<float>(row[2]));
+  else
+    out.put_format("{} {} {} {}\n", key, row[0], row[1], row[2]);
+}
+
+std::array<double, 3> finite_position(const Mesh& mesh, std::size_t vertex, const std::filesystem::path& path) {
+  const auto point = position(mesh, vertex);
+  for (const double value : point)
+    if (!std::isfinite(value))
+      fail(ErrorCode::UnsupportedData, path, "vertex {} has the coordinate {}; expected a finite number", vertex,
+           value);
+  return point;
+}
+
+}  // namespace
+
+void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
+  OutputFile file(path);
+  BlockWriter out(file, progress);
+  const std::size_t vertices = vertex_count(mesh);
+  const bool with_normals = !mesh.normals.empty();
+  const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
+  file.write("# written by tegl\n");
+  const bool single = mesh.single_precision;
+  out.write_rows(vertices, 0.0, 0.3, [&](std::size_t v) { put_row(out, "v", finite_position(mesh, v, path), single); });
+  if (with_normals)
+    out.write_rows(vertices, 0.3, 0.6, [&](std::size_t v) { put_row(out, "vn", normal(mesh, v), single); });
+  out.write_rows(simplex_count(mesh), 0.6, 1.0, [&](std::size_t s) {
+    out.put_text(mesh.dim == 1 ? "l" : "f");
+    for (std::size_t c = 0; c < corners; ++c) {
+      const std::uint64_t number = std::uint64_t{mesh.simplices[s * corners + c]} + 1;
+      // Lines have no normals in OBJ: theirs stand in the file, for those who look for them.
+      if (with_normals && mesh.dim == 2)
+        out.put_format(" {}//{}", number, number);
+      else
+        out.put_format(" {}", number);
+    }
+    out.put_text("\n");
+  });
+  tick(progress, 1.0, path);
+  file.commit();
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// STL, binary: what programs for printing and milling take. 80 bytes of no meaning, the number of triangles, and 50
+// bytes for each: a normal and three corners as float, and two bytes of zero. Little-endian on any machine. The format
+// has neither shared vertices nor a place for units, names or attributes. Corners go around counter-clockwise as seen
+// from the low side, as in memory, and the normal of the facet points there.
+//
+// Based on: 3D Systems, "Stereolithography Interface Specification", 1988.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "base/block_writer.hpp"
+#include "base/mesh_formats.hpp"
+
+namespace tegl::io_detail {
+
+namespace {
+
+std::array<char, 4> little_endian(std::uint32_t bits) {
+  std::array<char, 4> bytes{};
+  for (std::size_t i = 0; i < 4; ++i) bytes[i] = static_cast<char>(bits >> 8 * i & 0xFFU);
+  return bytes;
+}
+
+void put_vector(BlockWriter& out, const Eigen::Vector3f& vector) {
+  for (const float value : vector) out.put(little_endian(std::bit_cast<std::uint32_t>(value)).data(), 4);
+}
+
+/// Of length 1; 0 for a triangle of no area. Products of what float holds are in the range of double.
+Eigen::Vector3f facet_normal(const std::array<Eigen::Vector3f, 3>& corners) {
+  const Eigen::Vector3d first = corners[1].cast<double>() - corners[0].cast<double>();
+  const Eigen::Vector3d second = corners[2].cast<double>() - corners[0].cast<double>();
+  return first.cross(second).normalized().cast<float>();
+}
+
+}  // namespace
+
+std::uint32_t stl_triangle_count(std::uint64_t triangles, const std::filesystem::path& path) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (triangles > kMost)
+    fail(ErrorCode::TooLarge, path, "{} triangles as .stl; expected at most 2^32 - 1 (write .ply or .vtkhdf)",
+         triangles);
+  return static_cast<std::uint32_t>(triangles);
+}
+
+void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
+  const std::uint32_t count = stl_triangle_count(simplex_count(mesh), path);
+  OutputFile file(path);
+  BlockWriter out(file, progress);
+  // A file that begins with "solid" is taken for STL as text.
+  constexpr std::size_t kHeader = 80;
+  std::string header = "binary STL written by tegl";
+  header.resize(kHeader, ' ');
+  file.write(header);
+  file.write(little_endian(count).data(), 4);
+  out.write_rows(count, 0.0, 1.0, [&](std::size_t triangle) {
+    std::array<Eigen::Vector3f, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto point = float_position(mesh, mesh.simplices[3 * triangle + c], path);
+      corners[c] = Eigen::Vector3f(point.data());
+    }
+    put_vector(out, facet_normal(corners));
+    for (const Eigen::Vector3f& corner : corners) put_vector(out, corner);
+    out.put_byte(0);
+    out.put_byte(0);
+  });
+  tick(progress, 1.0, path);
+  file.commit();
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTKHDF, unstructured grids: what ParaView opens. A mesh as a whole, to and from a file; vtkhdf_writer.cpp says what
+// is where in it.
+//
+// Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/common.hpp"
+#include "base/hdf5_file.hpp"
+#include "base/mesh_formats.hpp"
+#include "base/reading_process.hpp"
+#include "meshes/vtkhdf_names.hpp"
+#include "meshes/vtkhdf_writer.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> split(const std::string& text, std::size_t count) {
+  std::vector<std::string> result(1);
+  for (const char c : text) {
+    if (c == '\n')
+      result.emplace_back();
+    else
+      result.back() += c;
+  }
+  result.resize(count);
+  return result;
+}
+
+/// The simplices of cells that are all of one type.
+class Reader {
+ public:
+  Reader(const fs::path& path, ReadProgress& progress, bool allow_outside_paths)
+      : path_(path), progress_(progress), file_(open_file(path, allow_outside_paths)), group_(open_root(file_, path)) {}
+
+  Mesh run() {
+    mesh_.space_dim = 3;
+    read_cells();
+    read_points();
+    const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
+    if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 3 ? static_cast<int>(dims[0]) : 2;
+    // Tetrahedra of other programs with a point array t are taken for contours in 4-space.
+    if (file_.has(group_.id(), "PointData") && (dims.size() == 2 ? dims[1] == 4 : mesh_.dim == 3)) add_times();
+    read_normals();
+    std::set<std::string> taken;
+    if (mesh_.space_dim == 4) taken.insert(kTimes);
+    if (!mesh_.normals.empty()) taken.insert(kNormals);
+    if (!mesh_.normals.empty() && mesh_.space_dim == 4) taken.insert(kNormalTimes);
+    mesh_.vertex_attributes = attributes("PointData", vertex_count(mesh_), taken);
+    mesh_.simplex_attributes = attributes("CellData", simplex_count(mesh_), {});
+    if (dims.size() == 2 && dims[1] == 2) flatten(mesh_, path_);
+    const auto n = static_cast<std::size_t>(mesh_.space_dim);
+    mesh_.axis_names = split(file_.get_text(group_.id(), "tegl_axis_names"), n);
+    mesh_.axis_units = split(file_.get_text(group_.id(), "tegl_axis_units"), n);
+    read_isovalue();
+    return std::move(mesh_);
+  }
+
+ private:
+  static H5File open_file(const fs::path& path, bool allow_outside_paths) {
+    now_reading(path);
+    return H5File::open(path, allow_outside_paths);
+  }
+
+  static H5Handle open_root(const H5File& file, const fs::path& path) {
+    H5Handle group = file.open_group("VTKHDF");
+    const std::string type = file.get_text(group.id(), "Type");
+    if (type != "UnstructuredGrid")
+      fail(ErrorCode::UnsupportedData, path, "VTKHDF of type {}; expected 'UnstructuredGrid'", shown(type));
+    return group;
+  }
+
+  [[nodiscard]] std::uint64_t length(hid_t group, const char* name) const {
+    const auto size = file_.sizes(group, name);
+    if (size.size() != 1) fail(ErrorCode::MalformedFile, path_, "dataset '{}' of 2 dimensions; expected 1", name);
+    return size[0];
+  }
+
+  /// Memory for so many numbers, and for HDF5 beside them.
+  static void expect_numbers(std::uint64_t count) { expect_memory(3 * sizeof(double) * count); }
+
+  /// A whole dataset, counted in the progress.
+  void read(hid_t group, const char* name, hid_t type, void* to) const {
+    file_.read(group, name, type, to, [this](std::uint64_t bytes) { progress_.add(bytes); });
+  }
+
+  template <class T>
+  [[nodiscard]] std::vector<T> numbers(const char* name, hid_t type) {
+    file_.claim(group_.id(), name);
+    const std::uint64_t count = length(group_.id(), name);
+    expect_memory(3 * sizeof(T) * count);
+    std::vector<T> values(static_cast<std::size_t>(count));
+    if (!values.empty()) read(group_.id(), name, type, values.data());
+    return values;
+  }
+
+  void read_cells() {
+    const auto types = numbers<unsigned char>("Types", H5T_NATIVE_UINT8);
+    const auto ids = numbers<std::int64_t>("Connectivity", H5T_NATIVE_INT64);
+    mesh_.dim = 0;
+    for (int dim = 1; dim <= 3 && !types.empty(); ++dim)
+      if (types[0] == kCellTypes[static_cast<std::size_t>(dim)]) mesh_.dim = dim;
+    const auto other = std::find_if(types.begin(), types.end(), [&](unsigned char t) { return t != types[0]; });
+    if (!types.empty() && (mesh_.dim == 0 || other != types.end()))
+      fail(ErrorCode::UnsupportedData, path_,
+           "cells of VTK type {}; expected all 3 (lines), all 5 (triangles) or all "
+           "10 (tetrahedra)",
+           mesh_.dim == 0 ? types[0] : *other);
+    const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
+    if (types.empty() ? !ids.empty() : ids.size() != types.size() * corners)
+      fail(ErrorCode::MalformedFile, path_, "{} vertex numbers of {} cells; expected {}", ids.size(), types.size(),
+           types.size() * corners);
+    const auto offsets = numbers<std::int64_t>("Offsets", H5T_NATIVE_INT64);
+    for (std::size_t i = 0; i <= types.size(); ++i)
+      if (offsets.size() != types.size() + 1 || offsets[i] != static_cast<std::int64_t>(i * corners))
+        fail(ErrorCode::MalformedFile, path_, "{} offsets of {} cells, or not in steps of {}", offsets.size(),
+             types.size(), corners);
+    mesh_.simplices.resize(ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      if (ids[i] < 0 || ids[i] > std::numeric_limits<Index>::max())
+        fail(ErrorCode::MalformedFile, path_, "vertex number {}; expected 0 or more, below 2^32", ids[i]);
+      mesh_.simplices[i] = static_cast<Index>(ids[i]);
+    }
+  }
+
+  void read_points() {
+    const auto size = file_.claim(group_.id(), "Points");
+    if (size.size() != 2 || size[1] != 3)
+      fail(ErrorCode::MalformedFile, path_, "points of shape {}; expected rows of 3", shape_text(size));
+    expect_numbers(size[0] * 3);
+    mesh_.coordinates.resize(static_cast<std::size_t>(size[0] * 3));
+    if (size[0] > 0) read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
+  }
+
+  /// x y z and the point array t, side by side.
+  void add_times() {
+    const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+    if (!file_.has(point_data.id(), kTimes)) return;
+    const std::size_t vertices = mesh_.coordinates.size() / 3;
+    if (length(point_data.id(), kTimes) != vertices)
+      fail(ErrorCode::MalformedFile, path_, "point array 't' of {} values; expected {}",
+           length(point_data.id(), kTimes), vertices);
+    add_fourth(point_data, kTimes, mesh_.coordinates);
+    mesh_.space_dim = 4;
+  }
+
+  /// Rows of three get a fourth column.
+  void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) {
+    const std::size_t count = rows.size() / 3;
+    file_.claim(point_data.id(), name);
+    expect_numbers(count + 4 * count);
+    std::vector<double> fourth(count);
+    if (count > 0) read(point_data.id(), name, H5T_NATIVE_DOUBLE, fourth.data());
+    Buffer<double> all(4 * count);
+    for (std::size_t v = 0; v < count; ++v) {
+      std::copy_n(rows.data() + 3 * v, 3, all.data() + 4 * v);
+      all[4 * v + 3] = fourth[v];
+    }
+    rows = std::move(all);
+  }
+
+  /// Arrays of these names and other shapes are other programs' and left alone.
+  void read_normals() {
+    if (!file_.has(group_.id(), "PointData")) return;
+    const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+    const auto vertices = static_cast<std::uint64_t>(vertex_count(mesh_));
+    const auto has = [&](const char* name, const std::vector<std::uint64_t>& shape) {
+      return file_.has(point_data.id(), name) && file_.sizes(point_data.id(), name) == shape;
+    };
+    if (vertices == 0 || !has(kNormals, {vertices, 3})) return;
+    if (mesh_.space_dim == 4 && !has(kNormalTimes, {vertices})) return;
+    file_.claim(point_data.id(), kNormals);
+    expect_numbers(3 * vertices);
+    mesh_.normals.resize(static_cast<std::size_t>(3 * vertices));
+    read(point_data.id(), kNormals, H5T_NATIVE_DOUBLE, mesh_.normals.data());
+    if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
+  }
+
+  /// The field array of that name, if it is one finite number.
+  void read_isovalue() {
+    if (!file_.has(group_.id(), "FieldData")) return;
+    const H5Handle field_data = file_.open_group("VTKHDF/FieldData");
+    const std::vector<std::string> names = file_.number_datasets(field_data.id());
+    if (std::find(names.begin(), names.end(), kIsovalue) == names.end()) return;
+    if (file_.rank(field_data.id(), kIsovalue) != 1 || file_.sizes(field_data.id(), kIsovalue)[0] != 1) return;
+    double isovalue = 0.0;
+    file_.read(field_data.id(), kIsovalue, H5T_NATIVE_DOUBLE, &isovalue);
+    if (std::isfinite(isovalue)) mesh_.isovalue = isovalue;
+  }
+
+  /// The arrays of a group that have a row for each vertex or simplex, those of the writer first and in its order.
+  [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
+                                                  const std::set<std::string>& taken) {
+    std::vector<Attribute> result;
+    if (!file_.has(group_.id(), group_name)) return result;
+    const H5Handle group = file_.open_group((std::string("VTKHDF/") + group_name).c_str());
+    std::vector<std::pair<std::int64_t, std::string>> found;
+    for (const std::string& name : file_.number_datasets(group.id())) {
+      const H5Handle dataset = file_.open_dataset(group.id(), name.c_str());
+      const auto order = file_.get_numbers(dataset.id(), kAttributeOrder);
+      if (!taken.contains(name) && has_rows(group.id(), name.c_str(), rows))
+        found.emplace_back(order.empty() ? std::numeric_limits<std::int64_t>::max() : order[0], name);
+    }
+    std::sort(found.begin(), found.end());
+    FileNames names({});
+    for (const auto& [order, name] : found) {
+      const auto size = file_.claim(group.id(), name.c_str());
+      const H5Handle dataset = file_.open_dataset(group.id(), name.c_str());
+      const std::string own_name = file_.get_text(dataset.id(), kAttributeName);
+      Attribute& attribute = result.emplace_back();
+      attribute.name = names.make(own_name.empty() ? name : own_name);
+      attribute.unit = file_.get_text(dataset.id(), kAttributeUnit);
+      attribute.width = size.size() == 1 ? 1 : static_cast<int>(size[1]);
+      expect_numbers(rows * static_cast<std::size_t>(attribute.width));
+      attribute.values.resize(rows * static_cast<std::size_t>(attribute.width));
+      if (rows > 0) read(group.id(), name.c_str(), H5T_NATIVE_DOUBLE, attribute.values.data());
+    }
+    return result;
+  }
+
+  /// Whether a dataset is a list or a table of so many rows.
+  [[nodiscard]] bool has_rows(hid_t group, const char* name, std::size_t rows) const {
+    const int rank = file_.rank(group, name);
+    if (rank < 1 || rank > 2) return false;
+    const auto size = file_.sizes(group, name);
+    constexpr std::uint64_t kMostColumns = 1 << 16;
+    return size[0] == rows && (size.size() == 1 || (size[1] > 0 && size[1] <= kMostColumns));
+  }
+
+  const fs::path& path_;
+  ReadProgress& progress_;
+  H5File file_;
+  H5Handle group_;
+  Mesh mesh_;
+};
+
+}  // namespace
+
+void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress, Compression compression) {
+  // Offsets go up to the count of vertex numbers.
+  const std::size_t largest_id = std::max(vertex_count(mesh), mesh.simplices.size());
+  VtkhdfWriter writer(
+      path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh),
+             mesh.isovalue, mesh.single_precision,
+             mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
+             compression});
+  std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
+  for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
+    for (const Attribute& attribute : *attributes) all += attribute.values.size();
+  const auto in_blocks = [&](auto values, std::size_t before, std::size_t columns, auto&& append) {
+    const std::size_t most = kMostRows * columns;
+    for (std::size_t at = 0; at < values.size(); at += most) {
+      tick(progress, static_cast<double>(before + at) / static_cast<double>(all), path);
+      append(values.subspan(at, std::min(most, values.size() - at)));
+    }
+  };
+  in_blocks(std::span<const double>(mesh.coordinates), 0, static_cast<std::size_t>(mesh.space_dim),
+            [&](std::span<const double> part) { writer.append_vertices(part); });
+  in_blocks(std::span<const double>(mesh.normals), mesh.coordinates.size(), static_cast<std::size_t>(mesh.space_dim),
+            [&](std::span<const double> part) { writer.append_normals(part); });
+  in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size() + mesh.normals.size(),
+            static_cast<std::size_t>(mesh.dim) + 1,
+            [&](std::span<const Index> part) { writer.append_simplices(part); });
+  std::size_t done = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
+  const auto append_attributes = [&](const char* group, const std::vector<Attribute>& attributes) {
+    for (std::size_t i = 0; i < attributes.size(); ++i) {
+      const auto width = static_cast<std::size_t>(attributes[i].width);
+      H5Table table = writer.attribute_table(group, attributes[i], i);
+      in_blocks(std::span<const double>(attributes[i].values), done, width, [&](std::span<const double> part) {
+        table.append(H5T_NATIVE_DOUBLE, part.data(), part.size() / width);
+      });
+      done += attributes[i].values.size();
+    }
+  };
+  append_attributes("PointData", mesh.vertex_attributes);
+  append_attributes("CellData", mesh.simplex_attributes);
+  tick(progress, 1.0, path);
+  writer.commit();
+}
+
+Mesh read_vtkhdf(const fs::path& path, ReadProgress& progress, bool allow_outside_paths) {
+  const H5Quiet quiet;
+  return Reader(path, progress, allow_outside_paths).run();
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// VTKHDF, unstructured grids, written: triangles, segments, or tetrahedra whose vertices carry the time as the point
+// array "t". Normals are the point array "Normals", with the fourth component in "normal_t", and attributes are point
+// and cell arrays; the isovalue is a field array. All of these are double: lossless. Of a mesh in single precision,
+// points and normals are float. Axis names and units are attributes of the group, names and units of arrays attributes
+// of the arrays, which VTK ignores.
+//
+// Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
+#include "meshes/vtkhdf_writer.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "meshes/vtkhdf_names.hpp"
+
+namespace tegl::io_detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string joined(const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, "\n")); }
+
+H5Handle create_root(const H5File& file, const VtkhdfLayout& layout) {
+  H5Handle group = file.create_group("VTKHDF");
+  constexpr std::array<std::int64_t, 2> kVersion = {1, 0};
+  file.put_numbers(group.id(), "Version", kVersion);
+  file.put_text(group.id(), "Type", "UnstructuredGrid");
+  const std::array<std::int64_t, 2> dims = {layout.dim, layout.space_dim};
+  file.put_numbers(group.id(), "tegl_dim_and_space_dim", dims);
+  file.put_text(group.id(), "tegl_axis_names", joined(layout.axis_names));
+  file.put_text(group.id(), "tegl_axis_units", joined(layout.axis_units));
+  if (layout.isovalue) {
+    const H5Handle field_data = file.create_group("VTKHDF/FieldData");
+    file.create_table(field_data.id(), kIsovalue, H5T_IEEE_F64LE, 0, 1).append(H5T_NATIVE_DOUBLE, &*layout.isovalue, 1);
+  }
+  return group;
+}
+
+hid_t real_type(const VtkhdfLayout& layout) { return layout.single_precision ? H5T_IEEE_F32LE : H5T_IEEE_F64LE; }
+
+hid_t id_type(const VtkhdfLayout& layout) { return layout.narrow_ids ? H5T_STD_I32LE : H5T_STD_I64LE; }
+
+std::set<std::string> reserved_point_names(int space_dim) {
+  if (space_dim == 4) return {kNormals, kNormalTimes, kTimes};
+  return {kNormals};
+}
+
+}  // namespace
+
+VtkhdfWriter::Tables::Tables(const H5File& file, hid_t group, const VtkhdfLayout& layout)
+    : points(file.create_table(group, "Points", real_type(layout), 3, layout.expected_vertices, layout.compression)),
+      connectivity(file.create_table(group, "Connectivity", id_type(layout), 0,
+                                     layout.expected_simplices > (1u << 24)
+                                         ? ~std::uint64_t{0}
+                                         : layout.expected_simplices * (static_cast<unsigned>(layout.dim) + 1),
+                                     layout.compression)),
+      offsets(file.create_table(group, "Offsets", id_type(layout), 0,
+                                layout.expected_simplices + (layout.expected_simplices == ~std::uint64_t{0} ? 0 : 1),
+                                layout.compression)),
+      types(file.create_table(group, "Types", H5T_STD_U8LE, 0, layout.expected_simplices, layout.compression)) {
+  const H5Handle point_data = file.create_group("VTKHDF/PointData");
+  if (layout.space_dim == 4)
+    times.emplace(
+        file.create_table(point_data.id(), kTimes, real_type(layout), 0, layout.expected_vertices, layout.compression));
+}
+
+VtkhdfWriter::VtkhdfWriter(const fs::path& target, const VtkhdfLayout& layout)
+    : pending_(target),
+      corners_(static_cast<std::uint64_t>(layout.dim) + 1),
+      space_dim_(static_cast<std::size_t>(layout.space_dim)),
+      expected_vertices_(layout.expected_vertices),
+      compression_(layout.compression),
+      real_(real_type(layout)),
+      file_(H5File::create(pending_.path(), target)),
+      group_(create_root(file_, layout)),
+      point_names_(reserved_point_names(layout.space_dim)) {
+  tables_.emplace(file_, group_->id(), layout);
+  constexpr std::int64_t kFirst = 0;
+  tables_->offsets.append(H5T_NATIVE_INT64, &kFirst, 1);
+  types_.assign(kMostRows, kCellTypes[static_cast<std::size_t>(layout.dim)]);
+}
+
+void VtkhdfWriter::append_vertices(std::span<const double> coordinates) {
+  append_rows(coordinates, tables_->points, tables_->times ? &*tables_->times : nullptr);
+}
+
+void VtkhdfWriter::append_normals(std::span<const double> normals) {
+  if (!tables_->normals) {
+    const H5Handle point_data = file_.open_group("VTKHDF/PointData");
+    tables_->normals.emplace(file_.create_table(point_data.id(), kNormals, real_, 3, expected_vertices_, compression_));
+    if (space_dim_ == 4)
+      tables_->normal_times.emplace(
+          file_.create_table(point_data.id(), kNormalTimes, real_, 0, expected_vertices_, compression_));
+  }
+  append_rows(normals, *tables_->normals, tables_->normal_times ? &*tables_->normal_times : nullptr);
+}
+
+void VtkhdfWriter::append_rows(std::span<const double> rows, H5Table& table, H5Table* fourth) {
+  for (std::size_t at = 0; at < rows.size();) {
+    const std::size_t count = std::min(kMostRows, (rows.size() - at) / space_dim_);
+    positions_.assign(3 * count, 0.0);
+    times_.resize(fourth != nullptr ? count : 0);
+    for (std::size_t r = 0; r < count; ++r, at += space_dim_) {
+      std::copy_n(rows.data() + at, std::min<std::size_t>(3, space_dim_), positions_.data() + 3 * r);
+      if (fourth != nullptr) times_[r] = rows[at + 3];
+    }
+    table.append(H5T_NATIVE_DOUBLE, positions_.data(), count);
+    if (fourth != nullptr) fourth->append(H5T_NATIVE_DOUBLE, times_.data(), count);
+  }
+}
+
+void VtkhdfWriter::append_ids(hid_t type, const void* ids, std::size_t count) {
+  const std::uint64_t size = type == H5T_NATIVE_UINT32 ? sizeof(std::uint32_t) : sizeof(std::uint64_t);
+  for (std::uint64_t at = 0; at < count;) {
+    const std::uint64_t rows = std::min<std::uint64_t>(kMostRows, (count - at) / corners_);
+    tables_->connectivity.append(type, static_cast<const unsigned char*>(ids) + at * size, rows * corners_);
+    at += rows * corners_;
+    offsets_.resize(rows);
+    for (std::uint64_t r = 0; r < rows; ++r)
+      offsets_[r] = static_cast<std::int64_t>((tables_->types.rows() + r + 1) * corners_);
+    tables_->offsets.append(H5T_NATIVE_INT64, offsets_.data(), rows);
+    tables_->types.append(H5T_NATIVE_UINT8, types_.data(), rows);
+  }
+}
+
+void VtkhdfWriter::append_cells(unsigned char type, std::span<const std::uint32_t> ids,
+                                std::span<const std::int64_t> ends) {
+  tables_->connectivity.append(H5T_NATIVE_UINT32, ids.data(), ids.size());
+  tables_->offsets.append(H5T_NATIVE_INT64, ends.data(), ends.size());
+  const std::vector<unsigned char> types(ends.size(), type);
+  tables_->types.append(H5T_NATIVE_UINT8, types.data(), types.size());
+}
+
+H5Table VtkhdfWriter::attribute_table(const char* group, const Attribute& attribute, std::size_t order) {
+  const bool of_points = std::string_view(group) == "PointData";
+  const std::string path = std::string("VTKHDF/") + group;
+  const H5Handle data =
+      file_.has(group_->id(), group) ? file_.open_group(path.c_str()) : file_.create_group(path.c_str());
+  // HDF5 takes names with a slash for paths, and "." for the group itself.
+  std::string wished = attribute.name == "." ? "_" : attribute.name;
+  std::replace(wished.begin(), wished.end(), '/', '_');
+  const std::string name = (of_points ? point_names_ : cell_names_).make(wished);
+  const auto columns = static_cast<std::uint64_t>(attribute.width);
+  H5Table table = file_.create_table(data.id(), name.c_str(), H5T_IEEE_F64LE, columns == 1 ? 0 : columns,
+                                     row_count(attribute), compression_);
+  const std::array<std::int64_t, 1> place = {static_cast<std::int64_t>(order)};
+  file_.put_numbers(table.id(), kAttributeOrder, place);
+  if (name != attribute.name) file_.put_text(table.id(), kAttributeName, attribute.name);
+  if (!attribute.unit.empty()) file_.put_text(table.id(), kAttributeUnit, attribute.unit);
+  return table;
+}
+
+void VtkhdfWriter::replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) {
+  tables_->connectivity.replace(H5T_NATIVE_UINT64, &vertex, simplex * corners_ + static_cast<std::uint64_t>(corner), 0);
+}
+
+void VtkhdfWriter::commit() {
+  const auto single = [&](const char* name, std::uint64_t value) {
+    file_.create_table(group_->id(), name, H5T_STD_I64LE, 0, 1).append(H5T_NATIVE_UINT64, &value, 1);
+  };
+  single("NumberOfPoints", tables_->points.rows());
+  single("NumberOfCells", tables_->types.rows());
+  single("NumberOfConnectivityIds", tables_->connectivity.rows());
+  tables_.reset();
+  group_.reset();
+  file_.close();
+  pending_.commit();
+}
+
+}  // namespace tegl::io_detail

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Ambiguous squares and cubes, one at a time and a word of tiles at a time.
+#include "ambiguity/cube_decision.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "tegl/generated/tables.hpp"
+#include "tegl/saddle.hpp"
+
+namespace tegl::detail {
+
+template <>
+unsigned resolved_key<2>(const FaceEstimator<2>& estimator, const std::array<std::size_t, 2>& base,
+                         unsigned signature) noexcept {
+  std::array<double, 4> values;
+  estimator.source().corner_values(base, 3, values.data());
+  return signature | (estimator.is_square_high(base, 3, values) ? 16u : 0u);
+}
+
+namespace {
+
+/// The axis of the image that is number `axis` of a face, by the face's axes.
+constexpr auto kAxesOf = [] {
+  std::array<std::array<std::uint8_t, 4>, 16> result{};
+  for (unsigned axes = 0; axes < 16; ++axes)
+    for (unsigned a = 0, number = 0; a < 4; ++a)
+      if ((axes >> a & 1u) != 0) result[axes][number++] = static_cast<std::uint8_t>(a);
+  return result;
+}();
+
+/// The corners of a cube that square 2 * across + side has.
+constexpr auto kCornersOfSquares = [] {
+  std::array<std::array<std::uint8_t, 4>, 6> result{};
+  for (unsigned square = 0; square < 6; ++square)
+    for (unsigned c = 0; c < 4; ++c)
+      result[square][c] = static_cast<std::uint8_t>(unsqueeze(c, square / 2) | square % 2 << square / 2);
+  return result;
+}();
+
+/// The sums of pairs of values at corners that differ along an axis.
+template <unsigned Axis, std::size_t Count>
+std::array<double, Count / 2> sums_along(const std::array<double, Count>& values) noexcept {
+  constexpr std::size_t kStep = std::size_t{1} << Axis;
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array<double, Count / 2>{(values[unsqueeze(I, Axis)] + values[unsqueeze(I, Axis) | kStep])...};
+  }
+  (std::make_index_sequence<Count / 2>());
+}
+
+/// The signs of the means of a cube's squares, at bits 0 to 5, and of its own, at bit 6; and those that rounding could
+/// decide. In noise no branch would be foreseen: there are none.
+struct CubeMeans {
+  unsigned high = 0, unsure = 0;
+
+  CubeMeans(std::span<const double, 8> values, double isovalue) noexcept {
+    std::array<double, 8> corners, sizes;
+    for (std::size_t v = 0; v < 8; ++v) {
+      corners[v] = values[v];
+      sizes[v] = std::abs(values[v]);
+    }
+    const auto along_0 = sums_along<0>(corners), along_1 = sums_along<1>(corners);
+    const auto across_0 = sums_along<1>(along_1), across_1 = sums_along<1>(along_0), across_2 = sums_along<0>(along_0);
+    const std::array<double, 7> sums = {
+        across_0[0], across_0[1], across_1[0], across_1[1], across_2[0], across_2[1], across_2[0] + across_2[1]};
+    const double limit = 4.0 * isovalue;
+    const double size = sums_along<0>(sums_along<0>(sums_along<0>(sizes)))[0] + 2.0 * std::abs(limit);
+    // More than all additions can have rounded off; what is too large, or not finite, is not less than any bound.
+    const double bound = size < 0x1p1000 ? 0x1p-46 * size : std::numeric_limits<double>::infinity();
+    [&]<std::size_t... Q>(std::index_sequence<Q...>) {
+      const auto take = [&](unsigned q, double difference) {
+        high |= (difference > 0.0 ? 1u : 0u) << q;
+        unsure |= (std::abs(difference) > bound ? 0u : 1u) << q;
+      };
+      (take(Q, sums[Q] - (Q < 6 ? limit : 2.0 * limit)), ...);
+    }
+    (std::make_index_sequence<7>());
+  }
+};
+
+/// A cube whose signature is ambiguous, by means; false where rounding could decide.
+bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigned signature,
+                     CubeDecision& decision) noexcept {
+  const auto& table = tables::kTile3Resolved;
+  const unsigned ambiguous = table.ambiguous_squares[signature];
+  const CubeMeans means(values, isovalue);
+  const unsigned r = packed_squares(means.high, ambiguous);
+  const bool has_choice = table.entries[table.first_entry[signature] + r].components > 1;
+  decision.high_squares = static_cast<std::uint8_t>(means.high & ambiguous);
+  const auto centre = (means.high >> 6) != 0 ? facets::Choice::high : facets::Choice::low;
+  decision.centre = has_choice ? centre : facets::Choice::separate;
+  return (means.unsure & (ambiguous | (has_choice ? 64u : 0u))) == 0;
+}
+
+/// The squares and the inside of a cube whose signature is ambiguous.
+template <int N>
+CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                    std::span<const double, 8> values, unsigned signature) noexcept {
+  if (estimator.is_by_cubes()) {
+    std::array<double, 8> corners;
+    std::copy(values.begin(), values.end(), corners.begin());
+    return detail::decide_cube(corners, estimator.isovalue(), static_cast<std::uint8_t>(signature));
+  }
+  CubeDecision decision;
+  if (estimator.is_by_means() && decide_by_means(values, estimator.isovalue(), signature, decision)) return decision;
+  decision = {};
+  const auto& table = tables::kTile3Resolved;
+  const unsigned ambiguous = table.ambiguous_squares[signature];
+  for (unsigned rest = ambiguous; rest != 0; rest &= rest - 1) {
+    const auto square = static_cast<unsigned>(std::countr_zero(rest));
+    const auto& of_square = kCornersOfSquares[square];
+    const std::array<double, 4> corners = {values[of_square[0]], values[of_square[1]], values[of_square[2]],
+                                           values[of_square[3]]};
+    const unsigned axis = kAxesOf[axes][square / 2];
+    auto at = base;
+    at[axis] += square % 2;
+    const unsigned is_high = estimator.is_square_high(at, axes ^ 1u << axis, corners) ? 1 : 0;
+    decision.high_squares = static_cast<std::uint8_t>(decision.high_squares | is_high << square);
+  }
+  const unsigned r = packed_squares(decision.high_squares, ambiguous);
+  if (table.entries[table.first_entry[signature] + r].components > 1)
+    decision.centre = estimator.choice(base, axes, values);
+  return decision;
+}
+
+unsigned key_of(unsigned signature, const CubeDecision& decision) noexcept {
+  const unsigned ambiguous = tables::kTile3Resolved.ambiguous_squares[signature];
+  const unsigned r = packed_squares(decision.high_squares, ambiguous);
+  return CubeKey(signature, r, decision.centre).bits();
+}
+
+}  // namespace
+
+template <int N>
+unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
+                  unsigned signature) noexcept {
+  if (!ambiguous_signatures<3>()[signature]) return signature;
+  std::array<double, 8> values;
+  estimator.source().corner_values(base, axes, values.data());
+  return key_of(signature, decide<N>(estimator, base, axes, values, signature));
+}
+template unsigned cube_key<3>(const FaceEstimator<3>&, const std::array<std::size_t, 3>&, unsigned, unsigned) noexcept;
+template unsigned cube_key<4>(const FaceEstimator<4>&, const std::array<std::size_t, 4>&, unsigned, unsigned) noexcept;
+
+template <>
+unsigned resolved_key<3>(const FaceEstimator<3>& estimator, const std::array<std::size_t, 3>& base,
+                         unsigned signature) noexcept {
+  return cube_key<3>(estimator, base, 7, signature);
+}
+
+template <int N>
+const FaceBlock<N>& RowFaces<N>::look_at(std::size_t word) noexcept {
+  if (word == word_) return block_;
+  word_ = word;
+  base_[0] = word * kWordBits;
+  const std::size_t count = std::min(block_.kSamples, samples_ - base_[0]);
+  block_.tiles = count - 1;
+  estimator_.source().corner_rows(base_, count, block_.samples[0].data(), block_.kPitch);
+  for (auto& row : block_.samples) std::fill(row.begin() + static_cast<std::ptrdiff_t>(count), row.end(), 0.0);
+  if (estimator_.is_by_means())
+    decide_by_means(block_, estimator_.isovalue());
+  else
+    decide_by_saddles(block_, estimator_.isovalue());
+  return block_;
+}
+template class RowFaces<3>;
+template class RowFaces<4>;
+
+namespace {
+
+/// The corners of a cell of a block along `axes` based at corner `base` of tile `bit`.
+template <int N, unsigned Axes>
+std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, unsigned base) noexcept {
+  std::array<double, 8> values;
+  unsigned corner = base;
+  for (double& value : values) {
+    value = block.samples[corner >> 1][bit + (corner & 1u)];
+    corner = base | (((corner | ~Axes) + 1) & Axes);
+  }
+  return values;
+}
+
+}  // namespace
+
+void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
+             TilesOfWord& tiles) noexcept {
+  const auto& resolved = tables::kTile3Resolved;
+  const bool by_means = estimator.is_by_means();
+  const auto& joins = cube_joins();
+  JoinQuestions questions;
+  std::array<std::uint8_t, kWordBits> asked;
+  std::array<std::uint16_t, kWordBits> entries;
+  for (std::size_t j = 0; j < tiles.count; ++j) {
+    const unsigned bit = tiles.bits[j], signature = tiles.signatures[j];
+    const auto high = static_cast<unsigned>(block.high[bit]);
+    const unsigned entry =
+        resolved.first_entry[signature] + packed_squares(high, unsigned{resolved.ambiguous_squares[signature]});
+    tiles.variants[j] = table.variant(entry, by_means ? 1 + (high >> kFirstCube<3>) : 0);
+    if (block.unsure[bit] != 0) {
+      tiles.variants[j] = {};
+    } else if (!by_means && joins[entry].pairs == 1) {
+      for (std::size_t e = 0; e < 8; ++e) {
+        const unsigned corner = joins[entry].corners[e];
+        questions.ends[e][questions.count] = block.samples[corner >> 1][bit + (corner & 1u)];
+      }
+      questions.sign[questions.count] = joins[entry].high ? 1.0 : -1.0;
+      entries[questions.count] = static_cast<std::uint16_t>(entry);
+      asked[questions.count++] = static_cast<std::uint8_t>(j);
+    } else if (!by_means && joins[entry].pairs > 1) {
+      const auto centre = detail::decide_centre(corners_of_cube<3, 7>(block, bit, 0), estimator.isovalue(), entry);
+      tiles.variants[j] = table.variant(entry, static_cast<unsigned>(centre));
+    }
+  }
+  answer(questions, estimator.isovalue());
+  for (std::size_t q = 0; q < questions.count; ++q) {
+    Variant& variant = tiles.variants[asked[q]];
+    const auto joined = static_cast<unsigned>(joins[entries[q]].high ? facets::Choice::high : facets::Choice::low);
+    if (questions.answers[q] == JoinQuestions::yes) variant = table.variant(entries[q], joined);
+    if (questions.answers[q] == JoinQuestions::unsure) variant = {};
+  }
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Faces by registers; see face_signs.hpp. This file is compiled once per instruction set (Highway's foreach_target).
+#include "ambiguity/face_signs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#define HWY_WANT_AVX3_DL
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ambiguity/face_signs.cpp"
+#include "base/dispatch.hpp"
+// Highway's own headers come after this one.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<double>;
+using Bits = hn::Rebind<std::uint64_t, D>;
+
+/// The number of a face along `axes` (bits) at the sides `base` of the axes across.
+template <int N>
+constexpr unsigned face_number(unsigned axes, unsigned base) {
+  std::array<unsigned, 4> across{};
+  unsigned count = 0;
+  for (unsigned a = 0; a < N; ++a)
+    if ((axes >> a & 1u) == 0) across[count++] = a;
+  const auto side = [&](unsigned i) { return base >> across[i] & 1u; };
+  if (count == 0) return N == 3 ? kFirstCube<3> : kTesseractFace;
+  if (count == 1) return (N == 3 ? 0 : kFirstCube<4>)+2 * across[0] + side(0);
+  unsigned pair = 0;
+  for (unsigned c = 0; c < across[0]; ++c) pair += 3 - c;
+  return 4 * (pair + across[1] - across[0] - 1) + side(0) + 2 * side(1);
+}
+
+/// The numbers of faces by axes and base.
+template <int N>
+struct FaceNumbers {
+  std::array<std::array<std::uint8_t, 16>, 16> of{};
+  constexpr FaceNumbers() {
+    for (unsigned axes = 0; axes < 1u << N; ++axes)
+      for (unsigned base = 0; base < 1u << N; ++base)
+        if ((axes & base) == 0) of[axes][base] = static_cast<std::uint8_t>(face_number<N>(axes, base));
+  }
+};
+
+/// Of as many tiles as there are lanes: which faces are high.
+struct Highs {
+  hn::Vec<Bits> bits;
+
+  HWY_INLINE Highs() : bits(hn::Zero(Bits())) {}
+  template <class M>
+  HWY_INLINE void take(unsigned face, M is_high) {
+    const Bits d;
+    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(d, is_high), hn::Set(d, std::uint64_t{1} << face)));
+  }
+};
+
+/// Faces by the sums of their corners. `least`: how near the nearest sum comes to its limit.
+struct Means {
+  Highs highs;
+  hn::Vec<D> least;
+  double isovalue;
+
+  HWY_INLINE explicit Means(double t) : least(hn::Set(D(), 0x1p1023)), isovalue(t) {}
+  template <class V>
+  HWY_INLINE void take(unsigned face, unsigned corners, V sum) {
+    const auto limit = hn::Set(D(), corners * isovalue);
+    highs.take(face, hn::Ge(sum, limit));
+    least = hn::Min(least, hn::Abs(hn::Sub(sum, limit)));
+  }
+};
+
+/// The samples of some tiles: those at their own places, or at the next.
+template <int N>
+HWY_INLINE auto samples_at(const FaceBlock<N>& block, std::size_t row, std::size_t at) {
+  return hn::LoadU(D(), block.samples[row].data() + at);
+}
+
+/// Where rounding could decide: more than all additions can have rounded off. (Of what is too large, or not finite,
+/// this is not less than any bound.)
+template <int N>
+HWY_INLINE auto error_of_means(const FaceBlock<N>& block, std::size_t at, double isovalue) {
+  const D d;
+  auto size = hn::Set(d, 2.0 * block.kRows * std::abs(isovalue));
+  for (std::size_t r = 0; r < block.kRows; ++r)
+    size = hn::Add(size, hn::Add(hn::Abs(samples_at(block, r, at)), hn::Abs(samples_at(block, r, at + 1))));
+  const auto infinite = hn::Set(d, HUGE_VAL);
+  return hn::IfThenElse(hn::Lt(size, hn::Set(d, 0x1p1000)), hn::Mul(size, hn::Set(d, 0x1p-46)), infinite);
+}
+
+/// The faces along two axes across the row, and those that these span with the row.
+template <int N>
+HWY_INLINE void take_means_across(const FaceBlock<N>& block, std::size_t at, Means& means) {
+  static constexpr FaceNumbers<N> kNumbers;
+  for (unsigned a = 1; a < N; ++a)
+    for (unsigned b = a + 1; b < N; ++b)
+      for (unsigned row = 0; row < block.kRows; ++row) {
+        const unsigned up_a = 1u << (a - 1), up_b = 1u << (b - 1), axes = 1u << a | 1u << b;
+        if ((row & (up_a | up_b)) != 0) continue;
+        const auto sum = [&](std::size_t to) HWY_ATTR {
+          return hn::Add(hn::Add(samples_at(block, row, to), samples_at(block, row | up_a, to)),
+                         hn::Add(samples_at(block, row | up_b, to), samples_at(block, row | up_a | up_b, to)));
+        };
+        const auto here = sum(at), next = sum(at + 1);
+        means.take(kNumbers.of[axes][row << 1], 4, here);
+        means.take(kNumbers.of[axes][row << 1 | 1], 4, next);
+        means.take(kNumbers.of[axes | 1][row << 1], 8, hn::Add(here, next));
+      }
+}
+
+/// The squares along the row.
+template <int N>
+HWY_INLINE void take_means_along(const FaceBlock<N>& block, std::size_t at, Means& means) {
+  static constexpr FaceNumbers<N> kNumbers;
+  for (unsigned a = 1; a < N; ++a)
+    for (unsigned row = 0; row < block.kRows; ++row) {
+      const unsigned up = 1u << (a - 1);
+      if ((row & up) != 0) continue;
+      const auto here = hn::Add(samples_at(block, row, at), samples_at(block, row | up, at));
+      const auto next = hn::Add(samples_at(block, row, at + 1), samples_at(block, row | up, at + 1));
+      means.take(kNumbers.of[1u << a | 1u][row << 1], 4, hn::Add(here, next));
+    }
+}
+
+/// The tesseract and its cubes across the row.
+HWY_INLINE void take_means_of_rows(const FaceBlock<4>& block, std::size_t at, bool cubes, Means& means) {
+  const auto sum = [&](std::size_t to) HWY_ATTR {
+    auto result = samples_at(block, 0, to);
+    for (std::size_t row = 1; row < block.kRows; ++row) result = hn::Add(result, samples_at(block, row, to));
+    return result;
+  };
+  const auto here = sum(at), next = sum(at + 1);
+  if (cubes) {
+    means.take(kFirstCube<4>, 8, here);
+    means.take(kFirstCube<4> + 1, 8, next);
+  }
+  means.take(kTesseractFace, 16, hn::Add(here, next));
+}
+
+/// Whether all samples are multiples of 2^-10, and less than `limit`.
+template <int N>
+HWY_INLINE bool are_whole(const FaceBlock<N>& block, double limit) {
+  const D d;
+  const auto scale = hn::Set(d, 0x1p10), most = hn::Set(d, 0x1p10 * limit);
+  auto so_far = hn::Eq(scale, scale);
+  for (std::size_t r = 0; r < block.kRows; ++r)
+    for (std::size_t i = 0; i <= block.tiles; i += hn::Lanes(d)) {
+      const auto scaled = hn::Mul(samples_at(block, r, i), scale);
+      so_far = hn::And(so_far, hn::And(hn::Eq(hn::Round(scaled), scaled), hn::Lt(hn::Abs(scaled), most)));
+    }
+  return hn::AllTrue(d, so_far);
+}
+
+/// What is unsure is sure after all where nothing was rounded.
+template <int N>
+HWY_INLINE void look_again(FaceBlock<N>& block, bool any_unsure, double limit) {
+  if (any_unsure && are_whole(block, limit)) std::fill_n(block.unsure.data(), block.tiles, 0);
+}
+
+template <int N>
+HWY_INLINE void means_of(FaceBlock<N>& block, double isovalue) {
+  const D d;
+  const Bits bits;
+  auto any_unsure = hn::Zero(bits);
+  for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
+    Means means(isovalue);
+    take_means_across(block, i, means);
+    take_means_along(block, i, means);
+    if constexpr (N == 4) take_means_of_rows(block, i, true, means);
+    const auto sure = hn::RebindMask(bits, hn::Gt(means.least, error_of_means(block, i, isovalue)));
+    const auto unsure = hn::IfThenZeroElse(sure, hn::Set(bits, 1));
+    hn::Store(means.highs.bits, bits, block.high.data() + i);
+    hn::Store(unsure, bits, block.unsure.data() + i);
+    any_unsure = hn::Or(any_unsure, unsure);
+  }
+  // Sums of 16 are exact then.
+  look_again(block, !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), 0x1p36);
+}
+
+/// Squares by their saddles. `least`: how much more than its possible error the determinant that has the least is.
+struct Saddles {
+  Highs highs;
+  hn::Vec<D> least;
+
+  HWY_INLINE Saddles() : least(hn::Set(D(), 0x1p1023)) {}
+  /// Of corner 0, its two neighbours, and the one opposite; the isovalue is subtracted.
+  template <class V>
+  HWY_INLINE void take(unsigned face, V first, V second, V third, V last) {
+    const D d;
+    const auto tiny = hn::Set(d, 0x1p-959);
+    const auto one = hn::Mul(first, last), other = hn::Mul(second, third);
+    const auto determinant = hn::Sub(one, other);
+    const auto error = hn::Mul(hn::Add(hn::Add(hn::Abs(one), hn::Abs(other)), tiny), hn::Set(d, 0x1p-48));
+    // (The difference of two zeros may be -0.)
+    const auto of_high = hn::IfThenElse(hn::Lt(first, hn::Zero(d)), hn::Neg(determinant), determinant);
+    highs.take(face, hn::Ge(of_high, hn::Zero(d)));
+    least = hn::Min(least, hn::Sub(hn::Abs(determinant), error));
+  }
+};
+
+template <int N>
+HWY_INLINE void take_saddles(const FaceBlock<N>& block, std::size_t at, double isovalue, Saddles& saddles) {
+  static constexpr FaceNumbers<N> kNumbers;
+  const auto difference = [&](std::size_t row, std::size_t to)
+                              HWY_ATTR { return hn::Sub(samples_at(block, row, to), hn::Set(D(), isovalue)); };
+  for (unsigned a = 1; a < N; ++a)
+    for (unsigned row = 0; row < block.kRows; ++row) {
+      const unsigned up_a = 1u << (a - 1);
+      if ((row & up_a) != 0) continue;
+      saddles.take(kNumbers.of[1u << a | 1u][row << 1], difference(row, at), difference(row, at + 1),
+                   difference(row | up_a, at), difference(row | up_a, at + 1));
+      for (unsigned b = a + 1; b < N; ++b) {
+        const unsigned up_b = 1u << (b - 1);
+        if ((row & up_b) != 0) continue;
+        for (unsigned side = 0; side < 2; ++side)
+          saddles.take(kNumbers.of[1u << a | 1u << b][row << 1 | side], difference(row, at + side),
+                       difference(row | up_a, at + side), difference(row | up_b, at + side),
+                       difference(row | up_a | up_b, at + side));
+      }
+    }
+}
+
+template <int N>
+HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
+  const D d;
+  const Bits bits;
+  const auto large = hn::Set(d, 0x1p500);  // the product of two is finite
+  auto any_unsure = hn::Zero(bits);
+  for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
+    Saddles saddles;
+    take_saddles(block, i, isovalue, saddles);
+    auto sure = hn::Gt(saddles.least, hn::Zero(d));
+    for (std::size_t r = 0; r < block.kRows; ++r)
+      for (std::size_t to = i; to < i + 2; ++to) sure = hn::And(sure, hn::Lt(hn::Abs(samples_at(block, r, to)), large));
+    if constexpr (N == 4) {
+      Means means(isovalue);
+      take_means_of_rows(block, i, false, means);
+      saddles.highs.bits = hn::Or(saddles.highs.bits, means.highs.bits);
+      sure = hn::And(sure, hn::Gt(means.least, error_of_means(block, i, isovalue)));
+    }
+    const auto unsure = hn::IfThenZeroElse(hn::RebindMask(bits, sure), hn::Set(bits, 1));
+    hn::Store(saddles.highs.bits, bits, block.high.data() + i);
+    hn::Store(unsure, bits, block.unsure.data() + i);
+    any_unsure = hn::Or(any_unsure, unsure);
+  }
+  // Differences of 25 bits then, and products of 50.
+  constexpr double kMost = 0x1p14;
+  const bool is_whole = std::abs(isovalue) < kMost && std::nearbyint(0x1p10 * isovalue) == 0x1p10 * isovalue;
+  look_again(block, is_whole && !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), kMost);
+}
+
+/// Numbers computed in doubles, and the same with all signs positive: see Rounded in saddle.cpp.
+struct Rounded {
+  hn::Vec<D> value, size;
+};
+HWY_INLINE Rounded plus(const Rounded& x, const Rounded& y) {
+  return {hn::Add(x.value, y.value), hn::Add(x.size, y.size)};
+}
+HWY_INLINE Rounded minus(const Rounded& x, const Rounded& y) {
+  return {hn::Sub(x.value, y.value), hn::Add(x.size, y.size)};
+}
+HWY_INLINE Rounded times(const Rounded& x, const Rounded& y) {
+  return {hn::Mul(x.value, y.value), hn::Add(hn::Mul(x.size, y.size), hn::Set(D(), 0x1p-960))};
+}
+HWY_INLINE Rounded twice(const Rounded& x) { return plus(x, x); }
+
+/// What must be positive, or not negative: which it is for certain, and which it is not for certain.
+struct Conditions {
+  hn::Mask<D> all, none;
+
+  HWY_INLINE Conditions() : all(hn::Eq(hn::Zero(D()), hn::Zero(D()))), none(hn::Lt(hn::Zero(D()), hn::Zero(D()))) {}
+  HWY_INLINE void take(const Rounded& x) {
+    const auto error = hn::Mul(x.size, hn::Set(D(), 0x1p-48));
+    all = hn::And(all, hn::Gt(x.value, error));
+    none = hn::Or(none, hn::Lt(x.value, hn::Neg(error)));
+  }
+};
+
+/// As PairQuestion (saddle.cpp), without branches. The answers of as many questions as there are lanes, from `i` on.
+HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size_t i) {
+  const D d;
+  const auto zero = hn::Zero(d);
+  const auto end = [&](std::size_t e) HWY_ATTR {
+    const auto difference = hn::Sub(hn::LoadU(d, questions.ends[e].data() + i), hn::Set(d, isovalue));
+    return Rounded{difference, hn::Abs(difference)};
+  };
+  const Rounded a0 = end(0), a1 = end(1), c0 = end(2), c1 = end(3), b0 = end(4), b1 = end(5), d0 = end(6), d1 = end(7);
+  const Rounded q0 = minus(times(a0, c0), times(b0, d0)), q1 = minus(times(a1, c1), times(b1, d1));
+  const Rounded m = minus(minus(plus(times(a0, c1), times(a1, c0)), times(b0, d1)), times(b1, d0));
+  const Rounded u0 = minus(m, twice(q0)), u1 = minus(m, twice(q1));
+  const Rounded a = plus(times(a0, u1), times(a1, u0)), c = plus(times(c0, u1), times(c1, u0));
+  const Rounded hyperdeterminant = minus(times(m, m), twice(twice(times(q0, q1))));
+  const auto sign = hn::LoadU(d, questions.sign.data() + i);
+  Conditions conditions;
+  conditions.take(u0);
+  conditions.take(u1);
+  conditions.take({hn::Mul(sign, a.value), a.size});
+  conditions.take({hn::Mul(sign, c.value), c.size});
+  conditions.take(hyperdeterminant);
+  // Nothing was rounded where all values and the isovalue are multiples of a half, of 10 bits. Then what is zero counts
+  // as high.
+  const auto is_short = [&](hn::Vec<D> value) HWY_ATTR {
+    const auto halves = hn::Add(value, value);
+    return hn::And(hn::Eq(hn::Round(halves), halves), hn::Le(hn::Abs(value), hn::Set(d, 0x1p9)));
+  };
+  auto is_whole = is_short(hn::Set(d, isovalue));
+  for (const auto& values : questions.ends) is_whole = hn::And(is_whole, is_short(hn::LoadU(d, values.data() + i)));
+  const auto least = hn::IfThenElse(hn::Gt(sign, zero), zero, hn::Set(d, 0x1p-60));  // less than any such number
+  const auto is_so = [&](const Rounded& x) HWY_ATTR { return hn::Ge(hn::Mul(sign, x.value), least); };
+  const auto is_inside = hn::And(hn::Gt(u0.value, zero), hn::Gt(u1.value, zero));
+  const auto exactly = hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant.value, least)), hn::And(is_so(a), is_so(c)));
+  const auto is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, conditions.all));
+  const auto is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, conditions.none));
+  alignas(64) double result[hn::MaxLanes(d)];
+  hn::Store(hn::IfThenElse(is_yes, hn::Set(d, 1.0), hn::IfThenElse(is_no, zero, hn::Set(d, 2.0))), d, result);
+  for (std::size_t j = 0; j < hn::Lanes(d) && i + j < questions.count; ++j)
+    questions.answers[i + j] = static_cast<JoinQuestions::Answer>(static_cast<int>(result[j]));
+}
+
+void answer_all(JoinQuestions& questions, double isovalue) {
+  const D d;
+  const std::size_t end = (questions.count + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
+  for (auto& values : questions.ends) std::fill(values.begin() + questions.count, values.begin() + end, 0.0);
+  std::fill(questions.sign.begin() + questions.count, questions.sign.begin() + end, 0.0);
+  for (std::size_t i = 0; i < questions.count; i += hn::Lanes(d)) answer_some(questions, isovalue, i);
+}
+
+// Highway's tables of functions hold no templates.
+void means3(FaceBlock<3>& block, double isovalue) { means_of<3>(block, isovalue); }
+void means4(FaceBlock<4>& block, double isovalue) { means_of<4>(block, isovalue); }
+void saddles3(FaceBlock<3>& block, double isovalue) { saddles_of<3>(block, isovalue); }
+void saddles4(FaceBlock<4>& block, double isovalue) { saddles_of<4>(block, isovalue); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+HWY_EXPORT(answer_all);
+HWY_EXPORT(means3);
+HWY_EXPORT(means4);
+HWY_EXPORT(saddles3);
+HWY_EXPORT(saddles4);
+
+void answer(JoinQuestions& questions, double isovalue) noexcept {
+  HWY_DYNAMIC_DISPATCH(answer_all)(questions, isovalue);
+}
+
+template <>
+void decide_by_means<3>(FaceBlock<3>& block, double isovalue) noexcept {
+  HWY_DYNAMIC_DISPATCH(means3)(block, isovalue);
+}
+template <>
+void decide_by_means<4>(FaceBlock<4>& block, double isovalue) noexcept {
+  HWY_DYNAMIC_DISPATCH(means4)(block, isovalue);
+}
+template <>
+void decide_by_saddles<3>(FaceBlock<3>& block, double isovalue) noexcept {
+  HWY_DYNAMIC_DISPATCH(saddles3)(block, isovalue);
+}
+template <>
+void decide_by_saddles<4>(FaceBlock<4>& block, double isovalue) noexcept {
+  HWY_DYNAMIC_DISPATCH(saddles4)(block, isovalue);
+}
+
+}  // namespace tegl::detail
+
+#endif  // HWY_ONCE

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which faces of a tile are ambiguous, and what an estimator says of them; see tile_choices.hpp.
+#include "ambiguity/tile_choices.hpp"
+
+#include <bit>
+#include <span>
+
+#include "tegl/generated/tables.hpp"
+#include "tile/tesseract_fill.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+/// The corners of the tile that a face's corners are.
+unsigned spread_corner(unsigned corner, unsigned base, unsigned axes) noexcept {
+  for (unsigned j = 0; axes != 0; axes &= axes - 1, ++j)
+    base |= (corner >> j & 1u) << static_cast<unsigned>(std::countr_zero(axes));
+  return base;
+}
+
+}  // namespace
+
+template <int N>
+TileChoices<N>::TileChoices(const CubeFaces& cube, const FaceEstimator<N>& estimator) : estimator_(estimator) {
+  for (std::size_t f = cube.first_choice(); f < cube.cells().size() - (N > 2 ? 1 : 0); ++f) {
+    const CubeFaces::Cell& cell = cube.cells()[f];
+    Face& face = faces_.emplace_back(Face{cell.base, cell.axes, cell.dim});
+    for (unsigned v = 0; v < 1u << cell.dim; ++v)
+      face.corners[v] = static_cast<std::uint8_t>(spread_corner(v, cell.base, cell.axes));
+    if (cell.dim != 3) continue;
+    unsigned rest = cell.axes;
+    for (unsigned q = 0; q < 6; q += 2, rest &= rest - 1) {
+      const unsigned axis = rest & (0 - rest);
+      for (unsigned side = 0; side < 2; ++side)
+        face.squares[q + side] = static_cast<std::uint16_t>(
+            cube.number(cell.base | (side != 0 ? axis : 0), cell.axes & ~axis) - cube.first_choice());
+    }
+  }
+}
+
+/// Squares with two high corners across; cubes with several polygons; where nothing says that there is nothing to
+/// choose, faces of four dimensions.
+template <int N>
+bool TileChoices<N>::is_open(const Face& face, unsigned signature, const TileKey& key) const noexcept {
+  if (face.dim == 2) return signature == 6 || signature == 9;
+  if (face.dim == 4) return !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(signature));
+  unsigned high = 0;
+  for (unsigned q = 0; q < 6; ++q) high |= (key.choice(face.squares[q]) == facets::Choice::high ? 1u : 0u) << q;
+  const std::uint16_t list = ResolvedCubes::instance().list(signature, high, facets::Choice::separate);
+  return ResolvedCubes::instance().summary(list).part_count > 1;
+}
+
+template <int N>
+facets::Choice TileChoices<N>::ask(CellKind<N> kind, const Index& base, unsigned face_base,
+                                   unsigned axes) const noexcept {
+  const unsigned shift = kind.spread(face_base), along = kind.spread(axes);
+  Index at = base;
+  for (int a = 0; a < N; ++a) at[a] += shift >> a & 1u;
+  std::array<double, std::size_t{1} << N> values;
+  estimator_.source().corner_values(at, along, values.data());
+  const std::size_t count = std::size_t{1} << std::popcount(axes);
+  if (count > 4) return estimator_.choice(at, along, std::span<const double>(values).first(count));
+  return estimator_.is_square_high(at, along, std::span<const double>(values).template first<4>())
+             ? facets::Choice::high
+             : facets::Choice::low;
+}
+
+template <int N>
+TileKey TileChoices<N>::of_faces(CellKind<N> kind, const Index& base, std::uint64_t signature) const noexcept {
+  constexpr unsigned kLast = 1u << (N - 1);
+  TileKey key{signature, {}};
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const Face& face = faces_[f];
+    if (kind.is_cap() && ((face.base | face.axes) & kLast) != 0) continue;
+    unsigned own = 0;
+    for (unsigned v = 0; v < 1u << face.dim; ++v) own |= static_cast<unsigned>(signature >> face.corners[v] & 1u) << v;
+    if (own == 0 || own + 1 == 1u << (1u << face.dim) || !is_open(face, own, key)) continue;
+    key.choose(f, ask(kind, base, face.base, face.axes));
+  }
+  return key;
+}
+
+template <int N>
+void TileChoices<N>::choose_own(TileKey& key, const Index& base) const noexcept {
+  if constexpr (N > 2) key.choose(faces_.size(), ask(CellKind<N>(0), base, 0, (1u << N) - 1));
+}
+
+template class TileChoices<2>;
+template class TileChoices<3>;
+template class TileChoices<4>;
+template class TileChoices<5>;
+
+}  // namespace tegl::detail

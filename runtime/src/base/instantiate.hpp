@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Instances for all value types. To be included where one of these is defined, hence without a guard:
+// - TEGL_INSTANTIATE_REALS(T, N, Real): of 2 to 4 dimensions, float and double. Not by sources whose instances capture
+//   what is in no namespace with a name: GCC warns.
+// - TEGL_INSTANTIATE_DIMENSIONS(T, N): of 2 to 5 dimensions.
+#ifdef TEGL_INSTANTIATE_REALS
+#define TEGL_INSTANTIATE(T)            \
+  TEGL_INSTANTIATE_REALS(T, 2, float)  \
+  TEGL_INSTANTIATE_REALS(T, 2, double) \
+  TEGL_INSTANTIATE_REALS(T, 3, float)  \
+  TEGL_INSTANTIATE_REALS(T, 3, double) \
+  TEGL_INSTANTIATE_REALS(T, 4, float)  \
+  TEGL_INSTANTIATE_REALS(T, 4, double)
+#else
+#define TEGL_INSTANTIATE(T)         \
+  TEGL_INSTANTIATE_DIMENSIONS(T, 2) \
+  TEGL_INSTANTIATE_DIMENSIONS(T, 3) \
+  TEGL_INSTANTIATE_DIMENSIONS(T, 4) \
+  TEGL_INSTANTIATE_DIMENSIONS(T, 5)
+#endif
+TEGL_INSTANTIATE(std::uint8_t)
+TEGL_INSTANTIATE(std::int8_t)
+TEGL_INSTANTIATE(std::uint16_t)
+TEGL_INSTANTIATE(std::int16_t)
+TEGL_INSTANTIATE(std::int32_t)
+TEGL_INSTANTIATE(float)
+TEGL_INSTANTIATE(double)
+#undef TEGL_INSTANTIATE
+#undef TEGL_INSTANTIATE_REALS
+#undef TEGL_INSTANTIATE_DIMENSIONS

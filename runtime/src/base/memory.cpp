@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Memory for outputs. Fresh memory costs a page fault per page at the first touch: with pages of 2 MiB instead of
+// 4 KiB that is seven times faster, and several threads can touch different parts at a time.
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "base/block_source.hpp"
+#include "tegl/contour.hpp"
+#include "tegl/values.hpp"
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace tegl::detail {
+
+namespace {
+
+constexpr std::size_t kHugePage = std::size_t{1} << 21;
+
+std::size_t rounded(std::size_t bytes) { return (bytes + kHugePage - 1) / kHugePage * kHugePage; }
+
+/// A child process that reads a file has one thread, and a thread that takes over a block of it allocates nothing else
+/// meanwhile.
+thread_local BlockSource* block_source = nullptr;
+
+/// Stands before the samples of a large block.
+struct ValuesHeader {
+  void* block;        ///< from the block source; null: there is none
+  std::size_t bytes;  ///< of the block
+  void* heap;         ///< from operator new; null: from the block source
+};
+static_assert(sizeof(ValuesHeader) <= kValuesOffset);
+
+void free_block(void* block, std::size_t bytes) noexcept {
+  if (block_source != nullptr && block_source->release(block, bytes)) return;
+#ifdef __linux__
+  munmap(block, bytes);
+#endif
+}
+
+}  // namespace
+
+BlockSource* exchange_block_source(BlockSource* source) noexcept { return std::exchange(block_source, source); }
+
+std::size_t block_of_values(std::size_t bytes) noexcept {
+  constexpr std::size_t kPage = 4096;
+  return (bytes + kValuesOffset + kPage - 1) / kPage * kPage;
+}
+
+std::size_t block_of_buffer(std::size_t bytes) noexcept { return rounded(bytes); }
+
+void* allocate_values(std::size_t bytes) {
+  if (bytes < kLargeValues) return ::operator new(bytes);
+  ValuesHeader header{nullptr, block_of_values(bytes), nullptr};
+  if (block_source != nullptr) header.block = block_source->allocate(header.bytes);
+  void* begin = header.block;
+  if (begin == nullptr) {
+    // Aligned by hand: glibc's aligned allocation does not fit into the gap that one of the same size has left (until
+    // 2.38), and blocks that come and go, the layers of a stream, would be laid one after the other.
+    std::size_t space = bytes + 2 * kValuesOffset;
+    begin = header.heap = ::operator new(space);
+    begin = std::align(kValuesOffset, bytes + kValuesOffset, begin, space);
+  }
+  ::new (begin) ValuesHeader(header);
+  return static_cast<unsigned char*>(begin) + kValuesOffset;
+}
+
+void free_values(void* block, std::size_t bytes) noexcept {
+  if (bytes < kLargeValues) return ::operator delete(block);
+  unsigned char* const begin = static_cast<unsigned char*>(block) - kValuesOffset;
+  const ValuesHeader header = *reinterpret_cast<const ValuesHeader*>(begin);
+  if (header.block != nullptr)
+    free_block(header.block, header.bytes);
+  else
+    ::operator delete(header.heap);
+}
+
+#ifdef __linux__
+
+void* allocate_large_block(std::size_t bytes) {
+  if (bytes > SIZE_MAX - 2 * kHugePage) throw std::bad_alloc();
+  if (block_source != nullptr)
+    if (void* const block = block_source->allocate(rounded(bytes))) return block;
+  // One page more than needed, so that an aligned block can be cut out.
+  const std::size_t size = rounded(bytes) + kHugePage;
+  void* const mapped = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  auto* const begin = static_cast<unsigned char*>(mapped);
+  const std::size_t before = (kHugePage - reinterpret_cast<std::uintptr_t>(begin) % kHugePage) % kHugePage;
+  if (before != 0) munmap(begin, before);
+  if (before != kHugePage) munmap(begin + before + rounded(bytes), kHugePage - before);
+  madvise(begin + before, rounded(bytes), MADV_HUGEPAGE);  // where there are none, small pages do
+  return begin + before;
+}
+
+void free_large_block(void* block, std::size_t bytes) noexcept { free_block(block, rounded(bytes)); }
+
+#else
+
+void* allocate_large_block(std::size_t bytes) { return ::operator new(bytes); }
+void free_large_block(void* block, std::size_t) noexcept { ::operator delete(block); }
+
+#endif
+
+}  // namespace tegl::detail

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Threads: loops over ranges, with what each thread keeps between them, and their progress.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include "base/call_apart.hpp"
+#include "base/progress.hpp"
+
+// The thread sanitizer does not see how the installed TBB, which is not built for it, orders things: there, plain
+// threads do the same work in the same parts.
+#ifdef __SANITIZE_THREAD__
+#define TEGL_PLAIN_THREADS
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define TEGL_PLAIN_THREADS
+#endif
+#endif
+#ifdef TEGL_PLAIN_THREADS
+#include <exception>
+#endif
+
+namespace tegl::detail {
+
+/// `Scratch`: what a thread keeps between parts of the work.
+template <class Scratch>
+class Workers {
+ public:
+  /// `threads`: 0 for all that the machine has. `make_scratch()` is called once for each.
+  template <class MakeScratch>
+  Workers(unsigned threads, const MakeScratch& make_scratch)
+      : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(std::min(threads, most()))),
+        alone_(threads == 1 || (threads == 0 && arena_.max_concurrency() == 1)),
+        own_(make_scratch) {}
+
+  [[nodiscard]] std::size_t count() const noexcept { return static_cast<std::size_t>(arena_.max_concurrency()); }
+
+  /// Calls work(from, to, scratch) for parts of 0 ... count - 1 that make up the whole, of at least `grain` (but the
+  /// last), with the thread's own scratch.
+  template <class Work>
+  void for_range(std::size_t count, std::size_t grain, const Work& work) {
+    if (count == 0) return;
+    if (alone_ || count <= grain) return work(std::size_t{0}, count, own_.local());
+#ifdef TEGL_PLAIN_THREADS
+    std::atomic<std::size_t> next = 0;
+    std::vector<std::exception_ptr> errors(this->count());
+    const auto take_parts = [&](std::size_t thread) {
+      try {
+        for (std::size_t from; (from = next.fetch_add(grain)) < count;)
+          work(from, std::min(count, from + grain), own_.local());
+      } catch (...) {
+        errors[thread] = std::current_exception();
+        next = count;
+      }
+    };
+    std::vector<std::thread> others(this->count() - 1);
+    for (std::size_t i = 0; i < others.size(); ++i) others[i] = std::thread(take_parts, i + 1);
+    take_parts(0);
+    for (std::thread& other : others) other.join();
+    for (const std::exception_ptr& error : errors)
+      if (error) std::rethrow_exception(error);
+#else
+    arena_.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, count, grain),
+          [&](const tbb::blocked_range<std::size_t>& part) { work(part.begin(), part.end(), own_.local()); },
+          affinity_);
+    });
+#endif
+  }
+
+ private:
+  /// More than the machine has are as many: TBB has room for no others, and says so where libraries are silent.
+  static unsigned most() { return static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())); }
+
+  tbb::task_arena arena_;
+  bool alone_;
+  tbb::affinity_partitioner affinity_;  ///< a thread gets the parts that it got the last time: they are in its caches
+  tbb::enumerable_thread_specific<Scratch> own_;
+};
+
+/// Counts what the threads have done; the one that made this tells `progress` of it, whenever it is done with a part.
+class LoopProgress {
+ public:
+  /// `progress` may hold nothing, and must outlive this.
+  LoopProgress(const Progress& progress, std::size_t count) : progress_(progress), count_(count) { tell_of(0); }
+
+  /// By any thread: so many more items are done. On the thread that made this, tells so; throws Cancelled.
+  void add(std::size_t items) {
+    if (!progress_) return;
+    const std::size_t done = done_.fetch_add(items, std::memory_order_relaxed) + items;
+    if (std::this_thread::get_id() == caller_ && done < count_) tell_of(done);
+  }
+  /// By the thread that made this, when all is done: tells 1.
+  void finish() { tell_of(count_); }
+  /// Whether threads may as well leave the rest of their work.
+  [[nodiscard]] bool stopped() const noexcept { return stopped_.load(std::memory_order_relaxed); }
+
+ private:
+  void tell_of(std::size_t done) {
+    if (!progress_) return;
+    try {
+      call_apart(
+          [&] { tell(progress_, done == count_ ? 1.0 : static_cast<double>(done) / static_cast<double>(count_)); });
+    } catch (...) {
+      stopped_.store(true, std::memory_order_relaxed);
+      throw;
+    }
+  }
+
+  const Progress& progress_;
+  std::size_t count_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  std::atomic<std::size_t> done_ = 0;
+  std::atomic<bool> stopped_ = false;
+};
+
+/// How many blocks of `size` there are in `count`; the last one may be smaller.
+constexpr std::size_t block_count(std::size_t count, std::size_t size) noexcept { return (count + size - 1) / size; }
+
+/// Calls work(block, from, to, scratch) for all blocks of 0 … count - 1, side by side on `threads` threads (0: all that
+/// the machine has), each with its own scratch, made by `make_scratch`. `progress` is told by the caller's thread,
+/// after each block that it has done itself.
+template <class MakeScratch, class Work>
+void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress,
+                    const MakeScratch& make_scratch, const Work& work) {
+  using Scratch = decltype(make_scratch());
+  Workers<Scratch> workers(threads, make_scratch);
+  const std::size_t blocks = block_count(count, size);
+  LoopProgress done(progress, blocks);
+  workers.for_range(blocks, 1, [&](std::size_t from, std::size_t to, Scratch& scratch) {
+    for (std::size_t b = from; b < to && !done.stopped(); ++b) {
+      work(b, b * size, std::min(count, (b + 1) * size), scratch);
+      done.add(1);
+    }
+  });
+  done.finish();
+}
+
+/// Without scratch: work(block, from, to).
+template <class Work>
+void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress, const Work& work) {
+  struct Nothing {};
+  for_each_block(
+      count, size, threads, progress, [] { return Nothing{}; },
+      [&](std::size_t block, std::size_t from, std::size_t to, Nothing&) { work(block, from, to); });
+}
+
+/// Calls work(i) for 0 ... count - 1, on `threads` threads (0: all that the machine has). Throws Cancelled where
+/// `progress` says stop. `work` must not throw.
+template <class Work>
+void for_each_item(std::size_t count, unsigned threads, const Progress& progress, const Work& work) {
+  constexpr std::size_t kGrain = std::size_t{1} << 12;
+  struct Nothing {};
+  Workers<Nothing> workers(threads, [] { return Nothing{}; });
+  LoopProgress done(progress, count);
+  workers.for_range(count, kGrain, [&](std::size_t from, std::size_t to, Nothing&) {
+    for (std::size_t first = from; first < to && !done.stopped(); first += kGrain) {
+      const std::size_t end = std::min(to, first + kGrain);
+      for (std::size_t i = first; i < end; ++i) work(i);
+      done.add(end - first);
+    }
+  });
+  done.finish();
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,546 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cuts of simplicial contours by hyperplanes. What follows speaks of "last coordinate = constant"; in other hyperplanes
+// the height over them takes the last coordinate's place, and a right-handed frame with the normal that of the axes.
+// None of it depends on more than the order of the vertices' heights, so any function of the vertices would do.
+//
+// Orientation. Let (v_0 … v_{N-1}) be a contour's simplex, positive towards d: det[v_1 - v_0, …, v_{N-1} - v_0, d] > 0,
+// and g a direction inside the simplex with a positive last component. A simplex of the cut with edges f_1 … f_{N-2}
+// must be positive towards the same d, taken inside the hyperplane: det[f_1, …, f_{N-2}, d, e_{N-1}] > 0. As g is
+// e_{N-1} times a positive number plus a part inside the hyperplane, exchanging two columns gives det[f_1, …, f_{N-2},
+// g, d] < 0: the cut (f_1 … f_{N-2}), followed by the way up, is a negative frame of the simplex. So the orientation
+// follows from which vertices are above and from their order alone, also where coordinates coincide.
+//
+// Why the cut is closed where the contour is. Let h be the hyperplane's coordinate, and call a vertex at h "on". If on
+// vertices count as above, simplices have points on the same edges as at h - e, for any e > 0 smaller than the distance
+// to the next vertex below: combinatorially the cut is that at h - e, a manifold. If they count as below, it is the cut
+// at h + e; and as the argument is about one vertex at a time, groups of on vertices without an edge between them may
+// count differently. A group (on vertices connected by edges among themselves) counts as below if no edge of it goes
+// down, else as above: the limit from below where there is one.
+// The points around an on vertex u are then drawn together into u. That keeps the manifold if those points span a disc
+// (of discs drawn to points a surface comes out unchanged: R. L. Moore, Concerning upper semi-continuous collections of
+// continua, 1925), but pinches it where h is a critical value at u. There the points are left apart, each in u's place.
+//
+// Why the cut at a layer of the image is that layer's contour M: the on vertices are M's vertices (up to samples that
+// equal the isovalue). With tiles below, each face of M is met by one simplex from below; the cut of that simplex is
+// the face, other simplices collapse. Without any (the first layer, or missing values below) M's vertices count as
+// below, and the simplices above cut to its faces in the same way; if the contour is closed at its first layer, the cap
+// lies flat in the hyperplane with nothing below. Where tiles below are missing under a part of M alone, the faces
+// met from above are boundary faces of the contour, and are added as they are.
+//
+// Boundary faces lie flat in the hyperplane for another reason too where samples equal the isovalue: faces in a side of
+// the image along another axis whose vertices all happen to be on. The cut from below is whole without them. The
+// extraction makes none for layers of the last axis; for others, faces that may be such ones are left out, and so are
+// all in oblique hyperplanes, which are no layers.
+#include "cut/cutter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/disjoint_sets.hpp"
+#include "base/index_map.hpp"
+#include "base/radix_sort.hpp"
+#include "cut/slice_piece.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// The places of a simplex's vertices with those of `high` (bit j: vertex j) first, by an even permutation.
+template <int N>
+constexpr std::array<std::uint8_t, N> high_first(unsigned high) {
+  std::array<std::uint8_t, N> sorted{};
+  for (int j = 0; j < N; ++j) sorted[j] = static_cast<std::uint8_t>(j);
+  const auto is_first = [&](int i) { return ((high >> sorted[i]) & 1u) != 0; };
+  bool odd = false;
+  for (int i = 1; i < N; ++i)
+    for (int j = i; j > 0 && is_first(j) && !is_first(j - 1); --j) {
+      std::swap(sorted[j], sorted[j - 1]);
+      odd = !odd;
+    }
+  // There are at least three vertices, so two on one side to make the permutation even with.
+  const int high_count = std::popcount(high);
+  if (odd && high_count >= 2) std::swap(sorted[0], sorted[1]);
+  if (odd && high_count < 2) std::swap(sorted[N - 2], sorted[N - 1]);
+  return sorted;
+}
+template <int N>
+constexpr auto kHighFirst = [] {
+  std::array<std::array<std::uint8_t, N>, 1u << N> all{};
+  for (unsigned high = 0; high < all.size(); ++high) all[high] = high_first<N>(high);
+  return all;
+}();
+
+/// The pairs (above, below) of places in the order of `high_first` whose edges the cut's points lie on, in the
+/// orientation derived at the top of this file.
+using Pairs = std::array<std::pair<int, int>, 4>;
+template <int N>
+std::pair<Pairs, int> cut_pairs(int high_count) {
+  if constexpr (N == 3)
+    return high_count == 1 ? std::pair{Pairs{{{0, 2}, {0, 1}}}, 2} : std::pair{Pairs{{{0, 2}, {1, 2}}}, 2};
+  if constexpr (N == 4) {
+    if (high_count == 1) return {Pairs{{{0, 1}, {0, 2}, {0, 3}}}, 3};
+    if (high_count == 2) return {Pairs{{{0, 2}, {0, 3}, {1, 3}, {1, 2}}}, 4};
+    return {Pairs{{{0, 3}, {1, 3}, {2, 3}}}, 3};
+  }
+}
+
+template <int N, class Real>
+class Cutter {
+ public:
+  Cutter(const Contour<N, Real>& contour, const Section<N>& section, double level, const std::vector<Index>& touching)
+      : contour_(contour), section_(section), level_(level), touching_(touching) {}
+
+  Contour<N - 1, Real> cut() {
+    classify();
+    if (on_.empty())
+      set_pieces(cut_pieces({}));
+    else
+      draw_together();
+    number_points();
+    Contour<N - 1, Real> result;
+    for (int i = 0, a = 0; i < N - 1; ++i, ++a) {
+      a += a == section_.dropped_axis();
+      if (!section_.keeps_axis(i)) continue;
+      result.axis_names[i] = contour_.axis_names[a];
+      result.axis_units[i] = contour_.axis_units[a];
+    }
+    result.direction = contour_.direction;
+    result.vertices.resize(keys_.size());
+    for (std::size_t i = 0; i < keys_.size(); ++i) result.vertices[i] = position(keys_[i]);
+    if (!contour_.normals.empty()) {
+      result.normals.resize(keys_.size());
+      for (std::size_t i = 0; i < keys_.size(); ++i) result.normals[i] = normal(keys_[i]);
+    }
+    for (const Attribute& attribute : contour_.vertex_attributes)
+      result.vertex_attributes.push_back(interpolated(attribute));
+    emit(result);
+    return result;
+  }
+
+ private:
+  /// An (N-2)-face that lies in the hyperplane, as seen from one of its simplices.
+  struct OnFace {
+    std::array<Index, N - 1> vertices;  // ascending
+    Index simplex;
+    int omitted;  // the place in the simplex of the vertex that is not in the face
+  };
+  static constexpr unsigned kAll = (1u << N) - 1;
+
+  /// Which vertices of a simplex are below the hyperplane, and which on it: bit j for vertex j.
+  struct Sides {
+    std::uint8_t below = 0;
+    std::uint8_t on = 0;
+  };
+
+  [[nodiscard]] double height(Index v) const { return section_.height(contour_.vertices[v]); }
+  [[nodiscard]] bool is_on(Index v) const { return height(v) == level_; }
+
+  /// Finds the sides of all vertices, those that are on, and which of these count as below.
+  void classify() {
+    // A number for each on vertex of each simplex: twice the vertex, plus 1 if the simplex reaches down. Most repeat
+    // what one of the simplices before had, which a short memory of these shows.
+    std::vector<std::uint64_t> on;
+    constexpr std::size_t kRecent = 1 << 12;
+    std::vector<std::uint64_t> recent(kRecent, ~std::uint64_t{0});
+    sides_.resize(touching_.size());
+    for (std::size_t i = 0; i < touching_.size(); ++i) {
+      const auto& simplex = contour_.simplices[touching_[i]];
+      Sides sides;
+      for (int j = 0; j < N; ++j) {
+        const double here = height(simplex[j]);
+        sides.below = static_cast<std::uint8_t>(sides.below | static_cast<unsigned>(here < level_) << j);
+        sides.on = static_cast<std::uint8_t>(sides.on | static_cast<unsigned>(here == level_) << j);
+        most_ = std::max(most_, simplex[j]);
+      }
+      sides_[i] = sides;
+      for (unsigned left = sides.on; left != 0; left &= left - 1) {
+        const std::uint64_t entry =
+            2 * std::uint64_t{simplex[std::countr_zero(left)]} + static_cast<unsigned>(sides.below != 0);
+        if (std::exchange(recent[entry % kRecent], entry) != entry) on.push_back(entry);
+      }
+    }
+    if (!on.empty()) list_on_vertices(std::move(on));
+  }
+
+  void list_on_vertices(std::vector<std::uint64_t> entries) {
+    sort_by_bits(entries, static_cast<unsigned>(std::bit_width(most_)) + 1, [](std::uint64_t entry) { return entry; });
+    std::vector<Index> on;
+    std::vector<bool> has_way_down;
+    bool all_have = true;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      if (i + 1 < entries.size() && entries[i + 1] / 2 == entries[i] / 2) continue;
+      on.push_back(static_cast<Index>(entries[i] / 2));
+      has_way_down.push_back(entries[i] % 2 == 1);
+      all_have = all_have && has_way_down.back();
+    }
+    is_low_.assign(on.size(), false);
+    on_ = IndexMap(std::move(on));
+    if (!all_have) group_on_vertices(std::move(has_way_down));
+  }
+
+  /// Makes groups of on vertices without a way down count as below.
+  void group_on_vertices(std::vector<bool> has_way_down) {
+    BasicDisjointSets<std::size_t> groups(on_.size());
+    for (std::size_t i = 0; i < touching_.size(); ++i) {
+      std::optional<std::size_t> last;
+      for (unsigned left = sides_[i].on; left != 0; left &= left - 1) {
+        const std::size_t here = on_(contour_.simplices[touching_[i]][std::countr_zero(left)]);
+        if (last) groups.join(here, *last);
+        last = here;
+      }
+    }
+    for (std::size_t i = 0; i < on_.size(); ++i)
+      if (has_way_down[i]) has_way_down[groups.find(i)] = true;
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+      is_low_[i] = !has_way_down[groups.find(i)];
+      any_low_ = any_low_ || is_low_[i];
+    }
+  }
+
+  /// The on vertices of the i-th touching simplex that count as above.
+  [[nodiscard]] unsigned on_high(std::size_t i) const {
+    if (!any_low_) return sides_[i].on;
+    unsigned result = 0;
+    for (unsigned left = sides_[i].on; left != 0; left &= left - 1)
+      if (const int j = std::countr_zero(left); !is_low_[on_(contour_.simplices[touching_[i]][j])]) result |= 1u << j;
+    return result;
+  }
+
+  /// The vertices of the i-th touching simplex that are above or count so.
+  [[nodiscard]] unsigned high(std::size_t i) const {
+    return (kAll & ~(unsigned{sides_[i].below} | sides_[i].on)) | on_high(i);
+  }
+
+  /// The piece between the `high` vertices of a simplex and the others.
+  [[nodiscard]] Piece make_piece(Index simplex, unsigned high) const {
+    const auto& vertices = contour_.simplices[simplex];
+    const auto& order = kHighFirst<N>[high];
+    const auto [pairs, count] = cut_pairs<N>(std::popcount(high));
+    Piece piece;
+    piece.simplex = simplex;
+    piece.count = count;
+    for (int i = 0; i < count; ++i)
+      piece.points[i] = edge_point(vertices[order[pairs[i].second]], vertices[order[pairs[i].first]]);
+    return piece;
+  }
+
+  /// What is cut out of all simplices, with the points around on vertices drawn together, but for those left `apart`.
+  /// Pieces that collapse are left out.
+  [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
+    const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
+    const auto is_drawn = [&](Index v) { return !any_apart || !apart[on_(v)]; };
+    std::vector<Piece> result;
+    for (std::size_t i = 0; i < touching_.size(); ++i) {
+      const unsigned above = high(i);
+      if (above == 0 || above == kAll) continue;
+      const Piece piece = make_piece(touching_[i], above);
+      if (sides_[i].on == 0) {
+        result.push_back(piece);
+        continue;
+      }
+      Piece drawn;
+      drawn.simplex = piece.simplex;
+      for (int k = 0; k < piece.count; ++k) {
+        const std::optional<Index> on = on_end(piece.points[k]);
+        const PointKey key = on && is_drawn(*on) ? vertex_point(*on) : piece.points[k];
+        // Points drawn together are neighbours in the cycle: they share the on vertex.
+        const bool repeats = drawn.count > 0 &&
+                             (drawn.points[drawn.count - 1] == key || (k == piece.count - 1 && drawn.points[0] == key));
+        if (!repeats) drawn.points[drawn.count++] = key;
+      }
+      if (drawn.count >= N - 1) result.push_back(drawn);
+    }
+    return result;
+  }
+
+  /// The end of a point's edge that is on; an edge has at most one, as its ends would be in one group.
+  [[nodiscard]] std::optional<Index> on_end(PointKey key) const {
+    if (on_.empty()) return std::nullopt;
+    if (is_on(upper_end(key))) return upper_end(key);
+    if (is_on(lower_end(key))) return lower_end(key);
+    return std::nullopt;
+  }
+
+  /// Draws the points around on vertices together. Where the result is pinched and the points themselves were not, the
+  /// vertices concerned are left apart; each round leaves more of them so, and with all apart nothing is pinched.
+  void draw_together() {
+    std::vector<Piece> faces = faces_met_from_above();
+    std::vector<bool> apart(on_.size(), false);
+    std::vector<PointKey> excused;
+    for (int round = 0;; ++round) {
+      std::vector<Piece> drawn = cut_pieces(apart);
+      drawn.insert(drawn.end(), faces.begin(), faces.end());
+      set_pieces(std::move(drawn));
+      const std::vector<PointKey> pinched = pinched_points(pieces_, corners_);
+      if (round == 0 && !pinched.empty()) {
+        const std::vector<Piece> undrawn = cut_pieces(std::vector<bool>(on_.size(), true));
+        excused = pinched_points(undrawn, corners_by_point(undrawn, most_));
+      }
+      if (!drop_faces(pinched, apart, faces) && !leave_apart(pinched, excused, round >= kMostRounds, apart)) return;
+    }
+  }
+
+  void set_pieces(std::vector<Piece> pieces) {
+    pieces_ = std::move(pieces);
+    corners_ = corners_by_point(pieces_, most_);
+  }
+
+  /// Marks the on vertices among the pinched points (or all on vertices), except those around which the points were
+  /// pinched before, as a contour may be next to missing values. True if that changes anything.
+  bool leave_apart(const std::vector<PointKey>& pinched, const std::vector<PointKey>& excused, bool all,
+                   std::vector<bool>& apart) const {
+    std::vector<bool> candidates(apart.size(), all && !pinched.empty());
+    for (const PointKey key : pinched)
+      if (is_vertex_point(key)) candidates[on_(upper_end(key))] = true;
+    for (const PointKey key : excused)
+      if (const std::optional<Index> on = on_end(key)) candidates[on_(*on)] = false;
+    bool changed = false;
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+      if (!candidates[i] || apart[i]) continue;
+      apart[i] = true;
+      changed = true;
+    }
+    return changed;
+  }
+
+  /// Drops the faces at vertices around which the cut is pinched although they are left apart: there faces alone meet.
+  /// True if there are any.
+  bool drop_faces(const std::vector<PointKey>& pinched, const std::vector<bool>& apart,
+                  std::vector<Piece>& faces) const {
+    return std::erase_if(faces, [&](const Piece& face) {
+             return std::any_of(face.points.begin(), face.points.begin() + face.count, [&](PointKey key) {
+               return apart[on_(upper_end(key))] && std::binary_search(pinched.begin(), pinched.end(), key);
+             });
+           }) > 0;
+  }
+
+  /// How far the touching simplices reach along each axis.
+  using Reach = std::array<std::pair<Real, Real>, N>;
+  [[nodiscard]] Reach reach() const {
+    Reach result;
+    const auto& first = contour_.vertices[contour_.simplices[touching_[0]][0]];
+    for (int a = 0; a < N; ++a) result[a] = {first[a], first[a]};
+    for (const Index s : touching_)
+      for (const Index v : contour_.simplices[s])
+        for (int a = 0; a < N; ++a) {
+          result[a].first = std::min(result[a].first, contour_.vertices[v][a]);
+          result[a].second = std::max(result[a].second, contour_.vertices[v][a]);
+        }
+    return result;
+  }
+
+  /// Whether a boundary face of a simplex may lie in a side of the image along another axis than the cut's: there it
+  /// has one coordinate, and its simplex goes on inwards, or lies in the side as well, beyond which nothing reaches.
+  [[nodiscard]] bool may_lie_in_another_side(const OnFace& face, const Reach& reach) const {
+    const auto& inside = contour_.vertices[contour_.simplices[face.simplex][face.omitted]];
+    const auto& first = contour_.vertices[face.vertices[0]];
+    for (int a = 0; a < N; ++a) {
+      const auto [low, high] = reach[a];
+      const bool may_be_side = low < high && (first[a] == low || first[a] == high);
+      if (a == section_.dropped_axis() || (inside[a] == first[a] && !may_be_side)) continue;
+      if (std::all_of(face.vertices.begin(), face.vertices.end(),
+                      [&](Index v) { return contour_.vertices[v][a] == first[a]; }))
+        return true;
+    }
+    return false;
+  }
+
+  /// The contour's boundary faces among vertices that count as above, whose simplex is above; see the top of this file.
+  [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
+    if (!section_.is_across_axis()) return {};
+    std::vector<OnFace> on_faces;
+    for (std::size_t i = 0; i < touching_.size(); ++i)
+      if (std::popcount(unsigned{sides_[i].on}) >= N - 1) gather_on_faces(touching_[i], on_high(i), on_faces);
+    sort_by_bits(on_faces, static_cast<unsigned>(std::bit_width(most_)),
+                 [](const OnFace& face) { return face.vertices[0]; });
+    const auto before = [](const OnFace& a, const OnFace& b) {
+      return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
+    };
+    for (auto from = on_faces.begin(), to = from; from != on_faces.end(); from = to) {
+      to = std::find_if(from, on_faces.end(), [&](const OnFace& f) { return f.vertices[0] != from->vertices[0]; });
+      std::sort(from, to, before);
+    }
+    std::vector<Piece> faces;
+    if (on_faces.empty()) return faces;
+    const Reach reach = this->reach();
+    for (std::size_t i = 0, j = 0; i < on_faces.size(); i = j) {
+      while (j < on_faces.size() && on_faces[j].vertices == on_faces[i].vertices) ++j;
+      const auto& simplex = contour_.simplices[on_faces[i].simplex];
+      if (j - i != 1 || !(height(simplex[on_faces[i].omitted]) > level_)) continue;
+      if (!section_.is_along_last_axis() && may_lie_in_another_side(on_faces[i], reach)) continue;
+      Piece face = make_piece(on_faces[i].simplex, 1u << on_faces[i].omitted);
+      for (int k = 0; k < face.count; ++k) face.points[k] = vertex_point(lower_end(face.points[k]));
+      faces.push_back(face);
+    }
+    return faces;
+  }
+
+  void gather_on_faces(Index s, unsigned on, std::vector<OnFace>& on_faces) const {
+    for (int omitted = 0; omitted < N; ++omitted) {
+      if ((on | (1u << omitted)) != kAll) continue;
+      OnFace face{{}, s, omitted};
+      for (int j = 0, k = 0; j < N; ++j)
+        if (j != omitted) face.vertices[k++] = contour_.simplices[s][j];
+      std::sort(face.vertices.begin(), face.vertices.end());
+      on_faces.push_back(face);
+    }
+  }
+
+  /// Numbers the points in the order of their keys, and puts numbers in the place of keys.
+  void number_points() {
+    for (const Corner& corner : corners_) {
+      if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
+      pieces_[corner.at / 4].points[corner.at % 4] = keys_.size() - 1;
+    }
+    if (keys_.size() > std::numeric_limits<Index>::max())
+      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", keys_.size(),
+                                                   std::numeric_limits<Index>::max()));
+  }
+
+  /// A point's edge, which is both times the same vertex if that is on, and how far up it lies.
+  struct Place {
+    Index low;
+    Index high;
+    double share;
+  };
+  [[nodiscard]] Place place(PointKey key) const {
+    if (const std::optional<Index> on = on_end(key)) return {*on, *on, 0.0};
+    const double below = height(lower_end(key));
+    return {lower_end(key), upper_end(key), (level_ - below) / (height(upper_end(key)) - below)};
+  }
+
+  static double between(double low, double high, double share) { return low + share * (high - low); }
+  static std::array<double, N> between(const std::array<Real, N>& low, const std::array<Real, N>& high, double share) {
+    std::array<double, N> x;
+    for (int a = 0; a < N; ++a) x[a] = between(static_cast<double>(low[a]), static_cast<double>(high[a]), share);
+    return x;
+  }
+
+  [[nodiscard]] std::array<Real, N - 1> position(PointKey key) const {
+    const auto [low, high, share] = place(key);
+    const std::array<double, N - 1> y =
+        section_.within(between(contour_.vertices[low], contour_.vertices[high], share));
+    std::array<Real, N - 1> result;
+    for (int a = 0; a < N - 1; ++a) result[a] = static_cast<Real>(y[a]);
+    return result;
+  }
+
+  /// The contour's normal there, within the hyperplane: what is left there of a gradient is that of the field in the
+  /// hyperplane.
+  [[nodiscard]] std::array<Real, N - 1> normal(PointKey key) const {
+    const auto [low, high, share] = place(key);
+    const std::array<double, N - 1> v = section_.within(between(contour_.normals[low], contour_.normals[high], share));
+    double square = 0.0;
+    for (const double component : v) square += component * component;
+    std::array<Real, N - 1> result;
+    for (int a = 0; a < N - 1; ++a) result[a] = square > 0.0 ? static_cast<Real>(v[a] / std::sqrt(square)) : Real{0};
+    return result;
+  }
+
+  [[nodiscard]] Attribute interpolated(const Attribute& attribute) const {
+    const auto width = static_cast<std::size_t>(attribute.width);
+    Attribute result{attribute.name, attribute.unit, attribute.width, {}};
+    result.values.reserve(keys_.size() * width);
+    for (const PointKey key : keys_) {
+      const auto [low, high, share] = place(key);
+      for (std::size_t i = 0; i < width; ++i)
+        result.values.push_back(between(attribute.values[low * width + i], attribute.values[high * width + i], share));
+    }
+    return result;
+  }
+
+  void emit(Contour<N - 1, Real>& result) const {
+    std::vector<Index> inherited;  // the simplex that each of the cut's comes from
+    const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
+      std::array<Index, N - 1> simplex;
+      for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
+      if (!section_.is_right_handed()) std::swap(simplex[N - 3], simplex[N - 2]);
+      result.simplices.push_back(simplex);
+      inherited.push_back(piece.simplex);
+    };
+    for (const Piece& piece : pieces_) {
+      if constexpr (N == 3) {
+        add(piece, {0, 1});
+      } else if (piece.count == 3) {
+        add(piece, {0, 1, 2});
+      } else if (splits_from_first(result, piece)) {
+        add(piece, {0, 1, 2});
+        add(piece, {0, 2, 3});
+      } else {
+        add(piece, {1, 2, 3});
+        add(piece, {1, 3, 0});
+      }
+    }
+    for (const Attribute& attribute : contour_.simplex_attributes) {
+      const auto width = static_cast<std::size_t>(attribute.width);
+      Attribute& rows = result.simplex_attributes.emplace_back();
+      rows = {attribute.name, attribute.unit, attribute.width, {}};
+      rows.values.reserve(inherited.size() * width);
+      for (const Index s : inherited) {
+        const double* const row = attribute.values.data() + s * width;
+        rows.values.insert(rows.values.end(), row, row + width);
+      }
+    }
+  }
+
+  /// The shorter diagonal; of two equal ones that with the first end in lexicographic order of the coordinates, so
+  /// that the choice depends on the points' places alone.
+  static bool splits_from_first(const Contour<N - 1, Real>& result, const Piece& piece) {
+    const auto corner = [&](int i) -> const std::array<Real, N - 1>& { return result.vertices[piece.points[i]]; };
+    const auto length = [&](int i, int j) {
+      double sum = 0.0;
+      for (int a = 0; a < N - 1; ++a) {
+        const double d = static_cast<double>(corner(j)[a]) - static_cast<double>(corner(i)[a]);
+        sum += d * d;
+      }
+      return sum;
+    };
+    const double first = length(0, 2);
+    const double second = length(1, 3);
+    if (first != second) return first < second;
+    return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
+  }
+
+  static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart at once, to bound the time
+
+  const Contour<N, Real>& contour_;
+  const Section<N>& section_;
+  const double level_;
+  const std::vector<Index>& touching_;  ///< simplices not wholly on one side
+  IndexMap on_;                         ///< vertices on the hyperplane, of those simplices
+  std::vector<bool> is_low_;            ///< of these
+  bool any_low_ = false;
+  std::vector<Sides> sides_;  ///< of the touching simplices
+  Index most_ = 0;            ///< the largest number of their vertices
+  std::vector<Piece> pieces_;
+  std::vector<Corner> corners_;  ///< of the pieces
+  std::vector<PointKey> keys_;
+};
+
+}  // namespace
+
+template <int N, class Real>
+Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level,
+                                   const std::vector<Index>& touching) {
+  return Cutter<N, Real>(contour, section, level, touching).cut();
+}
+
+template Contour<2, float> cut_simplices(const Contour<3, float>&, const Section<3>&, double,
+                                         const std::vector<Index>&);
+template Contour<2, double> cut_simplices(const Contour<3, double>&, const Section<3>&, double,
+                                          const std::vector<Index>&);
+template Contour<3, float> cut_simplices(const Contour<4, float>&, const Section<4>&, double,
+                                         const std::vector<Index>&);
+template Contour<3, double> cut_simplices(const Contour<4, double>&, const Section<4>&, double,
+                                          const std::vector<Index>&);
+
+}  // namespace tegl::detail

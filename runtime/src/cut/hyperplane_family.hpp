@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Parallel hyperplanes, as all ways of cutting understand them: how high a vertex lies, where a hyperplane lies, and
+// what coordinates its points have.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/slice_at.hpp"
+#include "tegl/hyperplane.hpp"
+
+namespace tegl::detail {
+
+/// The hyperplanes with a certain normal. Across a coordinate axis heights are that coordinate, or its opposite, and
+/// points have the other coordinates: no bit is changed. Else heights are <normal, x>, summed up in the order of the
+/// axes, divided by the power of two that makes the normal's largest component one from 1 to 2: neither huge normals
+/// nor tiny ones overflow or vanish, and no bit of others' sums changes. What a cut is like as a complex depends on
+/// the order of heights alone, so rounding does it no harm.
+template <int N>
+class Section {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+
+  /// Throws InvalidArgument as `frame_of` does.
+  explicit Section(const Vector& normal) : frame_(frame_of(Hyperplane<N>{normal, 0.0})), normal_(normal) {
+    int others = 0;
+    for (int a = 0; a < N; ++a) others += a != frame_.dropped && normal[a] != 0.0;
+    is_across_axis_ = others == 0;
+    const int exponent = std::ilogb(normal[frame_.dropped]);
+    for (int a = 0; a < N; ++a) normal_[a] = std::scalbn(normal[a], -exponent);
+    unit_ = is_across_axis_ ? std::abs(normal[frame_.dropped]) : std::scalbn(1.0, exponent);
+    is_reversed_ = normal[frame_.dropped] < 0.0;
+  }
+
+  /// The height of the hyperplane <normal, x> = offset, in the precision of the vertices' heights.
+  template <class Real>
+  [[nodiscard]] double level(double offset) const {
+    constexpr double kMost = std::numeric_limits<double>::max();
+    const double within =
+        std::clamp(rounded_at<double>(offset) / unit_, -kMost, kMost);  // the quotient may be infinite
+    return is_across_axis_ ? static_cast<double>(rounded_at<Real>(within)) : within;
+  }
+
+  template <class Real>
+  [[nodiscard]] double height(const std::array<Real, N>& x) const {
+    if (is_across_axis_) {
+      const auto here = static_cast<double>(x[frame_.dropped]);
+      return is_reversed_ ? -here : here;
+    }
+    double sum = 0.0;
+    for (int a = 0; a < N; ++a) sum += normal_[a] * static_cast<double>(x[a]);
+    return sum;
+  }
+
+  /// The offset of the hyperplane at height 1; heights are offsets divided by it.
+  [[nodiscard]] double unit() const noexcept { return unit_; }
+
+  /// What a vector of N-space is within the hyperplanes.
+  [[nodiscard]] std::array<double, N - 1> within(const std::array<double, N>& x) const {
+    std::array<double, N - 1> result;
+    if (is_across_axis_) {
+      for (int a = 0, i = 0; a < N; ++a)
+        if (a != frame_.dropped) result[i++] = x[a];
+      return result;
+    }
+    for (int i = 0; i < N - 1; ++i) {
+      result[i] = 0.0;
+      for (int a = 0; a < N; ++a) result[i] += frame_.axes(a, i) * x[a];
+    }
+    return result;
+  }
+
+  /// Whether the cut's i-th coordinate is one of the contour's: that of the i-th axis of those that are not dropped.
+  [[nodiscard]] bool keeps_axis(int i) const { return normal_[i < dropped_axis() ? i : i + 1] == 0.0; }
+  /// Whether the normal is a multiple of an axis, which is then the one that is dropped.
+  [[nodiscard]] bool is_across_axis() const noexcept { return is_across_axis_; }
+  /// Whether the normal is a positive multiple of the last axis.
+  [[nodiscard]] bool is_along_last_axis() const noexcept {
+    return is_across_axis_ && !is_reversed_ && frame_.dropped == N - 1;
+  }
+  [[nodiscard]] int dropped_axis() const noexcept { return frame_.dropped; }
+  [[nodiscard]] bool is_right_handed() const noexcept { return frame_.is_right_handed; }
+
+ private:
+  HyperplaneFrame<N> frame_;
+  Vector normal_;
+  bool is_across_axis_ = false;
+  bool is_reversed_ = false;
+  double unit_ = 1.0;
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Projections of 4D contours to space, and their outlines.
+//
+// The outline is where the line of sight touches the contour: where the contour's normal is at a right angle to it. To
+// tell near tetrahedra from far ones would give the outline of the simplices: jagged, with a fold wherever the
+// diagonals of a crooked quadrilateral change from one time to the next. Instead the normals at the vertices are
+// interpolated, as is usual for silhouettes of surfaces: the outline is the zero set of a linear function on each
+// tetrahedron. That is a cut, with the function in the place of a coordinate; cutter.cpp says why the cut of a manifold
+// is one.
+//
+// Based on: A. Hertzmann and D. Zorin, Illustrating smooth surfaces, 2000 (outlines by interpolated normals);
+// M. Liversage, thesis, 1994, section 10.2.
+#include "tegl/project.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include "base/progress.hpp"
+#include "cut/hyperplane_family.hpp"
+#include "mesh/simplex_geometry.hpp"
+#include "mesh/validate.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl {
+namespace {
+
+using detail::Section;
+
+void report(const Progress& progress, double fraction) { detail::tell(progress, fraction, "projecting was cancelled"); }
+
+/// The points and heights of a projected contour.
+template <class Real>
+struct View {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector3d> flat;  ///< points before perspective, if there is any
+  std::vector<double> heights;
+  bool is_right_handed = true;
+  double least = 0.0;                                ///< height
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the points' bounding box; with perspective
+};
+
+void check_projection(const Projection& projection) {
+  if (!(projection.eye_distance >= 0.0) || !std::isfinite(projection.eye_distance))
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("eye at the distance {}; expected 0 or more", projection.eye_distance));
+}
+
+/// Draws the points towards the middle of their bounding box, the more the higher they are.
+template <class Real>
+void draw_towards_middle(View<Real>& view, double distance) {
+  if (distance == 0.0 || view.points.empty()) return;
+  Eigen::Vector3d low = view.points[0];
+  Eigen::Vector3d high = low;
+  for (const Eigen::Vector3d& point : view.points) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  view.middle = 0.5 * (low + high);
+  view.least = *std::min_element(view.heights.begin(), view.heights.end());
+  view.flat = view.points;
+  for (std::size_t v = 0; v < view.points.size(); ++v)
+    view.points[v] =
+        view.middle + (view.points[v] - view.middle) * (distance / (distance + (view.heights[v] - view.least)));
+}
+
+/// Whether a tetrahedron is on the far side: whether its positive side, if that faces low, faces upwards.
+/// Edge-on ones are; what is less than rounding may be counts as that.
+template <class Real>
+bool is_far(const View<Real>& view, const std::array<Index, 4>& simplex, bool flip) {
+  Eigen::Matrix3d edges;
+  double size = 1.0;
+  for (int j = 0; j < 3; ++j) {
+    edges.col(j) = view.points[simplex[j + 1]] - view.points[simplex[0]];
+    size *= edges.col(j).norm();
+  }
+  constexpr double kRounding = 64.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const double volume = flip ? -edges.determinant() : edges.determinant();
+  return volume >= -kRounding * size;
+}
+
+template <class Real>
+View<Real> view_of(const Contour<4, Real>& contour, const Projection& projection) {
+  check_projection(projection);
+  detail::require_sound(contour);
+  const Section<4> section(projection.direction);
+  const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
+  View<Real> view;
+  view.is_right_handed = frame.is_right_handed;
+  for (const auto& vertex : contour.vertices) {
+    std::array<double, 4> x;
+    std::copy(vertex.begin(), vertex.end(), x.begin());
+    const std::array<double, 3> y = section.within(x);
+    view.points.emplace_back(y[0], y[1], y[2]);
+    view.heights.push_back(section.is_across_axis() ? section.height(vertex) : frame.up.dot(Eigen::Vector4d(x.data())));
+  }
+  draw_towards_middle(view, projection.eye_distance);
+  return view;
+}
+
+void replace(std::vector<Attribute>& attributes, Attribute attribute) {
+  std::erase_if(attributes, [&](const Attribute& other) { return other.name == attribute.name; });
+  attributes.push_back(std::move(attribute));
+}
+
+/// The height as an attribute of the vertices.
+template <class Real>
+Attribute height_attribute(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
+  const Section<4> section(projection.direction);
+  Attribute height{"height", "", 1, {}};
+  if (section.is_across_axis()) {
+    constexpr const char* kLetters = "xyzt";
+    const auto axis = static_cast<std::size_t>(section.dropped_axis());
+    height.name = contour.axis_names[axis].empty() ? std::string(1, kLetters[axis]) : contour.axis_names[axis];
+    height.unit = contour.axis_units[axis];
+  }
+  height.values.assign(view.heights.begin(), view.heights.end());
+  return height;
+}
+
+/// Names and units of the axes that the frame keeps.
+template <class Real>
+void name_axes(const Contour<4, Real>& contour, const Projection& projection, std::array<std::string, 3>& names,
+               std::array<std::string, 3>& units) {
+  const Section<4> section(projection.direction);
+  for (int i = 0; i < 3; ++i) {
+    if (!section.keeps_axis(i)) continue;
+    const int a = i < section.dropped_axis() ? i : i + 1;
+    names[i] = contour.axis_names[a];
+    units[i] = contour.axis_units[a];
+  }
+}
+
+using Normals = std::vector<Eigen::Vector4d>;
+
+/// Vertices among tetrahedra of no size, as there are where samples equal the isovalue, get the normals around them.
+template <class Real>
+void fill_from_neighbours(const Contour<4, Real>& contour, Normals& normals) {
+  double sum = 0.0;
+  for (const Eigen::Vector4d& normal : normals) sum += normal.norm();
+  constexpr double kNone = 1e-12;
+  const double least = kNone * sum / std::max(1.0, static_cast<double>(normals.size()));
+  constexpr int kMostRounds = 8;  // a vertex further from all that have a size is seen edge-on
+  for (int round = 0; round < kMostRounds; ++round) {
+    Normals more(normals.size(), Eigen::Vector4d::Zero());
+    bool any = false;
+    for (const auto& simplex : contour.simplices)
+      for (const Index v : simplex) {
+        if (normals[v].norm() > least) continue;
+        any = true;
+        for (const Index other : simplex)
+          if (normals[other].norm() > least) more[v] += normals[other];
+      }
+    if (!any) return;
+    for (std::size_t v = 0; v < normals.size(); ++v)
+      if (normals[v].norm() <= least) normals[v] = more[v];
+  }
+}
+
+/// For each vertex, how much its normal, the sum of those of the tetrahedra around it, points along the line of sight:
+/// below 0 on the near side of a contour that faces low, above 0 on the far side. What is less than rounding may be is
+/// far, as for tetrahedra.
+template <class Real>
+std::vector<double> along_sight(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
+  const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
+  Normals normals(contour.vertices.size(), Eigen::Vector4d::Zero());
+  for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
+    const auto normal = detail::normal_vector_of<4>(detail::corners_of(contour, s));
+    for (const Index v : contour.simplices[s]) normals[v] += Eigen::Vector4d(normal.data());
+  }
+  fill_from_neighbours(contour, normals);
+  std::vector<double> result(normals.size());
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    Eigen::Vector4d sight = frame.up;
+    if (projection.eye_distance > 0.0)
+      sight = frame.axes * (view.flat[v] - view.middle) +
+              frame.up * (projection.eye_distance + view.heights[v] - view.least);
+    const double size = normals[v].norm() * sight.norm();
+    constexpr double kRounding = 64.0 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    double cosine = size > 0.0 ? normals[v].dot(sight) / size : 0.0;
+    if (contour.direction == GradientDirection::ascent) cosine = -cosine;
+    result[v] = std::abs(cosine) > kRounding ? cosine : kRounding;
+  }
+  return result;
+}
+
+}  // namespace
+
+template <class Real>
+ProjectedContour<Real> project(const Contour<4, Real>& contour, const Projection& projection) {
+  const View<Real> view = view_of(contour, projection);
+  ProjectedContour<Real> result;
+  for (const Eigen::Vector3d& point : view.points)
+    result.vertices.push_back({static_cast<Real>(point[0]), static_cast<Real>(point[1]), static_cast<Real>(point[2])});
+  result.tetrahedra = contour.simplices;
+  name_axes(contour, projection, result.axis_names, result.axis_units);
+  result.vertex_attributes = contour.vertex_attributes;
+  replace(result.vertex_attributes, height_attribute(contour, projection, view));
+  result.simplex_attributes = contour.simplex_attributes;
+  Attribute side{"side", "", 1, {}};
+  const bool flip = view.is_right_handed == (contour.direction == GradientDirection::ascent);
+  for (const auto& simplex : contour.simplices) side.values.push_back(is_far(view, simplex, flip) ? 1.0 : -1.0);
+  replace(result.simplex_attributes, std::move(side));
+  return result;
+}
+
+template <class Real>
+Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& projection, const WorkOptions& options) {
+  report(options.progress, 0.0);
+  const View<Real> view = view_of(contour, projection);
+  report(options.progress, 0.3);
+  const std::vector<double> sides = along_sight(contour, projection, view);
+  report(options.progress, 0.6);
+  // The contour in the space of the result, with what parts the sides for a last coordinate: its cut at 0.
+  Contour<4, double> raised;
+  raised.vertices.resize(view.points.size());
+  for (std::size_t v = 0; v < view.points.size(); ++v)
+    raised.vertices[v] = {view.points[v][0], view.points[v][1], view.points[v][2], sides[v]};
+  raised.simplices = contour.simplices;
+  raised.direction = contour.direction;
+  raised.vertex_attributes = contour.vertex_attributes;
+  replace(raised.vertex_attributes, height_attribute(contour, projection, view));
+  raised.simplex_attributes = contour.simplex_attributes;
+  Contour<3, double> cut = slice(raised, 0.0);
+  report(options.progress, 0.9);
+  Contour<3, Real> result;
+  result.direction = contour.direction;
+  name_axes(contour, projection, result.axis_names, result.axis_units);
+  for (const auto& vertex : cut.vertices)
+    result.vertices.push_back(
+        {static_cast<Real>(vertex[0]), static_cast<Real>(vertex[1]), static_cast<Real>(vertex[2])});
+  result.simplices = std::move(cut.simplices);
+  result.vertex_attributes = std::move(cut.vertex_attributes);
+  result.simplex_attributes = std::move(cut.simplex_attributes);
+  // The cut faces the side that the contour faces in the raised space, where the far side is up.
+  if (!view.is_right_handed)
+    for (auto& simplex : result.simplices) std::swap(simplex[1], simplex[2]);
+  report(options.progress, 1.0);
+  return result;
+}
+
+template ProjectedContour<float> project(const Contour<4, float>&, const Projection&);
+template ProjectedContour<double> project(const Contour<4, double>&, const Projection&);
+template Contour<3, float> outline(const Contour<4, float>&, const Projection&, const WorkOptions&);
+template Contour<3, double> outline(const Contour<4, double>&, const Projection&, const WorkOptions&);
+
+}  // namespace tegl

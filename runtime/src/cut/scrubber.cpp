@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The interval tree of a scrubber.
+//
+// Places. Heights above the lowest one are rounded to float, and the bits of a float that is not negative are a whole
+// number in the same order: a place. Rounding keeps order (if not strictly), so a simplex that touches a hyperplane has
+// the hyperplane's place in its range of places; the few others that have it too are found out by their vertices.
+//
+// Nodes. The tree is the binary one of all 2^32 places, of which only nodes with simplices are stored. A range of
+// places [a, b] belongs to the node that parts a from b: the first d bits from the top that they have in common, then
+// 1, then zeros. This number m is in the range, a < m <= b, and tells the node: its last 1 says how deep that lies. A
+// range of one place a belongs to the node with m = a. So all ranges at a node contain m, and those that contain a
+// place p < m are those with a <= p, the first of the node in the order of a; likewise for b from m on. The ranges that
+// contain p belong to the at most 33 nodes that p's bits lead past.
+#include "tegl/scrubber.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/progress.hpp"
+#include "base/radix_sort.hpp"
+#include "base/workers.hpp"
+#include "cut/cutter.hpp"
+#include "mesh/validate.hpp"
+
+namespace tegl {
+namespace {
+
+constexpr unsigned kPlaceBits = 32;
+
+/// The node of the places from a to b.
+std::uint32_t middle_of(std::uint32_t a, std::uint32_t b) noexcept {
+  if (a == b) return a;
+  const unsigned bit = static_cast<unsigned>(std::bit_width(a ^ b)) - 1;
+  return b >> bit << bit;
+}
+
+/// A simplex and its range of places.
+struct Range {
+  std::uint32_t least;
+  std::uint32_t most;
+  Index simplex;
+};
+
+void report(const Progress& progress, double fraction) {
+  detail::tell(progress, fraction, "building a scrubber was cancelled");
+}
+
+}  // namespace
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, Real>& contour, const Vector& normal,
+                                                               const WorkOptions& options)
+    : contour_(&contour), normal_(normal) {
+  const detail::Section<N> section(normal);
+  detail::require_sound(contour);
+  report(options.progress, 0.0);
+  if (contour.simplices.empty()) {
+    nodes_.push_back({0, 0});
+    return;
+  }
+  double highest = -std::numeric_limits<double>::infinity();
+  lowest_ = -highest;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    const double height = section.height(contour.vertices[v]);
+    if (!std::isfinite(height))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("vertex {} at height {}; expected a finite one", v, height));
+    lowest_ = std::min(lowest_, height);
+    highest = std::max(highest, height);
+  }
+  range_ = {lowest_ * section.unit(), highest * section.unit()};
+  struct Nothing {};
+  detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
+  constexpr std::size_t kGrain = std::size_t{1} << 14;
+  std::vector<Range> ranges(contour.simplices.size());
+  workers.for_range(ranges.size(), kGrain, [&](std::size_t from, std::size_t to, Nothing&) {
+    for (std::size_t s = from; s < to; ++s) {
+      std::uint32_t least = ~std::uint32_t{0};
+      std::uint32_t most = 0;
+      for (const Index v : contour.simplices[s]) {
+        const std::uint32_t here = place(section.height(contour.vertices[v]));
+        least = std::min(least, here);
+        most = std::max(most, here);
+      }
+      ranges[s] = {least, most, static_cast<Index>(s)};
+    }
+  });
+  // Stable sorts, least digit first: by one end, then by node.
+  const auto gather = [&](std::vector<Entry>& entries, double fraction, const auto& key, const auto& end) {
+    report(options.progress, fraction);
+    detail::sort_by_bits(ranges, kPlaceBits, key);
+    detail::sort_by_bits(ranges, kPlaceBits, [](const Range& range) { return middle_of(range.least, range.most); });
+    entries.resize(ranges.size());
+    for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = {end(ranges[i]), ranges[i].simplex};
+  };
+  gather(
+      by_least_, 0.1, [](const Range& range) { return range.least; }, [](const Range& range) { return range.least; });
+  gather(
+      by_most_, 0.5, [](const Range& range) { return ~range.most; }, [](const Range& range) { return range.most; });
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const std::uint32_t middle = middle_of(ranges[i].least, ranges[i].most);
+    if (nodes_.empty() || nodes_.back().middle != middle) nodes_.push_back({middle, i});
+  }
+  nodes_.push_back({0, ranges.size()});
+  nodes_.shrink_to_fit();
+  report(options.progress, 1.0);
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::uint32_t Scrubber<N, Real>::place(double height)
+const noexcept { return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(0.0, height - lowest_))); }
+
+/// The node's simplices whose ranges contain the place `at`.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4>
+void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vector<Index>& found) const {
+  const auto node = std::lower_bound(nodes_.begin(), nodes_.end() - 1, middle,
+                                     [](const Node& n, std::uint32_t m) { return n.middle < m; });
+  if (node == nodes_.end() - 1 || node->middle != middle) return;
+  const auto first = static_cast<std::ptrdiff_t>(node->first);
+  const auto end = static_cast<std::ptrdiff_t>((node + 1)->first);
+  const bool below = at < middle;
+  const std::vector<Entry>& entries = below ? by_least_ : by_most_;
+  for (std::ptrdiff_t i = first; i < end; ++i) {
+    const Entry& entry = entries[static_cast<std::size_t>(i)];
+    if (below ? entry.end > at : entry.end < at) return;
+    found.push_back(entry.simplex);
+  }
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::vector<Index> Scrubber<N, Real>::touching(double offset)
+const {
+  const detail::Section<N> section(normal_);
+  const double level = section.template level<Real>(offset);
+  std::vector<Index> found;
+  if (contour_->simplices.empty() || level < lowest_) return found;
+  const std::uint32_t at = place(level);
+  for (unsigned bit = kPlaceBits; bit-- > 0;) {
+    const std::uint32_t middle = at >> bit >> 1 << 1 << bit | std::uint32_t{1} << bit;
+    visit(middle, at, found);
+  }
+  visit(0, at, found);
+  std::erase_if(found, [&](Index s) {
+    bool reaches_down = false;
+    bool reaches_up = false;
+    for (const Index v : contour_->simplices[s]) {
+      const double height = section.height(contour_->vertices[v]);
+      reaches_down = reaches_down || height <= level;
+      reaches_up = reaches_up || height >= level;
+    }
+    return !reaches_down || !reaches_up;
+  });
+  detail::sort_by_bits(found, static_cast<unsigned>(std::bit_width(contour_->simplices.size())),
+                       [](Index s) { return s; });
+  return found;
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> Scrubber<N, Real>::cut(double offset)
+const {
+  const detail::Section<N> section(normal_);
+  return detail::cut_simplices(*contour_, section, section.template level<Real>(offset), touching(offset));
+}
+
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 3, 4> std::size_t Scrubber<N, Real>::memory()
+const noexcept {
+  return nodes_.capacity() * sizeof(Node) + (by_least_.capacity() + by_most_.capacity()) * sizeof(Entry);
+}
+
+template class Scrubber<3, float>;
+template class Scrubber<3, double>;
+template class Scrubber<4, float>;
+template class Scrubber<4, double>;
+
+}  // namespace tegl

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where the pieces of a cut do not make a manifold: the links of its points.
+#include "cut/slice_piece.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "base/disjoint_sets.hpp"
+#include "base/radix_sort.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// The links of points, one after the other, in memory that they share.
+class Links {
+ public:
+  explicit Links(std::span<const Piece> pieces) : pieces_(pieces) {}
+
+  /// Whether the polygons at a point are one fan: their sides across from it (before it and after it, in the cycle)
+  /// make one path or one ring. The ends of those sides are the points that it has edges to.
+  bool is_fan(std::span<const Corner> corners) {
+    ends_.clear();
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const Piece& piece = pieces_[corners[c].at / 4];
+      const int here = static_cast<int>(corners[c].at % 4);
+      ends_.emplace_back(piece.points[here == 0 ? piece.count - 1 : here - 1], c);
+      ends_.emplace_back(piece.points[here + 1 == piece.count ? 0 : here + 1], c);
+    }
+    std::sort(ends_.begin(), ends_.end());
+    sets_.reset(corners.size());
+    std::size_t parts = corners.size();
+    for (std::size_t i = 1; i < ends_.size(); ++i) {
+      if (ends_[i].first != ends_[i - 1].first) continue;
+      if (i >= 2 && ends_[i].first == ends_[i - 2].first) return false;  // an edge of three polygons
+      parts -= sets_.join(ends_[i].second, ends_[i - 1].second);
+    }
+    return parts == 1;
+  }
+
+ private:
+  std::span<const Piece> pieces_;
+  std::vector<std::pair<PointKey, std::size_t>> ends_;
+  BasicDisjointSets<std::size_t> sets_;
+};
+
+}  // namespace
+
+std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most) {
+  std::vector<Corner> corners;
+  std::size_t count = 0;
+  for (const Piece& piece : pieces) count += static_cast<std::size_t>(piece.count);
+  corners.reserve(count);
+  for (std::size_t p = 0; p < pieces.size(); ++p)
+    for (int i = 0; i < pieces[p].count; ++i)
+      corners.push_back({pieces[p].points[i], 4 * p + static_cast<std::size_t>(i)});
+  sort_by_bits(corners, static_cast<unsigned>(std::bit_width(most)),
+               [](const Corner& corner) { return lower_end(corner.key); });
+  // Few edges begin at one vertex.
+  for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
+    bool sorted = true;
+    for (j = i + 1; j < corners.size() && lower_end(corners[j].key) == lower_end(corners[i].key); ++j)
+      sorted = sorted && corners[j - 1].key <= corners[j].key;
+    const auto from = corners.begin() + static_cast<std::ptrdiff_t>(i);
+    if (!sorted)
+      std::sort(from, corners.begin() + static_cast<std::ptrdiff_t>(j),
+                [](const Corner& a, const Corner& b) { return std::pair(a.key, a.at) < std::pair(b.key, b.at); });
+  }
+  return corners;
+}
+
+std::vector<PointKey> pinched_points(std::span<const Piece> pieces, std::span<const Corner> corners) {
+  std::vector<PointKey> result;
+  const bool of_segments = !pieces.empty() && pieces[0].count == 2;
+  Links links(pieces);
+  for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
+    for (j = i + 1; j < corners.size() && corners[j].key == corners[i].key;) ++j;
+    if (of_segments ? j - i > 2 : !links.is_fan(corners.subspan(i, j - i))) result.push_back(corners[i].key);
+  }
+  return result;
+}
+
+}  // namespace tegl::detail

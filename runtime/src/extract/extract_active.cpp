@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Extraction where an index knows the active tiles.
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/stopwatch.hpp"
+#include "kernel/tableless.hpp"
+#include "kernel/tile_selection.hpp"
+#include "search/index_file.hpp"
+
+namespace tegl {
+
+namespace {
+
+template <Value T, int N>
+void require_index_of(const Image<T, N>& image, const ActiveTiles<N>& active) {
+  const std::string_view type = detail::value_type_name<T>();
+  if (active.image().sizes == image.grid().sizes() && active.image().value_type == type) return;
+  throw Error(ErrorCode::InvalidArgument, fmt::format("an index of an image of {} {}; expected one of {} {}",
+                                                      fmt::join(active.image().sizes, " x "), active.image().value_type,
+                                                      fmt::join(image.grid().sizes(), " x "), type));
+}
+
+}  // namespace
+
+template <class Real, Value T, int N>
+requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& image, double isovalue,
+                                                            const ExtractOptions& options, const ActiveTiles<N>& active,
+                                                            ExtractStats* stats) {
+  detail::check_arguments(isovalue, options);
+  require_index_of(image, active);
+  const bool missing = active.image().any_missing;
+  if (options.close && !active.is_complete())
+    throw Error(ErrorCode::InvalidArgument,
+                "the border cannot be closed around chosen tiles; expected an index of all active tiles");
+  const bool finds_all = active.is_complete() && options.close && missing;
+  if (active.grid().count() == 0 || finds_all) return extract<Real>(image, isovalue, options, stats);
+  detail::Stopwatch watch;
+  // Next to missing values rows that are not looked at tell nothing of each other.
+  const detail::TileSelection selection = active.is_complete() && !missing
+                                              ? detail::TileSelection::rows_of(active, isovalue)
+                                              : detail::TileSelection::tiles_of(active, isovalue);
+  double seconds = 0;
+  watch.add_to(seconds);
+  detail::ExtractPlan plan;
+  plan.selection = &selection;
+  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+  auto contour = detail::extract_any<N, Real>(source, image.grid(), options, stats, plan);
+  if (stats != nullptr) stats->find_seconds += seconds;
+  return contour;
+}
+
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                           \
+  template Contour<N, Real> extract<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
+                                                const ActiveTiles<N>&, ExtractStats*);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

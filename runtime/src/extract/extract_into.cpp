@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sizes of contours, and contours in memory of the caller's.
+#include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "kernel/stream.hpp"
+#include "kernel/tableless.hpp"
+
+namespace tegl {
+
+namespace detail {
+namespace {
+
+/// Keeps nothing.
+template <int N, class Real>
+class NoSink final : public ContourSink<N, Real> {
+ public:
+  using typename ContourSink<N, Real>::Vertex;
+  using typename ContourSink<N, Real>::Simplex;
+  void add_vertices(std::span<const Vertex> /*vertices*/) override {}
+  void add_simplices(std::span<const Simplex> /*simplices*/) override {}
+  void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
+};
+
+/// What is missing in too little room.
+constexpr const char* kVertices = "vertices";
+constexpr const char* kNormals = "normals";
+constexpr const char* kSimplices = "simplices";
+
+/// Throws unless `needed` items fit.
+void check_room(std::uint64_t room, std::uint64_t needed, const char* items) {
+  if (needed > room)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("room for {} {}; the contour has {} or more (tegl::count tells)", room, items, needed));
+}
+
+/// Sizes alone. Of borders and missing values it cannot tell.
+template <int N, class Real>
+class CountOutput final : public ContourOutput<N, Real> {
+ public:
+  using typename ContourOutput<N, Real>::Room;
+  Room open(const ContourPart& /*part*/) override { return {nullptr, nullptr}; }
+  void finish(const ContourPart& all, const Caps<N, Real>* /*caps*/, const PinchList& pinches) override {
+    size = {all.end_vertex, all.end_simplex};
+    any_missing = pinches.any_missing();
+  }
+
+  ContourSize size;
+  bool any_missing = false;
+};
+
+/// Writes parts where they belong; next to missing values it leaves vertices undoubled.
+template <int N, class Real, class I>
+class MemoryOutput final : public ContourOutput<N, Real> {
+ public:
+  using typename ContourOutput<N, Real>::Simplex;
+  using typename ContourOutput<N, Real>::Room;
+  MemoryOutput(const ContourRoom<N, Real, I>& room, bool with_normals) : room_(room), with_normals_(with_normals) {}
+
+  Room open(const ContourPart& part) override {
+    check(part.end_vertex, part.end_simplex);
+    auto* const vertices = room_.vertices.data() + part.first_vertex;
+    auto* const normals = with_normals_ ? room_.normals.data() + part.first_vertex : nullptr;
+    if constexpr (sizeof(I) == sizeof(Index)) {
+      return {vertices, room_.simplices.data() + part.first_simplex, normals};
+    } else {
+      narrow_.resize(part.end_simplex - part.first_simplex);
+      return {vertices, narrow_.data(), normals};
+    }
+  }
+
+  void close(const ContourPart& part, const PinchList& /*pinches*/) override {
+    if constexpr (sizeof(I) != sizeof(Index)) {
+      auto* wide = room_.simplices.data() + part.first_simplex;
+      for (const Simplex& simplex : narrow_) {
+        for (int j = 0; j < N; ++j) (*wide)[j] = before_ + static_cast<Index>(simplex[j] - static_cast<Index>(before_));
+        ++wide;
+      }
+      before_ = part.first_vertex;
+    }
+  }
+
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
+    size = {all.end_vertex, all.end_simplex};
+    any_missing = pinches.any_missing();
+    if (caps == nullptr || any_missing) return;
+    check(size.vertices + caps->vertices().size(), size.simplices + caps->simplices().size());
+    std::copy(caps->vertices().begin(), caps->vertices().end(), room_.vertices.data() + size.vertices);
+    if (with_normals_) std::copy(caps->normals().begin(), caps->normals().end(), room_.normals.data() + size.vertices);
+    size.vertices += caps->vertices().size();
+    for (const auto& simplex : caps->simplices()) {
+      auto& to = room_.simplices[size.simplices++];
+      for (int j = 0; j < N; ++j) to[j] = static_cast<I>(caps->number(simplex[j], all.end_vertex));
+    }
+  }
+
+  ContourSize size;
+  bool any_missing = false;
+
+ private:
+  void check(std::uint64_t vertices, std::uint64_t simplices) const {
+    check_room(room_.vertices.size(), vertices, kVertices);
+    if (with_normals_) check_room(room_.normals.size(), vertices, kNormals);
+    check_room(room_.simplices.size(), simplices, kSimplices);
+  }
+
+  ContourRoom<N, Real, I> room_;
+  bool with_normals_;
+  Buffer<Simplex> narrow_;
+  std::uint64_t before_ = 0;  ///< first vertex of the part before
+};
+
+/// The way round for images with missing values: parts are copied, and corners replaced in the end.
+template <int N, class Real, class I>
+class MemorySink final : public ContourSink<N, Real> {
+ public:
+  using typename ContourSink<N, Real>::Vertex;
+  using typename ContourSink<N, Real>::Simplex;
+  explicit MemorySink(const ContourRoom<N, Real, I>& room) : room_(room) {}
+
+  void add_vertices(std::span<const Vertex> vertices) override {
+    check_room(room_.vertices.size(), size_.vertices + vertices.size(), kVertices);
+    std::copy(vertices.begin(), vertices.end(), room_.vertices.data() + size_.vertices);
+    size_.vertices += vertices.size();
+    if constexpr (sizeof(I) == sizeof(Index)) check_vertex_count(size_.vertices, kMaxVertices);
+  }
+  void add_normals(std::span<const Vertex> normals) override {
+    check_room(room_.normals.size(), size_.vertices, kNormals);
+    std::copy(normals.begin(), normals.end(), room_.normals.data() + (size_.vertices - normals.size()));
+  }
+  void add_simplices(std::span<const Simplex> simplices) override {
+    check_room(room_.simplices.size(), size_.simplices + simplices.size(), kSimplices);
+    for (const Simplex& simplex : simplices) {
+      auto& to = room_.simplices[size_.simplices++];
+      for (int j = 0; j < N; ++j) to[j] = static_cast<I>(simplex[j]);
+    }
+  }
+  void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override {
+    room_.simplices[simplex][corner] = static_cast<I>(vertex);
+  }
+
+ private:
+  ContourRoom<N, Real, I> room_;
+  ContourSize size_;
+};
+
+template <Value T, int N>
+ContourSize count_by_parts(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
+                           ExtractStats* stats) {
+  const ExtractPlan plan{.max_vertices = ~std::uint64_t{0}};
+  const auto tables = generated_tables<N>(options);
+  ExtractStats done;
+  if (!options.close) {
+    ImageSource<T, N> source(image, isovalue, options.epsilon);
+    CountOutput<N, float> output;
+    done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+    if (stats != nullptr) *stats = done;
+    if (!output.any_missing) return output.size;
+  }
+  ImageSource<T, N> source(image, isovalue, options.epsilon);
+  NoSink<N, float> sink;
+  StreamOutput<N, float> output(sink, options.normals);
+  done = extract_to<N, float>(source, image.grid(), tables, options, plan, output);
+  if (stats != nullptr) *stats = done;
+  return output.size();
+}
+
+}  // namespace
+}  // namespace detail
+
+template <Value T, int N>
+ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& asked, ExtractStats* stats) {
+  detail::check_arguments(isovalue, asked);
+  ExtractOptions options = asked;
+  options.normals = false;  // as many as vertices
+  if constexpr (N > 4) {
+    detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+    return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);
+  } else {
+    return detail::count_by_parts(image, isovalue, options, stats);
+  }
+}
+
+template <Value T, int N, class Real, VertexNumber I>
+requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
+                                                            const ContourRoom<N, Real, I>& room,
+                                                            const ExtractOptions& options, ExtractStats* stats) {
+  detail::check_arguments(isovalue, options);
+  const auto tables = detail::generated_tables<N>(options);
+  detail::ExtractPlan plan;
+  if constexpr (sizeof(I) != sizeof(Index)) plan.max_vertices = ~std::uint64_t{0};
+  detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
+  detail::MemoryOutput<N, Real, I> output(room, options.normals);
+  ExtractStats done = detail::extract_to<N, Real>(source, image.grid(), tables, options, plan, output);
+  ContourSize size = output.size;
+  if (output.any_missing) {
+    detail::ImageSource<T, N> again(image, isovalue, options.epsilon);
+    detail::MemorySink<N, Real, I> sink(room);
+    detail::StreamOutput<N, Real> parts(sink, options.normals);
+    done = detail::extract_to<N, Real>(again, image.grid(), tables, options, plan, parts);
+    size = parts.size();
+  } else if constexpr (sizeof(I) == sizeof(Index)) {
+    detail::check_vertex_count(size.vertices, detail::kMaxVertices);
+  }
+  if (stats != nullptr) *stats = done;
+  return size;
+}
+
+#define TEGL_INSTANTIATE_ONE(T, N, Real, I)                                                                    \
+  template ContourSize extract_into<T, N, Real, I>(const Image<T, N>&, double, const ContourRoom<N, Real, I>&, \
+                                                   const ExtractOptions&, ExtractStats*);
+#define TEGL_INSTANTIATE_DIM(T, N)                                                                    \
+  template ContourSize count<T, N>(const Image<T, N>&, double, const ExtractOptions&, ExtractStats*); \
+  TEGL_INSTANTIATE_ONE(T, N, float, std::uint32_t)                                                    \
+  TEGL_INSTANTIATE_ONE(T, N, float, std::uint64_t)                                                    \
+  TEGL_INSTANTIATE_ONE(T, N, double, std::uint32_t)                                                   \
+  TEGL_INSTANTIATE_ONE(T, N, double, std::uint64_t)
+#define TEGL_INSTANTIATE(T)                                                                           \
+  template ContourSize count<T, 5>(const Image<T, 5>&, double, const ExtractOptions&, ExtractStats*); \
+  TEGL_INSTANTIATE_DIM(T, 2)                                                                          \
+  TEGL_INSTANTIATE_DIM(T, 3)                                                                          \
+  TEGL_INSTANTIATE_DIM(T, 4)
+TEGL_INSTANTIATE(std::uint8_t)
+TEGL_INSTANTIATE(std::int8_t)
+TEGL_INSTANTIATE(std::uint16_t)
+TEGL_INSTANTIATE(std::int16_t)
+TEGL_INSTANTIATE(std::int32_t)
+TEGL_INSTANTIATE(float)
+TEGL_INSTANTIATE(double)
+#undef TEGL_INSTANTIATE
+#undef TEGL_INSTANTIATE_DIM
+#undef TEGL_INSTANTIATE_ONE
+
+}  // namespace tegl

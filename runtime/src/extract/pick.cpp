@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From a point to the nearest active tile, from there through all faces that the contour passes, and from the contour
+// in those tiles to one component. Tiles beside the component are never entered by the contour's neighbours alone: what
+// is reached is made of whole components.
+#include "tegl/pick.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/progress.hpp"
+#include "image/locate.hpp"
+#include "kernel/tableless.hpp"
+#include "search/propagation.hpp"
+#include "tegl/components.hpp"
+
+namespace tegl {
+
+namespace {
+
+// How far the progress is after each step.
+constexpr double kNearestShare = 0.1;  ///< the search of the nearest tile
+constexpr double kFlooded = 0.35;
+constexpr double kExtracted = 0.5;
+constexpr double kLabelled = 0.6;
+constexpr double kChosen = 0.95;
+
+/// A point in steps of the grid.
+template <int N>
+std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
+  std::array<double, N> at;
+  for (int a = 0; a < N; ++a) at[a] = static_cast<double>(place.base[a]) + place.share[a];
+  return at;
+}
+
+/// Looks around a point, shell by shell.
+template <Value T, int N>
+class NearestTile {
+ public:
+  NearestTile(const detail::TileFlood<T, N>& flood, const std::array<double, N>& at) : flood_(flood), at_(at) {
+    for (int a = 0; a < N; ++a)
+      centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid().size(a)) - 1);
+  }
+
+  /// Tells the progress; finds nothing if no tile is active.
+  bool find(PickReport<N>& report, const Progress& progress) {
+    std::ptrdiff_t most = 0;
+    for (int a = 0; a < N; ++a)
+      most = std::max({most, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
+    for (radius_ = 0; radius_ <= most; ++radius_) {
+      // A tile of this shell is that far away at least.
+      const double least = static_cast<double>(std::max<std::ptrdiff_t>(0, radius_ - 1));
+      if (report.found && least * least > square_) break;
+      detail::report_progress(progress, kNearestShare * static_cast<double>(radius_) / static_cast<double>(most + 1));
+      std::array<std::ptrdiff_t, N> index = centre_;
+      look(N - 1, false, index, report);
+    }
+    report.distance = std::sqrt(square_);
+    return report.found;
+  }
+
+ private:
+  [[nodiscard]] const TileGrid<N>& grid() const noexcept { return flood_.grid(); }
+
+  /// All tiles of the shell with these indices along the axes above `axis`; `on_shell`: those are on it already.
+  void look(int axis, bool on_shell, std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
+    if (axis < 0) return weigh(index, report);
+    const auto step_to = [&](std::ptrdiff_t d) {
+      index[axis] = centre_[axis] + d;
+      look(axis - 1, on_shell || d == -radius_ || d == radius_, index, report);
+    };
+    const std::ptrdiff_t first = std::max(-radius_, -centre_[axis]);
+    const std::ptrdiff_t last = std::min(radius_, static_cast<std::ptrdiff_t>(grid().size(axis)) - 1 - centre_[axis]);
+    if (on_shell || radius_ <= reach_below(axis)) {
+      for (std::ptrdiff_t d = first; d <= last; ++d) step_to(d);
+      return;
+    }
+    // No other axis is left to come to the shell along.
+    if (first == -radius_) step_to(first);
+    if (last == radius_ && radius_ > 0) step_to(last);
+  }
+
+  /// How far tiles are along the axes below `axis`; -1: there are none.
+  [[nodiscard]] std::ptrdiff_t reach_below(int axis) const noexcept {
+    std::ptrdiff_t reach = -1;
+    for (int a = 0; a < axis; ++a)
+      reach = std::max({reach, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
+    return reach;
+  }
+
+  void weigh(const std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
+    double square = 0;
+    std::array<std::size_t, N> at;
+    for (int a = 0; a < N; ++a) {
+      const auto low = static_cast<double>(index[a]);
+      const double off = std::max({0.0, low - at_[a], at_[a] - low - 1.0});
+      square += off * off;
+      at[a] = static_cast<std::size_t>(index[a]);
+    }
+    const TileNumber tile = grid().number(at);
+    if (report.found && (square > square_ || (square == square_ && tile > report.tile))) return;
+    if (!flood_.is_active(flood_.signature(tile))) return;
+    report.found = true;
+    report.tile = tile;
+    report.at = at;
+    square_ = square;
+  }
+
+  const detail::TileFlood<T, N>& flood_;
+  std::array<double, N> at_;
+  std::array<std::ptrdiff_t, N> centre_;
+  std::ptrdiff_t radius_ = 0;
+  double square_ = 0;
+};
+
+/// The label of the component with the vertex nearest to a point, of those that are allowed; none if none is. Vertices
+/// that rounding has put outside of the grid count as on its border.
+template <int N, class Real>
+Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                        const detail::GridLocator<N>& locator, const std::type_identity_t<std::array<double, N>>& at,
+                        const std::vector<bool>& allowed, const Progress& progress) {
+  const auto first = std::find(allowed.begin(), allowed.end(), true);
+  Index nearest = first == allowed.end() ? kNoComponent : static_cast<Index>(first - allowed.begin());
+  double least = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](std::size_t v) {
+    if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) return;
+    std::array<double, N> world;
+    for (int a = 0; a < N; ++a) world[a] = static_cast<double>(contour.vertices[v][a]);
+    detail::CellPlace<N> place;
+    if (!locator.find_nearest(world, place)) return;
+    const auto here = in_steps(place);
+    double square = 0;
+    for (int a = 0; a < N; ++a) square += (here[a] - at[a]) * (here[a] - at[a]);
+    if (square < least) {
+      least = square;
+      nearest = labels.vertices[v];
+    }
+  };
+  detail::in_parts(contour.vertices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) look_at(v);
+  });
+  return nearest;
+}
+
+/// The options for a contour of the same simplices whose vertices are no corners of tiles.
+ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progress) {
+  ExtractOptions inside = options;
+  inside.epsilon = 0.25;
+  inside.normals = false;
+  inside.progress = progress;
+  return inside;
+}
+
+/// The components with a simplex in one of these tiles. `inside`: the same contour, simplex by simplex, on a grid of
+/// steps of 1, its points on edges well inside of them: no simplex lies in a face of its tile, so its middle is inside
+/// of the tile too, whatever samples equal the isovalue and whatever the image's own coordinates are.
+template <int N>
+std::vector<bool> components_in(const Contour<N, double>& inside, const ComponentLabels& labels,
+                                const TileGrid<N>& grid, const std::vector<TileNumber>& tiles,
+                                const Progress& progress) {
+  // Only an estimator that answers now so, now so gives another contour than before.
+  if (inside.simplices.size() != labels.simplices.size())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the same contour has {} simplices, and then {}; expected an estimator whose answers do "
+                            "not change",
+                            labels.simplices.size(), inside.simplices.size()));
+  std::vector<bool> result(labels.count);
+  const auto look_at = [&](std::size_t s) {
+    if (result[labels.simplices[s]]) return;
+    std::array<double, N> middle{};
+    for (const Index v : inside.simplices[s])
+      for (int a = 0; a < N; ++a) middle[a] += inside.vertices[v][a] / N;
+    std::array<std::size_t, N> at;
+    for (int a = 0; a < N; ++a) at[a] = std::min(static_cast<std::size_t>(middle[a]), grid.size(a) - 1);
+    if (std::binary_search(tiles.begin(), tiles.end(), grid.number(at))) result[labels.simplices[s]] = true;
+  };
+  detail::in_parts(inside.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) look_at(s);
+  });
+  return result;
+}
+
+/// Of a contour the component nearest to a point, of those that `choose(labels, progress)` allows. Tells the progress
+/// from kExtracted on.
+template <int N, class Real, class Choose>
+Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::GridLocator<N>& locator,
+                              const std::type_identity_t<std::array<double, N>>& at, const ExtractOptions& options,
+                              std::uint64_t& components, const Choose& choose) {
+  using detail::part_of;
+  const Progress& progress = options.progress;
+  const ComponentLabels labels = label_components(contour, {options.threads, part_of(progress, kExtracted, kLabelled)});
+  const std::vector<bool> allowed = choose(labels, part_of(progress, kLabelled, 0.5 * (kLabelled + kChosen)));
+  components = static_cast<std::uint64_t>(std::count(allowed.begin(), allowed.end(), true));
+  std::vector<bool> keep(labels.count);
+  const Index nearest =
+      nearest_component(contour, labels, locator, at, allowed, part_of(progress, 0.5 * (kLabelled + kChosen), kChosen));
+  if (nearest != kNoComponent) keep[nearest] = true;
+  return select_components(contour, labels, keep, part_of(progress, kChosen, 1.0));
+}
+
+template <int N>
+std::array<double, N> place_in_grid(const detail::GridLocator<N>& locator, const Grid<N>& grid,
+                                    const std::type_identity_t<std::array<double, N>>& point) {
+  detail::CellPlace<N> place;
+  if (locator.find(point, place)) return in_steps(place);
+  std::array<double, N> first, last;
+  for (int a = 0; a < N; ++a) {
+    first[a] = grid.axes[a][0];
+    last[a] = grid.axes[a][grid.axes[a].size() - 1];
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("the point ({}) is not in the image; expected one from ({}) to ({}){}",
+                          fmt::join(point, ", "), fmt::join(first, ", "), fmt::join(last, ", "),
+                          grid.has_world_map() ? ", mapped to the world as the image is" : ""));
+}
+
+}  // namespace
+
+template <class Real, Value T, int N>
+Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
+                                   const std::type_identity_t<std::array<double, N>>& point,
+                                   const ExtractOptions& options, PickReport<N>* report) {
+  detail::check_arguments(isovalue, options);
+  const detail::GridLocator<N> locator(image.grid());
+  const std::array<double, N> at = place_in_grid(locator, image.grid(), point);
+  PickReport<N> own;
+  PickReport<N>& found = report != nullptr ? *report : own;
+  found = {};
+  ExtractOptions rest = options;
+  rest.progress = detail::part_of(options.progress, kFlooded, kExtracted);
+  const auto all_of = [](const ComponentLabels& labels, const Progress&) {
+    return std::vector<bool>(labels.count, true);
+  };
+  const detail::TileFlood<T, N> flood(image, isovalue);
+  if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress)) {
+    if (!options.close) {
+      auto nothing = extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // names, units, no tiles
+      detail::tell(options.progress, 1.0);
+      return nothing;
+    }
+    // All that there is lies in the border: the component of the nearest vertex.
+    return nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
+  }
+  bool at_missing = false;
+  std::vector<TileNumber> tiles =
+      flood.run({found.tile}, detail::FloodRule::crossed_faces, Neighbourhood::faces, options.threads,
+                detail::part_of(options.progress, kNearestShare, kFlooded), &at_missing);
+  std::sort(tiles.begin(), tiles.end());
+  found.tiles = tiles.size();
+  const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
+  // Where missing values part the tiles around an edge, a vertex there is doubled for the components on either side,
+  // and comes first in the one and last in the others (pinches.hpp): so all tiles that have it must be there.
+  std::vector<TileNumber> around;
+  if (at_missing && in_tiles) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
+  std::vector<TileNumber> looked_at = tiles;
+  looked_at.insert(looked_at.end(), around.begin(), around.end());
+  std::sort(looked_at.begin(), looked_at.end());
+  const auto contour_of = [&]<class R>(const Image<T, N>& of, const ExtractOptions& with, R) {
+    if constexpr (N <= 4)
+      if (in_tiles) return extract<R>(of, isovalue, with, *choose_tiles(of, looked_at));
+    return extract<R>(of, isovalue, with);
+  };
+  const auto allowed = [&](const ComponentLabels& labels, const Progress& progress) {
+    if (in_tiles && around.empty()) return all_of(labels, progress);
+    const Progress extracting = detail::part_of(progress, 0.0, 0.9);
+    const Image<T, N> on_steps_of_1(image.data(), Grid<N>::unit(image.grid().sizes()), image.strides());
+    return components_in(contour_of(on_steps_of_1, inside_edges(options, extracting), double{}), labels, flood.grid(),
+                         tiles, detail::part_of(progress, 0.9, 1.0));
+  };
+  return nearest_part(contour_of(image, rest, Real{}), locator, at, options, found.components, allowed);
+}
+
+#define TEGL_INSTANTIATE_REAL(T, N, Real)                                                                           \
+  template Contour<N, Real> extract_component<Real, T, N>(const Image<T, N>&, double, const std::array<double, N>&, \
+                                                          const ExtractOptions&, PickReport<N>*);
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N)   \
+  TEGL_INSTANTIATE_REAL(T, N, float) \
+  TEGL_INSTANTIATE_REAL(T, N, double)
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The cut straight from an image: which layers to read, and why they suffice. Included by the sources that instantiate
+// it.
+//
+// Every simplex of a contour lies between two neighbouring layers, and what `slice` does with a vertex or simplex
+// depends on those alone that touch the hyperplane, through groups of vertices in it. So the slabs that the hyperplane
+// touches give the same cut as the whole contour. Caps across the last axis are left out: at the slabs' own ends they
+// would be wrong, and at the image's ends, where they lie in the hyperplane or beside it, they are never cut.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "ambiguity/moved_estimator.hpp"
+#include "base/slice_at.hpp"
+#include "kernel/tableless.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl::detail {
+
+/// Throws InvalidArgument unless one world coordinate depends on its axis alone, and it alone on that axis.
+template <int N>
+void check_axis_is_apart(const Grid<N>& grid, int axis) {
+  bool apart = grid.linear(axis, axis) != 0.0;
+  for (int a = 0; a < N; ++a)
+    apart = apart && (a == axis || (grid.linear(axis, a) == 0.0 && grid.linear(a, axis) == 0.0));
+  if (!apart)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("direct cut of a grid whose world map mixes axis {} with others; expected a row {} and a "
+                            "column {} that are zero but for their diagonal element",
+                            axis, axis, axis));
+}
+
+/// World coordinate of sample i along an axis that is apart, as the extraction computes it.
+template <int N, class Real>
+Real world_coordinate(const Grid<N>& grid, int axis, std::size_t i) {
+  const double x = grid.axes[axis][i];
+  return static_cast<Real>(grid.has_world_map() ? grid.linear(axis, axis) * x + grid.offset(axis) : x);
+}
+
+/// The layers {first, count} of the slabs that meet `at`; of an axis of one sample, that.
+template <int N, class Real>
+std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis, double at) {
+  if (axis < 0 || axis >= N)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+  check_axis_is_apart(grid, axis);
+  const Real rounded = rounded_at<Real>(at);
+  const std::size_t size = grid.axes[axis].size();
+  std::size_t first = size;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Real here = world_coordinate<N, Real>(grid, axis, i);
+    const Real next = world_coordinate<N, Real>(grid, axis, std::min(i + 1, size - 1));
+    if (rounded < std::min(here, next) || rounded > std::max(here, next)) continue;
+    first = std::min(first, i);
+    last = std::min(i + 1, size - 1);
+  }
+  if (first == size) {
+    const auto& cut = grid.axes[axis];
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("cut at {}; expected a coordinate between {} and {}, the ends of axis {}{}", at,
+                            world_coordinate<N, Real>(grid, axis, 0), world_coordinate<N, Real>(grid, axis, size - 1),
+                            axis, cut.name.empty() ? "" : " (" + cut.name + ")"));
+  }
+  return {first, last - first + 1};
+}
+
+/// Across another axis than the last, gradients in the slab, and estimators that look around, need the layers beside
+/// it: these are contoured too.
+inline std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size,
+                                                           const ExtractOptions& options) {
+  std::size_t beside = options.normals ? 1 : 0;
+  if (options.ambiguity == Ambiguity::custom) beside = std::max(beside, std::min(options.estimator.reach, size));
+  const std::size_t first = layers.first - std::min(layers.first, beside);
+  return {first, std::min(size, layers.first + layers.second + beside) - first};
+}
+
+/// The image with an axis moved to the end, the others in their order.
+template <Value T, int N>
+Image<T, N> with_axis_last(const Image<T, N>& image, int axis) {
+  const Grid<N>& from = image.grid();
+  Grid<N> grid;
+  typename Image<T, N>::Strides strides;
+  const auto old = [&](int a) { return a == N - 1 ? axis : a + (a >= axis); };
+  for (int a = 0; a < N; ++a) {
+    grid.axes[a] = from.axes[old(a)];
+    strides[a] = image.strides()[old(a)];
+    grid.offset(a) = from.offset(old(a));
+    for (int b = 0; b < N; ++b) grid.linear(a, b) = from.linear(old(a), old(b));
+  }
+  return Image<T, N>(image.data(), std::move(grid), strides);
+}
+
+/// Whether one of the layers {first, count} along an axis lies at `at`.
+template <int N, class Real>
+bool is_at_layer(const Grid<N>& grid, int axis, double at, std::pair<std::size_t, std::size_t> layers) {
+  for (std::size_t i = layers.first; i < layers.first + layers.second; ++i)
+    if (world_coordinate<N, Real>(grid, axis, i) == rounded_at<Real>(at)) return true;
+  return false;
+}
+
+}  // namespace tegl::detail
+
+namespace tegl {
+
+template <class Real, Value T, int N>
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
+                                                                           int axis, double at,
+                                                                           const ExtractOptions& options,
+                                                                           ExtractStats* stats) {
+  detail::check_arguments(isovalue, options);
+  auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
+  const bool is_last = axis == N - 1;
+  // Points between layers are kept out of these on the last axis, and on no other axis.
+  const bool at_layer = detail::is_at_layer<N, Real>(image.grid(), axis, at, layers);
+  if (!is_last && at_layer) {
+    ExtractOptions moved = options;
+    if (options.ambiguity == Ambiguity::custom) moved.estimator = detail::moved_estimator<N>(options.estimator, axis);
+    return slice_image_across<Real>(detail::with_axis_last(image, axis), isovalue, N - 1, at, moved, stats);
+  }
+  if (!is_last) layers = detail::with_neighbours(layers, image.size(axis), options);
+  const Image<T, N> slab = image.part(axis, layers.first, layers.second);
+  // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.
+  detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
+  detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
+  plan.keeps_off_layers = at_layer;
+  if (!is_last) plan.part = {axis, layers.first};
+  const Contour<N, Real> contour = detail::extract_any<N, Real>(source, slab.grid(), options, stats, plan);
+  return slice(contour, Hyperplane<N>::across(axis, at));
+}
+
+template <class Real, Value T, int N>
+requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
+                                                                    double at, const ExtractOptions& options,
+                                                                    ExtractStats* stats) {
+  return slice_image_across<Real>(image, isovalue, N - 1, at, options, stats);
+}
+
+}  // namespace tegl
+
+#define TEGL_INSTANTIATE_ONE(T, N, Real)                                                                            \
+  template tegl::Contour<N - 1, Real> tegl::slice_image<Real, T, N>(const Image<T, N>&, double, double,             \
+                                                                    const ExtractOptions&, ExtractStats*);          \
+  template tegl::Contour<N - 1, Real> tegl::slice_image_across<Real, T, N>(const Image<T, N>&, double, int, double, \
+                                                                           const ExtractOptions&, ExtractStats*);
+#define TEGL_INSTANTIATE_SLICE_IMAGE(T) \
+  TEGL_INSTANTIATE_ONE(T, 3, float)     \
+  TEGL_INSTANTIATE_ONE(T, 3, double)    \
+  TEGL_INSTANTIATE_ONE(T, 4, float)     \
+  TEGL_INSTANTIATE_ONE(T, 4, double)

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Direct cuts of images of reals.
+#include "extract/slice_image.hpp"
+
+TEGL_INSTANTIATE_SLICE_IMAGE(float)
+TEGL_INSTANTIATE_SLICE_IMAGE(double)

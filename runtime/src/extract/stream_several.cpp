@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Several streamed extractions that go through the same layers side by side, a batch of slabs at a time: the caller's
+// thread reads what the next batch needs, once; then each contour's part of it is a task of its own.
+#include "tegl/stream_several.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "base/workers.hpp"
+#include "kernel/stream.hpp"
+#include "kernel/tableless.hpp"
+
+namespace tegl {
+
+namespace {
+
+/// A sink that is called while nothing else is.
+template <int N, class Real>
+class SinkInTurn final : public ContourSink<N, Real> {
+ public:
+  using typename ContourSink<N, Real>::Vertex;
+  using typename ContourSink<N, Real>::Simplex;
+  SinkInTurn(ContourSink<N, Real>& sink, std::mutex& calls) : sink_(sink), calls_(calls) {}
+  void add_vertices(std::span<const Vertex> vertices) override {
+    const std::scoped_lock lock(calls_);
+    sink_.add_vertices(vertices);
+  }
+  void add_normals(std::span<const Vertex> normals) override {
+    const std::scoped_lock lock(calls_);
+    sink_.add_normals(normals);
+  }
+  void add_simplices(std::span<const Simplex> simplices) override {
+    const std::scoped_lock lock(calls_);
+    sink_.add_simplices(simplices);
+  }
+  void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) override {
+    const std::scoped_lock lock(calls_);
+    sink_.replace_corner(simplex, corner, vertex);
+  }
+
+ private:
+  ContourSink<N, Real>& sink_;
+  std::mutex& calls_;
+};
+
+/// One of the extractions, with what it refers to.
+template <Value T, int N, class Real>
+struct OneOfSeveral {
+  OneOfSeveral(detail::LayerRing<T, N>& ring, const StreamedContour<N, Real>& contour, ExtractOptions its_options,
+               std::mutex& calls)
+      : options(std::move(its_options)),
+        source(ring, contour.isovalue, options.epsilon),
+        sink(*contour.sink, calls),
+        output(sink, options.normals),
+        extraction(detail::make_extraction<N, Real>(source, ring.grid(), detail::generated_tables<N>(options), options,
+                                                    detail::streaming_plan(ring.grid()), output)) {}
+
+  ExtractOptions options;
+  detail::LayerSource<T, N> source;
+  SinkInTurn<N, Real> sink;
+  detail::StreamOutput<N, Real> output;
+  std::unique_ptr<detail::SteppedExtraction<N, Real>> extraction;  ///< null: the image has no tiles
+  std::exception_ptr error;
+};
+
+/// All of them, at the same batch.
+template <Value T, int N, class Real>
+class SideBySide {
+ public:
+  SideBySide(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours, const ExtractOptions& options)
+      : progress_(options.progress),
+        ring_(layers),
+        threads_(options.threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : options.threads),
+        at_once_(std::min(threads_, static_cast<unsigned>(std::min<std::size_t>(contours.size(), ~0U)))),
+        workers_(at_once_, [] { return Nothing{}; }) {
+    for (const auto& contour : contours) {
+      ExtractOptions own = options;
+      own.threads = threads_ / at_once_;
+      if (progress_) own.progress = [this](double share) { return tell(share); };
+      all_.push_back(std::make_unique<One>(ring_, contour, std::move(own), calls_));
+    }
+  }
+
+  void run() {
+    while (prepare()) {
+      workers_.for_range(all_.size(), 1, [&](std::size_t from, std::size_t to, Nothing&) {
+        for (std::size_t i = from; i < to && !cancelled_; ++i) extract_batch(*all_[i]);
+      });
+      for (const auto& one : all_)
+        if (one->error) std::rethrow_exception(one->error);
+    }
+  }
+
+  [[nodiscard]] const detail::StreamOutput<N, Real>& output(std::size_t i) const { return all_[i]->output; }
+  [[nodiscard]] ExtractStats stats(std::size_t i) const {
+    return all_[i]->extraction ? all_[i]->extraction->stats() : ExtractStats{};
+  }
+
+ private:
+  using One = OneOfSeveral<T, N, Real>;
+  struct Nothing {};  ///< that threads keep
+
+  /// What the next batch needs; false: there is none.
+  bool prepare() {
+    bool any = false;
+    for (const auto& one : all_) any = (one->extraction && one->extraction->prepare_batch()) || any;
+    return any;
+  }
+
+  void extract_batch(One& one) noexcept {
+    try {
+      one.extraction->extract_batch();
+    } catch (...) {
+      one.error = std::current_exception();
+    }
+  }
+
+  /// Of the caller's thread: how far the one is that is farthest.
+  bool tell(double share) {
+    told_ = std::max(told_, share);
+    const bool goes_on = progress_(told_);
+    if (!goes_on) cancelled_ = true;
+    return goes_on;
+  }
+
+  const Progress& progress_;
+  detail::LayerRing<T, N> ring_;
+  std::mutex calls_;
+  unsigned threads_;
+  unsigned at_once_;
+  detail::Workers<Nothing> workers_;
+  std::vector<std::unique_ptr<One>> all_;
+  double told_ = 0;
+  std::atomic<bool> cancelled_ = false;  ///< what is not begun need not be
+};
+
+}  // namespace
+
+template <class Real, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,
+                              const ExtractOptions& options) {
+  for (const auto& contour : contours) {
+    if (contour.sink == nullptr) throw Error(ErrorCode::InvalidArgument, "a contour without a sink; expected one each");
+    detail::check_arguments(contour.isovalue, options);
+  }
+  if (contours.empty()) return;
+  SideBySide<T, N, Real> all(layers, contours, options);
+  all.run();
+  for (std::size_t i = 0; i < contours.size(); ++i) {
+    contours[i].size = all.output(i).size();
+    contours[i].stats = all.stats(i);
+  }
+}
+
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                      \
+  template void extract_streamed_several<Real, T, N>(LayerReader<T, N>&, std::span<StreamedContour<N, Real>>, \
+                                                     const ExtractOptions&);
+#include "base/instantiate.hpp"
+
+}  // namespace tegl

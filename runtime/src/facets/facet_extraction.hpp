@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The facets of an image of any value type.
+#pragma once
+
+#include "image/extract_source.hpp"
+#include "tegl/facet_hierarchy.hpp"
+
+namespace tegl::detail {
+
+template <int N, class Real>
+FacetHierarchy<N, Real> extract_facets(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options);
+
+}  // namespace tegl::detail

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where contours cross edges; compiled once per instruction set (Highway's foreach_target). Additions and
+// multiplications stay apart, so that all sets give the same bytes.
+#include <algorithm>
+#include <cmath>
+
+#include "base/corners.hpp"
+#include "image/extract_source.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "image/edge_alphas.cpp"
+#include "base/dispatch.hpp"
+// Highway's own headers come after this one.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One edge, whatever its values.
+HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) {
+  const double difference = b - a;
+  double alpha = 0;
+  if (std::isfinite(difference))
+    alpha = (isovalue - a) / difference;
+  else if (std::isinf(a))
+    alpha = std::isinf(b) ? 0.5 : 1.0;
+  else if (!std::isinf(b))
+    alpha = (0.5 * isovalue - 0.5 * a) / (0.5 * b - 0.5 * a);
+  return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, of which instruction sets make this or that
+}
+
+/// Some edges, from their samples.
+HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
+                          double* out) {
+  const hn::ScalableTag<double> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const auto threshold = hn::Set(d, isovalue);
+  const auto least = hn::Set(d, epsilon);
+  const auto most = hn::Set(d, 1.0 - epsilon);
+  const auto finite = hn::Set(d, std::numeric_limits<double>::max());
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    const auto start = hn::LoadU(d, from + i);
+    const auto difference = hn::Sub(hn::LoadU(d, to + i), start);
+    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite))) {
+      for (std::size_t j = i; j < i + kLanes; ++j) out[j] = alpha_of(from[j], to[j], isovalue, epsilon);
+      continue;
+    }
+    const auto alpha = hn::Div(hn::Sub(threshold, start), difference);
+    hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least), most), hn::Zero(d)), d, out + i);
+  }
+  for (; i < count; ++i) out[i] = alpha_of(from[i], to[i], isovalue, epsilon);
+}
+
+template <class T>
+HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) {
+  // Gathered by blocks: what was stored by numbers is not to be loaded by registers at once.
+  constexpr std::size_t kBlock = 128;
+  double from[kBlock];
+  double to[kBlock];
+  for (std::size_t first = 0; first < edges.count; first += kBlock) {
+    const std::size_t count = std::min(kBlock, edges.count - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::ptrdiff_t at = edges.rows[first + i] + static_cast<std::ptrdiff_t>(edges.at[first + i]) * edges.stride;
+      from[i] = static_cast<double>(edges.starts[at]);
+      to[i] = static_cast<double>(edges.ends[at]);
+    }
+    alphas_of(from, to, count, isovalue, epsilon, out + first);
+  }
+}
+
+/// All edges of a tile of four dimensions, whether they are critical or not.
+void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
+  constexpr unsigned kEdges = tables::edge_count(4);
+  double from[kEdges];
+  double to[kEdges];
+  for (unsigned a = 0; a < 4; ++a)
+    for (unsigned i = 0; i < kEdges / 4; ++i) {
+      const unsigned base = edge_base(4, a * (kEdges / 4) + i);
+      from[a * (kEdges / 4) + i] = corners[base];
+      to[a * (kEdges / 4) + i] = corners[base | 1u << a];
+    }
+  alphas_of(from, to, kEdges, isovalue, epsilon, out);
+}
+
+#define TEGL_EDGES(T, name)                                                              \
+  void name(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) { \
+    alphas(edges, isovalue, epsilon, out);                                               \
+  }
+TEGL_EDGES(std::uint8_t, alphas_u8)
+TEGL_EDGES(std::int8_t, alphas_i8)
+TEGL_EDGES(std::uint16_t, alphas_u16)
+TEGL_EDGES(std::int16_t, alphas_i16)
+TEGL_EDGES(std::int32_t, alphas_i32)
+TEGL_EDGES(float, alphas_f32)
+TEGL_EDGES(double, alphas_f64)
+#undef TEGL_EDGES
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+#define TEGL_DISPATCH(T, name)                                                                              \
+  HWY_EXPORT(name);                                                                                         \
+  template <>                                                                                               \
+  void edge_alphas<T>(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept { \
+    HWY_DYNAMIC_DISPATCH(name)(edges, isovalue, epsilon, out);                                              \
+  }
+HWY_EXPORT(alphas_4d);
+void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_4d)(corners, isovalue, epsilon, out);
+}
+
+TEGL_DISPATCH(std::uint8_t, alphas_u8)
+TEGL_DISPATCH(std::int8_t, alphas_i8)
+TEGL_DISPATCH(std::uint16_t, alphas_u16)
+TEGL_DISPATCH(std::int16_t, alphas_i16)
+TEGL_DISPATCH(std::int32_t, alphas_i32)
+TEGL_DISPATCH(float, alphas_f32)
+TEGL_DISPATCH(double, alphas_f64)
+#undef TEGL_DISPATCH
+
+}  // namespace tegl::detail
+
+#endif  // HWY_ONCE

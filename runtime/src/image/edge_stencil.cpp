@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Values around edges by registers; see edge_values.hpp. This file is compiled once per instruction set (Highway's
+// foreach_target).
+#include "image/edge_stencil.hpp"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+// Samples, what is calculated with, and a name. (The file is read once per instruction set.)
+#ifndef TEGL_FOR_VALUES
+#define TEGL_FOR_VALUES(APPLY)            \
+  APPLY(std::uint8_t, float, pick_u8f)    \
+  APPLY(std::int8_t, float, pick_i8f)     \
+  APPLY(std::uint16_t, float, pick_u16f)  \
+  APPLY(std::int16_t, float, pick_i16f)   \
+  APPLY(float, float, pick_f32f)          \
+  APPLY(std::uint8_t, double, pick_u8d)   \
+  APPLY(std::int8_t, double, pick_i8d)    \
+  APPLY(std::uint16_t, double, pick_u16d) \
+  APPLY(std::int16_t, double, pick_i16d)  \
+  APPLY(std::int32_t, double, pick_i32d)  \
+  APPLY(float, double, pick_f32d)         \
+  APPLY(double, double, pick_f64d)
+#endif
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "image/edge_stencil.cpp"
+#include "base/dispatch.hpp"
+// Highway's own headers come after this one.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// As many values as D has lanes.
+template <class D, class T>
+HWY_INLINE hn::Vec<D> load_values(D d, const T* from) {
+  using Calc = hn::TFromD<D>;
+  const hn::Rebind<T, D> values;
+  const hn::Rebind<std::int32_t, D> integers;
+  if constexpr (std::is_same_v<T, Calc>)
+    return hn::LoadU(d, from);
+  else if constexpr (sizeof(T) == sizeof(std::int32_t))
+    return hn::PromoteTo(d, hn::LoadU(values, from));
+  else if constexpr (std::is_same_v<Calc, float>)
+    return hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(values, from)));
+  else
+    return hn::PromoteTo(d, hn::PromoteTo(integers, hn::LoadU(values, from)));
+}
+
+template <class D, class M>
+HWY_INLINE hn::Mask<D> chosen_from(D d, M mask) {
+  const hn::Rebind<std::int32_t, D> integers;
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(std::int32_t))
+    return hn::RebindMask(d, mask);
+  else
+    return hn::MaskFromVec(hn::BitCast(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::VecFromMask(integers, mask))));
+}
+
+template <class D>
+HWY_INLINE auto lanes_from(D d, hn::Vec<hn::Rebind<std::int32_t, D>> lanes) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(std::int32_t))
+    return hn::IndicesFromVec(d, lanes);
+  else
+    return hn::IndicesFromVec(d, hn::PromoteTo(hn::RebindToSigned<D>(), lanes));
+}
+
+/// The samples of some edges are in so many registers at the most.
+constexpr std::size_t kMostRegisters = 8;
+
+/// Where the values of as many edges as D has lanes are.
+template <class D>
+struct Picked {
+  using Lanes = decltype(lanes_from(D(), hn::Zero(hn::Rebind<std::int32_t, D>())));
+  std::array<std::ptrdiff_t, kMostRegisters> first;  ///< of its samples, by register
+  std::array<Lanes, kMostRegisters> lanes;
+  std::array<hn::Mask<D>, kMostRegisters> chosen;  ///< edges in this register or in one behind it
+};
+
+/// Writes the values of as many edges as D has lanes by place. kCount: registers that their samples are in; 0: `count`.
+template <std::size_t kCount, class D, class T>
+HWY_INLINE void pick_some(D d, const EdgesInRow<T, hn::TFromD<D>>& row, const Picked<D>& picked, std::size_t count,
+                          hn::TFromD<D>* out) {
+  for (std::size_t place = 0; place < row.places; ++place, out += kEdgesAtOnce) {
+    const T* const from = row.from[place];
+    const auto values = [&](std::size_t r) {
+      return hn::TableLookupLanes(load_values(d, from + picked.first[r]), picked.lanes[r]);
+    };
+    auto result = values(0);
+    for (std::size_t r = 1; r < (kCount != 0 ? kCount : count); ++r)
+      result = hn::IfThenElse(picked.chosen[r], values(r), result);
+    hn::StoreU(result, d, out);
+  }
+}
+
+template <class T, class Calc>
+HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
+  const hn::ScalableTag<Calc> d;
+  const hn::Rebind<std::int32_t, decltype(d)> integers;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  static_assert(kLanes <= kMostLanes);
+  // Where registers are emulated, nothing is saved.
+  if (HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR) return false;
+  if (kEdgesPerRegister * (row.at[row.count - 1] - row.at[0]) >= kLanes * row.count) return false;
+  // Samples are counted from the first edge on, for registers hold no large numbers.
+  const std::size_t origin = std::max<std::size_t>(row.at[0], row.begin);
+  const std::size_t limit = std::min<std::size_t>(row.at[row.count - 1], row.end - 1) - origin;
+  const std::ptrdiff_t final = static_cast<std::ptrdiff_t>(row.end - kLanes) - static_cast<std::ptrdiff_t>(origin);
+  const auto from_origin = [&](std::uint32_t x) { return std::min(std::max<std::size_t>(x, origin) - origin, limit); };
+  const auto set = [&](std::ptrdiff_t x) { return hn::Set(integers, static_cast<std::int32_t>(x)); };
+  std::array<std::uint32_t, kEdgesAtOnce + kMostLanes> at;  // those behind the last edge are read too
+  std::copy_n(row.at, row.count, at.begin());
+  std::fill_n(at.begin() + row.count, kLanes, row.at[row.count - 1]);
+  Picked<decltype(hn::ScalableTag<Calc>())> picked;
+  for (std::size_t i = 0; i < row.count; i += kLanes) {
+    const auto ahead = hn::Sub(hn::LoadU(integers, reinterpret_cast<const std::int32_t*>(at.data() + i)),
+                               hn::Set(integers, static_cast<std::int32_t>(static_cast<std::uint32_t>(origin))));
+    const auto edges = hn::Max(hn::Min(ahead, set(static_cast<std::ptrdiff_t>(limit))), hn::Zero(integers));
+    const std::size_t x = from_origin(at[i]);
+    const std::size_t count = (from_origin(at[i + kLanes - 1]) - x) / kLanes + 1;
+    if (count > kMostRegisters) return false;
+    for (std::size_t r = 0; r < count; ++r) {
+      const auto begin = static_cast<std::ptrdiff_t>(x + r * kLanes);
+      const std::ptrdiff_t first = std::min(begin, final);
+      picked.first[r] = first + static_cast<std::ptrdiff_t>(origin - row.begin);
+      picked.lanes[r] = lanes_from(d, hn::And(hn::Sub(edges, set(first)), set(kLanes - 1)));
+      picked.chosen[r] = chosen_from(d, hn::Gt(edges, set(begin - 1)));
+    }
+    switch (count) {
+      case 1:
+        pick_some<1>(d, row, picked, count, row.out + i);
+        break;
+      case 2:
+        pick_some<2>(d, row, picked, count, row.out + i);
+        break;
+      case 3:
+        pick_some<3>(d, row, picked, count, row.out + i);
+        break;
+      default:
+        pick_some<0>(d, row, picked, count, row.out + i);
+    }
+  }
+  return true;
+}
+
+// Highway's tables of functions hold no templates.
+#define TEGL_PICK(T, Calc, name) \
+  bool name(const EdgesInRow<T, Calc>& row) { return pick(row); }
+TEGL_FOR_VALUES(TEGL_PICK)
+#undef TEGL_PICK
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+#define TEGL_DISPATCH(T, Calc, name)                                   \
+  HWY_EXPORT(name);                                                    \
+  template <>                                                          \
+  bool pick_values<T, Calc>(const EdgesInRow<T, Calc>& row) noexcept { \
+    return HWY_DYNAMIC_DISPATCH(name)(row);                            \
+  }
+TEGL_FOR_VALUES(TEGL_DISPATCH)
+#undef TEGL_DISPATCH
+
+}  // namespace tegl::detail
+
+#endif  // HWY_ONCE

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Caps of a contour at the image's border; see close.hpp. A border face of an N-dimensional image is an
+// image of dimension N - 1, and the cap its high set, tile by tile from the region tables.
+#include "kernel/close.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ambiguity/cube_decision.hpp"
+#include "kernel/contour_output.hpp"
+#include "kernel/extract_generate.hpp"
+#include "tile/cube_regions.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// Place in CapPlanes::squares of the pair of axes in `axes`.
+constexpr std::size_t square_plane(unsigned axes) noexcept {
+  switch (axes) {
+    case 3:
+    case 9:
+      return 0;  // 01, 03
+    case 5:
+    case 10:
+      return 1;  // 02, 13
+    default:
+      return 2;  // 12, 23
+  }
+}
+
+/// The mean of the corners and edge points in a region's mask, in the frame of the cell.
+template <int N, unsigned Axes>
+TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, std::uint32_t mask) noexcept {
+  constexpr int kDim = std::popcount(Axes);
+  Weighted<kDim> sum;
+  for (; mask != 0; mask &= mask - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(mask));
+    sum.add(v < (1u << kDim) ? corner_point<kDim>(v) : places(v - (1u << kDim)), 1.0);
+  }
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
+/// Whether all corners and edges in a region's mask belong to one square of the cube.
+bool lies_in_square(std::uint32_t mask) noexcept {
+  for (unsigned square = 0; square < 6; ++square) {
+    const unsigned axis = square / 2, side = square % 2;
+    const auto has = [&](unsigned v) {
+      if (v < 8) return (v >> axis & 1u) == side;
+      return (v - 8) / 4 != axis && (edge_base(3, v - 8) >> axis & 1u) == side;
+    };
+    std::uint32_t rest = mask;
+    while (rest != 0 && has(static_cast<unsigned>(std::countr_zero(rest)))) rest &= rest - 1;
+    if (rest == 0) return true;
+  }
+  return false;
+}
+
+/// A vertex that a region of a cube adds, in the barycentric triangulation: the mean by unequal weights, as mask_place
+/// has them, so that it hardly ever lies in a plane with three others. Those of a region along a tunnel (`is_collar`)
+/// may have all of their points in one square, where the cube on its other side may have one as well, and are moved
+/// out.
+template <unsigned Axes>
+TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask, bool is_collar) noexcept {
+  Weighted<3> sum;
+  for (; mask != 0; mask &= mask - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(mask));
+    sum.add(v < 8 ? corner_point<3>(v) : places(v - 8), 1.0 + 0.01 * v);
+  }
+  for (double& x : sum.point) x = is_collar ? 0.9 * (x / sum.weight) + 0.1 * 0.5 : x / sum.weight;
+  return sum.point;
+}
+
+}  // namespace
+
+template <int N, class Real>
+Caps<N, Real>::Caps(const SampleSource<N>& source, const RowShape<N>& shape, const TableSet<N>& tables,
+                    const Counter<N>& counter, const Placement<N, Real>& placement, const FaceEstimator<N>* estimator,
+                    bool inverted, bool flip, unsigned closed_axes)
+    : source_(source),
+      shape_(shape),
+      tables_(tables),
+      counter_(counter),
+      placement_(placement),
+      estimator_(estimator),
+      inverted_(inverted),
+      flip_(flip),
+      closed_axes_(closed_axes),
+      border_(shape.words()),
+      valid_(shape.words()) {
+  for (CapPlanes* planes : {&layers_[0], &layers_[1], &slab_}) {
+    planes->corners.allocate(shape_.rows(), shape_.words());
+    if constexpr (N == 4)
+      for (EdgePlane& plane : planes->squares) plane.allocate(shape_.rows(), shape_.words());
+  }
+}
+
+template <int N, class Real>
+const Word* Caps<N, Real>::border_cells(unsigned axes, const Row& at) {
+  const auto index = shape_.index_of(at.row);
+  bool all = closes(N - 1) && (axes >> (N - 1) & 1u) == 0 && (at.layer == 0 || at.layer + 1 == shape_.layers());
+  for (int a = 1; a < N - 1; ++a)
+    all = all || (closes(a) && (axes >> a & 1u) == 0 && (index[a] == 0 || index[a] + 1 == shape_.size(a)));
+  const bool along_row = (axes & 1u) != 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) border_[w] = all ? shape_.mask(w, along_row) : 0;
+  if (!along_row && closes(0)) {
+    const std::size_t last = shape_.size(0) - 1;
+    border_[0] |= 1;
+    border_[last / kWordBits] |= Word{1} << (last % kWordBits);
+  }
+  if (counter_.cells_of_valid_tiles(axes, at.row, at.below, at.above, valid_.data()))
+    for (std::size_t w = 0; w < shape_.words(); ++w) border_[w] &= valid_[w];
+  return border_.data();
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_vertex(const typename RowShape<N>::Index& index,
+                               const std::array<double, std::popcount(Axes)>& place) {
+  using Frame = CellFrame<N, Axes>;
+  vertices_.push_back(placement_.template in_cell<Frame>(index, place));
+  if (placement_.normals() != nullptr) normals_.push_back(placement_.normals()->template in_cell<Frame>(index, place));
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_corners(EdgePlane& plane, const Layer<N>& layer, const Row& at) {
+  const Word* const border = border_cells(0, at);
+  const std::size_t first = at.row * shape_.words();
+  const Word* const high = layer.high.data() + at.row * shape_.pitch();
+  auto index = shape_.index_of(at.row);
+  index[N - 1] = at.layer;
+  plane.offset[at.row] = static_cast<Index>(vertices_.size());
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    plane.prefix[first + w] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
+    plane.bits[0][first + w] = (inverted_ ? ~high[w] : high[w]) & border[w];
+    for (Word rest = plane.bits[0][first + w]; rest != 0; rest &= rest - 1) {
+      index[0] = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+      add_vertex<0>(index, {});
+    }
+  }
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_squares(EdgePlane& plane, const SlabView<N>& view, const Row& at) {
+  plane.offset[at.row] = static_cast<Index>(vertices_.size());
+  auto index = shape_.index_of(at.row);
+  index[N - 1] = at.layer;
+  if (!shape_.has_cells(index, Axes)) return;
+  const Word* const border = border_cells(Axes, at);
+  CellBits<N, Axes> cells(view, at.row);
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    const std::size_t word = at.row * shape_.words() + w;
+    plane.prefix[word] = static_cast<std::uint32_t>(vertices_.size()) - plane.offset[at.row];
+    plane.bits[0][word] = 0;
+    if (border[w] == 0) continue;
+    cells.load(w);
+    for (Word rest = border[w]; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      const unsigned signature = cells.signature(bit);
+      index[0] = w * kWordBits + bit;
+      const tables::RegionTable& table = table_of<Axes>(*tables_.square, original(signature, 4), index);
+      const tables::RegionList& list = table.lists[original(signature, 4)];
+      if (list.own_vertices == 0) continue;
+      plane.bits[0][word] |= Word{1} << bit;
+      const EdgePlaces<N, Axes> places(source_, index, signature);
+      add_vertex<Axes>(index, region_place<N, Axes>(places, table.masks[list.first_mask]));
+    }
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_layer(std::size_t k, const Layer<N>& layer, const Slab<N>* below, const Slab<N>* above) {
+  CapPlanes& planes = layers_[k % 2];
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    const Row at{row, k, below, above};
+    add_corners(planes.corners, layer, at);
+    if constexpr (N == 4) {
+      if (!has_squares()) continue;
+      const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr};
+      add_squares<3>(planes.squares[square_plane(3)], view, at);
+      add_squares<5>(planes.squares[square_plane(5)], view, at);
+      add_squares<6>(planes.squares[square_plane(6)], view, at);
+    }
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::corner_ids(std::size_t row, std::size_t layer, std::size_t i, unsigned signature,
+                               Index* out) const {
+  using Frame = CellFrame<N, kAll ^ 1u << Omitted>;
+  for (unsigned corner = 0; corner < 1u << (N - 1); ++corner) {
+    if ((signature >> corner & 1u) == 0) continue;
+    const unsigned mask = Frame::spread(corner);
+    const EdgePlane& plane = layers_[(layer + (mask >> (N - 1) & 1u)) % 2].corners;
+    out[corner] = plane.id(shape_.shifted(row, mask), shape_.words(), i + (mask & 1u));
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::square_ids(std::size_t row, std::size_t layer, std::size_t i, Index* out) const {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  constexpr auto kList = CellFrame<N, kAxes>::axes();
+  for (unsigned square = 0; square < 2 * kList.size(); ++square) {
+    const unsigned away = 1u << kList[square / 2];
+    const unsigned mask = square % 2 != 0 ? away : 0;
+    const unsigned pair = kAxes ^ away;
+    const CapPlanes& planes = (pair >> (N - 1) & 1u) != 0 ? slab_ : layers_[(layer + (mask >> (N - 1))) % 2];
+    const EdgePlane& plane = planes.squares[square_plane(pair)];
+    const std::size_t of_row = shape_.shifted(row, mask), at = i + (mask & 1u);
+    const bool has_one = (plane.bits[0][of_row * shape_.words() + at / kWordBits] >> (at % kWordBits) & 1u) != 0;
+    out[square] = has_one ? plane.id(of_row, shape_.words(), at) : kNoSquare;
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+Word Caps<N, Real>::face_cells(const Slab<N>& slab, std::size_t row, std::size_t w, unsigned side) const {
+  constexpr bool kAcrossRow = Omitted == 0;
+  Word cells = shape_.mask(w, !kAcrossRow);
+  if constexpr (kAcrossRow) {
+    const std::size_t at = side == 0 ? 0 : shape_.size(0) - 1;
+    cells = w == at / kWordBits ? Word{1} << (at % kWordBits) : 0;
+  }
+  if (slab.all_valid) return cells;
+  const Word* const valid = slab.valid.data() + shape_.unshifted(row, side << Omitted) * shape_.words();
+  if (!kAcrossRow || side == 0) return cells & valid[w];
+  return cells & (valid[w] << 1 | (w == 0 ? 0 : valid[w - 1] >> (kWordBits - 1)));
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, std::size_t layer, unsigned side,
+                                 std::size_t row) {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  constexpr unsigned kCorners = 1u << (N - 1);
+  CellBits<N, kAxes> cells(face, row);
+  CellEdges<N, kAxes> edges(face, row);
+  // A contour's positive side looks inwards here; this is the sign of (frame of the face, inwards) in N-space.
+  const bool flip = flip_ != (((N - 1 - Omitted) % 2 != 0) != (side != 0));
+  auto index = shape_.index_of(row);
+  index[N - 1] = layer;
+  Ids ids;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    Word rest = face_cells<Omitted>(slab, row, w, side);
+    if (rest == 0) continue;
+    cells.load(w);
+    edges.load(w);
+    for (; rest != 0; rest &= rest - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+      const unsigned signature = original(cells.signature(bit), kCorners);
+      if (tables_.face->lists[signature].simplex_count == 0) continue;
+      index[0] = w * kWordBits + bit;
+      if constexpr (N == 4)
+        if (estimator_ != nullptr) {
+          edges.ids(bit, ids.data() + kCorners);
+          add_resolved<Omitted>(face, row, layer, index, signature, ids, !flip);
+          continue;
+        }
+      const tables::RegionTable& table = N == 3 ? table_of<kAxes>(*tables_.face, signature, index) : *tables_.face;
+      edges.ids(bit, ids.data() + kCorners);
+      shared_ids<Omitted>(face, row, layer, index[0], signature, ids);
+      add_own<kAxes>(table, signature, index, ids);
+      add_simplices(table, signature, ids, flip);
+    }
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::shared_ids(const SlabView<N>& face, std::size_t row, std::size_t layer, std::size_t i,
+                               unsigned signature, Ids& ids) const {
+  corner_ids<Omitted>(row, layer, i, signature, ids.data());
+  if constexpr (N == 4) {
+    Index* const cubes = ids.data() + (1u << (N - 1)) + tables::edge_count(N - 1);
+    if (counter_.has_cubes())
+      for (unsigned j = 0; j < tables::kFaceSlots; ++j)
+        cubes[j] = face.cubes(Omitted, 0).id(row, shape_.words(), i) + j;
+    square_ids<Omitted>(row, layer, i, cubes + tables::kFaceSlots);
+  }
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+const tables::RegionTable& Caps<N, Real>::table_of(
+    const tables::RegionTable& low, [[maybe_unused]] unsigned signature,
+    [[maybe_unused]] const typename RowShape<N>::Index& index) const noexcept {
+  if constexpr (std::popcount(Axes) == 2)
+    if (estimator_ != nullptr && ambiguous_signatures<2>()[signature]) {
+      std::array<double, 4> values;
+      source_.corner_values(index, Axes, values.data());
+      if (estimator_->is_square_high(index, Axes, values)) return *tables_.high_face;
+    }
+  return low;
+}
+
+template <int N, class Real>
+template <unsigned Axes>
+void Caps<N, Real>::add_own(const tables::RegionTable& table, unsigned signature,
+                            const typename RowShape<N>::Index& index, Ids& ids) {
+  const tables::RegionList& list = table.lists[signature];
+  if (list.own_vertices == 0) return;
+  const EdgePlaces<N, Axes> places(source_, index, signature);
+  for (unsigned j = 0; j < list.own_vertices; ++j) {
+    ids[tables::first_region_vertex(N - 1) + j] = static_cast<Index>(vertices_.size());
+    add_vertex<Axes>(index, region_place<N, Axes>(places, table.masks[list.first_mask + j]));
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_simplices(const tables::RegionTable& table, unsigned signature, const Ids& ids, bool flip) {
+  const tables::RegionList& list = table.lists[signature];
+  constexpr unsigned kFirst = 1u << (N - 1);  // of the local vertices that are on the contour
+  constexpr unsigned kEnd = kFirst + tables::edge_count(N - 1) + (N == 4 ? tables::kFaceSlots : 0);
+  const auto number = [&](unsigned v) {
+    if (v < kFirst || v >= kEnd) return kCapVertex | ids[v];
+    return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
+  };
+  const std::uint8_t* stored = table.simplices + std::size_t{list.first_simplex} * N;
+  for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
+    Simplex simplex;
+    for (int j = 0; j < N; ++j) simplex[j] = number(stored[j]);
+    if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
+    simplices_.push_back(simplex);
+  }
+}
+
+/// By the regions of the cube with every ambiguity resolved freely: all cubes of the border, so that they fit together.
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::size_t layer,
+                                 const typename RowShape<N>::Index& index, unsigned signature, Ids& ids, bool flip) {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  using Regions = CubeRegions;
+  const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
+  corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
+  const unsigned own = cube_vertices(estimator_->triangulation(), key);
+  if (estimator_->is_callers() && !face.cubes(Omitted, 0).has_listed(row, index[0], key, own))
+    return estimator_->report_change(index);
+  if (own != 0) {
+    const Index first = face.cubes(Omitted, 0).listed_id(row, index[0]);
+    for (unsigned j = 0; j < own; ++j) ids[Regions::kFirstOwn + j] = first + j;
+  }
+  if (has_squares()) square_ids<Omitted>(row, layer, index[0], ids.data() + Regions::kFirstSquare);
+  const auto number = [&](unsigned v) {
+    if (v < Regions::kFirstEdge || v >= Regions::kFirstCentre) return kCapVertex | ids[v];
+    return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
+  };
+  const EdgePlaces<N, kAxes> places(source_, index, signature);
+  const bool barycentric = estimator_->triangulation() == kBarycentric;
+  const Regions& regions = Regions::of_caps(estimator_->triangulation());
+  for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
+    // A caller that changes its mind may see a square otherwise than when its barycentre was found.
+    if (estimator_->is_callers() && has_squares())
+      for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region))
+        for (const unsigned v : tetrahedron)
+          if (v >= Regions::kFirstSquare && ids[v] == kNoSquare) return estimator_->report_change(index);
+    unsigned centre = Regions::kFirstCentre;
+    for (const std::uint32_t mask : regions.centres(region)) {
+      ids[centre++] = static_cast<Index>(vertices_.size());
+      const bool is_collar = region.centre_count > 1;
+      add_vertex<kAxes>(index, barycentric || (is_collar && lies_in_square(mask))
+                                   ? centre_place<kAxes>(places, mask, is_collar)
+                                   : region_place<N, kAxes>(places, mask));
+    }
+    for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region)) {
+      Simplex simplex;
+      for (int j = 0; j < N; ++j) simplex[j] = number(tetrahedron[j]);
+      if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
+      simplices_.push_back(simplex);
+    }
+  }
+}
+
+template <int N, class Real>
+template <int Omitted>
+void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned side) {
+  constexpr unsigned kAxes = kAll ^ 1u << Omitted;
+  if (!closes(Omitted)) return;
+  if (Omitted == N - 1 && k != (side == 0 ? 0 : shape_.layers() - 2)) return;
+  // A face across the last axis lies in one layer, which then is its lower one.
+  const SlabView<N> in_layer{&shape_, {view.layers[side], nullptr}, view.slab};
+  const SlabView<N>& face = Omitted == N - 1 ? in_layer : view;
+  const std::size_t layer = Omitted == N - 1 ? k + side : k;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    const auto index = shape_.index_of(row);
+    const bool across_rows = Omitted > 0 && Omitted < N - 1;
+    if (across_rows && index[Omitted] != (side == 0 ? 0 : shape_.size(Omitted) - 1)) continue;
+    if (shape_.has_cells(index, kAxes)) add_face_row<Omitted>(face, *view.slab, layer, side, row);
+  }
+}
+
+template <int N, class Real>
+void Caps<N, Real>::add_slab(std::size_t k, const SlabView<N>& view) {
+  if constexpr (N == 4)
+    for (std::size_t row = 0; row < shape_.rows() && has_squares(); ++row) {
+      const Row at{row, k, nullptr, view.slab};
+      add_squares<9>(slab_.squares[square_plane(9)], view, at);
+      add_squares<10>(slab_.squares[square_plane(10)], view, at);
+      add_squares<12>(slab_.squares[square_plane(12)], view, at);
+    }
+  for (unsigned side = 0; side < 2; ++side) {
+    add_face<0>(view, k, side);
+    add_face<1>(view, k, side);
+    if constexpr (N > 2) add_face<2>(view, k, side);
+    if constexpr (N > 3) add_face<3>(view, k, side);
+  }
+}
+
+template class Caps<2, float>;
+template class Caps<2, double>;
+template class Caps<3, float>;
+template class Caps<3, double>;
+template class Caps<4, float>;
+template class Caps<4, double>;
+
+}  // namespace tegl::detail

@@ -1,0 +1,567 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Counting by popcount; see extract_count.hpp.
+// Based on: W. Schroeder, R. Maynard, B. Geveci, Flying Edges, 2015 (count, prefix sum, generate by
+// rows), here on bit planes and in any dimension.
+#include "kernel/extract_count.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "ambiguity/tesseract_decision.hpp"
+#include "kernel/tile_selection.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+Counter<N>::Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
+                    const FaceEstimator<N>* estimator)
+    : shape_(shape), tile_(*tables.tile), rows_(rows), estimator_(estimator), ranks_(ranks) {
+  lists_cubes_ = N == 4 && estimator_ != nullptr;
+  if (N == 4 && !lists_cubes_)
+    for (unsigned s = 0; s < 256; ++s) {
+      cube_vertices_[s] = tables.cube->lists[tables.cube->list_of[s]].cone_vertices;
+      has_cubes_ = has_cubes_ || cube_vertices_[s] != 0;
+    }
+  quick_ = rows_ != nullptr && !has_cubes_ && shape_.size(0) <= kMostListed;
+  has_cubes_ = has_cubes_ || lists_cubes_;
+}
+
+template <int N>
+void Counter<N>::allocate(Layer<N>& layer) const {
+  layer.high.assign(shape_.rows() * shape_.pitch(), 0);
+  layer.row_missing.assign(shape_.rows(), 0);
+  layer.state.assign(shape_.rows(), RowState::mixed);
+  layer.chunk_state.assign(shape_.chunks(), RowState::mixed);
+}
+
+template <int N>
+void Counter<N>::allocate(LayerPlanes<N>& planes) const {
+  for (EdgePlane& plane : planes.edges) plane.allocate(shape_.rows(), shape_.words());
+  planes.chunk_vertices.assign(shape_.chunks(), 0);
+  if (lists_cubes_)
+    planes.cubes.allocate_lists(shape_.rows());
+  else if (has_cubes_)
+    planes.cubes.allocate(shape_.rows(), shape_.words());
+}
+
+template <int N>
+void Counter<N>::allocate(SlabPlanes<N>& planes) const {
+  planes.active.assign(shape_.rows() * shape_.words(), 0);
+  planes.active_count.assign(shape_.rows(), 0);
+  if (keeps_tiles()) {
+    planes.tiles.allocate(shape_.rows() * shape_.size(0));
+    planes.first_tile.assign(shape_.rows(), 0);
+  }
+  planes.edges.allocate(shape_.rows(), shape_.words());
+  if (has_cubes_)
+    for (CubePlane& plane : planes.cubes) {
+      if (lists_cubes_)
+        plane.allocate_lists(shape_.rows());
+      else
+        plane.allocate(shape_.rows(), shape_.words());
+    }
+  planes.own_offset.assign(shape_.rows(), 0);
+  planes.simplex_offset.assign(shape_.rows(), 0);
+  planes.chunks.assign(shape_.chunks(), {});
+}
+
+template <int N>
+void Counter<N>::allocate_missing(Layer<N>& layer) const {
+  layer.missing.assign(shape_.rows() * shape_.pitch(), 0);
+}
+
+template <int N>
+void Counter<N>::allocate_valid(Slab<N>& slab) const {
+  slab.valid.assign(shape_.rows() * shape_.words(), 0);
+}
+
+template <int N>
+std::size_t Counter<N>::layer_bytes() const noexcept {
+  return shape_.rows() * (shape_.pitch() * sizeof(Word) + sizeof(RowState) + 1);
+}
+
+template <int N>
+std::size_t Counter<N>::layer_planes_bytes() const noexcept {
+  return shape_.rows() * ((N - 1) * EdgePlane::row_bytes(shape_.words()) + cube_row_bytes());
+}
+
+template <int N>
+std::size_t Counter<N>::cube_row_bytes() const noexcept {
+  if (lists_cubes_) return CubePlane::list_bytes();
+  return has_cubes_ ? CubePlane::row_bytes(shape_.words()) : 0;
+}
+
+template <int N>
+std::size_t Counter<N>::slab_planes_bytes() const noexcept {
+  constexpr std::size_t kCounts = sizeof(std::uint32_t) + sizeof(Index) + sizeof(std::uint64_t);
+  const std::size_t tiles = keeps_tiles() ? TileLists::bytes(shape_.size(0)) + sizeof(std::size_t) : 0;
+  return shape_.rows() * (shape_.words() * sizeof(Word) + kCounts + tiles + EdgePlane::row_bytes(shape_.words()) +
+                          (N - 1) * cube_row_bytes());
+}
+
+template <int N>
+void Counter<N>::count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
+                             const Word* valid) const {
+  const std::size_t at = row * shape_.words();
+  plane.count[row] = count_edge_row(a, along_row ? nullptr : b, shape_.size(0), valid, plane.bits[0].data() + at,
+                                    plane.prefix.data() + at);
+}
+
+template <int N>
+template <unsigned Axes>
+void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
+  const std::size_t words = shape_.words();
+  plane.count[row] = 0;
+  if (!shape_.has_cells(shape_.index_of(row), Axes)) return;  // its bits have been 0 from the start
+  CellBits<N, Axes> cells(view, row);
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    cells.load(w);
+    std::array<Word, tables::kFaceSlots> bits{};
+    Word mixed = cells.mixed() & shape_.mask(w, (Axes & 1u) != 0);
+    if (valid != nullptr) mixed &= valid[w];
+    plane.prefix[row * words + w] = count;
+    for (; mixed != 0; mixed &= mixed - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+      const unsigned vertices = cube_vertices_[cells.signature(bit)];
+      for (unsigned slot = 0; slot < vertices; ++slot) bits[slot] |= Word{1} << bit;
+      count += vertices;
+    }
+    for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) plane.bits[slot][row * words + w] = bits[slot];
+  }
+  plane.count[row] = count;
+}
+
+template <int N>
+template <unsigned Axes>
+void Counter<N>::list_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
+  if constexpr (N == 4) {
+    plane.begin_row(row);
+    auto base = shape_.index_of(row);
+    if (!shape_.has_cells(base, Axes)) return;
+    base[N - 1] = view.k;
+    CellBits<N, Axes> cells(view, row);
+    for (std::size_t w = 0; w < shape_.words(); ++w) {
+      cells.load(w);
+      Word mixed = cells.mixed() & shape_.mask(w, (Axes & 1u) != 0);
+      if (valid != nullptr) mixed &= valid[w];
+      for (; mixed != 0; mixed &= mixed - 1) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+        base[0] = w * kWordBits + bit;
+        const unsigned key = cube_key<N>(*estimator_, base, Axes, cells.signature(bit));
+        if (const unsigned own = detail::cube_vertices(estimator_->triangulation(), key); own != 0)
+          plane.add(row, base[0], key, own);
+      }
+    }
+  }
+}
+
+template <int N>
+void Counter<N>::count_layer_row(Layer<N>& layer, std::size_t k, const Slab<N>* below, const Slab<N>* above,
+                                 std::size_t row, Word* buffer) const {
+  const auto index = shape_.index_of(row);
+  const Word* const high = layer.high.data() + row * shape_.pitch();
+  for (int axis = 0; axis < N - 1; ++axis) {
+    const unsigned mask = 1u << axis;
+    layer.edges[axis].count[row] = 0;
+    if (!shape_.has_cells(index, mask)) continue;
+    const RowState state = layer.state[row];
+    if (state != RowState::mixed && state == layer.state[shape_.shifted(row, mask)]) continue;
+    const bool masked = cells_of_valid_tiles(mask, row, below, above, buffer);
+    const Word* const next = layer.high.data() + shape_.shifted(row, mask) * shape_.pitch();
+    count_edges(layer.edges[axis], row, high, next, axis == 0, masked ? buffer : nullptr);
+  }
+  if constexpr (N == 4)
+    if (has_cubes_) {
+      const bool masked = cells_of_valid_tiles(7u, row, below, above, buffer);
+      const SlabView<N> view{&shape_, {&layer, nullptr}, nullptr, k};
+      if (lists_cubes_)
+        list_cubes<7u>(layer.cubes, view, row, masked ? buffer : nullptr);
+      else
+        count_cubes<7u>(layer.cubes, view, row, masked ? buffer : nullptr);
+    }
+}
+
+/// Whether all corners of a row's tiles are alike.
+template <int N>
+static bool is_uniform(const SlabView<N>& view, std::size_t row) {
+  const RowState first = view.layers[0]->state[row];
+  if (first == RowState::mixed) return false;
+  constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
+  bool uniform = true;
+  for (const Layer<N>* layer : view.layers)
+    for (unsigned corner = 0; corner <= kMiddle; corner += 2)
+      uniform = uniform && layer->state[view.shape->shifted(row, corner)] == first;
+  return uniform;
+}
+
+namespace {
+
+template <int N>
+TileRow tile_row(const RowShape<N>& shape, const SlabView<N>& view, const Slab<N>& slab, std::size_t row) {
+  constexpr unsigned kAll = (1u << N) - 1;
+  TileRow tiles{{}, shape.size(0) - 1, slab.all_valid ? nullptr : slab.valid.data() + row * shape.words()};
+  const CellBits<N, kAll> cells(view, row);
+  std::copy(cells.rows().begin(), cells.rows().end(), tiles.corners.begin());
+  return tiles;
+}
+
+template <int N>
+void keep_count(const TileCount& count, Slab<N>& slab, std::size_t row) {
+  slab.own_offset[row] = count.own_vertices;
+  slab.simplex_offset[row] = count.simplices;
+  slab.active_count[row] = count.active;
+}
+
+}  // namespace
+
+template <int N>
+TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const {
+  TileCount count = count_tile_row<N>(tile_row(shape_, view, *view.slab, row), *rows_, room);
+  if (N < 4 && estimator_ != nullptr) resolve_tiles(view, row, room, count);
+  return count;
+}
+
+/// The places in a row's list, from `first` on, of ambiguous tiles; returns how many. No branch depends on the tiles.
+template <int N, std::size_t Count>
+static std::uint32_t list_ambiguous(const TileRoom& room, std::uint32_t first, std::uint32_t end,
+                                    std::array<std::uint32_t, Count>& out) {
+  const auto& ambiguous = ambiguous_signatures<N>();
+  std::uint32_t* const to = out.data();
+  std::uint32_t found = 0;
+  for (std::uint32_t i = first; i < end; ++i) {
+    to[found] = i;
+    found += ambiguous[room.signatures[i]] ? 1 : 0;
+  }
+  return found;
+}
+
+/// How many of the places from `j` on are of tiles at the same word.
+static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* places, std::uint32_t j,
+                                   std::uint32_t end) {
+  const std::uint32_t first = j;
+  for (const unsigned word = room.at[places[j]] / kWordBits; j < end && room.at[places[j]] / kWordBits == word;) ++j;
+  return j - first;
+}
+
+// Apart from what calls it, which is to have no large frame where no data decide; so below.
+template <int N>
+[[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
+                                                 TileCount& count) const {
+  if constexpr (N < 4) {
+    const bool is_listed = shape_.size(0) <= kMostListed;
+    auto base = shape_.index_of(row);
+    base[N - 1] = view.k;
+    BitWalk walk(room.active);
+    const auto resolve = [&](std::uint32_t i) {
+      const unsigned signature = room.signatures[i];
+      base[0] = is_listed ? room.at[i] : walk.place_of(i);
+      const unsigned key = resolved_key<N>(*estimator_, base, signature);
+      count.simplices += rows_->entry(key) & RowTable::kCountMask;
+      count.simplices -= rows_->entry(signature) & RowTable::kCountMask;
+      count.own_vertices += rows_->own_vertices(key) - rows_->own_vertices(signature);
+      room.signatures[i] = static_cast<std::uint16_t>(key);
+    };
+    std::array<std::uint32_t, kWordBits> places;
+    if constexpr (N == 2) {
+      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+        const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
+        const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
+        for (std::uint32_t j = 0; j < found; ++j) resolve(places.data()[j]);
+      }
+    } else {
+      RowFaces<N> faces(*estimator_, base, shape_.size(0));
+      const bool at_once = is_listed && RowFaces<N>::can_use(*estimator_);
+      const auto resolve_word = [&](const std::uint32_t* of_word, std::uint32_t tiles) {
+        TilesOfWord of;
+        of.count = tiles;
+        for (std::uint32_t j = 0; j < tiles; ++j) {
+          of.bits[j] = room.at[of_word[j]] % kWordBits;
+          of.signatures[j] = static_cast<std::uint8_t>(room.signatures[of_word[j]]);
+        }
+        detail::resolve(*estimator_, *rows_, faces.look_at(room.at[of_word[0]] / kWordBits), of);
+        for (std::uint32_t j = 0; j < tiles; ++j) {
+          const Variant variant = of.variants[j];
+          if (variant.key == 0) {
+            resolve(of_word[j]);
+            continue;
+          }
+          count.simplices += static_cast<std::uint64_t>(std::int64_t{variant.more_simplices});
+          count.own_vertices += static_cast<std::uint32_t>(std::int32_t{variant.more_own_vertices});
+          room.signatures[of_word[j]] = variant.key;
+        }
+      };
+      for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
+        const auto end = std::min<std::uint32_t>(count.active, first + kWordBits);
+        const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
+        for (std::uint32_t j = 0; j < found;) {
+          const std::uint32_t tiles = at_once ? count_at_word(room, places.data(), j, found) : 1;
+          if (tiles >= 2 * RowFaces<N>::kMany)  // a single cube takes less than a single tesseract
+            resolve_word(places.data() + j, tiles);
+          else
+            for (std::uint32_t k = j; k < j + tiles; ++k) resolve(places.data()[k]);
+          j += tiles;
+        }
+      }
+    }
+  }
+}
+
+template <int N>
+[[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
+                                                      TileCount& count, ResolvedTesseract& tesseract,
+                                                      const FoundCubes* found) const {
+  if constexpr (N == 4) {
+    const bool is_listed = shape_.size(0) <= kMostListed;
+    BitWalk walk(room.active);
+    auto base = shape_.index_of(row);
+    base[N - 1] = view.k;
+    const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
+    RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active});
+    for (std::uint32_t i = 0; i < count.active; ++i) {
+      const unsigned signature = room.signatures[i];
+      if (!is_put_together(*estimator_, signature)) continue;
+      base[0] = is_listed ? room.at[i] : walk.place_of(i);
+      const ResolvedTile tile = tiles.resolve(base, i, signature);
+      const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
+      count.simplices += filling.simplices;
+      count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
+      count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
+      if (found == nullptr || tile.with_vertices == 0) continue;
+      const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
+        if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
+          plane.add(row, at, tile.cubes[cube], own);
+      };
+      take(found->in_slab[0], 0, base[0]);
+      if (base[0] + 2 == shape_.size(0)) take(found->in_slab[0], 1, base[0] + 1);
+      take(found->in_slab[1], 2, base[0]);
+      take(found->in_slab[2], 4, base[0]);
+      take(found->in_layer, 7, base[0]);
+    }
+  }
+}
+
+template <int N>
+CountScratch Counter<N>::make_scratch() const {
+  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, {}};
+  if (lists_cubes_) scratch.tesseract = std::make_unique<ResolvedTesseract>(estimator_->triangulation());
+  if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
+  if (estimator_ != nullptr && estimator_->is_callers()) {
+    if constexpr (N == 4)
+      scratch.answers.tesseracts.reserve(shape_.size(0));
+    else
+      scratch.answers.keys.reserve(shape_.size(0));
+  }
+  return scratch;
+}
+
+template <int N>
+TileRoom Counter<N>::tile_room(Slab<N>& slab, std::size_t row, CountScratch& scratch) const {
+  const std::size_t first = keeps_tiles() ? slab.first_tile[row] : 0;
+  TileLists& lists = keeps_tiles() ? slab.tiles : scratch.tiles;
+  return {slab.active.data() + row * shape_.words(), lists.signatures.data() + first, lists.at.data() + first};
+}
+
+template <int N>
+RowTiles Counter<N>::tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const {
+  const Slab<N>& slab = *view.slab;
+  // Signatures are of use in rows of any length, places along the row only where it goes by tiles.
+  if (slab.active_count[row] == 0 || rows_ == nullptr || (has_cubes_ && !lists_cubes_) || !slab.all_valid) return {};
+  if (keeps_tiles()) {
+    const std::size_t first = slab.first_tile[row];
+    return {slab.tiles.signatures.data() + first, slab.tiles.at.data() + first, slab.active_count[row]};
+  }
+  TileLists& lists = scratch.tiles;
+  const TileRoom room{scratch.words.data(), lists.signatures.data(), lists.at.data()};
+  return {room.signatures, room.at, find_tiles(view, row, room).active};
+}
+
+template <int N>
+void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const {
+  constexpr unsigned kAll = (1u << N) - 1;
+  Word* const active = slab.active.data() + row * shape_.words();
+  slab.own_offset[row] = 0;
+  slab.simplex_offset[row] = 0;
+  slab.active_count[row] = 0;
+  if (!shape_.has_cells(shape_.index_of(row), kAll)) return;
+  if (is_uniform(view, row)) return;
+  if (rows_ != nullptr) {
+    const TileRoom room = tile_room(slab, row, scratch);
+    TileCount count = find_tiles(view, row, room);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, nullptr);
+    keep_count(count, slab, row);
+    return;
+  }
+  CellBits<N, kAll> cells(view, row);
+  for (std::size_t w = 0; w < shape_.words(); ++w) {
+    cells.load(w);
+    Word mixed = cells.mixed() & shape_.mask(w, true);
+    if (!slab.all_valid) mixed &= slab.valid[row * shape_.words() + w];
+    active[w] = mixed;
+    for (; mixed != 0; mixed &= mixed - 1) {
+      const unsigned signature = cells.signature(static_cast<unsigned>(std::countr_zero(mixed)));
+      const tables::List& list = tile_.lists[tile_.list_of[signature]];
+      slab.own_offset[row] += Index{list.cone_vertices} + list.side_vertices;
+      slab.simplex_offset[row] += list.simplex_count;
+      ++slab.active_count[row];
+    }
+  }
+}
+
+template <int N>
+void Counter<N>::count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const {
+  Word* const buffer = scratch.words.data();
+  const Word* const lower = view.layers[0]->high.data() + row * shape_.pitch();
+  const Word* const upper = view.layers[1]->high.data() + row * shape_.pitch();
+  const RowState state = view.layers[0]->state[row];
+  slab.edges.count[row] = 0;
+  if (state == RowState::mixed || state != view.layers[1]->state[row]) {
+    const bool masked = cells_of_valid_tiles(1u << (N - 1), row, nullptr, &slab, buffer);
+    count_edges(slab.edges, row, lower, upper, false, masked ? buffer : nullptr);
+  }
+  if constexpr (N == 4)
+    if (has_cubes_) {
+      const auto valid = [&](unsigned axes) {
+        return cells_of_valid_tiles(axes, row, nullptr, &slab, buffer) ? buffer : nullptr;
+      };
+      if (lists_cubes_) {
+        list_cubes<14u>(slab.cubes[0], view, row, valid(14u));
+        list_cubes<13u>(slab.cubes[1], view, row, valid(13u));
+        list_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+      } else {
+        count_cubes<14u>(slab.cubes[0], view, row, valid(14u));
+        count_cubes<13u>(slab.cubes[1], view, row, valid(13u));
+        count_cubes<11u>(slab.cubes[2], view, row, valid(11u));
+      }
+    }
+  count_tiles(view, slab, row, scratch);
+}
+
+template <int N>
+void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
+                               CountScratch& scratch) const {
+  TileCount count;
+  if (lists_cubes_) {
+    upper.cubes.begin_row(row);
+    for (CubePlane& plane : slab.cubes) plane.begin_row(row);
+  }
+  if (!is_uniform(view, row)) {
+    const TileRoom room = tile_room(slab, row, scratch);
+    count = find_tiles(view, row, room);
+    const FoundCubes found{upper.cubes, slab.cubes};
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, *scratch.tesseract, &found);
+  }
+  keep_count(count, slab, row);
+  for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];
+  slab.edges.count[row] = count.edges[N - 1];
+}
+
+template <int N>
+bool Counter<N>::is_uniform_chunk(const SlabView<N>& view, std::size_t chunk) const {
+  constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
+  const RowState first = view.layers[0]->chunk_state[chunk];
+  if (first == RowState::mixed) return false;
+  const std::size_t last = shape_.chunk_end(chunk) - 1;
+  for (unsigned corner = 0; corner <= kMiddle; corner += 2) {
+    const std::size_t end = chunk_of(std::min(shape_.rows() - 1, shape_.shifted(last, corner)));
+    for (std::size_t c = chunk_of(shape_.shifted(chunk * kChunkRows, corner)); c <= end; ++c)
+      if (view.layers[0]->chunk_state[c] != first || view.layers[1]->chunk_state[c] != first) return false;
+  }
+  return true;
+}
+
+template <int N>
+void Counter<N>::clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) const {
+  const auto clear = [&](auto& plane) {
+    std::fill(plane.count.begin() + static_cast<std::ptrdiff_t>(chunk * kChunkRows),
+              plane.count.begin() + static_cast<std::ptrdiff_t>(shape_.chunk_end(chunk)), 0u);
+  };
+  if (upper.chunk_vertices[chunk] != 0) {
+    for (EdgePlane& plane : upper.edges) clear(plane);
+    if (has_cubes_) clear(upper.cubes);
+  }
+  upper.chunk_vertices[chunk] = 0;
+  if (slab.chunks[chunk].vertices != 0) {
+    clear(slab.edges);
+    if (has_cubes_)
+      for (CubePlane& plane : slab.cubes) clear(plane);
+  }
+  slab.chunks[chunk] = {};
+}
+
+namespace {
+
+template <class Plane>
+void offset(Plane& plane, std::size_t row, std::uint64_t& next) {
+  plane.offset.data()[row] = static_cast<Index>(next);  // not by calls, which compilers leave in checked builds
+  next += plane.count.data()[row];
+}
+
+}  // namespace
+
+template <int N>
+std::uint64_t Counter<N>::offset_layer_row(Layer<N>& layer, std::size_t row, std::uint64_t first) const {
+  std::uint64_t next = first;
+  for (EdgePlane& plane : layer.edges) offset(plane, row, next);
+  if (has_cubes_) offset(layer.cubes, row, next);
+  return next - first;
+}
+
+template <int N>
+std::uint64_t Counter<N>::offset_slab_row(Slab<N>& slab, std::size_t row, SlabChunk& sums) const {
+  std::uint64_t next = sums.vertices;
+  offset(slab.edges, row, next);
+  if (has_cubes_)
+    for (CubePlane& plane : slab.cubes) offset(plane, row, next);
+  const std::uint64_t own_vertices = slab.own_offset[row];
+  slab.own_offset[row] = static_cast<Index>(next);
+  next += own_vertices;
+  const std::uint64_t simplices = slab.simplex_offset[row];
+  slab.simplex_offset[row] = sums.simplices;
+  sums.simplices += simplices;
+  sums.active += slab.active_count[row];
+  std::swap(sums.vertices, next);
+  return sums.vertices - next;
+}
+
+template <int N>
+void Counter<N>::count_first_layer(Layer<N>& layer, const Slab<N>& above, std::size_t chunk, Word* buffer) const {
+  std::uint64_t vertices = 0;
+  for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
+    count_layer_row(layer, 0, nullptr, &above, row, buffer);
+    vertices += offset_layer_row(layer, row, vertices);
+  }
+  layer.chunk_vertices[chunk] = vertices;
+}
+
+template <int N>
+void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above,
+                            std::size_t chunk, CountScratch& scratch) const {
+  if (is_uniform_chunk(view, chunk)) return clear_chunk(upper, slab, chunk);
+  // Tiles next to missing values ask for the ranks of their edges.
+  const bool ranks = !quick_ || ranks_ || !slab.all_valid || (above != nullptr && !above->all_valid);
+  SlabChunk sums;
+  std::uint64_t in_layer = 0;
+  for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
+    if (keeps_tiles()) slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
+    if (!ranks && goes_by_tiles(slab, row)) {
+      count_quickly(view, upper, slab, row, scratch);
+    } else {
+      count_layer_row(upper, view.k + 1, &slab, above, row, scratch.words.data());
+      count_slab_row(view, slab, row, scratch);
+    }
+    const std::uint64_t vertices = offset_layer_row(upper, row, in_layer);
+    in_layer += vertices;
+    const bool busy = (offset_slab_row(slab, row, sums) | vertices | slab.active_count[row]) != 0;
+    sums.busy |= static_cast<std::uint32_t>(busy) << (row % kChunkRows);
+  }
+  upper.chunk_vertices[chunk] = in_layer;
+  slab.chunks[chunk] = sums;
+}
+
+template class Counter<2>;
+template class Counter<3>;
+template class Counter<4>;
+
+}  // namespace tegl::detail

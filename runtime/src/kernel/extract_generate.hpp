@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Pass 4 of the extraction: vertices and simplices of one row, written to the row's own places.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <type_traits>
+
+#include "ambiguity/tesseract_decision.hpp"
+#include "kernel/extract_cell.hpp"
+#include "kernel/extract_count.hpp"
+#include "kernel/extract_edges.hpp"
+#include "kernel/placement.hpp"
+#include "kernel/shared_places.hpp"
+#include "tile/extract_rows.hpp"
+#include "tile/extract_tables.hpp"
+#include "tile/local_simplices.hpp"
+
+namespace tegl::detail {
+
+/// Writes the tiles of a row: their own vertices and their simplices.
+template <int N, class Real>
+class TileWriter {
+ public:
+  using Vertex = std::array<Real, N>;
+  using Simplex = std::array<Index, N>;
+  static constexpr unsigned kAll = (1u << N) - 1;
+
+  /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null. `estimator`: as
+  /// Counter's.
+  TileWriter(const SampleSource<N>& source, const TableSet<N>& tables, const RowTable* rows,
+             const FaceEstimator<N>* estimator, const Placement<N, Real>& placement, bool flip, bool has_cubes)
+      : source_(source),
+        estimator_(estimator),
+        table_(*tables.tile),
+        cube_(tables.cube),
+        compact_(tables.compact),
+        rows_(has_cubes ? nullptr : rows),
+        placement_(placement),
+        flip_(flip),
+        has_cubes_(has_cubes) {}
+
+  /// `tiles`: those of the row (Counter::tiles). `simplices`: where simplex `first_simplex` goes. `scratch`: the
+  /// thread's. Writes nothing, and reports it, where a caller's estimator changed its answers since the row was
+  /// counted.
+  void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const RowTiles& tiles,
+             VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex,
+             CountScratch& scratch) const noexcept {
+    const RowShape<N>& shape = *view.shape;
+    auto index = shape.index_of(row);
+    if (view.slab->active_count[row] == 0) return;
+    index[N - 1] = layer;
+    if (estimator_ != nullptr && estimator_->is_callers() && !ask_again(view, row, index, tiles, scratch))
+      return estimator_->report_change(index);
+    Simplex* const out = simplices + (view.slab->first_simplex(row) - first_simplex);
+    if (rows_ != nullptr && view.slab->all_valid)
+      write_quickly(view, row, index, tiles, vertices, out, scratch);
+    else
+      write_one_by_one(view, row, index, vertices, out, scratch);
+  }
+
+  /// Whether the barycentres of cubes in a slab, and in the layer above it (and layer 0), are written along with its
+  /// tiles, which have their places: of each cube by the tile below it, as all of them are there.
+  [[nodiscard]] bool writes_cubes(const Slab<N>& slab) const noexcept { return has_cubes_ && slab.all_valid; }
+
+ private:
+  using Ids = std::array<Index, 256>;  // by local vertex
+
+  /// Of rows whose tiles are all valid: then every critical edge belongs to an active tile.
+  void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
+                     const RowTiles& tiles, VertexRun<Vertex> vertices, Simplex* out,
+                     CountScratch& scratch) const noexcept {
+    TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
+    CellEdges<N, kAll>::firsts(view, row, output.first.data());
+    // The tiles with vertices of their own come in order: their places are found by walking along.
+    struct Own {
+      const TileWriter& writer;
+      const SlabView<N>& view;
+      std::size_t row;
+      CountScratch& scratch;
+      typename RowShape<N>::Index index;
+      VertexRun<Vertex> vertices;
+      BitWalk active;
+      Index next;
+      RowOfTesseracts* tesseracts;  ///< N = 4, where data decide, but not a caller
+
+      static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids,
+                            Simplex* out) noexcept {
+        Own& own = *static_cast<Own*>(self);
+        own.index[0] = own.active.place_of(ordinal);
+        Ids ids;
+        std::copy_n(edge_ids, tables::edge_count(N), ids.data());
+        if constexpr (N == 4)
+          if (own.writer.is_estimated_tile(key))
+            return own.writer.write_resolved(own.view, own.row, own.index, key,
+                                             own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key), ids,
+                                             own.next, own.vertices, *own.scratch.tesseract, out);
+        const SimplexList<N> list(own.writer.table_, key);
+        SharedPlaces<N> places(own.writer.source_, own.index, signature_of<N>(key), own.writer.cube_);
+        own.writer.write_own(list, places, own.index, own.next, own.vertices);
+        out = own.writer.write_simplices(list, ids, own.next, out);
+        own.next += list.own_vertices();
+        return out;
+      }
+    };
+    Own own{*this,
+            view,
+            row,
+            scratch,
+            start,
+            vertices,
+            BitWalk(view.slab->active.data() + row * view.shape->words()),
+            view.slab->first_own(row),
+            nullptr};
+    if constexpr (N == 4)
+      if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
+    write_tile_row<N>(output, *rows_, {&Own::write, &own});
+  }
+
+  /// Where data decide. Apart, for its frame is large.
+  template <class Own>
+  [[gnu::noinline]] void write_tesseracts(const TileOutput<N>& output, const typename RowShape<N>::Index& start,
+                                          const RowTiles& tiles, Own& own) const noexcept {
+    RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles);
+    own.tesseracts = &tesseracts;
+    write_tile_row<N>(output, *rows_, {&Own::write, &own});
+  }
+
+  void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
+                        VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch) const noexcept {
+    const RowShape<N>& shape = *view.shape;
+    const Word* const active = view.slab->active.data() + row * shape.words();
+    CellBits<N, kAll> cells(view, row);
+    CellEdges<N, kAll> edges(view, row);
+    [[maybe_unused]] std::optional<TileCubes> cubes;
+    if constexpr (N == 4)
+      if (has_cubes_) cubes.emplace(view, row);
+    Ids ids;
+    Index own = view.slab->first_own(row);
+    for (std::size_t w = 0; w < shape.words(); ++w) {
+      Word rest = active[w];
+      if (rest == 0) continue;
+      cells.load(w);
+      edges.load(w);
+      if (cubes) cubes->load(w);
+      for (; rest != 0; rest &= rest - 1) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+        const unsigned signature = cells.signature(bit);
+        index[0] = w * kWordBits + bit;
+        edges.ids(bit, ids.data());
+        if constexpr (N == 4)
+          if (is_estimated_tile(signature)) {
+            out = write_resolved(view, row, index, signature, tile_of(scratch.answers, index, signature), ids, own,
+                                 vertices, *scratch.tesseract, out);
+            continue;
+          }
+        const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
+        if constexpr (N == 4)
+          if (cubes) cube_ids(*cubes, bit, ids);
+        if (has_cubes_ || list.own_vertices() != 0) {
+          SharedPlaces<N> places(source_, index, signature, cube_);
+          write_own(list, places, index, own, vertices);
+          if constexpr (N == 4)
+            if (writes_cubes(*view.slab)) write_cubes(places, ids, index, vertices);
+        }
+        out = write_simplices(list, ids, own, out);
+        own += list.own_vertices();
+      }
+    }
+  }
+
+  /// The key of a tile, in an image whose ambiguous tiles have one.
+  [[nodiscard]] unsigned key_of(const typename RowShape<N>::Index& index, unsigned signature) const noexcept {
+    if constexpr (N < 4)
+      if (estimator_ != nullptr && ambiguous_signatures<N>()[signature])
+        return resolved_key<N>(*estimator_, index, signature);
+    return signature;
+  }
+  /// The same when it is written.
+  [[nodiscard]] unsigned key_of(const typename RowShape<N>::Index& index, unsigned signature,
+                                RowAnswers& answers) const noexcept {
+    if constexpr (N < 4)
+      if (estimator_ != nullptr && estimator_->is_callers()) return answers.keys[answers.taken++];
+    return key_of(index, signature);
+  }
+
+  /// Asks a caller's estimator for what is to be written of a row, and keeps it; whether it comes to what was counted:
+  /// as many vertices and simplices, and the same fillings of the cubes with vertices of their own.
+  [[nodiscard]] bool ask_again(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
+                               const RowTiles& tiles, CountScratch& scratch) const noexcept {
+    RowAnswers& answers = scratch.answers;
+    answers.tesseracts.clear();
+    answers.keys.clear();
+    answers.taken = 0;
+    std::uint64_t simplices = 0, own_vertices = 0;
+    CellBits<N, kAll> cells(view, row);
+    const Word* const active = view.slab->active.data() + row * view.shape->words();
+    for (std::size_t w = 0, ordinal = 0; w < view.shape->words(); ++w) {
+      if (active[w] != 0) cells.load(w);
+      for (Word rest = active[w]; rest != 0; rest &= rest - 1, ++ordinal) {
+        const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+        unsigned key = cells.signature(bit);
+        index[0] = w * kWordBits + bit;
+        if constexpr (N == 4)
+          if (is_estimated_tile(key)) {
+            const ResolvedTile& tile = answers.tesseracts.emplace_back(resolved_tile(*estimator_, index, key));
+            const ResolvedSize size = scratch.tesseract->size(tile.key, tile.lists);
+            simplices += size.simplices;
+            own_vertices += size.own_vertices;
+            if (!has_listed_cubes(view, row, index[0], tile)) return false;
+            continue;
+          }
+        key = tiles.count != 0 ? tiles.signatures[ordinal] : key_of(index, key);
+        if constexpr (N < 4) answers.keys.push_back(static_cast<std::uint16_t>(key));
+        const SimplexList<N> list(table_, key);
+        simplices += list.size();
+        own_vertices += list.own_vertices();
+      }
+    }
+    return simplices == view.slab->simplices(row) && own_vertices == view.slab->own_vertices(row);
+  }
+
+  /// Whether the cubes of a tile are those that were counted.
+  [[nodiscard]] bool has_listed_cubes(const SlabView<N>& view, std::size_t row, std::size_t at,
+                                      const ResolvedTile& tile) const noexcept {
+    for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
+      const unsigned axis = cube / 2, side = cube % 2;
+      const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
+      if (!plane.has_listed(view.shape->shifted(row, side << axis), at + (axis == 0 ? side : 0), tile.cubes[cube],
+                            detail::cube_vertices(estimator_->triangulation(), tile.cubes[cube])))
+        return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool is_estimated_tile(unsigned signature) const noexcept {
+    if constexpr (N == 4) return estimator_ != nullptr && is_put_together(*estimator_, signature);
+    return false;
+  }
+
+  /// A tile of four dimensions that data decide on, by what a caller answered or by itself.
+  [[nodiscard]] ResolvedTile tile_of(RowAnswers& answers, const typename RowShape<N>::Index& index,
+                                     unsigned signature) const noexcept {
+    return estimator_->is_callers() ? answers.tesseracts[answers.taken++]
+                                    : resolved_tile(*estimator_, index, signature);
+  }
+  /// The same of number `ordinal` of a row's active tiles.
+  template <class Own>
+  [[nodiscard]] ResolvedTile tile_of(Own& own, std::uint32_t ordinal, unsigned signature) const noexcept {
+    if (own.tesseracts != nullptr) return own.tesseracts->resolve(own.index, ordinal, signature);
+    return tile_of(own.scratch.answers, own.index, signature);
+  }
+
+  /// Its own vertices are numbered from `own` on, which moves on. `ids`: those of its edges.
+  Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
+                          unsigned signature, const ResolvedTile& tile, Ids& ids, Index& own,
+                          VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
+    const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
+    const ResolvedView& filling = tesseract.find(tile.key, tile.lists);
+    for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
+      const auto cube = static_cast<unsigned>(std::countr_zero(rest));
+      const unsigned count = cubes.own_vertices(tile.lists[cube]);
+      const unsigned axis = cube / 2, side = cube % 2;
+      const CubePlane& plane = view.cubes(static_cast<int>(axis), axis == N - 1 ? side : 0);
+      const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));
+      for (unsigned j = 0; j < count; ++j) ids[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] = first + j;
+    }
+    if constexpr (N == 4)
+      if (filling.own_vertices != 0) {
+        const EdgePlaces<N, kAll> alphas(source_, index, signature);
+        const auto places = [&](unsigned edge) { return edge_point_at_once<N>(edge, alphas.alpha(edge)); };
+        ResolvedPlaces shared(alphas, cubes, tile.lists);
+        for (unsigned j = 0; j < filling.own_vertices; ++j, ++own) {
+          ids[ResolvedTesseract::kFirstOwn + j] = own;
+          const TilePoint<N> place = (filling.masks[j] & ResolvedTesseract::kIsBarycentre) != 0
+                                         ? shared.barycentre(filling, ResolvedTesseract::kFirstOwn + j)
+                                         : own_place(filling.masks[j], places);
+          vertices[own] = placement_.template in_cell<CellFrame<N, kAll>>(index, place);
+          if (placement_.normals() != nullptr)
+            vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
+        }
+      }
+    if constexpr (N == 4)
+      write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, ids.data(),
+                                   ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
+                    out);
+    return out + filling.simplex_count;
+  }
+
+  /// The place of an own vertex of a filling that is no barycentre.
+  template <class Places>
+  static TilePoint<N> own_place(std::uint64_t mask, const Places& places) noexcept {
+    constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
+    TilePoint<N> place = mask_place<N>(mask & ((std::uint64_t{1} << kRepeat) - 1), std::identity(), places, true);
+    for (std::uint64_t repeats = mask >> kRepeat; repeats != 0; --repeats)
+      for (double& x : place) x += 0.0625 * (0.5 - x);
+    return place;
+  }
+
+  /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per
+  /// use: then it is as fast as the flat one.
+  Simplex* write_simplices(const SimplexList<N>& list, Ids& ids, Index own, Simplex* out) const noexcept {
+    Ids permuted;
+    Ids& of_stored = list.is_permuted() ? permuted : ids;
+    if (list.is_permuted())
+      for (unsigned v = 0; v < tables::first_tile_vertex(N); ++v) of_stored[v] = ids[list.mapped(v)];
+    for (unsigned j = 0; j < list.own_vertices(); ++j) of_stored[tables::first_tile_vertex(N) + j] = own + j;
+    const unsigned last = flip_ != list.reversed() ? N - 2 : N - 1;
+    const unsigned before = (N - 2) + (N - 1) - last;
+    for (unsigned q = 0; q < list.size(); ++q, ++out) {
+      for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = of_stored[list.stored(q, j)];
+      (*out)[before] = of_stored[list.stored(q, N - 2)];
+      (*out)[last] = of_stored[list.stored(q, N - 1)];
+    }
+    return out;
+  }
+
+  /// Numbers of the vertices that the tile's cubes own.
+  static void cube_ids(TileCubes& cubes, unsigned bit, Ids& ids) noexcept {
+    std::array<Index, TileCubes::kCubes> first;
+    cubes.ids(bit, first);
+    for (unsigned cube = 0; cube < TileCubes::kCubes; ++cube)
+      for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot)
+        ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first[cube] + slot;
+  }
+
+  /// The barycentres of the tile's cubes, as writes_cubes says.
+  void write_cubes(SharedPlaces<N>& places, const Ids& ids, const typename RowShape<N>::Index& index,
+                   VertexRun<Vertex> vertices) const noexcept {
+    const auto write = [&]<unsigned Omitted>(std::integral_constant<unsigned, Omitted>) {
+      for (unsigned side = index[Omitted] == 0 ? 0 : 1; side < 2; ++side) {
+        using Frame = CellFrame<N, kAll ^ 1u << Omitted>;
+        constexpr unsigned kFirst = tables::edge_count(N);
+        const unsigned cube = 2 * Omitted + side;
+        auto base = index;
+        base[Omitted] += side;
+        for (unsigned slot = 0, count = places.cube_vertices(cube); slot < count; ++slot) {
+          const Index id = ids[kFirst + tables::kFaceSlots * cube + slot];
+          const auto point = places.in_cube(cube, slot);
+          vertices[id] = placement_.template in_cell<Frame>(base, point);
+          if (placement_.normals() != nullptr)
+            vertices.normal(id) = placement_.normals()->template in_cell<Frame>(base, point);
+        }
+      }
+    };
+    write(std::integral_constant<unsigned, 0>{});
+    write(std::integral_constant<unsigned, 1>{});
+    write(std::integral_constant<unsigned, 2>{});
+    write(std::integral_constant<unsigned, 3>{});
+  }
+
+  void write_own(const SimplexList<N>& list, SharedPlaces<N>& places, const typename RowShape<N>::Index& index,
+                 Index own, VertexRun<Vertex> vertices) const noexcept {
+    std::array<TilePoint<N>, 256 - tables::first_tile_vertex(N)> points;
+    own_places<N>(
+        list, compact_, [&](unsigned v) -> decltype(auto) { return places(list.mapped(v)); }, points.data());
+    for (unsigned j = 0; j < list.own_vertices(); ++j) {
+      vertices[own + j] = placement_.template in_cell<CellFrame<N, kAll>>(index, points[j]);
+      if (placement_.normals() != nullptr)
+        vertices.normal(own + j) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, points[j]);
+    }
+  }
+
+  const SampleSource<N>& source_;
+  const FaceEstimator<N>* estimator_;
+  const tables::TileTable& table_;
+  const tables::TileTable* cube_;
+  bool compact_;
+  const RowTable* rows_;
+  const Placement<N, Real>& placement_;
+  bool flip_;
+  bool has_cubes_;
+};
+
+}  // namespace tegl::detail

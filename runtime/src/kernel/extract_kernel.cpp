@@ -1,0 +1,638 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The driver of the extraction: a batch of slabs at a time along the last axis, the rows of a batch side by side.
+#include "kernel/extract_kernel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/stopwatch.hpp"
+#include "base/workers.hpp"
+#include "kernel/close.hpp"
+#include "kernel/extract_generate.hpp"
+#include "kernel/extract_progress.hpp"
+#include "kernel/generate_cubes.hpp"
+#include "kernel/split_nonmanifold.hpp"
+#include "kernel/tile_selection.hpp"
+
+namespace tegl::detail {
+
+namespace {
+
+/// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
+/// the next, and needs little memory beside the image. Decides whether the counter keeps lists of tiles.
+template <int N>
+std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::size_t sample_bytes, std::size_t threads,
+                         std::size_t thread_bytes, bool ahead) {
+  // Several threads meet after every pass, which takes longer than the way from one cache to the next.
+  const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
+  // Of the image: the rest of a sixteenth is for what is not by slabs. (4D has few slabs, and needs two at a time.)
+  const double share = ahead && N < 4 ? 0.05 : 0.057;
+  constexpr double kLittle = 1u << 17;  // bytes, however small the image
+  // Slabs that must fit in with their lists of tiles in 4D, or these are made twice.
+  const std::size_t few = threads > 1 ? 2 : 1;
+  const std::size_t layer = shape.rows() * shape.size(0);
+  const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
+  const std::size_t wanted =
+      std::clamp<std::size_t>(threads * samples_per_thread / layer, 1, std::max<std::size_t>(1, shape.layers() - 1));
+  // Of layers, one more than slabs is counted, and another one is classified; or the next batch's are classified too.
+  const std::size_t bits = (ahead ? 2 : 1) * counter.layer_bytes();
+  constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
+  const auto fit = [&] {
+    const auto fixed =
+        static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
+    // In 2D planes are not passed on.
+    const std::size_t planes = (ahead && N == 2 ? 2 : 1) * (counter.layer_planes_bytes() + counter.slab_planes_bytes());
+    const auto each = static_cast<double>(bits + planes + (ahead ? 2 : 1) * kBookkeeping);
+    const double most = (std::max(kLittle, share * image) - fixed) / each;
+    return std::min(wanted, static_cast<std::size_t>(std::max(0.0, most)));
+  };
+  if (N == 4 && fit() < std::min(wanted, few)) counter.keep_tiles(false);
+  return std::max<std::size_t>(1, fit());
+}
+
+template <int N, class Real>
+class Extraction final : public SteppedExtraction<N, Real> {
+ public:
+  Extraction(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables, const ExtractOptions& options,
+             const ExtractPlan& plan, ContourOutput<N, Real>& output)
+      : SteppedExtraction<N, Real>(grid),
+        source_(source),
+        output_(output),
+        reporter_(options.progress, grid.axes[N - 1].size() - 1),
+        inverted_(options.ambiguity == Ambiguity::high),
+        max_vertices_(plan.max_vertices),
+        max_vertices_at_once_(plan.max_vertices_at_once),
+        selection_(plan.selection),
+        shape_(grid.sizes()),
+        tables_(tables),
+        rows_(tables.rows == nullptr && RowTable::can_use(*tables.tile) ? std::make_optional<RowTable>(*tables.tile)
+                                                                        : std::nullopt),
+        row_table_(rows_ ? &*rows_ : tables.rows),
+        placement_(grid, N == 4 || plan.keeps_off_layers),
+        estimator_(make_estimator(source, grid, options, plan)),
+        counter_(shape_, tables, row_table_, options.close, estimator_.get()),
+        tiles_(source, tables, row_table_, estimator_.get(), placement_, against_tables(grid, options) != inverted_,
+               counter_.has_cubes() && !counter_.lists_cubes()),
+        pinches_(shape_, counter_),
+        workers_(options.threads,
+                 [this] {
+                   return Scratch{counter_.make_scratch(), {source_, placement_, shape_}};
+                 }),
+        ahead_(workers_.count() > 1 && source.is_at_hand()),
+        batch_(plan.batch == 0 ? choose_batch(shape_, counter_, source.sample_bytes(), workers_.count(),
+                                              EdgeWriter<N, Real>::bytes(shape_.size(0), options.normals), ahead_)
+                               : std::min(plan.batch, shape_.layers() - 1)),
+        layers_((ahead_ ? 2 : 1) * batch_ + 2),
+        slabs_((ahead_ ? 2 : 1) * batch_ + 1) {
+    if (options.normals) placement_.want_normals(source, grid, options);
+    if (options.close)
+      caps_.emplace(source, shape_, tables_, counter_, placement_, estimator_.get(), inverted_,
+                    against_tables(grid, options), plan.closed_axes);
+    if (!plan.keeps_tiles) counter_.keep_tiles(false);
+    for (Layer<N>& layer : layers_) counter_.allocate(layer);
+    const std::size_t counted = kPassesPlanesOn ? batch_ + 1 : layers_.size();
+    for (std::size_t k = 0; k < counted; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
+    for (std::size_t k = 0; k + 1 < counted; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
+    if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
+    // Gradients look back to the layer before; estimators as far as they say.
+    source.keep(layers_.size() + std::max<std::size_t>(options.normals ? 1 : 0, 2 * reach_));
+  }
+
+  bool prepare_batch() override {
+    const std::size_t slabs = shape_.layers() - 1;
+    if (next_ == 0) expect_output();
+    if (next_ == slabs) {
+      reporter_.tell(static_cast<double>(slabs));
+      return false;
+    }
+    first_ = next_;
+    next_ = std::min(slabs, first_ + batch_);
+    reporter_.begin_batch(first_, next_, kPasses - (is_classified() ? 1 : 0));
+    reporter_.tell(static_cast<double>(first_));
+    if (is_classified()) return true;
+    Stopwatch watch;
+    prepare(next_);
+    watch.add_to(stats_.read_seconds);
+    return true;
+  }
+
+  void extract_batch() override {
+    const std::size_t slabs = shape_.layers() - 1;
+    const std::size_t first = first_, end = next_;
+    Stopwatch watch;
+    if (!is_classified()) {
+      classify(first, end);
+      watch.add_to(stats_.classify_seconds);
+    }
+    stats_.active_tiles += count(first, end);
+    watch.add_to(stats_.find_seconds);
+    part_.done = static_cast<double>(end) / static_cast<double>(slabs);
+    const auto room = output_.open(part_);
+    if (ahead_ && end < slabs) {
+      const double share = generate_ahead(first, end, std::min(slabs, end + batch_), room);
+      watch.share_between(stats_.classify_seconds, share, stats_.generate_seconds);
+    } else {
+      generate(first, end, room);
+      watch.add_to(stats_.generate_seconds);
+    }
+    gather_border(first, end);
+    watch.add_to(stats_.close_seconds);
+    if (estimator_) estimator_->rethrow();
+    output_.close(part_, pinches_);
+    watch.add_to(stats_.generate_seconds);
+    if (end < slabs) return;
+    output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
+    watch.add_to(stats_.close_seconds);
+  }
+
+ private:
+  using Vertex = typename Contour<N, Real>::Vertex;
+  using SteppedExtraction<N, Real>::stats_;
+
+  /// What a thread keeps.
+  struct Scratch {
+    CountScratch counting;
+    EdgeWriter<N, Real> edges;
+  };
+
+  /// Whether the batch at hand was classified with the one before.
+  [[nodiscard]] bool is_classified() const noexcept { return ahead_ && first_ != 0; }
+
+  Layer<N>& layer(std::size_t k) noexcept { return layers_[k % layers_.size()]; }
+  Slab<N>& slab(std::size_t k) noexcept { return slabs_[k % slabs_.size()]; }
+  Slab<N>* slab_above(std::size_t k) noexcept { return k + 1 < shape_.layers() ? &slab(k) : nullptr; }
+  SlabView<N> view(std::size_t k) noexcept { return {&shape_, {&layer(k), &layer(k + 1)}, &slab(k), k}; }
+
+  static std::unique_ptr<FaceEstimator<N>> make_estimator(const SampleSource<N>& source, const Grid<N>& grid,
+                                                          const ExtractOptions& options, const ExtractPlan& plan) {
+    if (!is_estimated(options.ambiguity)) return nullptr;
+    return std::make_unique<FaceEstimator<N>>(source, grid.sizes(), options, plan.part);
+  }
+
+  /// Calls work(k, chunk, scratch) for all chunks of the layers (or slabs) first ... end - 1, side by side. Asks now
+  /// and then whether to go on.
+  template <class Work>
+  void for_chunks(std::size_t first, std::size_t end, const Work& work) {
+    const std::size_t chunks = shape_.chunks();
+    const std::size_t chunk_samples = shape_.size(0) * std::min(shape_.rows(), kChunkRows);
+    const std::size_t most = kMostWork / chunk_samples + 1;
+    workers_.for_range((end - first) * chunks, kLeastWork / chunk_samples + 1,
+                       [&](std::size_t from, std::size_t to, Scratch& scratch) {
+                         for (std::size_t next; from < to && !reporter_.stopped(); from = next) {
+                           const std::size_t k = from / chunks;
+                           next = std::min({to, (k + 1) * chunks, from + most});
+                           for (std::size_t i = from; i < next; ++i) work(first + k, i - k * chunks, scratch);
+                           reporter_.add(next - from);
+                         }
+                       });
+  }
+
+  /// The same as one of the passes whose progress is told.
+  template <class Work>
+  void pass_over_chunks(std::size_t first, std::size_t end, const Work& work) {
+    reporter_.begin_pass((end - first) * shape_.chunks());
+    for_chunks(first, end, work);
+  }
+
+  /// The samples for classify(.., end).
+  void prepare(std::size_t end) {
+    wanted_ = std::min(end + 2, shape_.layers());
+    for (; prepared_ < std::min(end + 2 + reach_, shape_.layers()); ++prepared_) {
+      source_.prepare(prepared_);
+      reporter_.tell(0);
+    }
+  }
+
+  /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
+  void classify(std::size_t first, std::size_t end) {
+    pass_over_chunks(classified_, wanted_,
+                     [&](std::size_t k, std::size_t chunk, Scratch& scratch) { classify_chunk(k, chunk, scratch); });
+    finish_classification(first, end);
+  }
+  void classify_chunk(std::size_t k, std::size_t chunk, Scratch& scratch) {
+    counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data(), selection_);
+  }
+
+  /// What is missing in the layers that the slabs first ... end - 1 need, whose samples are classified.
+  void finish_classification(std::size_t first, std::size_t end) {
+    const std::size_t from = classified_;
+    classified_ = wanted_;
+    const std::size_t valid_end = std::min(end + 1, shape_.layers() - 1);
+    const std::size_t valid_from = first == 0 ? 0 : first + 1;
+    if (selection_ != nullptr && selection_->only_these()) return select_tiles(valid_from, valid_end);
+    for (std::size_t k = from; k < classified_; ++k) Counter<N>::find_missing(layer(k));
+    write_missing(from, classified_);
+    bool all = true;
+    for (std::size_t k = valid_from; k < valid_end; ++k) {
+      slab(k).all_valid = !layer(k).any_missing && !layer(k + 1).any_missing;
+      all = all && slab(k).all_valid;
+    }
+    if (all) return;
+    for (std::size_t k = valid_from; k < valid_end; ++k)
+      if (!slab(k).all_valid && slab(k).valid.empty()) counter_.allocate_valid(slab(k));
+    for_chunks(valid_from, valid_end, [&](std::size_t k, std::size_t chunk, Scratch&) {
+      if (!slab(k).all_valid) counter_.find_valid(layer(k), layer(k + 1), chunk, slab(k));
+    });
+  }
+
+  /// The tiles that count, where it is not the samples that tell.
+  void select_tiles(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      slab(k).all_valid = false;
+      if (slab(k).valid.empty()) counter_.allocate_valid(slab(k));
+    }
+    for_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch&) {
+      selection_->write_valid(k, chunk, shape_.chunk_end(chunk) - chunk * kChunkRows, shape_.words(), slab(k).valid);
+    });
+  }
+
+  /// Missing samples of layers that had no storage for any so far.
+  void write_missing(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+      Layer<N>& here = layer(k);
+      if (!here.any_missing || !here.missing.empty()) continue;
+      counter_.allocate_missing(here);
+      for_chunks(k, k + 1, [&](std::size_t, std::size_t chunk, Scratch& scratch) {
+        counter_.classify(source_, k, inverted_, chunk, here, scratch.counting.words.data(), selection_);
+      });
+    }
+  }
+
+  /// Gives the layers first_layer ... end, and the slabs first ... end - 1, the planes of those that are done with.
+  void take_planes(std::size_t first, std::size_t end) {
+    if (!kPassesPlanesOn) return;
+    for (std::size_t k = std::max(first + 1, batch_ + 1); k <= end; ++k)
+      std::swap<LayerPlanes<N>>(layer(k), layer(k - batch_ - 1));
+    for (std::size_t k = std::max(first, batch_); k < end; ++k) std::swap<SlabPlanes<N>>(slab(k), slab(k - batch_));
+  }
+
+  /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
+  std::uint64_t count(std::size_t first, std::size_t end) {
+    take_planes(first, end);
+    pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      if (k == 0) counter_.count_first_layer(layer(0), slab(0), chunk, scratch.counting.words.data());
+      counter_.count_slab(view(k), layer(k + 1), slab(k), slab_above(k + 1), chunk, scratch.counting);
+    });
+    if (estimator_) estimator_->rethrow();
+    const std::uint64_t before = part_.first_vertex;
+    part_.first_vertex = part_.end_vertex;
+    part_.first_simplex = part_.end_simplex;
+    std::uint64_t active = 0;
+    if (first == 0) place_layer(0);
+    for (std::size_t k = first; k < end; ++k) {
+      part_.end_vertex = counter_.place_slab(slab(k), part_.end_vertex, part_.end_simplex);
+      for (const SlabChunk& chunk : slab(k).chunks) active += chunk.active;
+      place_layer(k + 1);
+    }
+    check_vertex_count(part_.end_vertex, max_vertices_);
+    if (part_.end_vertex - before > max_vertices_at_once_)
+      throw Error(
+          ErrorCode::TooLarge,
+          fmt::format("{} vertices between layers {} and {} and in what comes before them; expected at most {}: "
+                      "contour parts of the image instead",
+                      part_.end_vertex - before, first, end, max_vertices_at_once_));
+    return active;
+  }
+
+  void place_layer(std::size_t k) { part_.end_vertex = counter_.place_layer(layer(k), part_.end_vertex); }
+
+  void expect_output() const {
+    const double samples = static_cast<double>(shape_.rows() * shape_.size(0)) * static_cast<double>(shape_.layers());
+    const double own = tables_.tile->max_tile_vertices + (counter_.has_cubes() ? 4.0 * tables::kFaceSlots : 0.0);
+    output_.expect(std::min(samples * (N + own), static_cast<double>(max_vertices_)),
+                   samples * tables_.tile->max_simplices);
+  }
+
+  void generate(std::size_t first, std::size_t end, typename ContourOutput<N, Real>::Room room) {
+    if (!is_wanted(room)) return;
+    pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      generate_chunk(k, chunk, scratch, room);
+    });
+  }
+  static bool is_wanted(const typename ContourOutput<N, Real>::Room& room) noexcept {
+    return room.vertices != nullptr || room.simplices != nullptr;
+  }
+  void generate_chunk(std::size_t k, std::size_t chunk, Scratch& scratch,
+                      const typename ContourOutput<N, Real>::Room& room) {
+    const VertexRun<Vertex> vertices{room.vertices, static_cast<Index>(part_.first_vertex), room.normals};
+    if (k == 0) generate_first_layer(chunk, scratch.edges, vertices);
+    generate_slab(k, chunk, scratch, vertices, room.simplices);
+  }
+
+  /// Generates the slabs first ... end - 1 and classifies what those up to `next_end` need, side by side: the one waits
+  /// for memory where the other computes, and threads meet once. What is likely to be written to next is touched by one
+  /// chunk in so many. Returns the classification's share of the time.
+  double generate_ahead(std::size_t first, std::size_t end, std::size_t next_end,
+                        const typename ContourOutput<N, Real>::Room& room) {
+    prepare(next_end);
+    const bool wanted = is_wanted(room);
+    const std::size_t slabs = std::max(end - first, wanted_ - classified_);
+    const std::size_t pieces = output_.pieces_ahead();
+    const std::size_t apart = pieces == 0 ? 0 : std::max<std::size_t>(1, slabs * shape_.chunks() / pieces);
+    std::atomic<std::int64_t> classifying = 0, generating = 0;
+    pass_over_chunks(0, slabs, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
+      const std::size_t ordinal = k * shape_.chunks() + chunk;
+      if (apart != 0 && ordinal % apart == 0 && ordinal / apart < pieces) output_.touch_ahead(ordinal / apart);
+      const std::int64_t start = Stopwatch::nanoseconds();
+      if (wanted && first + k < end) generate_chunk(first + k, chunk, scratch, room);
+      const std::int64_t middle = Stopwatch::nanoseconds();
+      if (classified_ + k < wanted_) classify_chunk(classified_ + k, chunk, scratch);
+      generating.fetch_add(middle - start, std::memory_order_relaxed);
+      classifying.fetch_add(Stopwatch::nanoseconds() - middle, std::memory_order_relaxed);
+    });
+    finish_classification(end, next_end);
+    const double both = static_cast<double>(classifying + generating);
+    return both > 0.0 ? static_cast<double>(classifying) / both : 0.0;
+  }
+
+  /// Where the points on edges of a chunk go, of a layer or along the last axis. Other vertices may come between them.
+  typename EdgeTarget<Vertex>::Run run_in_layer(std::size_t k, std::size_t chunk, VertexRun<Vertex> vertices) {
+    const Layer<N>& here = layer(k);
+    Vertex* const first = &vertices[here.edges[0].chunk_first[chunk]];
+    return {k, counter_.has_cubes() ? first : first + here.chunk_vertices[chunk]};
+  }
+  typename EdgeTarget<Vertex>::Run run_in_slab(std::size_t k, std::size_t chunk, VertexRun<Vertex> vertices) {
+    const Slab<N>& here = slab(k);
+    Vertex* const first = &vertices[here.edges.chunk_first[chunk]];
+    const bool others = counter_.has_cubes() || tables_.tile->max_tile_vertices != 0;
+    return {k, others ? first : first + here.chunks[chunk].vertices};
+  }
+
+  /// The vertices of a chunk of layer 0.
+  void generate_first_layer(std::size_t chunk, EdgeWriter<N, Real>& edges, VertexRun<Vertex> vertices) {
+    edges.start({run_in_layer(0, chunk, vertices), {}, vertices});
+    for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
+      edges.add_by_bits(&layer(0), nullptr, row);
+      generate_layer_cubes(0, row, vertices);
+    }
+    edges.finish();
+  }
+
+  /// The vertices and simplices of a chunk of slab k, and the vertices of the layer above it there.
+  void generate_slab(std::size_t k, std::size_t chunk, Scratch& scratch, VertexRun<Vertex> vertices,
+                     typename Contour<N, Real>::Simplex* simplices) {
+    const SlabView<N> around = view(k);
+    const Slab<N>& here = slab(k);
+    std::uint32_t busy = here.chunks[chunk].busy;
+    if (busy == 0) return;
+    EdgeWriter<N, Real>& edges = scratch.edges;
+    edges.start({run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
+    for (; busy != 0; busy &= busy - 1) {
+      const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(busy));
+      const RowTiles tiles = counter_.tiles(around, row, scratch.counting);
+      if (counter_.goes_by_tiles(here, row))
+        edges.add_by_tiles(around, row, tiles);
+      else
+        edges.add_by_bits(&layer(k + 1), &here, row);
+      generate_layer_cubes(k + 1, row, vertices);
+      generate_slab_cubes(around, k, row, vertices);
+      tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting);
+    }
+    edges.finish();
+  }
+
+  [[nodiscard]] const tables::TileTable& cubes_by_key() const {
+    return variant_table<3>(estimator_->triangulation()).tile();
+  }
+
+  void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
+                            [[maybe_unused]] VertexRun<Vertex> vertices) noexcept {
+    if constexpr (N == 4)
+      if (counter_.has_cubes() && !tiles_.writes_cubes(slab(k == 0 ? 0 : k - 1))) {
+        const Layer<N>& here = layer(k);
+        if (counter_.lists_cubes())
+          return generate_listed_cubes<7u>(source_, cubes_by_key(), placement_, {&shape_, {&here, nullptr}, nullptr},
+                                           here.cubes, row, k, vertices);
+        generate_cubes<7u>(source_, *tables_.cube, placement_, {&shape_, {&here, nullptr}, nullptr}, here.cubes, row, k,
+                           vertices);
+      }
+  }
+  void generate_slab_cubes([[maybe_unused]] const SlabView<N>& around, [[maybe_unused]] std::size_t k,
+                           [[maybe_unused]] std::size_t row,
+                           [[maybe_unused]] VertexRun<Vertex> vertices) const noexcept {
+    if constexpr (N == 4)
+      if (counter_.has_cubes() && !tiles_.writes_cubes(*around.slab)) {
+        const auto& cubes = around.slab->cubes;
+        if (counter_.lists_cubes()) {
+          generate_listed_cubes<14u>(source_, cubes_by_key(), placement_, around, cubes[0], row, k, vertices);
+          generate_listed_cubes<13u>(source_, cubes_by_key(), placement_, around, cubes[1], row, k, vertices);
+          generate_listed_cubes<11u>(source_, cubes_by_key(), placement_, around, cubes[2], row, k, vertices);
+          return;
+        }
+        generate_cubes<14u>(source_, *tables_.cube, placement_, around, cubes[0], row, k, vertices);
+        generate_cubes<13u>(source_, *tables_.cube, placement_, around, cubes[1], row, k, vertices);
+        generate_cubes<11u>(source_, *tables_.cube, placement_, around, cubes[2], row, k, vertices);
+      }
+  }
+
+  /// What closes the contour, and what may have to be taken apart, of the slabs first ... end - 1.
+  void gather_border(std::size_t first, std::size_t end) {
+    // Numbers count modulo 2^32: those met here are of this part or the one before.
+    pinches_.set_least(before_part_);
+    if (caps_) caps_->set_least(before_part_);
+    before_part_ = part_.first_vertex;
+    if (first == 0) {
+      pinches_.open_slab(0, slab(0));
+      pinches_.add_layer(0, layer(0));
+      if (caps_) caps_->add_layer(0, layer(0), nullptr, &slab(0));
+    }
+    reporter_.begin_pass(end - first);
+    for (std::size_t k = first; k < end; ++k) {
+      pinches_.add_slab(k, slab(k));
+      if (const Slab<N>* const above = slab_above(k + 1)) pinches_.open_slab(k + 1, *above);
+      pinches_.add_layer(k + 1, layer(k + 1));
+      if (caps_) {
+        caps_->add_layer(k + 1, layer(k + 1), &slab(k), slab_above(k + 1));
+        caps_->add_slab(k, view(k));
+      }
+      reporter_.add(1);
+    }
+  }
+
+  static constexpr std::size_t kLeastWork = 4096;                 ///< samples in a task
+  static constexpr std::size_t kMostWork = std::size_t{1} << 20;  ///< samples between two questions whether to go on
+  static constexpr unsigned kPasses = 4;  ///< over a batch: classify, count, generate, gather borders
+  /// The last layer is only classified, and the last slab only looked at for missing values: neither needs planes. (In
+  /// 2D a layer is a row, and to pass its planes on takes longer than it saves.)
+  static constexpr bool kPassesPlanesOn = N > 2;
+
+  SampleSource<N>& source_;
+  ContourOutput<N, Real>& output_;
+  ProgressReporter reporter_;
+  bool inverted_;
+  std::uint64_t max_vertices_;
+  std::uint64_t max_vertices_at_once_;
+  const TileSelection* selection_;
+  RowShape<N> shape_;
+  TableSet<N> tables_;
+  std::optional<RowTable> rows_;
+  const RowTable* row_table_;
+  Placement<N, Real> placement_;
+  std::unique_ptr<FaceEstimator<N>> estimator_;  ///< null: tables decide
+  Counter<N> counter_;
+  TileWriter<N, Real> tiles_;
+  std::optional<Caps<N, Real>> caps_;
+  PinchCandidates<N> pinches_;
+  Workers<Scratch> workers_;
+  bool ahead_;                    ///< whether the next batch is classified while one is generated
+  std::size_t batch_;             ///< slabs at a time
+  std::vector<Layer<N>> layers_;  ///< by k modulo their number
+  std::vector<Slab<N>> slabs_;
+  std::size_t first_ = 0;          ///< slab of the batch at hand
+  std::size_t next_ = 0;           ///< first slab behind it
+  std::size_t classified_ = 0;     ///< layers
+  std::size_t wanted_ = 0;         ///< layers, to be classified next
+  std::size_t prepared_ = 0;       ///< layers
+  std::size_t reach_ = 0;          ///< layers beyond those at work that an estimator looks at
+  ContourPart part_{};             ///< the last batch
+  std::uint64_t before_part_ = 0;  ///< first vertex of the batch before
+};
+
+/// A contour in memory.
+template <int N, class Real>
+class MemoryOutput final : public ContourOutput<N, Real> {
+ public:
+  using typename ContourOutput<N, Real>::Vertex;
+  using typename ContourOutput<N, Real>::Simplex;
+  using typename ContourOutput<N, Real>::Room;
+  MemoryOutput(Contour<N, Real>& contour, bool normals, std::uint64_t max_vertices)
+      : contour_(contour), normals_(normals), max_vertices_(max_vertices) {}
+
+  /// Address space for the largest contour that can be: memory is taken where it is written to. Where the system
+  /// has too little of it for all outputs and what else is needed, outputs grow.
+  void expect(double vertices, double simplices) override {
+    constexpr double kMostBytes = 0x1p40;
+    constexpr std::size_t kElse = std::size_t{1} << 26;
+    const auto reserve = [](auto& output, double most) {
+      const auto size = static_cast<double>(sizeof(output[0]));
+      output.reserve(static_cast<std::size_t>(std::min(most, kMostBytes / size)));
+    };
+    const auto give_back = [](auto& output) { std::remove_reference_t<decltype(output)>().swap(output); };
+    try {
+      reserve(contour_.vertices, vertices);
+      reserve(contour_.simplices, simplices);
+      if (normals_) reserve(contour_.normals, vertices);
+      Buffer<unsigned char>().reserve(kElse);
+    } catch (const std::bad_alloc&) {
+      give_back(contour_.vertices);
+      give_back(contour_.simplices);
+      give_back(contour_.normals);
+    }
+  }
+
+  Room open(const ContourPart& part) override {
+    ahead_.clear();
+    resize(contour_.vertices, part.end_vertex, part);
+    resize(contour_.simplices, part.end_simplex, part);
+    if (normals_) resize(contour_.normals, part.end_vertex, part);
+    return {contour_.vertices.data() + part.first_vertex, contour_.simplices.data() + part.first_simplex,
+            normals_ ? contour_.normals.data() + part.first_vertex : nullptr};
+  }
+
+  [[nodiscard]] std::size_t pieces_ahead() const noexcept override { return ahead_.size(); }
+  void touch_ahead(std::size_t piece) noexcept override { *static_cast<volatile unsigned char*>(ahead_[piece]) = 0; }
+
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
+    if (caps != nullptr) add_caps(*caps, all.end_vertex);
+    if (!pinches.any_missing()) return;
+    std::vector<Index> candidates(pinches.vertices().begin(), pinches.vertices().end());
+    for (std::uint64_t v = all.end_vertex; v < contour_.vertices.size(); ++v)
+      candidates.push_back(static_cast<Index>(v));
+    separate_pinches(contour_, candidates, max_vertices_);
+  }
+
+ private:
+  void add_caps(const Caps<N, Real>& caps, std::uint64_t first) {
+    check_vertex_count(first + caps.vertices().size(), max_vertices_);
+    contour_.vertices.insert(contour_.vertices.end(), caps.vertices().begin(), caps.vertices().end());
+    contour_.normals.insert(contour_.normals.end(), caps.normals().begin(), caps.normals().end());
+    contour_.simplices.reserve(contour_.simplices.size() + caps.simplices().size());
+    for (const auto& simplex : caps.simplices()) {
+      Simplex& narrow = contour_.simplices.emplace_back();
+      for (int j = 0; j < N; ++j) narrow[j] = static_cast<Index>(caps.number(simplex[j], first));
+    }
+  }
+
+  template <class Items>
+  void resize(Items& output, std::uint64_t size, const ContourPart& part) {
+    const std::uint64_t last = size - output.size();
+    resize_output(output, size, part.done);
+    look_ahead(output, last, part.done);
+  }
+
+  /// Notes the huge pages that come next, for as much as the last part was, within what all is expected to be.
+  template <class Items>
+  void look_ahead(Items& output, std::uint64_t last, double done) {
+    constexpr std::size_t kItem = sizeof(output[0]);
+    if (output.capacity() * kItem < kLargeBlock) return;
+    const auto rest = static_cast<std::uint64_t>(static_cast<double>(output.size()) * (1.0 - done) / done);
+    const std::size_t more = std::min<std::uint64_t>({last, rest, output.capacity() - output.size()});
+    // Large blocks begin with a page.
+    auto* const block = reinterpret_cast<unsigned char*>(output.data());
+    const std::size_t first = (output.size() * kItem + kLargeBlock - 1) / kLargeBlock * kLargeBlock;
+    for (std::size_t at = first; at < (output.size() + more) * kItem; at += kLargeBlock) ahead_.push_back(block + at);
+  }
+
+  Contour<N, Real>& contour_;
+  bool normals_;
+  std::uint64_t max_vertices_;
+  std::vector<void*> ahead_;
+};
+
+}  // namespace
+
+template <int N, class Real>
+ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                        const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output) {
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
+  Extraction<N, Real> extraction(source, grid, tables, options, plan, output);
+  extraction.run();
+  return extraction.stats();
+}
+
+template <int N, class Real>
+std::unique_ptr<SteppedExtraction<N, Real>> make_extraction(SampleSource<N>& source, const Grid<N>& grid,
+                                                            const TableSet<N>& tables, const ExtractOptions& options,
+                                                            const ExtractPlan& plan, ContourOutput<N, Real>& output) {
+  if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return nullptr;
+  return std::make_unique<Extraction<N, Real>>(source, grid, tables, options, plan, output);
+}
+
+template <int N, class Real>
+Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
+                                const ExtractOptions& options, ExtractStats* stats, const ExtractPlan& plan) {
+  Contour<N, Real> contour;
+  for (int a = 0; a < N; ++a) {
+    contour.axis_names[a] = grid.axes[a].name;
+    contour.axis_units[a] = grid.axes[a].unit;
+  }
+  contour.direction = options.direction;
+  MemoryOutput<N, Real> output(contour, options.normals, plan.max_vertices);
+  const ExtractStats done = extract_to(source, grid, tables, options, plan, output);
+  if (stats != nullptr) *stats = done;
+  return contour;
+}
+
+#define TEGL_INSTANTIATE(N, Real)                                                                                \
+  template ExtractStats extract_to<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,                \
+                                            const ExtractOptions&, const ExtractPlan&, ContourOutput<N, Real>&); \
+  template std::unique_ptr<SteppedExtraction<N, Real>> make_extraction<N, Real>(                                 \
+      SampleSource<N>&, const Grid<N>&, const TableSet<N>&, const ExtractOptions&, const ExtractPlan&,           \
+      ContourOutput<N, Real>&);                                                                                  \
+  template Contour<N, Real> extract_source<N, Real>(SampleSource<N>&, const Grid<N>&, const TableSet<N>&,        \
+                                                    const ExtractOptions&, ExtractStats*, const ExtractPlan&);
+TEGL_INSTANTIATE(2, float)
+TEGL_INSTANTIATE(2, double)
+TEGL_INSTANTIATE(3, float)
+TEGL_INSTANTIATE(3, double)
+TEGL_INSTANTIATE(4, float)
+TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
+
+}  // namespace tegl::detail

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Normals of vertices: the image's gradient there, in the world, of length 1.
+// Based on: M. Liversage, thesis, 1994, section 8.2. Vertices that are not on edges of the grid (barycentres, corners
+// of caps) have the gradient at the corners of their cell, interpolated multilinearly: on edges that is the same.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <Eigen/LU>
+
+#include "image/extract_source.hpp"
+#include "kernel/edge_normals.hpp"
+#include "tegl/extract.hpp"
+
+namespace tegl::detail {
+
+/// Room for the values around edges. They are read by whole registers: what is behind the last is zero, or from before.
+template <class Calc>
+struct EdgeValues {
+  std::array<Calc, (kEdgeValues<4> + 1) * kEdgesAtOnce> values{};
+  std::array<Calc, 4 * kEdgesAtOnce> row_weights{};
+};
+
+/// What a thread keeps between rows: an extraction calculates in one of the types.
+class NormalScratch {
+ public:
+  template <class Calc>
+  [[nodiscard]] EdgeValues<Calc>& of() noexcept {
+    if (auto* const there = std::get_if<EdgeValues<Calc>>(&values_)) return *there;
+    return values_.emplace<EdgeValues<Calc>>();
+  }
+
+ private:
+  std::variant<EdgeValues<double>, EdgeValues<float>> values_;
+};
+
+template <int N, class Real>
+class NormalWriter {
+ public:
+  using Index = std::array<std::size_t, N>;
+  using Vertex = std::array<Real, N>;
+
+  /// The source must outlive it.
+  NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction, GradientKind kind)
+      : source_(source),
+        kind_(kind),
+        steps_(steps_of(source, grid)),
+        sizes_(grid.sizes()),
+        mapped_(grid.has_world_map()),
+        sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
+        // A map may make much of small differences, for which float has too few digits.
+        in_float_(std::is_same_v<Real, float> && source.fits_float() && !mapped_) {
+    // Gradients are covectors: the inverse transpose carries them along.
+    if (mapped_) to_world_ = sign_ * grid.linear.inverse().transpose();
+  }
+
+  /// Whether rows may be worked on together: what is around their edges is weighted alike.
+  [[nodiscard]] bool is_inside(const Index& index) const noexcept {
+    for (int a = 1; a + 1 < N; ++a)
+      if (!steps_[a].is_uniform() || index[a] == 0 || index[a] + 2 >= sizes_[a]) return false;
+    return true;
+  }
+
+  /// The normals on edges along `axis`, from samples of the row `start` on, or of rows that are inside of which it is
+  /// one (start[0] means nothing). `start_of(i)` is the index of edge i's first sample.
+  template <class StartOf>
+  void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
+             Vertex* out, const StartOf& start_of) const noexcept {
+    if (kind_ != GradientKind::differences) {
+      for (std::size_t i = 0; i < edges.count; ++i) out[i] = on_edge(start_of(i), axis, alphas[i]);
+      return;
+    }
+    if constexpr (std::is_same_v<Real, float>)
+      if (in_float_) return edges_by(start, axis, edges, alphas, scratch.of<float>(), out, start_of);
+    edges_by(start, axis, edges, alphas, scratch.of<double>(), out, start_of);
+  }
+
+  /// As Placement::in_cell.
+  template <class Frame>
+  [[nodiscard]] Vertex in_cell(const Index& base, const std::array<double, Frame::kDim>& place) const noexcept {
+    std::array<double, N> sum{};
+    for (unsigned corner = 0; corner < 1u << Frame::kDim; ++corner) {
+      double weight = 1.0;
+      for (int j = 0; j < Frame::kDim; ++j) weight *= (corner >> j & 1u) != 0 ? place[j] : 1.0 - place[j];
+      if (weight == 0.0) continue;
+      Index index = base;
+      for (int a = 0; a < N; ++a) index[a] += Frame::spread(corner) >> a & 1u;
+      const auto gradient = gradient_at(index);
+      for (int a = 0; a < N; ++a) sum[a] += weight * gradient[a];
+    }
+    return normal(sum);
+  }
+
+ private:
+  static std::array<AxisSteps, N> steps_of(const SampleSource<N>& source, const Grid<N>& grid) {
+    return [&]<std::size_t... A>(std::index_sequence<A...>) {
+      return std::array<AxisSteps, N>{(A + 1 < N ? AxisSteps(grid.axes[A]) : source.last_steps(grid))...};
+    }
+    (std::make_index_sequence<N>());
+  }
+
+  template <class Calc, class StartOf>
+  void edges_by(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, EdgeValues<Calc>& scratch,
+                Vertex* out, const StartOf& start_of) const noexcept {
+    EdgeSurroundings<N> around{start[N - 1], axis, {}};
+    NormalRow<N, Real, Calc> row{scratch.values.data(), 0, axis, {}, nullptr, nullptr, static_cast<Calc>(sign_), out};
+    describe(start, around, row);
+    if constexpr (std::is_same_v<Calc, double>)
+      if (mapped_) row.to_world = to_world_.data();
+    if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
+    for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
+      row.count = std::min(kEdgesAtOnce, edges.count - i);
+      const Word at_ends =
+          source_.around_edges(around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
+      Calc* const places = scratch.values.data() + kEdgeValues<N> * kEdgesAtOnce;
+      for (std::size_t j = 0; j < row.count; ++j) places[j] = static_cast<Calc>(alphas[i + j]);
+      if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
+      Word left = write_normals(row);
+      // There the weights are not those inside.
+      if (row.row_weights == nullptr) left |= at_ends;
+      for (; left != 0; left &= left - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(left));
+        row.out[j] = on_edge(start_of(i + j), axis, alphas[i + j]);
+      }
+    }
+  }
+
+  /// What the edges have in common.
+  template <class Calc>
+  void describe(const Index& start, EdgeSurroundings<N>& around, NormalRow<N, Real, Calc>& row) const noexcept {
+    const auto set = [&](int a, const StepWeights& first, const StepWeights& second) {
+      row.weights[a] = {static_cast<Calc>(first.backward), static_cast<Calc>(first.forward),
+                        static_cast<Calc>(second.backward), static_cast<Calc>(second.forward)};
+    };
+    set(0, steps_[0].inside(), steps_[0].inside());
+    for (int a = 1; a < N; ++a) {
+      const std::size_t first = start[a];
+      const std::size_t second = first + (a == around.axis ? 1 : 0);
+      around.exists[a] = {steps_[a].has_backward(first), steps_[a].has_forward(first), steps_[a].has_backward(second),
+                          steps_[a].has_forward(second)};
+      set(a, steps_[a].at(first), steps_[a].at(second));
+    }
+  }
+
+  template <class Calc>
+  void fill_row_weights(int axis, const std::uint32_t* at, std::size_t count, Calc* out) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      const StepWeights first = steps_[0].at(at[i]);
+      const StepWeights second = axis == 0 ? steps_[0].at(at[i] + std::size_t{1}) : first;
+      out[i] = static_cast<Calc>(first.backward);
+      out[kEdgesAtOnce + i] = static_cast<Calc>(first.forward);
+      out[2 * kEdgesAtOnce + i] = static_cast<Calc>(second.backward);
+      out[3 * kEdgesAtOnce + i] = static_cast<Calc>(second.forward);
+    }
+  }
+
+  [[nodiscard]] std::array<double, N> gradient_at(const Index& index) const noexcept {
+    return kind_ == GradientKind::sobel ? source_.sobel(index, steps_) : source_.gradient(index, steps_);
+  }
+
+  /// One normal, whatever the values.
+  [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha) const noexcept {
+    std::array<double, N> gradient = gradient_at(index);
+    ++index[axis];
+    const std::array<double, N> there = gradient_at(index);
+    // Not by their difference, which may be too large for a number.
+    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
+    return normal(gradient);
+  }
+
+  /// 0 where the gradient vanishes.
+  [[nodiscard]] Vertex normal(std::array<double, N> gradient) const noexcept {
+    std::array<double, N> v = in_world(gradient);
+    double square = square_of(v);
+    if (!(square > 1e-280 && square < 1e280)) {
+      scale(gradient);
+      v = in_world(gradient);
+      scale(v);
+      square = square_of(v);
+    }
+    const double inverse = square > 0.0 ? 1.0 / std::sqrt(square) : 0.0;
+    Vertex result;
+    for (int a = 0; a < N; ++a) result[a] = static_cast<Real>(v[a] * inverse);
+    return result;
+  }
+
+  [[nodiscard]] std::array<double, N> in_world(const std::array<double, N>& gradient) const noexcept {
+    std::array<double, N> v{};
+    for (int a = 0; a < N; ++a) {
+      if (!mapped_) v[a] = sign_ * gradient[a];
+      for (int b = 0; b < N && mapped_; ++b) v[a] += to_world_(a, b) * gradient[b];
+    }
+    return v;
+  }
+
+  static double square_of(const std::array<double, N>& v) noexcept {
+    double square = 0.0;
+    for (const double x : v) square += x * x;
+    return square;
+  }
+
+  /// Brings the largest component to 1, if there is one; of infinite ones, all of them, and the others to 0.
+  static void scale(std::array<double, N>& v) noexcept {
+    double largest = 0.0;
+    for (const double x : v) largest = std::max(largest, std::abs(x));
+    for (double& x : v) {
+      if (std::isinf(largest))
+        x = std::isinf(x) ? std::copysign(1.0, x) : 0.0;
+      else
+        x = largest > 0.0 ? x / largest : 0.0;
+    }
+  }
+
+  const SampleSource<N>& source_;
+  GradientKind kind_;
+  std::array<AxisSteps, N> steps_;
+  Index sizes_;
+  bool mapped_;
+  double sign_;
+  bool in_float_;
+  Eigen::Matrix<double, N, N, Eigen::RowMajor> to_world_ = Eigen::Matrix<double, N, N>::Identity();
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Points on critical edges; see extract_points.hpp. This file is compiled once per instruction set
+// (Highway's foreach_target). Additions and multiplications stay apart, and comparisons choose as std::clamp does, so
+// that all sets give the same bytes.
+#include "kernel/extract_points.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/extract_points.cpp"
+#include "base/dispatch.hpp"
+// Highway's own headers come after this one.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using AllLanes = hn::ScalableTag<double>;
+using OneLane = hn::CappedTag<double, 1>;
+
+/// Four at a time, whatever is left of a word: how many bits it has is hard to foresee, and a wrong guess costs more
+/// than what is written for nothing.
+std::size_t bits_to_list(const Word* bits, std::size_t words, std::uint32_t* at) {
+  const std::uint32_t* const first = at;
+  for (std::size_t w = 0; w < words; ++w) {
+    Word rest = bits[w];
+    if (rest == 0) continue;
+    const auto base = static_cast<std::uint32_t>(w * kWordBits);
+    const int count = std::popcount(rest);
+    for (int done = 0; done < count; done += 4)
+      for (int i = 0; i < 4; ++i, rest &= rest - 1)
+        at[done + i] = base + static_cast<std::uint32_t>(std::countr_zero(rest));
+    at += count;
+  }
+  return static_cast<std::size_t>(at - first);
+}
+
+template <class D, class V>
+HWY_INLINE V clamped(D, V value, V low, V high) {
+  return hn::IfThenElse(hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
+}
+
+/// As Placement::between.
+template <class D, class V>
+HWY_INLINE V between(D d, V a, V b, V x) {
+  const auto point = hn::Add(a, hn::Mul(x, hn::Sub(b, a)));
+  return hn::IfThenElse(hn::Ge(x, hn::Set(d, 1.0)), b, clamped(d, point, hn::Min(a, b), hn::Max(a, b)));
+}
+
+template <class Real, class D>
+HWY_INLINE auto to_real(D /*d*/, hn::Vec<D> value) {
+  if constexpr (std::is_same_v<Real, double>)
+    return value;
+  else
+    return hn::DemoteTo(hn::Rebind<float, D>(), value);
+}
+
+template <class D, class V>
+HWY_INLINE void store_vertices(D d, const std::array<V, 2>& x, hn::TFromD<D>* out) {
+  hn::StoreInterleaved2(x[0], x[1], d, out);
+}
+template <class D, class V>
+HWY_INLINE void store_vertices(D d, const std::array<V, 3>& x, hn::TFromD<D>* out) {
+  hn::StoreInterleaved3(x[0], x[1], x[2], d, out);
+}
+template <class D, class V>
+HWY_INLINE void store_vertices(D d, const std::array<V, 4>& x, hn::TFromD<D>* out) {
+  hn::StoreInterleaved4(x[0], x[1], x[2], x[3], d, out);
+}
+
+/// Coordinates along the row of the samples `at` + `ahead`.
+template <class D, int N, class Real>
+HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std::uint32_t* at, unsigned ahead) {
+  if (edges.along == nullptr) {
+    const hn::Rebind<std::int32_t, D> integers;
+    const auto index = hn::PromoteTo(d, hn::LoadU(integers, reinterpret_cast<const std::int32_t*>(at)));
+    const auto moved = ahead == 0 ? index : hn::Add(index, hn::Set(d, 1.0));
+    return hn::Add(hn::Set(d, edges.origin), hn::Mul(moved, hn::Set(d, edges.step)));
+  }
+  constexpr std::size_t kLanes = hn::MaxLanes(D());
+  alignas(64) double coordinates[kLanes];
+  for (std::size_t i = 0; i < kLanes; ++i) coordinates[i] = edges.along[at[i] + ahead];
+  return hn::Load(d, coordinates);
+}
+
+/// As many points as D has lanes, from edge `i` on.
+template <class D, int N, class Real>
+HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i) {
+  const hn::Rebind<Real, D> real;
+  const std::uint32_t* const at = edges.at + i;
+  std::array<hn::Vec<D>, N> point;
+  point[0] = along_row(d, edges, at, 0);
+  for (int a = 1; a + 1 < N; ++a) point[a] = hn::LoadU(d, edges.start[a] + i);
+  point[N - 1] = hn::Set(d, edges.layer);
+  const auto end = edges.axis == 0       ? along_row(d, edges, at, 1)
+                   : edges.axis == N - 1 ? hn::Set(d, edges.next_layer)
+                                         : hn::LoadU(d, edges.end + i);
+  point[edges.axis] = between(d, point[edges.axis], end, hn::LoadU(d, edges.alphas + i));
+  std::array<hn::Vec<decltype(real)>, N> vertex;
+  for (int a = 0; a < N; ++a) {
+    if (edges.linear == nullptr) {
+      vertex[a] = to_real<Real>(d, point[a]);
+      continue;
+    }
+    auto sum = hn::Zero(d);
+    for (int b = 0; b < N; ++b) sum = hn::Add(sum, hn::Mul(hn::Set(d, edges.linear[a * N + b]), point[b]));
+    vertex[a] = to_real<Real>(d, hn::Add(sum, hn::Set(d, edges.offset[a])));
+  }
+  if (!std::isnan(edges.inside[0]))
+    vertex[N - 1] = clamped(real, vertex[N - 1], hn::Set(real, edges.inside[0]), hn::Set(real, edges.inside[1]));
+  store_vertices(real, vertex, edges.out[i].data());
+}
+
+template <int N, class Real>
+HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
+  constexpr std::size_t kLanes = hn::MaxLanes(AllLanes());
+  std::size_t i = 0;
+  for (; i + kLanes <= edges.count; i += kLanes) write_some(AllLanes(), edges, i);
+  for (; i < edges.count; ++i) write_some(OneLane(), edges, i);
+}
+
+// Highway's tables of functions hold no templates.
+void points2f(const EdgePoints<2, float>& edges) { points(edges); }
+void points3f(const EdgePoints<3, float>& edges) { points(edges); }
+void points4f(const EdgePoints<4, float>& edges) { points(edges); }
+void points2d(const EdgePoints<2, double>& edges) { points(edges); }
+void points3d(const EdgePoints<3, double>& edges) { points(edges); }
+void points4d(const EdgePoints<4, double>& edges) { points(edges); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+HWY_EXPORT(bits_to_list);
+std::size_t list_bits(const Word* bits, std::size_t words, std::uint32_t* at) noexcept {
+  return HWY_DYNAMIC_DISPATCH(bits_to_list)(bits, words, at);
+}
+
+#define TEGL_DISPATCH(N, Real, name)                                      \
+  HWY_EXPORT(name);                                                       \
+  template <>                                                             \
+  void write_points<N, Real>(const EdgePoints<N, Real>& edges) noexcept { \
+    HWY_DYNAMIC_DISPATCH(name)(edges);                                    \
+  }
+TEGL_DISPATCH(2, float, points2f)
+TEGL_DISPATCH(3, float, points3f)
+TEGL_DISPATCH(4, float, points4f)
+TEGL_DISPATCH(2, double, points2d)
+TEGL_DISPATCH(3, double, points3d)
+TEGL_DISPATCH(4, double, points4d)
+#undef TEGL_DISPATCH
+
+}  // namespace tegl::detail
+
+#endif  // HWY_ONCE

@@ -1,0 +1,689 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The innermost loops; see extract_rows.hpp. This file is compiled once per instruction set (Highway's foreach_target).
+#include "tile/extract_rows.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#define HWY_WANT_AVX3_DL
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernel/extract_rows.cpp"
+#include "base/dispatch.hpp"
+// Highway's own headers come after this one.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// A mask's lanes as bits, lane 0 lowest.
+template <class D, class M>
+HWY_INLINE Word bits_of(D d, M mask) {
+  static_assert(hn::MaxLanes(D()) <= 8);
+  alignas(8) std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0];
+}
+
+/// The tiles with high and low corners among the 64 that start at word w of `rows` (no word is looked at beyond w + 1).
+template <std::size_t Rows>
+HWY_INLINE Word mixed_word(const std::array<const Word*, Rows>& rows, std::size_t used, std::size_t w) {
+  Word any = 0, all = ~Word{0}, next_any = 0, next_all = 1;
+  for (std::size_t r = 0; r < used; ++r) {
+    any |= rows[r][w];
+    all &= rows[r][w];
+    next_any |= rows[r][w + 1];
+    next_all &= rows[r][w + 1];
+  }
+  return (any | any >> 1 | next_any << (kWordBits - 1)) & ~(all & (all >> 1 | next_all << (kWordBits - 1)));
+}
+
+/// The critical edges that a row of tiles counts (TileCount::edges) among the 64 at word w, by axis.
+template <int N, std::size_t Rows>
+HWY_INLINE std::array<Word, N> edge_words(const std::array<const Word*, Rows>& rows, std::size_t w) {
+  constexpr unsigned kUpper = 1u << (N - 2);
+  const Word here = rows[kUpper][w];
+  std::array<Word, N> edges;
+  edges[0] = here ^ (here >> 1 | rows[kUpper][w + 1] << (kWordBits - 1));
+  for (unsigned a = 1; a + 1 < N; ++a) edges[a] = here ^ rows[kUpper | 1u << (a - 1)][w];
+  edges[N - 1] = here ^ rows[0][w];
+  return edges;
+}
+
+/// mixed_word for `words` words of a row (at most 64) from word `first` on; returns which of them are not 0. Adds up
+/// critical edges: behind the last sample there is one along the row if it is high.
+template <int N, std::size_t Rows>
+HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size_t first, std::size_t words,
+                            Word* mixed, std::array<std::uint32_t, 4>& edges) {
+  constexpr unsigned kRows = 1u << (N - 1);
+  constexpr unsigned kUpper = kRows / 2;
+  const hn::ScalableTag<Word> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  Word present = 0;
+  std::array<hn::Vec<decltype(d)>, N> sums;
+  for (auto& sum : sums) sum = hn::Zero(d);
+  std::size_t i = 0;
+  for (; i + kLanes <= words; i += kLanes) {
+    const std::size_t w = first + i;
+    std::array<hn::Vec<decltype(d)>, kRows> here;
+    auto any = hn::Zero(d), next_any = any;
+    auto all = hn::Not(any), next_all = all;
+    for (unsigned r = 0; r < kRows; ++r) {
+      here[r] = hn::LoadU(d, rows[r] + w);
+      const auto next = hn::LoadU(d, rows[r] + w + 1);
+      any = hn::Or(any, here[r]);
+      all = hn::And(all, here[r]);
+      next_any = hn::Or(next_any, next);
+      next_all = hn::And(next_all, next);
+    }
+    const auto next = hn::LoadU(d, rows[kUpper] + w + 1);
+    const auto shifted = hn::Or(hn::ShiftRight<1>(here[kUpper]), hn::ShiftLeft<kWordBits - 1>(next));
+    sums[0] = hn::Add(sums[0], hn::PopulationCount(hn::Xor(here[kUpper], shifted)));
+    for (unsigned a = 1; a + 1 < N; ++a)
+      sums[a] = hn::Add(sums[a], hn::PopulationCount(hn::Xor(here[kUpper], here[kUpper | 1u << (a - 1)])));
+    sums[N - 1] = hn::Add(sums[N - 1], hn::PopulationCount(hn::Xor(here[kUpper], here[0])));
+    any = hn::Or(hn::Or(any, hn::ShiftRight<1>(any)), hn::ShiftLeft<kWordBits - 1>(next_any));
+    all = hn::And(all, hn::Or(hn::ShiftRight<1>(all), hn::ShiftLeft<kWordBits - 1>(next_all)));
+    const auto found = hn::AndNot(all, any);
+    hn::StoreU(found, d, mixed + w);
+    present |= bits_of(d, hn::Ne(found, hn::Zero(d))) << i;
+  }
+  for (unsigned a = 0; a < N; ++a) edges[a] += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(d, sums[a])));
+  for (; i < words; ++i) {
+    mixed[first + i] = mixed_word(rows, kRows, first + i);
+    present |= Word{mixed[first + i] != 0} << i;
+    const auto here = edge_words<N>(rows, first + i);
+    for (unsigned a = 0; a < N; ++a) edges[a] += static_cast<std::uint32_t>(std::popcount(here[a]));
+  }
+  return present;
+}
+
+/// Eight corners of 64 tiles, a word each, to a byte for each tile.
+HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8_t* bytes) {
+  const hn::CappedTag<std::uint8_t, kWordBits> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+#if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+  (void)d;
+  (void)kLanes;
+  for (unsigned i = 0; i < kWordBits; ++i) {
+    bytes[i] = 0;
+    for (unsigned c = 0; c < count; ++c) bytes[i] |= static_cast<std::uint8_t>((corners[c] >> i & 1u) << c);
+  }
+#else
+  for (std::size_t i = 0; i < kWordBits; i += kLanes) {
+    auto sum = hn::Zero(d);
+    for (unsigned c = 0; c < count; ++c) {
+      const auto* const bits = reinterpret_cast<const std::uint8_t*>(corners + c) + i / 8;
+      sum = hn::Or(sum, hn::IfThenElseZero(hn::LoadMaskBits(d, bits), hn::Set(d, static_cast<std::uint8_t>(1u << c))));
+    }
+    hn::StoreU(sum, d, bytes + i);
+  }
+#endif
+}
+
+#if HWY_TARGET <= HWY_AVX3_DL
+
+/// Eight words, each a corner of 64 tiles, to a byte for each tile.
+HWY_INLINE __m512i corner_bytes(__m512i words) {
+  alignas(64) static constexpr auto kByWord = [] {
+    std::array<std::uint8_t, 64> order{};
+    for (unsigned i = 0; i < 64; ++i) order[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
+    return order;
+  }();
+  __m512i x = _mm512_permutexvar_epi8(_mm512_load_si512(kByWord.data()), words);
+  // Squares of 8 x 8 bits are mirrored: their quarters, the quarters of these, and those of these.
+  const auto swap = [&x](int distance, long long chosen) HWY_ATTR {
+    const __m512i mask = _mm512_set1_epi64(chosen);
+    const __m128i by = _mm_cvtsi32_si128(distance);
+    const __m512i t = _mm512_ternarylogic_epi64(x, _mm512_srl_epi64(x, by), mask, 0x28);
+    x = _mm512_ternarylogic_epi64(x, t, _mm512_sll_epi64(t, by), 0x96);
+  };
+  swap(7, 0x00AA00AA00AA00AA);
+  swap(14, 0x0000CCCC0000CCCC);
+  swap(28, 0x00000000F0F0F0F0);
+  return x;
+}
+
+/// The signatures of the 64 tiles from word w on, by byte; `half` of their corners.
+template <int N>
+HWY_INLINE __m512i signature_bytes(const TileRow& row, std::size_t w, unsigned half) {
+  const auto two = [&](unsigned r) HWY_ATTR {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row.corners[4 * half + r] + w));
+  };
+  __m512i words = _mm512_inserti64x2(_mm512_zextsi128_si512(two(0)), two(1), 1);
+  if constexpr (N > 2) words = _mm512_inserti64x2(_mm512_inserti64x2(words, two(2), 2), two(3), 3);
+  const __m512i here = _mm512_unpacklo_epi64(words, words);
+  return corner_bytes(_mm512_mask_shrdi_epi64(here, 0xAA, here, _mm512_unpackhi_epi64(words, words), 1));
+}
+
+/// The sum of the entries of `signatures` in a table of 256.
+HWY_INLINE std::uint32_t sum_of_entries(__m512i signatures, const std::uint8_t* table) {
+  const __m512i low = _mm512_permutex2var_epi8(_mm512_loadu_si512(table), signatures, _mm512_loadu_si512(table + 64));
+  const __m512i high =
+      _mm512_permutex2var_epi8(_mm512_loadu_si512(table + 128), signatures, _mm512_loadu_si512(table + 192));
+  const __m512i entries = _mm512_mask_blend_epi8(_mm512_movepi8_mask(signatures), low, high);
+  return static_cast<std::uint32_t>(_mm512_reduce_add_epi64(_mm512_sad_epu8(entries, _mm512_setzero_si512())));
+}
+
+/// Writes the signatures and places of the tiles `mixed` of word w, from entry `at` on. Returns how many simplices they
+/// have. No branch depends on how many tiles there are, but beyond 32.
+template <int N>
+HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
+                                    const TileRoom& room, std::size_t at) {
+  alignas(64) static constexpr auto kCountUp = [] {
+    std::array<std::uint8_t, 64> numbers{};
+    for (unsigned i = 0; i < 64; ++i) numbers[i] = static_cast<std::uint8_t>(i);
+    return numbers;
+  }();
+  const auto count = static_cast<unsigned>(std::popcount(mixed));
+  const __m512i first = _mm512_set1_epi16(static_cast<short>(w * kWordBits));
+  const auto half_of = [](__m512i bytes, int half) HWY_ATTR {
+    return _mm512_cvtepu8_epi16(half == 0 ? _mm512_castsi512_si256(bytes) : _mm512_extracti64x4_epi64(bytes, 1));
+  };
+  const auto store = [&](std::uint16_t* to, auto words_of) HWY_ATTR {
+    _mm512_storeu_si512(to, words_of(0));
+    if (count > 32) _mm512_storeu_si512(to + 32, words_of(1));
+  };
+  const __m512i along = _mm512_maskz_compress_epi8(mixed, _mm512_load_si512(kCountUp.data()));
+  store(room.at + at, [&](int half) HWY_ATTR { return _mm512_add_epi16(first, half_of(along, half)); });
+  const __m512i low = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 0));
+  std::uint16_t* const out = room.signatures + at;
+  if constexpr (N == 4) {
+    const __m512i high = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 1));
+    store(out, [&](int half)
+                   HWY_ATTR { return _mm512_or_si512(half_of(low, half), _mm512_slli_epi16(half_of(high, half), 8)); });
+    std::uint32_t simplices = 0;
+    for (unsigned i = 0; i < count; ++i) simplices += table.entries()[out[i]] & RowTable::kCountMask;
+    return simplices;
+  } else {
+    store(out, [&](int half) HWY_ATTR { return half_of(low, half); });
+    return sum_of_entries(low, table.counts());  // tiles without corners of both kinds have no simplices
+  }
+}
+
+#else
+
+/// Writes the signatures and places of the tiles `mixed` of word w, from entry `at` on. Returns how many simplices they
+/// have.
+template <int N>
+HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
+                                    const TileRoom& room, std::size_t at) {
+  constexpr unsigned kRows = 1u << (N - 1);
+  constexpr unsigned kCorners = 2 * kRows;
+  constexpr unsigned kFew = HWY_TARGET <= HWY_AVX3 ? 2 : HWY_TARGET <= HWY_AVX2 ? 4 : HWY_TARGET == HWY_SCALAR ? 64 : 8;
+  Word corners[kCorners];
+  for (unsigned r = 0; r < kRows; ++r) {
+    corners[2 * r] = row.corners[r][w];
+    corners[2 * r + 1] = row.corners[r][w] >> 1 | row.corners[r][w + 1] << (kWordBits - 1);
+  }
+  const auto first = static_cast<unsigned>(w * kWordBits);
+  std::uint32_t simplices = 0;
+  const auto take = [&](unsigned bit, unsigned signature) HWY_ATTR {
+    room.signatures[at] = static_cast<std::uint16_t>(signature);
+    room.at[at++] = static_cast<std::uint16_t>(first + bit);
+    simplices += table.entries()[signature] & RowTable::kCountMask;
+  };
+  if (static_cast<unsigned>(std::popcount(mixed)) <= kFew) {
+    for (; mixed != 0; mixed &= mixed - 1) {
+      const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+      unsigned signature = 0;
+      for (unsigned c = 0; c < kCorners; ++c) signature |= static_cast<unsigned>(corners[c] >> bit & 1u) << c;
+      take(bit, signature);
+    }
+    return simplices;
+  }
+  alignas(64) std::uint8_t bytes[kCorners > 8 ? 2 : 1][kWordBits];
+  corners_to_bytes(corners, std::min(kCorners, 8u), bytes[0]);
+  if constexpr (kCorners > 8) corners_to_bytes(corners + 8, 8, bytes[1]);
+  for (; mixed != 0; mixed &= mixed - 1) {
+    const auto bit = static_cast<unsigned>(std::countr_zero(mixed));
+    unsigned signature = bytes[0][bit];
+    if constexpr (kCorners > 8) signature |= static_cast<unsigned>(bytes[1][bit]) << 8;
+    take(bit, signature);
+  }
+  return simplices;
+}
+
+#endif
+
+template <int N>
+HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, const TileRoom& room) {
+  const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // of the samples
+  TileCount count;
+  for (std::size_t block = 0; block < words; block += kWordBits) {
+    Word present = mixed_words<N>(row.corners, block, std::min(kWordBits, words - block), room.active, count.edges);
+    if (block + kWordBits >= words) room.active[words - 1] &= (Word{1} << (row.tiles % kWordBits)) - 1;
+    for (; present != 0; present &= present - 1) {
+      const std::size_t w = block + static_cast<std::size_t>(std::countr_zero(present));
+      if (row.valid != nullptr) room.active[w] &= row.valid[w];
+      const Word mixed = room.active[w];
+      count.simplices += take_tiles<N>(row, table, w, mixed, room, count.active);
+      count.active += static_cast<std::uint32_t>(std::popcount(mixed));
+    }
+  }
+  if (table.has_own_vertices())
+    for (std::uint32_t i = 0; i < count.active; ++i) count.own_vertices += table.own_vertices(room.signatures[i]);
+  const Word* const upper = row.corners[1u << (N - 2)];
+  count.edges[0] -= static_cast<std::uint32_t>(upper[row.tiles / kWordBits] >> (row.tiles % kWordBits) & 1u);
+  return count;
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// Lists the edges between the corners Base and Base + Step that are critical, of some tiles; returns how many.
+template <unsigned Base, unsigned Step, class D>
+HWY_INLINE std::size_t list_edges(D d, hn::Vec<D> signatures, hn::Vec<D> at, hn::Mask<D> used, std::uint32_t* out) {
+  const auto differ = hn::Xor(signatures, hn::ShiftRight<Step>(signatures));
+  const auto critical = hn::And(hn::TestBit(differ, hn::Set(d, 1u << Base)), used);
+  // In registers: to store chosen lanes alone is slow on some processors.
+  hn::StoreU(hn::Compress(at, critical), d, out);
+  return hn::CountTrue(d, critical);
+}
+
+template <int N>
+HWY_INLINE void tile_edges(const TileEdges& row) {
+  constexpr unsigned kUpper = 1u << (N - 1);
+  const hn::ScalableTag<std::uint32_t> d;
+  const hn::Rebind<std::uint16_t, decltype(d)> narrow;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  std::array<std::uint32_t*, 4> out = row.out;
+  for (std::size_t i = 0; i < row.active; i += kLanes) {
+    const auto signatures = hn::PromoteTo(d, hn::LoadU(narrow, row.signatures + i));
+    const auto at = hn::PromoteTo(d, hn::LoadU(narrow, row.at + i));
+    const auto used = hn::FirstN(d, row.active - i);
+    out[0] += list_edges<kUpper, 1>(d, signatures, at, used, out[0]);
+    if constexpr (N > 2) out[1] += list_edges<kUpper, 2>(d, signatures, at, used, out[1]);
+    if constexpr (N > 3) out[2] += list_edges<kUpper, 4>(d, signatures, at, used, out[2]);
+    out[N - 1] += list_edges<0, kUpper>(d, signatures, at, used, out[N - 1]);
+  }
+}
+
+#else
+
+template <int N>
+HWY_INLINE void tile_edges(const TileEdges& row) {
+  constexpr unsigned kUpper = 1u << (N - 1);
+  std::array<std::uint32_t*, 4> out = row.out;
+  for (std::size_t i = 0; i < row.active; ++i) {
+    const unsigned signature = row.signatures[i];
+    // Where an edge is not critical, the next one takes its place.
+    for (unsigned a = 0; a + 1 < N; ++a) {
+      *out[a] = row.at[i];
+      out[a] += (signature >> kUpper ^ signature >> (kUpper + (1u << a))) & 1u;
+    }
+    *out[N - 1] = row.at[i];
+    out[N - 1] += (signature ^ signature >> kUpper) & 1u;
+  }
+}
+
+#endif
+
+/// As critical_edges, by table for 3D, and from two cubes in 4D.
+template <int N>
+HWY_INLINE std::uint32_t edges_of(unsigned signature) {
+  if constexpr (N == 4) {
+    // Edges along the first three axes at nibbles 0, 2, 4, to leave room for those of the other cube.
+    static constexpr auto kSpread = [] {
+      std::array<std::uint32_t, 256> spread{};
+      for (unsigned s = 0; s < 256; ++s) {
+        const std::uint32_t edges = critical_edges<3>(s);
+        spread[s] = (edges & 0xf) | (edges & 0xf0) << 4 | (edges & 0xf00) << 8;
+      }
+      return spread;
+    }();
+    const unsigned lower = signature & 0xff, upper = signature >> 8;
+    return kSpread[lower] | kSpread[upper] << 4 | (lower ^ upper) << 24;
+  } else {
+    static constexpr auto kEdges = [] {
+      std::array<std::uint16_t, std::size_t{1} << (1u << N)> edges{};
+      for (unsigned s = 0; s < edges.size(); ++s) edges[s] = static_cast<std::uint16_t>(critical_edges<N>(s));
+      return edges;
+    }();
+    return kEdges[signature];
+  }
+}
+
+/// One tile's simplices from its vertex numbers, in plain code: for all instruction sets and the last tiles of a row.
+template <int N>
+HWY_INLINE typename TileOutput<N>::Simplex* write_plain(const std::uint8_t* local, unsigned count, bool flip,
+                                                        const Index* ids, typename TileOutput<N>::Simplex* out) {
+  const unsigned last = flip ? N - 2 : N - 1;
+  const unsigned before = flip ? N - 1 : N - 2;
+  for (unsigned q = 0; q < count; ++q, ++out, local += N) {
+    for (unsigned j = 0; j + 2 < N; ++j) (*out)[j] = ids[local[j]];
+    (*out)[before] = ids[local[N - 2]];
+    (*out)[last] = ids[local[N - 1]];
+  }
+  return out;
+}
+
+/// Where the entry of a key is.
+template <int N, bool Variants>
+HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
+  if constexpr (N == 3 && Variants) return table.variant_places()[CubeKey(key).signature()] + CubeKey(key).variant();
+  return key;
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// The vertex numbers of a tile's edges in one or two registers.
+template <int N>
+struct Lanes {
+  static constexpr unsigned kCount = N == 4 ? 2 : 1;
+  __m512i first[kCount];
+
+  HWY_INLINE explicit Lanes(const std::array<Index, TileOutput<N>::kEdges>& start) {
+    alignas(64) Index padded[16 * kCount] = {};
+    std::copy(start.begin(), start.end(), padded);
+    for (unsigned i = 0; i < kCount; ++i) first[i] = _mm512_load_si512(padded + 16 * i);
+  }
+  /// Adds 1 where a bit is set.
+  HWY_INLINE static __m512i plus(__m512i lanes, std::uint32_t bits, unsigned i) {
+    return _mm512_mask_add_epi32(lanes, static_cast<__mmask16>(bits >> (16 * i)), lanes, _mm512_set1_epi32(1));
+  }
+};
+
+/// Vertex numbers for up to 16 local vertices, N to a simplex.
+template <int N, bool Flip>
+HWY_INLINE __m512i looked_up(__m128i local, const __m512i* ids) {
+  if constexpr (N == 4) {
+    if (Flip) local = _mm_shuffle_epi8(local, _mm_setr_epi8(0, 1, 3, 2, 4, 5, 7, 6, 8, 9, 11, 10, 12, 13, 15, 14));
+    return _mm512_permutex2var_epi32(ids[0], _mm512_cvtepu8_epi32(local), ids[1]);
+  } else {
+    static_assert(N == 3);
+    if (Flip) local = _mm_shuffle_epi8(local, _mm_setr_epi8(0, 2, 1, 3, 5, 4, 6, 8, 7, 9, 11, 10, 12, 14, 13, 15));
+    return _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(local), ids[0]);
+  }
+}
+
+template <int N, bool Flip, bool Variants>
+HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
+  constexpr std::uint32_t kNext = next_edges<N>();
+  constexpr unsigned kAtOnce = 16 / N;  // simplices
+  constexpr auto kAllLocal = static_cast<__mmask16>((1u << (kAtOnce * N)) - 1);
+  const std::uint32_t* const entries = table.entries();
+  const std::uint8_t* const simplices = table.simplices();
+  Lanes<N> lanes(row.first);
+  auto* out = row.out;
+  for (std::size_t i = 0; i < row.active; ++i) {
+    const unsigned signature = row.signatures[i];
+    const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
+    const std::uint32_t moved = edges << 1 & kNext;
+    const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
+    const unsigned count = entry & RowTable::kCountMask;
+    const std::uint8_t* local = simplices + std::size_t{entry >> RowTable::kFirstShift} * N;
+    __m512i ids[Lanes<N>::kCount];
+    for (unsigned k = 0; k < Lanes<N>::kCount; ++k) ids[k] = Lanes<N>::plus(lanes.first[k], moved, k);
+    if ((entry & RowTable::kOwnFlag) != 0) {
+      alignas(64) Index stored[16 * Lanes<N>::kCount];
+      for (unsigned k = 0; k < Lanes<N>::kCount; ++k) _mm512_store_si512(stored + 16 * k, ids[k]);
+      out = own.write(own.self, signature, i, stored, out);
+    } else {
+      for (unsigned q = 0; q < count; q += kAtOnce, local += kAtOnce * N, out += kAtOnce) {
+        const unsigned rest = count - q;
+        const auto mask = rest >= kAtOnce ? kAllLocal : static_cast<__mmask16>((1u << (rest * N)) - 1);
+        const __m512i numbers = looked_up<N, Flip>(_mm_maskz_loadu_epi8(mask, local), ids);
+        _mm512_mask_storeu_epi32(out->data(), mask, numbers);
+      }
+      out -= (kAtOnce - count % kAtOnce) % kAtOnce;
+    }
+    const std::uint32_t advance = (edges & ~kNext) | moved;
+    for (unsigned k = 0; k < Lanes<N>::kCount; ++k) lanes.first[k] = Lanes<N>::plus(lanes.first[k], advance, k);
+  }
+}
+
+#endif
+
+/// Adds 1 to the numbers where a bit is set, into `to`.
+template <std::size_t Count>
+HWY_INLINE void add_bits(const Index* numbers, std::uint32_t bits, Index* to) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t e = 0; e < Count; ++e) to[e] = numbers[e] + (bits >> e & 1u);
+#else
+  const hn::CappedTag<Index, 8> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  alignas(32) static constexpr Index kBits[8] = {1, 2, 4, 8, 16, 32, 64, 128};
+  const auto bit = hn::Load(d, kBits);
+  for (std::size_t e = 0; e < Count; e += kLanes) {
+    const auto chosen = hn::Eq(hn::And(hn::Set(d, bits >> e), bit), bit);
+    // A mask as a number is -1.
+    const auto minus = hn::VecFromMask(d, chosen);
+    hn::Store(hn::Sub(hn::Load(d, numbers + e), minus), d, to + e);
+  }
+#endif
+}
+
+template <int N, bool Variants>
+HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
+  constexpr std::uint32_t kNext = next_edges<N>();
+  constexpr unsigned kEdges = (TileOutput<N>::kEdges + 7) / 8 * 8;  // whole registers
+  const std::uint32_t* const entries = table.entries();
+  const std::uint8_t* const simplices = table.simplices();
+  alignas(64) Index first[kEdges] = {};
+  alignas(64) Index ids[kEdges];
+  std::copy(row.first.begin(), row.first.end(), first);
+  auto* out = row.out;
+  for (std::size_t i = 0; i < row.active; ++i) {
+    const unsigned signature = row.signatures[i];
+    const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
+    const std::uint32_t moved = edges << 1 & kNext;
+    const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
+    add_bits<kEdges>(first, moved, ids);
+    if ((entry & RowTable::kOwnFlag) != 0)
+      out = own.write(own.self, signature, i, ids, out);
+    else
+      out = write_plain<N>(simplices + std::size_t{entry >> RowTable::kFirstShift} * N, entry & RowTable::kCountMask,
+                           row.flip, ids, out);
+    add_bits<kEdges>(first, (edges & ~kNext) | moved, first);
+  }
+}
+
+#if HWY_TARGET != HWY_SCALAR
+
+/// The four numbers of a 2D tile, and how they move on, in a register each.
+void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) {
+  struct Moves {
+    alignas(16) std::array<std::array<Index, 4>, 32> moved{}, advance{};  // by key
+  };
+  static constexpr auto kMoves = [] {
+    Moves moves;
+    constexpr std::uint32_t kNext = next_edges<2>();
+    for (unsigned s = 0; s < 32; ++s) {
+      const std::uint32_t edges = critical_edges<2>(signature_of<2>(s));
+      const std::uint32_t moved = edges << 1 & kNext;
+      for (unsigned e = 0; e < 4; ++e) {
+        moves.moved[s][e] = moved >> e & 1u;
+        moves.advance[s][e] = ((edges & ~kNext) | moved) >> e & 1u;
+      }
+    }
+    return moves;
+  }();
+  const hn::FixedTag<Index, 4> d;
+  const hn::FixedTag<std::uint8_t, 16> bytes;
+  const std::uint32_t* const entries = table.entries();
+  auto first = hn::LoadU(d, row.first.data());
+  TileOutput<2> last = row;
+  // A segment too many takes the place of the next tile's, which comes later: so not for the last tile.
+  for (std::size_t i = 0; i + 1 < row.active; ++i) {
+    const unsigned signature = row.signatures[i];
+    const auto ids = hn::Add(first, hn::Load(d, kMoves.moved[signature].data()));
+    const auto chosen = hn::LoadU(bytes, table.segment_bytes(signature, row.flip));
+    hn::StoreU(hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(bytes, ids), chosen)), d, last.out->data());
+    last.out += entries[signature] & RowTable::kCountMask;
+    first = hn::Add(first, hn::Load(d, kMoves.advance[signature].data()));
+  }
+  if (row.active == 0) return;
+  hn::StoreU(first, d, last.first.data());
+  last.signatures += row.active - 1;
+  last.active = 1;
+  write_generic<2, true>(last, table, own);
+}
+
+#endif
+
+template <int N, bool Variants>
+HWY_INLINE void write_by(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (N >= 3)
+    return row.flip ? write_lanes<N, true, Variants>(row, table, own)
+                    : write_lanes<N, false, Variants>(row, table, own);
+#endif
+  return write_generic<N, Variants>(row, table, own);
+}
+
+template <int N>
+HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (N == 2) return write_segments(row, table, own);
+#endif
+  if constexpr (N < 4)
+    if (table.has_variants()) return write_by<N, true>(row, table, own);
+  return write_by<N, false>(row, table, own);
+}
+
+// Highway's tables of functions hold no templates.
+TileCount count2(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<2>(r, t, m); }
+TileCount count3(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<3>(r, t, m); }
+TileCount count4(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<4>(r, t, m); }
+void edges2(const TileEdges& r) { tile_edges<2>(r); }
+void write2(const TileOutput<2>& r, const RowTable& t, const OwnTiles<2>& o) { write_tiles<2>(r, t, o); }
+void edges3(const TileEdges& r) { tile_edges<3>(r); }
+void write3(const TileOutput<3>& r, const RowTable& t, const OwnTiles<3>& o) { write_tiles<3>(r, t, o); }
+void edges4(const TileEdges& r) { tile_edges<4>(r); }
+void write4(const TileOutput<4>& r, const RowTable& t, const OwnTiles<4>& o) { write_tiles<4>(r, t, o); }
+
+std::uint32_t count_edges(const Word* a, const Word* b, std::size_t samples, const Word* valid, Word* critical,
+                          std::uint32_t* prefix) {
+  const std::size_t cells = samples - (b == nullptr ? 1 : 0);
+  const std::size_t words = (samples + kWordBits - 1) / kWordBits;
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < words; ++w) {
+    Word bits = a[w] ^ (b == nullptr ? a[w] >> 1 | a[w + 1] << (kWordBits - 1) : b[w]);
+    const std::size_t left = cells - std::min(cells, w * kWordBits);
+    if (left < kWordBits) bits &= (Word{1} << left) - 1;
+    if (valid != nullptr) bits &= valid[w];
+    critical[w] = bits;
+    prefix[w] = count;
+    count += static_cast<std::uint32_t>(std::popcount(bits));
+  }
+  return count;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace tegl::detail {
+
+HWY_EXPORT(count2);
+HWY_EXPORT(count3);
+HWY_EXPORT(count4);
+HWY_EXPORT(edges2);
+HWY_EXPORT(write2);
+HWY_EXPORT(edges3);
+HWY_EXPORT(write3);
+HWY_EXPORT(edges4);
+HWY_EXPORT(write4);
+HWY_EXPORT(count_edges);
+
+bool RowTable::can_use(const tables::TileTable& table) noexcept {
+  return table.element_of == nullptr && table.max_simplices <= kCountMask &&
+         table.simplex_count < (1u << (32 - kFirstShift));
+}
+
+static std::uint32_t make_entry(const tables::List& list) {
+  const bool own = list.cone_vertices != 0 || list.side_vertices != 0;
+  return list.first_simplex << RowTable::kFirstShift | (own ? RowTable::kOwnFlag : 0) | list.simplex_count;
+}
+
+RowTable::RowTable(const tables::TileTable& table, std::size_t keys)
+    : table_(&table), entries_(keys), simplices_(table.simplices) {
+  // Of four dimensions there are 65 536, made for each contour.
+  std::uint32_t* const entries = entries_.data();
+  for (std::size_t s = 0; s < keys; ++s) entries[s] = make_entry(table.lists[table.list_of[s]]);
+  count_simplices();
+  if (table.dim == 2) choose_segment_bytes();
+}
+
+RowTable::RowTable(const tables::TileTable& table, const std::array<unsigned, 256>& counts,
+                   std::vector<Variant> variants)
+    : table_(&table), simplices_(table.simplices), variants_(std::move(variants)) {
+  // The plain ones first: then signatures find theirs as in other tables.
+  for (unsigned s = 0; s < 256; ++s) entries_.push_back(entry_of_list(s));
+  for (unsigned s = 0; s < 256; ++s) {
+    variant_places_[s] = static_cast<std::uint16_t>(counts[s] == 1 ? s : entries_.size());
+    for (unsigned variant = 0; counts[s] != 1 && variant < counts[s]; ++variant)
+      entries_.push_back(entry_of_list(s | variant << 8));
+  }
+  count_simplices();
+}
+
+std::uint32_t RowTable::entry_of_list(unsigned key) const { return make_entry(table_->lists[table_->list_of[key]]); }
+
+void RowTable::count_simplices() {
+  for (std::size_t s = 0; s < counts_.size() && table_->dim <= 3 && s < entries_.size(); ++s)
+    counts_[s] = static_cast<std::uint8_t>(entries_[s] & kCountMask);
+}
+
+void RowTable::choose_segment_bytes() {
+  for (unsigned s = 0; s < entries_.size(); ++s)
+    for (unsigned v = 0; v < 2 * (entries_[s] & kCountMask); ++v) {
+      const unsigned edge = simplices_[2 * (entries_[s] >> kFirstShift) + v];
+      for (unsigned byte = 0; byte < 4; ++byte) {
+        segment_bytes_[0][s][4 * v + byte] = static_cast<std::uint8_t>(4 * edge + byte);
+        segment_bytes_[1][s][4 * (v ^ 1) + byte] = static_cast<std::uint8_t>(4 * edge + byte);
+      }
+    }
+}
+
+template <>
+TileCount count_tile_row<2>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count2)(row, table, room);
+}
+template <>
+TileCount count_tile_row<3>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count3)(row, table, room);
+}
+template <>
+TileCount count_tile_row<4>(const TileRow& row, const RowTable& table, const TileRoom& room) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count4)(row, table, room);
+}
+template <>
+void list_tile_edges<2>(const TileEdges& row) noexcept {
+  HWY_DYNAMIC_DISPATCH(edges2)(row);
+}
+template <>
+void write_tile_row<2>(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) noexcept {
+  HWY_DYNAMIC_DISPATCH(write2)(row, table, own);
+}
+template <>
+void list_tile_edges<3>(const TileEdges& row) noexcept {
+  HWY_DYNAMIC_DISPATCH(edges3)(row);
+}
+template <>
+void write_tile_row<3>(const TileOutput<3>& row, const RowTable& table, const OwnTiles<3>& own) noexcept {
+  HWY_DYNAMIC_DISPATCH(write3)(row, table, own);
+}
+template <>
+void list_tile_edges<4>(const TileEdges& row) noexcept {
+  HWY_DYNAMIC_DISPATCH(edges4)(row);
+}
+template <>
+void write_tile_row<4>(const TileOutput<4>& row, const RowTable& table, const OwnTiles<4>& own) noexcept {
+  HWY_DYNAMIC_DISPATCH(write4)(row, table, own);
+}
+
+std::uint32_t count_edge_row(const Word* a, const Word* b, std::size_t samples, const Word* valid, Word* critical,
+                             std::uint32_t* prefix) noexcept {
+  return HWY_DYNAMIC_DISPATCH(count_edges)(a, b, samples, valid, critical, prefix);
+}
+
+}  // namespace tegl::detail
+
+#endif  // HWY_ONCE

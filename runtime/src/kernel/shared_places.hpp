@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The places of what a cell shares with its neighbours, found anew from the samples for the cells that ask for them:
+// few tiles have vertices of their own, and to keep the places of all points for them takes more memory than an image.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "ambiguity/tesseract_decision.hpp"
+#include "base/corners.hpp"
+#include "image/extract_source.hpp"
+#include "tile/extract_tables.hpp"
+#include "tile/tesseract_fill.hpp"
+
+namespace tegl::detail {
+
+/// The places of the points on the critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
+template <int N, unsigned Axes>
+class EdgePlaces {
+ public:
+  static constexpr int kDim = std::popcount(Axes);
+
+  EdgePlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature) noexcept {
+    source.cell_alphas(base, Axes, critical_edges<kDim>(signature), alphas_.data());
+  }
+  [[nodiscard]] TilePoint<kDim> operator()(unsigned edge) const noexcept {
+    return edge_point<kDim>(edge, alphas_[edge]);
+  }
+  [[nodiscard]] double alpha(unsigned edge) const noexcept { return alphas_[edge]; }
+
+ private:
+  std::array<double, tables::edge_count(kDim)> alphas_;  ///< of edges that are not critical: nothing
+};
+
+/// The places of all vertices that a tile shares, by local vertex.
+template <int N>
+class SharedPlaces {
+ public:
+  SharedPlaces(const SampleSource<N>& source, const std::array<std::size_t, N>& base, unsigned signature,
+               const tables::TileTable* /*cube*/) noexcept
+      : edges_(source, base, signature) {}
+  [[nodiscard]] TilePoint<N> operator()(unsigned v) noexcept { return edges_(v); }
+
+ private:
+  EdgePlaces<N, (1u << N) - 1> edges_;
+};
+
+/// In 4D, barycentres of cubes too: each by the arithmetic of the cube's own vertices, as it is asked for.
+template <>
+class SharedPlaces<4> {
+ public:
+  SharedPlaces(const SampleSource<4>& source, const std::array<std::size_t, 4>& base, unsigned signature,
+               const tables::TileTable* cube) noexcept
+      : edges_(source, base, signature), signature_(signature), cube_(cube) {}
+
+  [[gnu::always_inline]] const TilePoint<4>& operator()(unsigned v) noexcept {
+    if ((known_ >> v & 1u) == 0) find(v);
+    return places_[v];
+  }
+
+  /// How many barycentres a cube of the tile has.
+  [[nodiscard]] unsigned cube_vertices(unsigned cube) const noexcept {
+    return SimplexList<3>(*cube_, cube_signature(cube)).own_vertices();
+  }
+  /// Barycentre `slot` of a cube, in the frame of the cube.
+  [[nodiscard]] TilePoint<3> in_cube(unsigned cube, unsigned slot) noexcept {
+    const TilePoint<4>& point = (*this)(kEdges + tables::kFaceSlots * cube + slot);
+    TilePoint<3> inside;
+    for (unsigned a = 0, j = 0; a < 4; ++a)
+      if (a != cube / 2) inside[j++] = point[a];
+    return inside;
+  }
+
+ private:
+  static constexpr unsigned kEdges = tables::edge_count(4);
+  static constexpr unsigned kShared = tables::first_tile_vertex(4);
+  static_assert(kShared <= 64);
+
+  /// By cube and edge of the cube: the edge of the tile.
+  static constexpr auto kEdgesOfCubes = [] {
+    std::array<std::array<std::uint8_t, tables::edge_count(3)>, 8> result{};
+    for (unsigned cube = 0; cube < 8; ++cube)
+      for (unsigned e = 0; e < tables::edge_count(3); ++e) {
+        const unsigned omitted = cube / 2;
+        const unsigned base = unsqueeze(edge_base(3, e), omitted) | (cube % 2) << omitted;
+        const unsigned axis = e >> 2 < omitted ? e >> 2 : (e >> 2) + 1;
+        result[cube][e] = static_cast<std::uint8_t>(axis << 3 | squeeze(base, axis));
+      }
+    return result;
+  }();
+
+  [[nodiscard]] unsigned cube_signature(unsigned cube) const noexcept {
+    return squeezed_corners<4>(signature_ >> (cube % 2 << cube / 2), cube / 2);
+  }
+
+  [[gnu::noinline]] void find(unsigned v) noexcept {
+    if (v >= kEdges) return find_cube((v - kEdges) / tables::kFaceSlots);
+    places_[v] = edges_(v);
+    known_ |= std::uint64_t{1} << v;
+  }
+
+  void find_cube(unsigned cube) noexcept {
+    const SimplexList<3> list(*cube_, cube_signature(cube));
+    std::array<TilePoint<3>, tables::kFaceSlots> points{};
+    own_places<3>(
+        list, false,
+        [&](unsigned v) {
+          const unsigned edge = list.mapped(v);
+          return edge_point<3>(edge, edges_.alpha(kEdgesOfCubes[cube][edge]));
+        },
+        points.data());
+    for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) {
+      const unsigned v = kEdges + tables::kFaceSlots * cube + slot;
+      places_[v] = cube_point(cube, points[slot]);
+      known_ |= std::uint64_t{1} << v;
+    }
+  }
+
+  EdgePlaces<4, 15> edges_;
+  unsigned signature_;
+  const tables::TileTable* cube_;
+  std::uint64_t known_ = 0;
+  std::array<TilePoint<4>, kShared> places_;  ///< those known: each is asked for by many simplices
+};
+
+/// The places of the vertices that a tile of four dimensions shares, where it is put together from its cubes
+/// (ResolvedTesseract), barycentrically; those of cubes by the arithmetic of the cubes of 3D images.
+class ResolvedPlaces {
+ public:
+  ResolvedPlaces(const EdgePlaces<4, 15>& edges, const ResolvedCubes& cubes, const ResolvedCubes::Lists& lists) noexcept
+      : edges_(edges), cubes_(cubes), lists_(lists) {}
+
+  const TilePoint<4>& operator()(unsigned v) noexcept {
+    if ((known_ >> v & 1u) == 0) find(v);
+    return places_[v];
+  }
+
+  /// That of own vertex `apex` of a filling: the mean of the triangles that it is joined with, weighted by their areas.
+  [[nodiscard]] TilePoint<4> barycentre(const ResolvedView& filling, unsigned apex) noexcept {
+    Weighted<4> sum, plain;  // plain: for a sphere that has shrunk to a point
+    for (std::uint32_t q = 0; q < filling.simplex_count; ++q) {
+      const std::uint8_t* const simplex = filling.simplices + 4 * std::size_t{q};
+      if (simplex[0] != apex) continue;
+      const std::array<TilePoint<4>, 3> face = {(*this)(simplex[1]), (*this)(simplex[2]), (*this)(simplex[3])};
+      const Weighted<4> part = opposite_face<4>(face, is_barycentre(simplex[1]));
+      sum.add(part.point, part.weight);
+      plain.add(part.point, 1.0);
+    }
+    Weighted<4>& mean = sum.weight > 0 ? sum : plain;
+    for (double& x : mean.point) x /= mean.weight;
+    return mean.point;
+  }
+
+ private:
+  [[nodiscard]] bool is_barycentre(unsigned v) const noexcept {
+    if (v < ResolvedCubes::kEdges) return false;
+    const unsigned cube = (v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
+    return (v - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn < cubes_.summary(lists_[cube]).barycentres;
+  }
+
+  [[gnu::noinline]] void find(unsigned v) noexcept {
+    if (v >= ResolvedCubes::kEdges) return find_cube((v - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn);
+    places_[v] = edges_(v);
+    known_ |= std::uint64_t{1} << v;
+  }
+
+  void find_cube(unsigned cube) noexcept {
+    const SimplexList<3> list(variant_table<3>(kBarycentric).tile(), cubes_.key(lists_[cube]));
+    std::array<TilePoint<3>, ResolvedCubes::kMostOwn> points{};
+    own_places<3>(
+        list, false, [&](unsigned e) { return edge_point<3>(e, edges_.alpha(cubes_.lifted(cube, e))); }, points.data());
+    for (unsigned j = 0; j < ResolvedCubes::kMostOwn; ++j) {
+      const unsigned v = ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j;
+      places_[v] = cube_point(cube, points[j]);
+      known_ |= std::uint64_t{1} << v;
+    }
+  }
+
+  const EdgePlaces<4, 15>& edges_;
+  const ResolvedCubes& cubes_;
+  const ResolvedCubes::Lists& lists_;
+  std::uint64_t known_ = 0;
+  std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< those known
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where a contour touches itself next to missing values; see pinches.hpp.
+// Based on: A. Guéziec, G. Taubin, F. Lazarus, W. Horn, "Converting sets of polygons to manifold surfaces by cutting
+// and stitching", IEEE Visualization 1998 (cutting at singular vertices); here also for tetrahedra.
+#include "kernel/split_nonmanifold.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "base/disjoint_sets.hpp"
+#include "kernel/contour_output.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+PinchCandidates<N>::PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter)
+    : shape_(shape), counter_(counter), buffer_(shape.pitch()) {
+  for (Slab<N>& slab : invalid_) slab.all_valid = false;  // of the tiles that are not valid, none may be left out
+}
+
+template <int N>
+void PinchCandidates<N>::open_slab(std::size_t k, const Slab<N>& slab) {
+  std::vector<Word>& invalid = invalid_[k % 2].valid;
+  std::fill(invalid.begin(), invalid.end(), Word{0});
+  slabs_ = k + 1;
+  if (slab.all_valid) return;
+  if (!any_missing_)
+    for (Slab<N>& each : invalid_) counter_.allocate_valid(each);
+  any_missing_ = true;
+  constexpr unsigned kMiddle = ((1u << (N - 1)) - 1) & ~1u;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) {
+    if (!shape_.has_cells(shape_.index_of(row), kMiddle)) continue;
+    for (std::size_t w = 0, at = row * shape_.words(); w < shape_.words(); ++w, ++at)
+      invalid[at] = ~slab.valid[at] & shape_.mask(w, true);
+  }
+}
+
+template <int N>
+void PinchCandidates<N>::add_layer(std::size_t k, const Layer<N>& layer) {
+  if (!any_missing_) return;
+  const Slab<N>* const below = k > 0 ? &invalid_[(k - 1) % 2] : nullptr;
+  const Slab<N>* const above = k < slabs_ ? &invalid_[k % 2] : nullptr;
+  for (std::size_t row = 0; row < shape_.rows(); ++row)
+    for (int axis = 0; axis < N - 1; ++axis) add_row(layer.edges[axis], axis, row, below, above);
+}
+
+template <int N>
+void PinchCandidates<N>::add_slab(std::size_t k, const Slab<N>& slab) {
+  if (!any_missing_) return;
+  for (std::size_t row = 0; row < shape_.rows(); ++row) add_row(slab.edges, N - 1, row, nullptr, &invalid_[k % 2]);
+}
+
+template <int N>
+void PinchCandidates<N>::add_row(const EdgePlane& plane, int axis, std::size_t row, const Slab<N>* below,
+                                 const Slab<N>* above) {
+  if (plane.count[row] == 0 || !counter_.cells_of_valid_tiles(1u << axis, row, below, above, buffer_.data())) return;
+  const Word* const bits = plane.bits[0].data() + row * shape_.words();
+  for (std::size_t w = 0; w < shape_.words(); ++w)
+    for (Word rest = bits[w] & buffer_[w]; rest != 0; rest &= rest - 1) {
+      const Index id = plane.id(row, shape_.words(), w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
+      vertices_.push_back(least_ + static_cast<Index>(id - static_cast<Index>(least_)));
+    }
+}
+
+template class PinchCandidates<2>;
+template class PinchCandidates<3>;
+template class PinchCandidates<4>;
+
+namespace {
+
+template <int N, class Real>
+class Separation {
+ public:
+  Separation(Contour<N, Real>& contour, std::vector<Index> candidates, std::uint64_t max_vertices)
+      : contour_(contour), candidates_(std::move(candidates)), max_vertices_(max_vertices) {}
+
+  void run() {
+    gather_stars();
+    const std::size_t vertices = contour_.vertices.size();
+    for (std::size_t c = 0; c < candidates_.size(); ++c) split_vertex(candidates_[c], star(c));
+    if constexpr (N == 4) {
+      for (std::size_t v = vertices; v < contour_.vertices.size(); ++v) candidates_.push_back(static_cast<Index>(v));
+      gather_stars();
+      while (split_edges()) gather_stars();
+      while (part_holes()) gather_stars();
+    }
+  }
+
+ private:
+  using Simplex = typename Contour<N, Real>::Simplex;
+  static constexpr Index kNone = std::numeric_limits<Index>::max();
+
+  /// A face of a star's simplex that has the star's vertex: its other vertices, and the simplex by place in the star.
+  struct Face {
+    std::array<Index, N - 2> others;
+    std::size_t place;
+  };
+  /// A simplex of a star at the edge to one of its other vertices.
+  struct Around {
+    Index to;
+    std::size_t fan;
+    Index simplex;
+    auto operator<=>(const Around&) const = default;
+  };
+  /// A face of a star's simplex that no other simplex shares, and the hole that it borders on.
+  struct Rim {
+    std::size_t hole;
+    std::array<Index, N - 2> others;
+    Index simplex;
+  };
+  /// A fan of simplices around an edge.
+  struct Fan {
+    Index from;
+    Index to;
+    std::vector<Index> simplices;
+  };
+
+  [[nodiscard]] std::span<const Index> star(std::size_t c) const {
+    return {members_.data() + first_[c], first_[c + 1] - first_[c]};
+  }
+
+  void gather_stars() {
+    std::vector<Index> place(contour_.vertices.size(), kNone);
+    for (std::size_t c = 0; c < candidates_.size(); ++c) place[candidates_[c]] = static_cast<Index>(c);
+    first_.assign(candidates_.size() + 2, 0);  // counted two places up, so that filling leaves it right
+    for (const Simplex& simplex : contour_.simplices)
+      for (const Index v : simplex)
+        if (place[v] != kNone) ++first_[place[v] + std::size_t{2}];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    members_.resize(first_.back());
+    for (std::size_t s = 0; s < contour_.simplices.size(); ++s)
+      for (const Index v : contour_.simplices[s])
+        if (place[v] != kNone) members_[first_[place[v] + std::size_t{1}]++] = static_cast<Index>(s);
+    first_.pop_back();
+  }
+
+  /// The faces around `v`, equal ones next to each other.
+  void gather_faces(Index v, std::span<const Index> star) {
+    faces_.clear();
+    for (std::size_t i = 0; i < star.size(); ++i)
+      for (const Index left_out : contour_.simplices[star[i]]) {
+        if (left_out == v) continue;
+        Face face{{}, i};
+        std::size_t n = 0;
+        for (const Index w : contour_.simplices[star[i]])
+          if (w != v && w != left_out) face.others[n++] = w;
+        std::sort(face.others.begin(), face.others.end());
+        faces_.push_back(face);
+      }
+    std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.others < b.others; });
+  }
+
+  /// Calls join(a, b) for the faces that two simplices share.
+  template <class Join>
+  void for_shared_faces(Join join) const {
+    for (std::size_t i = 1; i < faces_.size(); ++i)
+      if (faces_[i].others == faces_[i - 1].others) join(faces_[i - 1], faces_[i]);
+  }
+
+  /// A vertex half-way between two, or at both.
+  Index add_vertex(Index v, Index w) {
+    check_vertex_count(contour_.vertices.size() + 1, max_vertices_);
+    const auto add_middle = [&](auto& points) {
+      auto middle = points[v];
+      for (int a = 0; a < N && v != w; ++a) middle[a] = (middle[a] + points[w][a]) / 2;
+      points.push_back(middle);
+    };
+    add_middle(contour_.vertices);
+    if (!contour_.normals.empty()) {
+      add_middle(contour_.normals);
+      if (v != w) normalize(contour_.normals.back());
+    }
+    return static_cast<Index>(contour_.vertices.size() - 1);
+  }
+
+  static void normalize(typename Contour<N, Real>::Vertex& normal) {
+    double square = 0;
+    for (const Real x : normal) square += static_cast<double>(x) * static_cast<double>(x);
+    for (Real& x : normal) x = square > 0 ? static_cast<Real>(static_cast<double>(x) / std::sqrt(square)) : Real{0};
+  }
+
+  /// Joins the triangles around `v` that share an edge there. There are few, so that all pairs are compared: that is
+  /// quicker than sorting their edges.
+  void join_triangles(Index v, std::span<const Index> star) {
+    ends_.clear();
+    for (const Index s : star)
+      for (const Index w : contour_.simplices[s])
+        if (w != v) ends_.push_back(w);
+    for (std::size_t i = 1; i < star.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (ends_[2 * i] == ends_[2 * j] || ends_[2 * i] == ends_[2 * j + 1] || ends_[2 * i + 1] == ends_[2 * j] ||
+            ends_[2 * i + 1] == ends_[2 * j + 1])
+          sets_.join(j, i);
+  }
+
+  /// Gives every part of the star but the first a vertex of its own. Parts hang together by faces. As simplices with a
+  /// common face at `v` are in one part, faces stay shared by the same simplices.
+  void split_vertex(Index v, std::span<const Index> star) {
+    if (star.size() < 2) return;
+    sets_.reset(star.size());
+    if constexpr (N == 3) {
+      join_triangles(v, star);
+    } else {
+      gather_faces(v, star);
+      for_shared_faces([this](const Face& a, const Face& b) { sets_.join(a.place, b.place); });
+    }
+    own_.assign(star.size(), v);
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      const std::size_t leader = sets_.find(i);
+      if (leader == 0) continue;
+      if (leader == i) own_[i] = add_vertex(v, v);  // comes before its followers
+      Simplex& simplex = contour_.simplices[star[i]];
+      *std::find(simplex.begin(), simplex.end(), v) = own_[leader];
+    }
+  }
+
+  /// Appends the fans around the edges from `v` to larger vertices, without the first of each edge.
+  void gather_fans(Index v, std::span<const Index> star, std::vector<Fan>& fans) {
+    const auto corner = [&](std::size_t place, Index w) {
+      const Simplex& simplex = contour_.simplices[star[place]];
+      return N * place + static_cast<std::size_t>(std::find(simplex.begin(), simplex.end(), w) - simplex.begin());
+    };
+    gather_faces(v, star);
+    sets_.reset(N * star.size());
+    for_shared_faces([&](const Face& a, const Face& b) {
+      for (const Index w : a.others) sets_.join(corner(a.place, w), corner(b.place, w));
+    });
+    around_.clear();
+    for (std::size_t i = 0; i < star.size(); ++i)
+      for (std::size_t j = 0; j < N; ++j)
+        if (const Index w = contour_.simplices[star[i]][j]; w > v)
+          around_.push_back({w, sets_.find(N * i + j), star[i]});
+    std::sort(around_.begin(), around_.end());
+    for (std::size_t i = 1; i < around_.size(); ++i) {
+      const Around& here = around_[i];
+      if (here.to != around_[i - 1].to) continue;  // the first fan of the next edge
+      if (here.fan != around_[i - 1].fan) fans.push_back({v, here.to, {}});
+      if (!fans.empty() && fans.back().from == v && fans.back().to == here.to)
+        fans.back().simplices.push_back(here.simplex);
+    }
+  }
+
+  /// Gives the edges with several fans a midpoint in all fans but the first. Fans that have a simplex in common wait
+  /// for the next round. False if there was nothing left to do.
+  bool split_edges() {
+    std::vector<Fan> fans;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) gather_fans(candidates_[c], star(c), fans);
+    std::vector<Index> changed;
+    for (const Fan& fan : fans) {
+      const bool waits = std::any_of(fan.simplices.begin(), fan.simplices.end(), [&](Index s) {
+        return std::find(changed.begin(), changed.end(), s) != changed.end();
+      });
+      if (waits) continue;
+      split_fan(fan);
+      changed.insert(changed.end(), fan.simplices.begin(), fan.simplices.end());
+    }
+    return !fans.empty();
+  }
+
+  void split_fan(const Fan& fan) {
+    const Index m = add_vertex(fan.from, fan.to);
+    for (const Index s : fan.simplices) {
+      Simplex half = contour_.simplices[s];
+      *std::find(half.begin(), half.end(), fan.from) = m;
+      Simplex& rest = contour_.simplices[s];
+      *std::find(rest.begin(), rest.end(), fan.to) = m;
+      contour_.simplices.push_back(half);
+    }
+  }
+
+  /// Where two holes in the data meet in an edge of the grid, the contour's holes meet in a vertex, and its link is a
+  /// sphere with several holes. All but the first of them get a vertex of their own in the same place, and the gap of
+  /// no width between the two vertices is filled with tetrahedra. False if there was nothing left to do.
+  bool part_holes() {
+    std::vector<bool> changed(contour_.vertices.size(), false);
+    bool any = false;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const Index v = candidates_[c];
+      gather_rim(v, star(c));
+      if (rim_.empty() || rim_.front().hole == rim_.back().hole) continue;
+      any = true;
+      const bool waits = std::any_of(rim_.begin(), rim_.end(), [&](const Rim& rim) {
+        return changed[v] || changed[rim.others[0]] || changed[rim.others[1]];
+      });
+      if (!waits) fill_holes(v, changed);
+    }
+    return any;
+  }
+
+  /// The link's boundary edges, ordered by the hole that they surround.
+  void gather_rim(Index v, std::span<const Index> star) {
+    gather_faces(v, star);
+    rim_.clear();
+    for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
+      for (end = i + 1; end < faces_.size() && faces_[end].others == faces_[i].others;) ++end;
+      if (end - i == 1) rim_.push_back({0, faces_[i].others, star[faces_[i].place]});
+    }
+    std::vector<std::pair<Index, std::size_t>> corners;  // vertex, number in the rim
+    for (std::size_t i = 0; i < rim_.size(); ++i)
+      for (const Index w : rim_[i].others) corners.emplace_back(w, i);
+    std::sort(corners.begin(), corners.end());
+    sets_.reset(rim_.size());
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      if (corners[i].first == corners[i - 1].first) sets_.join(corners[i].second, corners[i - 1].second);
+    for (std::size_t i = 0; i < rim_.size(); ++i) rim_[i].hole = sets_.find(i);
+    std::sort(rim_.begin(), rim_.end(), [](const Rim& a, const Rim& b) { return a.hole < b.hole; });
+  }
+
+  void fill_holes(Index v, std::vector<bool>& changed) {
+    Index own = kNone;
+    for (std::size_t i = 1; i < rim_.size(); ++i) {
+      const Rim& rim = rim_[i];
+      if (rim.hole == rim_.front().hole) continue;
+      if (rim.hole != rim_[i - 1].hole) own = add_vertex(v, v);
+      // The neighbour's mirror image in their common face: its fourth vertex replaced, and two exchanged.
+      Simplex filling = contour_.simplices[rim.simplex];
+      for (Index& w : filling)
+        if (w != v && w != rim.others[0] && w != rim.others[1]) w = own;
+      std::swap(*std::find(filling.begin(), filling.end(), rim.others[0]),
+                *std::find(filling.begin(), filling.end(), rim.others[1]));
+      contour_.simplices.push_back(filling);
+      for (const Index w : {v, rim.others[0], rim.others[1]}) changed[w] = true;
+    }
+  }
+
+  Contour<N, Real>& contour_;
+  std::vector<Index> candidates_;
+  std::uint64_t max_vertices_;
+  std::vector<std::size_t> first_;  ///< star of candidate c: members_[first_[c]] to members_[first_[c + 1]]
+  std::vector<Index> members_;
+  std::vector<Face> faces_;
+  std::vector<Index> ends_;  ///< of the triangles of a star, the two vertices of each that are not its own
+  std::vector<Around> around_;
+  std::vector<Rim> rim_;
+  std::vector<Index> own_;
+  BasicDisjointSets<std::size_t> sets_;
+};
+
+}  // namespace
+
+template <int N, class Real>
+void separate_pinches(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices) {
+  // In the plane an edge of the grid has two tiles, and no room for a pinch.
+  if constexpr (N > 2)
+    if (!candidates.empty()) Separation<N, Real>(contour, candidates, max_vertices).run();
+}
+
+#define TEGL_INSTANTIATE(N, Real) \
+  template void separate_pinches<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t);
+TEGL_INSTANTIATE(2, float)
+TEGL_INSTANTIATE(2, double)
+TEGL_INSTANTIATE(3, float)
+TEGL_INSTANTIATE(3, double)
+TEGL_INSTANTIATE(4, float)
+TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
+
+}  // namespace tegl::detail

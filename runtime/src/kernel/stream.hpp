@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The two ends of a streamed extraction: samples that come by layers, and a contour that goes out by parts. Private:
+// tests use it to choose the parts.
+#pragma once
+
+#include <algorithm>
+#include <unordered_map>
+#include <vector>
+
+#include "kernel/close.hpp"
+#include "kernel/extract_kernel.hpp"
+#include "kernel/split_nonmanifold.hpp"
+#include "tegl/stream.hpp"
+
+namespace tegl::detail {
+
+/// Few slabs at a time: small layers together, large ones one by one.
+template <int N>
+ExtractPlan streaming_plan(const Grid<N>& grid) {
+  constexpr std::size_t kLeastSamples = std::size_t{1} << 16;
+  std::size_t layer = 1;
+  for (int a = 0; a < N - 1; ++a) layer *= grid.axes[a].size();
+  return {.max_vertices = ~std::uint64_t{0},
+          .batch = std::max<std::size_t>(1, kLeastSamples / std::max<std::size_t>(1, layer))};
+}
+
+/// The layers of a reader that are worked on, in a ring: by one extraction, or by several alike, all at the same batch.
+template <Value T, int N>
+class LayerRing {
+ public:
+  explicit LayerRing(LayerReader<T, N>& reader) : reader_(reader) {
+    for (int a = 0; a < N - 1; ++a) layer_size_ *= reader.grid().axes[a].size();
+  }
+
+  [[nodiscard]] const Grid<N>& grid() const noexcept { return reader_.grid(); }
+  /// Before the first layer comes.
+  void keep(std::size_t layers) { ring_.resize(std::max(ring_.size(), layers)); }
+  /// Reads layer k, the next one, if no other extraction had it read.
+  void prepare(std::size_t k) {
+    if (k < read_) return;
+    Buffer<T>& layer = ring_[k % ring_.size()];
+    layer.resize(layer_size_);
+    reader_.read(k, layer.data());
+    read_ = k + 1;
+  }
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept { return ring_[k % ring_.size()].data(); }
+
+ private:
+  LayerReader<T, N>& reader_;
+  std::size_t layer_size_ = 1;
+  std::size_t read_ = 0;  ///< layers
+  std::vector<Buffer<T>> ring_;
+};
+
+/// These layers with an isovalue.
+template <Value T, int N>
+class LayerSource final : public RowSource<T, N> {
+ public:
+  LayerSource(LayerRing<T, N>& ring, double isovalue, double epsilon)
+      : RowSource<T, N>(strides_of(ring.grid()), ring.grid().axes[0].size(), isovalue, epsilon), ring_(ring) {}
+
+  void keep(std::size_t layers) override { ring_.keep(layers); }
+  void prepare(std::size_t k) override { ring_.prepare(k); }
+
+ private:
+  [[nodiscard]] const T* layer(std::size_t k) const noexcept override { return ring_.layer(k); }
+  static typename RowSource<T, N>::Strides strides_of(const Grid<N>& grid) {
+    typename RowSource<T, N>::Strides strides{};
+    std::ptrdiff_t stride = 1;
+    for (int a = 0; a < N - 1; ++a) {
+      strides[a] = stride;
+      stride *= static_cast<std::ptrdiff_t>(grid.axes[a].size());
+    }
+    return strides;
+  }
+
+  LayerRing<T, N>& ring_;
+};
+
+/// Hands parts on to a sink, and keeps what may have to be taken apart in the end.
+template <int N, class Real>
+class StreamOutput final : public ContourOutput<N, Real> {
+ public:
+  using typename ContourOutput<N, Real>::Vertex;
+  using typename ContourOutput<N, Real>::Simplex;
+  using typename ContourOutput<N, Real>::Room;
+
+  StreamOutput(ContourSink<N, Real>& sink, bool with_normals) : sink_(sink), with_normals_(with_normals) {}
+
+  Room open(const ContourPart& part) override {
+    before_.swap(vertices_);
+    before_normals_.swap(normals_);
+    before_first_ = first_;
+    first_ = part.first_vertex;
+    vertices_.resize(part.end_vertex - part.first_vertex);
+    if (with_normals_) normals_.resize(vertices_.size());
+    simplices_.resize(part.end_simplex - part.first_simplex);
+    return {vertices_.data(), simplices_.data(), with_normals_ ? normals_.data() : nullptr};
+  }
+
+  void close(const ContourPart& part, const PinchList& pinches) override {
+    wide_.resize(simplices_.size());
+    for (std::size_t s = 0; s < simplices_.size(); ++s)
+      for (int j = 0; j < N; ++j)
+        wide_[s][j] = before_first_ + static_cast<Index>(simplices_[s][j] - static_cast<Index>(before_first_));
+    add_vertices(vertices_, normals_);
+    sink_.add_simplices(wide_);
+    if (pinches.any_missing()) remember(part, pinches.vertices());
+    size_ = {part.end_vertex, part.end_simplex};
+  }
+
+  void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) override {
+    std::vector<std::uint64_t> candidates = pinches.vertices();
+    if (caps != nullptr) add_caps(*caps, all, pinches.any_missing(), candidates);
+    if (pinches.any_missing()) separate(candidates);
+  }
+
+  [[nodiscard]] const StreamedSize& size() const noexcept { return size_; }
+
+ private:
+  using WideSimplex = typename ContourSink<N, Real>::Simplex;
+
+  /// A vertex and its normal, if there are any.
+  struct Place {
+    Vertex vertex{};
+    Vertex normal{};
+  };
+  [[nodiscard]] Place place(std::uint64_t v) const {
+    const bool last = v >= first_;
+    const std::uint64_t i = v - (last ? first_ : before_first_);
+    Place result{last ? vertices_[i] : before_[i], {}};
+    if (with_normals_) result.normal = last ? normals_[i] : before_normals_[i];
+    return result;
+  }
+
+  void add_vertices(std::span<const Vertex> vertices, std::span<const Vertex> normals) {
+    sink_.add_vertices(vertices);
+    if (with_normals_) sink_.add_normals(normals);
+  }
+
+  void remember(std::uint64_t number, const WideSimplex& simplex) {
+    kept_.push_back(simplex);
+    kept_numbers_.push_back(number);
+  }
+
+  /// Keeps the part's simplices around candidates, with their vertices.
+  void remember(const ContourPart& part, const std::vector<std::uint64_t>& candidates) {
+    const auto from = std::lower_bound(candidates.begin(), candidates.end(), before_first_);
+    const auto is_candidate = [&](std::uint64_t v) { return std::binary_search(from, candidates.end(), v); };
+    for (std::size_t s = 0; s < wide_.size(); ++s) {
+      if (std::none_of(wide_[s].begin(), wide_[s].end(), is_candidate)) continue;
+      remember(part.first_simplex + s, wide_[s]);
+      for (const std::uint64_t v : wide_[s]) places_.try_emplace(v, place(v));
+    }
+  }
+
+  void add_caps(const Caps<N, Real>& caps, const ContourPart& all, bool any_missing,
+                std::vector<std::uint64_t>& candidates) {
+    wide_.assign(caps.simplices().begin(), caps.simplices().end());
+    for (WideSimplex& simplex : wide_)
+      for (std::uint64_t& v : simplex) v = caps.number(v, all.end_vertex);
+    add_vertices(caps.vertices(), caps.normals());
+    sink_.add_simplices(wide_);
+    size_.vertices += caps.vertices().size();
+    size_.simplices += wide_.size();
+    if (!any_missing) return;
+    for (std::size_t i = 0; i < caps.vertices().size(); ++i) {
+      candidates.push_back(all.end_vertex + i);
+      places_.emplace(all.end_vertex + i, Place{caps.vertices()[i], with_normals_ ? caps.normals()[i] : Vertex{}});
+    }
+    for (std::size_t s = 0; s < wide_.size(); ++s) remember(all.end_simplex + s, wide_[s]);
+  }
+
+  /// What is kept, with its vertices numbered anew in the same order, is taken apart as if it were the contour.
+  void separate(const std::vector<std::uint64_t>& candidates);
+
+  ContourSink<N, Real>& sink_;
+  bool with_normals_;
+  StreamedSize size_;
+  std::uint64_t first_ = 0, before_first_ = 0;
+  Buffer<Vertex> vertices_, before_;  ///< of the last part, and of the one before
+  Buffer<Vertex> normals_, before_normals_;
+  Buffer<Simplex> simplices_;
+  std::vector<WideSimplex> wide_;
+  std::vector<WideSimplex> kept_;
+  std::vector<std::uint64_t> kept_numbers_;
+  std::unordered_map<std::uint64_t, Place> places_;
+};
+
+}  // namespace tegl::detail

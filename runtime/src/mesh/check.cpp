@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The invariants of a simplicial complex, vertex by vertex. All that `check` counts can be seen in the star of a
+// vertex (the simplices around it) and is counted at the smallest vertex of the face concerned; so it takes one
+// table, from vertices to their simplices, and small sorts inside each star, never a sort of all faces at once.
+//
+// Based on: H. Seifert and W. Threlfall, Lehrbuch der Topologie, 1934, chapters 3, 6 and 7 (a complex is a manifold iff
+// all links are spheres or balls; surfaces are told apart by boundary, orientability and Euler characteristic).
+#include "tegl/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/disjoint_sets.hpp"
+#include "base/progress.hpp"
+#include "mesh/vertex_stars.hpp"
+#include "tegl/error.hpp"
+#include "tegl/facets/complex.hpp"
+
+namespace tegl {
+namespace {
+
+/// Links between two calls for progress: where each is a surface of its own, some hundredths of a second.
+constexpr std::size_t kVerticesAtOnce = 1024;
+
+/// A complex of D-simplices, valid vertex numbers only.
+template <int D>
+struct Complex {
+  std::span<const Index> rows;  // #S x (D + 1)
+  std::size_t vertex_count = 0;
+
+  [[nodiscard]] std::size_t size() const { return rows.size() / (D + 1); }
+  [[nodiscard]] const Index* operator[](std::size_t s) const { return rows.data() + s * (D + 1); }
+  /// Whether a simplex repeats a vertex.
+  [[nodiscard]] bool is_collapsed(std::size_t s) const { return detail::is_collapsed<D + 1>((*this)[s]); }
+};
+
+/// The link of one vertex at a time: a complex of (D-1)-simplices ("pieces"), oriented so that the vertex followed by a
+/// piece is the simplex that it comes from.
+template <int D>
+class LinkChecker {
+ public:
+  explicit LinkChecker(const Complex<D>& complex) : complex_(complex), seen_(complex.vertex_count, kNever) {
+    if constexpr (D == 4) number_.resize(complex.vertex_count);
+  }
+
+  /// Adds what the star of `v` says to the report.
+  void visit(Index v, std::span<const Index> star, MeshReport& report) {
+    load(v, star);
+    const std::uint64_t link_vertices = count_link_vertices(v);
+    if constexpr (D == 4) count_link_edges(v);
+    sets_.reset(pieces_.size() * D);  // a set per corner of a piece; joined round the vertex of the link
+    scan_ridges(v, report);
+    if (!is_sphere_or_ball(link_vertices)) ++report.bad_links;
+    if constexpr (D >= 2) edges_ += edges_above_;
+  }
+  [[nodiscard]] std::uint64_t edges() const { return edges_; }            ///< 1-faces met so far, D >= 2
+  [[nodiscard]] std::uint64_t triangles() const { return triangles_; }    ///< 2-faces met so far, D >= 3
+  [[nodiscard]] std::uint64_t tetrahedra() const { return tetrahedra_; }  ///< 3-faces met so far, D = 4
+
+ private:
+  static constexpr Index kNever = std::numeric_limits<Index>::max();
+  using Piece = std::array<Index, D>;
+  using Key = std::conditional_t<(D < 4), std::uint64_t, std::array<Index, 3>>;
+
+  /// A (D-2)-face of the link in one of its pieces. Ridges with equal keys are the same face.
+  struct Ridge {
+    Key key;
+    Index piece;
+    std::uint8_t omitted;  // the piece's corner that is not in the ridge
+    bool reversed;         // the orientation that the piece induces
+    bool operator<(const Ridge& other) const { return key < other.key; }
+  };
+
+  void load(Index v, std::span<const Index> star) {
+    pieces_.clear();
+    ridges_.clear();
+    for (const Index s : star) {
+      const Index* row = complex_[s];
+      Piece piece{};
+      bool odd = false;  // parity of moving v to the front
+      for (int i = 0, k = 0; i <= D; ++i) {
+        if (row[i] == v)
+          odd = (i & 1) != 0;
+        else
+          piece[k++] = row[i];
+      }
+      const auto number = static_cast<Index>(pieces_.size());
+      pieces_.push_back(piece);
+      for (int j = 0; j < D; ++j) ridges_.push_back(make_ridge(piece, number, j, odd));
+    }
+    std::sort(ridges_.begin(), ridges_.end());
+  }
+
+  /// D = 4: the key is the three vertices, ascending; D = 3: the two; D = 2: the one vertex; D = 1: the empty face.
+  static Ridge make_ridge(const Piece& piece, Index number, int omitted, bool odd) {
+    bool reversed = odd != ((omitted & 1) != 0);
+    Key key{};
+    if constexpr (D == 2) key = piece[1 - omitted];
+    if constexpr (D == 3) {
+      Index a = piece[omitted == 0 ? 1 : 0];
+      Index b = piece[omitted == 2 ? 1 : 2];
+      if (a > b) {
+        std::swap(a, b);
+        reversed = !reversed;
+      }
+      key = (std::uint64_t{a} << 32) | b;
+    }
+    if constexpr (D == 4) {
+      std::copy_n(piece.begin(), omitted, key.begin());
+      std::copy(piece.begin() + omitted + 1, piece.end(), key.begin() + omitted);
+      for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}})
+        if (key[i] > key[j]) {
+          std::swap(key[i], key[j]);
+          reversed = !reversed;
+        }
+    }
+    return {key, number, static_cast<std::uint8_t>(omitted), reversed};
+  }
+
+  std::uint64_t count_link_vertices(Index v) {
+    std::uint64_t count = 0;
+    edges_above_ = 0;
+    for (const Piece& piece : pieces_)
+      for (const Index a : piece) {
+        if (seen_[a] == v) continue;
+        seen_[a] = v;
+        if constexpr (D == 4) number_[a] = static_cast<Index>(count);
+        ++count;
+        if (a > v) ++edges_above_;
+      }
+    return count;
+  }
+
+  void count_link_edges(Index v) {
+    link_edges_.clear();
+    for (const Piece& piece : pieces_)
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < i; ++j)
+          link_edges_.push_back(std::uint64_t{std::min(piece[i], piece[j])} << 32 | std::max(piece[i], piece[j]));
+    std::sort(link_edges_.begin(), link_edges_.end());
+    link_edges_.erase(std::unique(link_edges_.begin(), link_edges_.end()), link_edges_.end());
+    const auto above = std::upper_bound(link_edges_.begin(), link_edges_.end(), std::uint64_t{v} << 32 | kNever);
+    triangles_ += static_cast<std::uint64_t>(link_edges_.end() - above);
+  }
+
+  /// Whether v is the smallest vertex of the face "v and this ridge", which is then counted here.
+  static bool is_counted_at(Index v, const Key& key) {
+    if constexpr (D == 1) return true;
+    if constexpr (D == 2) return key > v;
+    if constexpr (D == 3) return (key >> 32) > v;
+    if constexpr (D == 4) return key[0] > v;
+  }
+
+  void scan_ridges(Index v, MeshReport& report) {
+    ridge_count_ = 0;
+    fans_ = pieces_.size() * D;
+    connections_ = 0;
+    closed_ = true;
+    branching_ = false;
+    whole_.reset(pieces_.size());
+    for (std::size_t i = 0, j = 0; i < ridges_.size(); i = j) {
+      while (j < ridges_.size() && ridges_[j].key == ridges_[i].key) ++j;
+      ++ridge_count_;
+      const std::size_t cofaces = j - i;
+      closed_ = closed_ && cofaces != 1;
+      branching_ = branching_ || cofaces > 2;
+      if (cofaces == 2) join_across(ridges_[i], ridges_[i + 1]);
+      if (is_counted_at(v, ridges_[i].key)) count_face(std::span(ridges_).subspan(i, cofaces), report);
+    }
+  }
+
+  void count_face(std::span<const Ridge> cofaces, MeshReport& report) {
+    if constexpr (D == 3) ++triangles_;
+    if constexpr (D == 4) ++tetrahedra_;
+    if (cofaces.size() == 1) ++report.boundary_simplices;
+    if (cofaces.size() > 2) ++report.nonmanifold_simplices;
+    if (cofaces.size() == 2 && cofaces[0].reversed == cofaces[1].reversed) ++report.orientation_conflicts;
+  }
+
+  /// Two pieces that share a ridge: connected, and around each of the ridge's vertices they belong to one fan.
+  void join_across(const Ridge& a, const Ridge& b) {
+    if (whole_.join(a.piece, b.piece)) ++connections_;
+    for (int i = 0; i < D; ++i) {
+      if (i == a.omitted) continue;
+      for (int j = 0; j < D; ++j)
+        if (j != b.omitted && pieces_[a.piece][i] == pieces_[b.piece][j] &&
+            sets_.join(a.piece * D + static_cast<Index>(i), b.piece * D + static_cast<Index>(j)))
+          --fans_;
+    }
+  }
+
+  [[nodiscard]] bool is_sphere_or_ball(std::uint64_t link_vertices) {
+    if (branching_) return false;                            // a ridge in three pieces
+    if (connections_ + 1 != pieces_.size()) return false;    // several parts
+    if (D >= 2 && fans_ != link_vertices) return false;      // a vertex of the link with several fans: pinched
+    auto euler = static_cast<std::int64_t>(pieces_.size());  // of the link
+    if constexpr (D == 2) euler = static_cast<std::int64_t>(link_vertices) - euler;
+    if constexpr (D == 3) euler += static_cast<std::int64_t>(link_vertices) - static_cast<std::int64_t>(ridge_count_);
+    if constexpr (D == 4)
+      euler = static_cast<std::int64_t>(link_vertices + ridge_count_) -
+              static_cast<std::int64_t>(link_edges_.size() + pieces_.size());
+    constexpr std::int64_t kSphere = D % 2 == 1 ? 2 : 0;  // S^0, S^1, S^2, S^3: 2, 0, 2, 0
+    if (euler != (closed_ ? kSphere : 1)) return false;
+    if constexpr (D == 4) return link_vertices < facets::kNoVertex && link_shape() != facets::Shape::other;
+    return true;
+  }
+
+  [[nodiscard]] facets::Shape link_shape() {
+    link_.assign(pieces_.size(), facets::kNoSimplex);
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      for (int i = 0; i < D; ++i) link_[p][i] = static_cast<facets::VertexId>(number_[pieces_[p][i]]);
+      facets::sort_vertices(link_[p]);
+    }
+    return facets::shape_of(link_);
+  }
+
+  const Complex<D>& complex_;
+  std::vector<Index> seen_;  // the last vertex in whose link each vertex was met
+  std::vector<Piece> pieces_;
+  std::vector<Ridge> ridges_;
+  detail::DisjointSets sets_;
+  detail::DisjointSets whole_;
+  std::uint64_t ridge_count_ = 0;
+  std::uint64_t fans_ = 0;
+  std::uint64_t connections_ = 0;
+  std::uint64_t edges_above_ = 0;
+  std::uint64_t edges_ = 0;
+  std::uint64_t triangles_ = 0;
+  std::uint64_t tetrahedra_ = 0;
+  // D = 4
+  std::vector<Index> number_;              // in the link at hand
+  std::vector<std::uint64_t> link_edges_;  // the smaller end above, ascending
+  facets::Simplices link_;
+  bool closed_ = true;
+  bool branching_ = false;
+};
+
+/// Whether D edge vectors from one corner span less than D dimensions, up to rounding: Gram–Schmidt with the longest
+/// remainder first; its remainders are heights of the simplex, in falling order.
+template <int D, class Real>
+bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
+  constexpr int kMaxSpace = 8;
+  constexpr double kFlat = 1e-14;
+  std::array<std::array<double, kMaxSpace>, D> edges;
+  for (int j = 0; j < D; ++j)
+    for (int a = 0; a < space_dim; ++a)
+      edges[j][a] = static_cast<double>(coordinates[std::size_t{row[j + 1]} * space_dim + a]) -
+                    static_cast<double>(coordinates[std::size_t{row[0]} * space_dim + a]);
+  const auto dot = [space_dim](const auto& x, const auto& y) {
+    double sum = 0.0;
+    for (int a = 0; a < space_dim; ++a) sum += x[a] * y[a];
+    return sum;
+  };
+  double longest = 0.0;
+  for (int step = 0; step < D; ++step) {
+    int pivot = step;
+    double best = -1.0;
+    for (int j = step; j < D; ++j) {
+      const double square = dot(edges[j], edges[j]);
+      if (!std::isfinite(square)) return true;
+      if (square > best) {
+        best = square;
+        pivot = j;
+      }
+    }
+    std::swap(edges[step], edges[pivot]);
+    longest = std::max(longest, best);
+    if (best <= kFlat * kFlat * longest) return true;
+    for (int j = step + 1; j < D; ++j) {
+      const double along = dot(edges[j], edges[step]) / best;
+      for (int a = 0; a < space_dim; ++a) edges[j][a] -= along * edges[step][a];
+    }
+  }
+  return false;
+}
+
+template <int D, class Real>
+MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<const Real> coordinates,
+                         const Progress& progress) {
+  using detail::in_parts, detail::part_of;
+  const Complex<D> complex{rows, coordinates.size() / static_cast<std::size_t>(space_dim)};
+  in_parts(rows.size(), part_of(progress, 0.0, 0.02), [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (rows[i] >= complex.vertex_count)
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("simplex {} has vertex number {}; expected less than {}, the number of vertices",
+                                i / (D + 1), rows[i], complex.vertex_count));
+  });
+  MeshReport report;
+  report.dim = D;
+  report.simplices = complex.size();
+  in_parts(complex.vertex_count, part_of(progress, 0.02, 0.03), [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const auto at = coordinates.subspan(v * static_cast<std::size_t>(space_dim), static_cast<std::size_t>(space_dim));
+      if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++report.nonfinite_vertices;
+    }
+  });
+  const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count, part_of(progress, 0.03, 0.08));
+  LinkChecker<D> links(complex);
+  detail::DisjointSets connected;
+  connected.reset(complex.vertex_count);
+  std::uint64_t sound = 0;
+  std::uint64_t joins = 0;
+  in_parts(complex.size(), part_of(progress, 0.08, 0.15), [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) {
+      if (complex.is_collapsed(s) || is_flat<D>(complex[s], space_dim, coordinates.data()))
+        ++report.degenerate_simplices;
+      if (complex.is_collapsed(s)) continue;
+      ++sound;
+      for (int i = 1; i <= D; ++i)
+        if (connected.join(complex[s][0], complex[s][i])) ++joins;
+    }
+  });
+  const auto visit_links = [&](std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) {
+      const std::span<const Index> star = stars.of(v);
+      if (star.empty()) continue;
+      ++report.vertices;
+      links.visit(static_cast<Index>(v), star, report);
+    }
+  };
+  in_parts(complex.vertex_count, part_of(progress, 0.15, 1.0), visit_links, kVerticesAtOnce);
+  report.unused_vertices = complex.vertex_count - report.vertices;
+  report.components = report.vertices - joins;
+  // V - E + F - …, the simplices themselves last; below D = 2, 3, 4 the counts of edges, triangles and tetrahedra are
+  // zero.
+  report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges()) +
+                 static_cast<std::int64_t>(links.triangles()) - static_cast<std::int64_t>(links.tetrahedra()) +
+                 (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(sound);
+  return report;
+}
+
+template <class Real>
+MeshReport check_any(int d, std::span<const Index> simplices, int space_dim, std::span<const Real> coordinates,
+                     const Progress& progress) {
+  if (d < 1 || d > 4)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("simplices of dimension {}; expected 1, 2, 3 or 4", d));
+  if (space_dim < d || space_dim > 8)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("coordinates of {} numbers each for simplices of dimension {}; expected {} to 8", space_dim, d, d));
+  const std::size_t width = static_cast<std::size_t>(d) + 1;
+  if (simplices.size() % width != 0)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} vertex numbers; expected a multiple of {}, so many to a simplex", simplices.size(), width));
+  if (coordinates.size() % static_cast<std::size_t>(space_dim) != 0)
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} coordinates; expected a multiple of {}, so many to a vertex", coordinates.size(), space_dim));
+  constexpr std::size_t kLimit = std::numeric_limits<Index>::max();
+  if (simplices.size() / width > kLimit || coordinates.size() / static_cast<std::size_t>(space_dim) > kLimit)
+    throw Error(ErrorCode::TooLarge, fmt::format("{} simplices and {} vertices; expected at most {} of each",
+                                                 simplices.size() / width, coordinates.size() / space_dim, kLimit));
+  if (d == 1) return check_complex<1>(simplices, space_dim, coordinates, progress);
+  if (d == 2) return check_complex<2>(simplices, space_dim, coordinates, progress);
+  if (d == 3) return check_complex<3>(simplices, space_dim, coordinates, progress);
+  return check_complex<4>(simplices, space_dim, coordinates, progress);
+}
+
+}  // namespace
+
+MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
+                 const Progress& progress) {
+  return check_any<double>(d, simplices, space_dim, coordinates, progress);
+}
+
+template <int N, class Real>
+MeshReport check(const Contour<N, Real>& contour, const Progress& progress) {
+  const std::span<const Index> rows(contour.simplices.empty() ? nullptr : contour.simplices.data()->data(),
+                                    contour.simplices.size() * N);
+  const std::span<const Real> coordinates(contour.vertices.empty() ? nullptr : contour.vertices.data()->data(),
+                                          contour.vertices.size() * N);
+  return check_any<Real>(N - 1, rows, N, coordinates, progress);
+}
+
+template MeshReport check(const Contour<2, float>&, const Progress&);
+template MeshReport check(const Contour<2, double>&, const Progress&);
+template MeshReport check(const Contour<3, float>&, const Progress&);
+template MeshReport check(const Contour<3, double>&, const Progress&);
+template MeshReport check(const Contour<4, float>&, const Progress&);
+template MeshReport check(const Contour<4, double>&, const Progress&);
+template MeshReport check(const Contour<5, float>&, const Progress&);
+template MeshReport check(const Contour<5, double>&, const Progress&);
+
+}  // namespace tegl

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Components by parallel union-find over the simplices; what each is, by sums in fixed blocks; parts of a contour.
+//
+// Based on: Zhu Jingwei, Meng Peisheng, Wang Cheng, An Improved Marching Cubes Algorithm, 2008, section 3.2, whose seed
+// fill gives the same labels, counted from 1, in one thread.
+#include "tegl/components.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/disjoint_sets.hpp"
+#include "mesh/measure_pieces.hpp"
+
+namespace tegl {
+namespace {
+
+using detail::kBlock;
+
+/// The rows that `part_of_contour` copies: of a contour with so many vertices and simplices.
+template <int N, class Real>
+std::uint64_t rows_to_copy(const Contour<N, Real>& contour, std::uint64_t vertices, std::uint64_t simplices) {
+  return vertices * (1 + (contour.normals.empty() ? 0 : 1) + contour.vertex_attributes.size()) +
+         simplices * (1 + contour.simplex_attributes.size());
+}
+
+/// The part of a contour with these vertices and simplices. `number`: the new number of each of the vertices.
+template <int N, class Real>
+Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<const Index> vertices,
+                                 std::span<const Index> simplices, const Buffer<Index>& number,
+                                 detail::CountedProgress& copied) {
+  Contour<N, Real> part;
+  part.axis_names = contour.axis_names;
+  part.axis_units = contour.axis_units;
+  part.direction = contour.direction;
+  const auto gather = [&](const auto& from, std::span<const Index> items, std::size_t width, auto& to) {
+    to.resize(items.size() * width);
+    detail::in_parts(items.size(), {}, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i)
+        std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(items[i] * width), width,
+                    to.begin() + static_cast<std::ptrdiff_t>(i * width));
+      copied.add(end - first);
+    });
+  };
+  const auto gather_attributes = [&](const std::vector<Attribute>& from, std::span<const Index> items,
+                                     std::vector<Attribute>& to) {
+    for (const Attribute& attribute : from) {
+      Attribute& copy = to.emplace_back(Attribute{attribute.name, attribute.unit, attribute.width, {}});
+      gather(attribute.values, items, static_cast<std::size_t>(attribute.width), copy.values);
+    }
+  };
+  gather(contour.vertices, vertices, 1, part.vertices);
+  if (!contour.normals.empty()) gather(contour.normals, vertices, 1, part.normals);
+  gather(contour.simplices, simplices, 1, part.simplices);
+  for (auto& simplex : part.simplices)
+    for (Index& v : simplex) v = number[v];
+  gather_attributes(contour.vertex_attributes, vertices, part.vertex_attributes);
+  gather_attributes(contour.simplex_attributes, simplices, part.simplex_attributes);
+  return part;
+}
+
+/// As many labels as there are vertices and simplices, each below their count and each used; of simplices those of
+/// their vertices, and of vertices in no simplex none.
+template <int N, class Real>
+void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels, const Progress& progress = {}) {
+  detail::require_vertices(contour);
+  const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };
+  const auto require_count = [&](std::size_t found, std::size_t expected, const char* what) {
+    if (found != expected)
+      fail(fmt::format("labels for {} {}; expected {}, as many as the contour has", found, what, expected));
+  };
+  require_count(labels.vertices.size(), contour.vertices.size(), "vertices");
+  require_count(labels.simplices.size(), contour.simplices.size(), "simplices");
+  if (labels.count > contour.simplices.size())
+    fail(fmt::format("{} components of {} simplices; expected the labels of this contour", labels.count,
+                     contour.simplices.size()));
+  std::vector<bool> is_in_simplex(contour.vertices.size(), false);
+  std::vector<bool> has_simplex(labels.count, false);
+  const auto look_at = [&](std::size_t s) {
+    const Index label = labels.simplices[s];
+    if (label >= labels.count)
+      fail(fmt::format("simplex {} has the label {}; expected less than {}, the number of components", s, label,
+                       labels.count));
+    has_simplex[label] = true;
+    for (const Index v : contour.simplices[s]) {
+      is_in_simplex[v] = true;
+      if (labels.vertices[v] != label)
+        fail(fmt::format("simplex {} has the label {}, and its vertex {} the label {}; expected the same", s, label, v,
+                         labels.vertices[v]));
+    }
+  };
+  detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) look_at(s);
+  });
+  for (std::size_t v = 0; v < is_in_simplex.size(); ++v)
+    if (!is_in_simplex[v] && labels.vertices[v] != kNoComponent)
+      fail(fmt::format("vertex {} in no simplex has the label {}; expected none", v, labels.vertices[v]));
+  if (const auto empty = std::find(has_simplex.begin(), has_simplex.end(), false); empty != has_simplex.end())
+    fail(fmt::format("component {} of {} has no simplex; expected the labels of this contour",
+                     empty - has_simplex.begin(), labels.count));
+}
+
+/// Labels in the order of the sets' leaders, which are their smallest vertices. Vertices without `used` get none.
+Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& used, unsigned threads,
+                  const Progress& progress, Buffer<Index>& labels) {
+  labels.resize(used.size());
+  detail::for_each_block(used.size(), kBlock, threads, progress, [&](std::size_t, std::size_t from, std::size_t to) {
+    for (std::size_t v = from; v < to; ++v) labels[v] = used[v] != 0 ? sets.find(static_cast<Index>(v)) : kNoComponent;
+  });
+  Index count = 0;
+  for (std::size_t v = 0; v < labels.size(); ++v) {  // a leader comes before all others of its set
+    if (labels[v] == kNoComponent) continue;
+    labels[v] = labels[v] == v ? count++ : labels[labels[v]];
+  }
+  return count;
+}
+
+}  // namespace
+
+template <int N, class Real>
+ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOptions& options) {
+  detail::require_vertices(contour);
+  const std::size_t vertices = contour.vertices.size();
+  const std::size_t simplices = contour.simplices.size();
+  detail::SharedDisjointSets sets(vertices);
+  Buffer<std::uint8_t> used(vertices);
+  std::fill(used.begin(), used.end(), std::uint8_t{0});
+  detail::for_each_block(simplices, kBlock, options.threads, detail::part_of(options.progress, 0.0, 0.7),
+                         [&](std::size_t, std::size_t from, std::size_t to) {
+                           for (std::size_t s = from; s < to; ++s)
+                             for (const Index v : contour.simplices[s]) {
+                               sets.join(contour.simplices[s][0], v);
+                               std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
+                             }
+                         });
+  ComponentLabels labels;
+  labels.count = number_sets(sets, used, options.threads, detail::part_of(options.progress, 0.7, 0.9), labels.vertices);
+  labels.simplices.resize(simplices);
+  detail::for_each_block(simplices, kBlock, options.threads, detail::part_of(options.progress, 0.9, 1.0),
+                         [&](std::size_t, std::size_t from, std::size_t to) {
+                           for (std::size_t s = from; s < to; ++s)
+                             labels.simplices[s] = labels.vertices[contour.simplices[s][0]];
+                         });
+  return labels;
+}
+
+template <int N, class Real>
+std::vector<Component<N>> components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                     const WorkOptions& options) {
+  require_labels(contour, labels, detail::part_of(options.progress, 0.0, 0.05));
+  detail::require_finite(contour);
+  const std::span<const Index> rows = detail::rows_of(contour);
+  std::vector<detail::FaceCounts> faces;
+  {
+    const detail::Stars stars =
+        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(options.progress, 0.05, 0.1));
+    faces = detail::count_faces<N>(rows, stars, labels.vertices, labels.count, true, options.threads,
+                                   detail::part_of(options.progress, 0.1, 0.8),
+                                   [](std::size_t, const auto&) { /* counted */ });
+  }
+  const detail::Groups groups =
+      detail::group_by(labels.simplices, labels.count, detail::part_of(options.progress, 0.8, 0.82));
+  const std::vector<detail::PieceSums<N>> sums =
+      detail::sum_groups(contour, groups, options.threads, detail::part_of(options.progress, 0.82, 1.0));
+  std::vector<Component<N>> result(labels.count);
+  for (const Index label : labels.vertices)
+    if (label != kNoComponent) ++result[label].vertices;
+  for (Index label = 0; label < labels.count; ++label) {
+    Component<N>& component = result[label];
+    component.label = label;
+    component.simplices = groups.first[label + std::size_t{1}] - groups.first[label];
+    component.size = sums[label].size.value();
+    component.content = detail::content_of(sums[label], faces[label], contour.direction);
+    component.centroid = sums[label].centroid();
+    component.lowest = sums[label].lowest;
+    component.highest = sums[label].highest;
+    component.euler = faces[label].euler;
+    component.boundary_simplices = faces[label].boundary;
+  }
+  return result;
+}
+
+template <int N, class Real>
+std::vector<Contour<N, Real>> split_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                               const Progress& progress) {
+  using detail::part_of;
+  require_labels(contour, labels, part_of(progress, 0.0, 0.2));
+  detail::require_attributes(contour);
+  const detail::Groups vertices = detail::group_by(labels.vertices, labels.count, part_of(progress, 0.2, 0.3));
+  const detail::Groups simplices = detail::group_by(labels.simplices, labels.count, part_of(progress, 0.3, 0.5));
+  const Progress copying = part_of(progress, 0.5, 1.0);
+  detail::CountedProgress copied(copying, rows_to_copy(contour, vertices.members.size(), simplices.members.size()));
+  Buffer<Index> number(contour.vertices.size());
+  std::vector<Contour<N, Real>> parts;
+  for (Index label = 0; label < labels.count; ++label) {
+    const std::span<const Index> members = vertices.of(label);
+    for (std::size_t i = 0; i < members.size(); ++i) number[members[i]] = static_cast<Index>(i);
+    parts.push_back(part_of_contour(contour, members, simplices.of(label), number, copied));
+  }
+  detail::tell(progress, 1.0);
+  return parts;
+}
+
+template <int N, class Real>
+Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                   const std::vector<bool>& keep, const Progress& progress) {
+  using detail::part_of;
+  require_labels(contour, labels, part_of(progress, 0.0, 0.2));
+  detail::require_attributes(contour);
+  if (keep.size() != labels.count)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} components are to be kept or not; expected {}, as many as there are", keep.size(),
+                            labels.count));
+  const auto kept = [&](const Buffer<Index>& of, const Progress& part) {
+    Buffer<Index> items;
+    detail::in_parts(of.size(), part, [&](std::size_t from, std::size_t to) {
+      for (std::size_t i = from; i < to; ++i)
+        if (of[i] != kNoComponent && keep[of[i]]) items.push_back(static_cast<Index>(i));
+    });
+    return items;
+  };
+  const Buffer<Index> vertices = kept(labels.vertices, part_of(progress, 0.2, 0.3));
+  const Buffer<Index> simplices = kept(labels.simplices, part_of(progress, 0.3, 0.5));
+  const Progress copying = part_of(progress, 0.5, 1.0);
+  detail::CountedProgress copied(copying, rows_to_copy(contour, vertices.size(), simplices.size()));
+  Buffer<Index> number(contour.vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) number[vertices[i]] = static_cast<Index>(i);
+  auto part =
+      part_of_contour(contour, std::span<const Index>(vertices), std::span<const Index>(simplices), number, copied);
+  detail::tell(progress, 1.0);
+  return part;
+}
+
+template <int N, class Real>
+void add_component_attribute(Contour<N, Real>& contour, const ComponentLabels& labels) {
+  require_labels(contour, labels);
+  detail::require_attributes(contour);
+  const auto add = [](const Buffer<Index>& of, std::vector<Attribute>& attributes) {
+    std::erase_if(attributes, [](const Attribute& attribute) { return attribute.name == "component"; });
+    Attribute& attribute = attributes.emplace_back(Attribute{"component", "", 1, {}});
+    attribute.values.resize(of.size());
+    for (std::size_t i = 0; i < of.size(); ++i)
+      attribute.values[i] = of[i] == kNoComponent ? -1.0 : static_cast<double>(of[i]);
+  };
+  add(labels.vertices, contour.vertex_attributes);
+  add(labels.simplices, contour.simplex_attributes);
+}
+
+#define TEGL_INSTANTIATE(N, Real)                                                                                     \
+  template ComponentLabels label_components(const Contour<N, Real>&, const WorkOptions&);                             \
+  template std::vector<Component<N>> components(const Contour<N, Real>&, const ComponentLabels&, const WorkOptions&); \
+  template std::vector<Contour<N, Real>> split_components(const Contour<N, Real>&, const ComponentLabels&,            \
+                                                          const Progress&);                                           \
+  template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \
+                                              const std::vector<bool>&, const Progress&);                             \
+  template void add_component_attribute(Contour<N, Real>&, const ComponentLabels&)
+TEGL_INSTANTIATE(2, float);
+TEGL_INSTANTIATE(2, double);
+TEGL_INSTANTIATE(3, float);
+TEGL_INSTANTIATE(3, double);
+TEGL_INSTANTIATE(4, float);
+TEGL_INSTANTIATE(4, double);
+TEGL_INSTANTIATE(5, float);
+TEGL_INSTANTIATE(5, double);
+#undef TEGL_INSTANTIATE
+
+}  // namespace tegl

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Measures of a contour, and of its cuts without making them.
+//
+// Based on: H. B. Curry and I. J. Schoenberg, On Pólya frequency functions IV: the fundamental spline functions and
+// their limits, 1966 (the volume of the cuts of a simplex is a B-spline with the vertices' positions as knots).
+#include "tegl/measure.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/slice_at.hpp"
+#include "mesh/measure_pieces.hpp"
+
+namespace tegl {
+namespace {
+
+using detail::CompensatedSum;
+using detail::kBlock;
+using detail::PointOf;
+
+/// The B-spline with the knots k_0 ≤ … ≤ k_d that has the integral 1, at t; of degree d - 1. At knots it is the limit
+/// from below (`from_above`: from above). By recursion, as a mean of two splines with a knot less: nothing cancels.
+template <int Knots>
+double normalised_spline(std::array<double, Knots> knots, double t, bool from_above) noexcept {
+  std::array<double, Knots - 1> spline;  // with two knots: one over their distance, between them
+  for (int i = 0; i + 1 < Knots; ++i) {
+    const bool inside = from_above ? knots[i] <= t && t < knots[i + 1] : knots[i] < t && t <= knots[i + 1];
+    spline[i] = inside ? 1.0 / (knots[i + 1] - knots[i]) : 0.0;
+  }
+  for (int width = 2; width < Knots; ++width)
+    for (int i = 0; i + width < Knots; ++i) {
+      const double length = knots[i + width] - knots[i];
+      if (!(length > 0.0)) continue;  // both are 0
+      const double below = (t - knots[i]) / length * spline[i];
+      const double above = (knots[i + width] - t) / length * spline[i + 1];
+      spline[i] = (below + above) * width / (width - 1);
+    }
+  return spline[0];
+}
+
+/// Which of the values asked for, ascending, lie where something that reaches from `low` to `high` is cut.
+class CutValues {
+ public:
+  /// `first`: the contour's first value, where limits are from above.
+  CutValues(std::span<const double> at, double first) : at_(at.size()), order_(at.size()), first_(first) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
+    for (std::size_t i = 0; i < at.size(); ++i) at_[i] = at[order_[i]];
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return at_.size(); }
+  [[nodiscard]] double operator[](std::size_t i) const noexcept { return at_[i]; }
+  /// The place in the caller's list.
+  [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return order_[i]; }
+  [[nodiscard]] bool from_above(std::size_t i) const noexcept { return at_[i] == first_; }
+
+  /// The range [from, to) of the values in (low, high]; in [low, high) where limits are from above.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> between(double low, double high) const noexcept {
+    if (!(low < high)) return {0, 0};
+    const auto begin =
+        low == first_ ? std::lower_bound(at_.begin(), at_.end(), low) : std::upper_bound(at_.begin(), at_.end(), low);
+    const auto end = std::upper_bound(begin, at_.end(), high);
+    return {static_cast<std::size_t>(begin - at_.begin()), static_cast<std::size_t>(end - at_.begin())};
+  }
+
+ private:
+  std::vector<double> at_;
+  std::vector<std::size_t> order_;
+  double first_;
+};
+
+/// The sums at one value.
+struct CutSums {
+  CompensatedSum size;
+  CompensatedSum content;  // N - 1 times it
+};
+
+/// Adds what the cuts of one simplex have to the sums. Its cut at t lies in the plane with the normal w (the spatial
+/// part of the simplex's normal vector W), in which x . w = x_0 . w + (t_0 - t) W_t for any of its vertices (x_0, t_0).
+template <int N>
+void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin, const CutValues& values,
+              std::span<CutSums> sums) noexcept {
+  std::array<double, N> knots;
+  for (int j = 0; j < N; ++j) knots[j] = corners[j][N - 1];
+  std::sort(knots.begin(), knots.end());
+  const auto [from, to] = values.between(knots.front(), knots.back());
+  if (from == to) return;
+  const PointOf<N> normal = detail::normal_vector_of<N>(corners);
+  PointOf<N - 1> spatial;
+  std::copy_n(normal.begin(), N - 1, spatial.begin());
+  const double area = detail::length_of<N - 1>(spatial);
+  double along = 0.0;
+  for (int a = 0; a + 1 < N; ++a) along += spatial[a] * (corners[0][a] - origin[a]);
+  for (std::size_t i = from; i < to; ++i) {
+    const double spline = normalised_spline<N>(knots, values[i], values.from_above(i));
+    sums[i].size.add(area * spline);
+    sums[i].content.add((along + (corners[0][N - 1] - values[i]) * normal[N - 1]) * spline);
+  }
+}
+
+/// At which values the contour's cut is open: where an (N-2)-face whose orientations do not cancel is cut.
+template <int N, class Real>
+std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& options) {
+  std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertices.size(), kBlock));
+  const detail::Stars stars = detail::make_stars<N>(detail::rows_of(contour), contour.vertices.size(),
+                                                    detail::part_of(options.progress, 0.0, 0.1));
+  detail::count_faces<N>(detail::rows_of(contour), stars, {}, 1, false, options.threads,
+                         detail::part_of(options.progress, 0.1, 0.6), [&](std::size_t block, const auto& ridge) {
+                           const auto time = [&](Index v) { return static_cast<double>(contour.vertices[v][N - 1]); };
+                           std::pair<double, double> span(time(ridge[0]), time(ridge[0]));
+                           for (const Index v : ridge) {
+                             span.first = std::min(span.first, time(v));
+                             span.second = std::max(span.second, time(v));
+                           }
+                           spans[block].push_back(span);
+                         });
+  std::vector<std::int64_t> changes(values.size() + 1, 0);
+  for (const auto& block : spans)
+    for (const auto& [low, high] : block) {
+      const auto [from, to] = values.between(low, high);
+      ++changes[from];
+      --changes[to];
+    }
+  std::vector<bool> open(values.size());
+  std::int64_t faces = 0;
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = (faces += changes[i]) > 0;
+  return open;
+}
+
+/// The lowest and the highest coordinates of the simplices; 0 for none.
+template <int N, class Real>
+std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) {
+  if (contour.simplices.empty()) return {};
+  PointOf<N> low = detail::corners_of(contour, 0)[0];
+  PointOf<N> high = low;
+  for (std::size_t s = 0; s < contour.simplices.size(); ++s)
+    for (const PointOf<N>& corner : detail::corners_of(contour, s))
+      for (int a = 0; a < N; ++a) {
+        low[a] = std::min(low[a], corner[a]);
+        high[a] = std::max(high[a], corner[a]);
+      }
+  return {low, high};
+}
+
+}  // namespace
+
+template <int N, class Real>
+Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options) {
+  detail::require_vertices(contour);
+  detail::require_finite(contour);
+  Measures<N> result;
+  if (contour.simplices.empty()) {
+    result.content = 0.0;  // it has no border
+    return result;
+  }
+  const std::span<const Index> rows = detail::rows_of(contour);
+  detail::FaceCounts faces;
+  {
+    const detail::Stars stars =
+        detail::make_stars<N>(rows, contour.vertices.size(), detail::part_of(options.progress, 0.0, 0.1));
+    faces =
+        detail::count_faces<N>(rows, stars, {}, 1, false, options.threads, detail::part_of(options.progress, 0.1, 0.7),
+                               [](std::size_t, const auto&) { /* counted */ })
+            .front();
+  }
+  const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices.size()),
+                                                       options.threads, detail::part_of(options.progress, 0.7, 1.0))
+                                        .front();
+  result.size = sums.size.value();
+  result.content = detail::content_of(sums, faces, contour.direction);
+  result.centroid = sums.centroid();
+  result.lowest = sums.lowest;
+  result.highest = sums.highest;
+  result.boundary_simplices = faces.boundary;
+  result.open_simplices = faces.open;
+  return result;
+}
+
+template <int N, class Real>
+requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
+                                                                         std::span<const double> at,
+                                                                         const WorkOptions& options) {
+  detail::require_vertices(contour);
+  detail::require_finite(contour);
+  for (const double t : at)
+    if (!std::isfinite(t))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
+  const auto [low, high] = bounding_box(contour);
+  std::vector<double> levels;  // where `slice` cuts
+  for (const double t : at) levels.push_back(static_cast<double>(detail::rounded_at<Real>(t)));
+  const CutValues values(levels, low[N - 1]);
+  const std::vector<bool> open = find_open_cuts(contour, values, options);
+  PointOf<N> origin;  // near the contour, to keep the terms of the contents small
+  for (int a = 0; a < N; ++a) origin[a] = low[a] + 0.5 * (high[a] - low[a]);
+
+  // Parts that depend on the input alone, each with its own sums for all values.
+  const std::size_t simplices = contour.simplices.size();
+  const std::size_t parts =
+      std::clamp<std::size_t>((std::size_t{1} << 20) / std::max<std::size_t>(1, values.size()), 1, 64);
+  const std::size_t size = std::max(kBlock, detail::block_count(simplices, parts));
+  std::vector<std::vector<CutSums>> sums(detail::block_count(simplices, size));
+  detail::for_each_block(simplices, size, options.threads, detail::part_of(options.progress, 0.6, 1.0),
+                         [&](std::size_t block, std::size_t from, std::size_t to) {
+                           sums[block].resize(values.size());
+                           for (std::size_t s = from; s < to; ++s)
+                             add_cuts<N>(detail::corners_of(contour, s), origin, values, sums[block]);
+                         });
+  std::vector<CutMeasures> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    CutSums total;
+    for (const auto& part : sums) {
+      total.size.add(part[i].size.value());
+      total.content.add(part[i].content.value());
+    }
+    CutMeasures& cut = result[values.place(i)];
+    cut.at = at[values.place(i)];
+    cut.size = total.size.value();
+    const double content = total.content.value() / (N - 1);
+    if (!open[i]) cut.content = contour.direction == GradientDirection::descent ? content : -content;
+  }
+  return result;
+}
+
+template Measures<2> measure(const Contour<2, float>&, const WorkOptions&);
+template Measures<2> measure(const Contour<2, double>&, const WorkOptions&);
+template Measures<3> measure(const Contour<3, float>&, const WorkOptions&);
+template Measures<3> measure(const Contour<3, double>&, const WorkOptions&);
+template Measures<4> measure(const Contour<4, float>&, const WorkOptions&);
+template Measures<4> measure(const Contour<4, double>&, const WorkOptions&);
+template Measures<5> measure(const Contour<5, float>&, const WorkOptions&);
+template Measures<5> measure(const Contour<5, double>&, const WorkOptions&);
+
+template std::vector<CutMeasures> measure_cuts(const Contour<3, float>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<3, double>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<4, float>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<4, double>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<5, float>&, std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> measure_cuts(const Contour<5, double>&, std::span<const double>, const WorkOptions&);
+
+}  // namespace tegl

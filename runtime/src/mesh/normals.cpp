@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Normals of contours; see tegl/normals.hpp.
+#include "tegl/normals.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "base/workers.hpp"
+#include "image/locate.hpp"
+#include "kernel/extract_cell.hpp"
+#include "kernel/extract_normals.hpp"
+#include "mesh/simplex_geometry.hpp"
+#include "mesh/validate.hpp"
+
+namespace tegl {
+
+namespace {
+
+using detail::PointOf;
+
+/// Of length 1, or 0.
+template <int N>
+PointOf<N> unit(PointOf<N> v) noexcept {
+  const double length = detail::length_of<N>(v);
+  for (double& x : v) x = length > 0.0 && std::isfinite(length) ? x / length : 0.0;
+  return v;
+}
+
+template <int N, class Real>
+std::array<Real, N> rounded(const PointOf<N>& v) noexcept {
+  std::array<Real, N> result;
+  for (int a = 0; a < N; ++a) result[a] = static_cast<Real>(v[a]);
+  return result;
+}
+
+template <int N>
+double dot(const PointOf<N>& a, const PointOf<N>& b) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < N; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// The angle of a simplex at its corner j: 1 (2D), in radians (3D), in steradians (4D).
+template <int N>
+double angle_at(const std::array<PointOf<N>, N>& corners, int j) noexcept {
+  std::array<PointOf<N>, N - 1> edges;
+  for (int k = 1; k < N; ++k) {
+    for (int a = 0; a < N; ++a) edges[k - 1][a] = corners[(j + k) % N][a] - corners[j][a];
+    edges[k - 1] = unit<N>(edges[k - 1]);
+  }
+  if constexpr (N == 2) {
+    return 1.0;
+  } else if constexpr (N == 3) {
+    // By halves of the sum and the difference: exact for thin angles, too (W. Kahan).
+    PointOf<N> sum, difference;
+    for (int a = 0; a < N; ++a) {
+      sum[a] = edges[0][a] + edges[1][a];
+      difference[a] = edges[0][a] - edges[1][a];
+    }
+    return 2.0 * std::atan2(detail::length_of<N>(difference), detail::length_of<N>(sum));
+  } else {
+    const double ab = dot<N>(edges[0], edges[1]), bc = dot<N>(edges[1], edges[2]), ca = dot<N>(edges[2], edges[0]);
+    const double gram = 1.0 + 2.0 * ab * bc * ca - ab * ab - bc * bc - ca * ca;
+    return 2.0 * std::atan2(std::sqrt(std::max(0.0, gram)), 1.0 + ab + bc + ca);
+  }
+}
+
+template <int N>
+double weight_of(const std::array<PointOf<N>, N>& corners, int j, double measure, NormalWeights weights) noexcept {
+  if (weights == NormalWeights::area) return measure;
+  return weights == NormalWeights::equal ? 1.0 : angle_at<N>(corners, j);
+}
+
+}  // namespace
+
+template <int N, class Real>
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> flat_normals(
+    const Contour<N, Real>& contour, const WorkOptions& options) {
+  detail::require_vertices(contour);
+  Buffer<typename Contour<N, Real>::Vertex> result(contour.simplices.size());
+  detail::for_each_item(result.size(), options.threads, options.progress, [&](std::size_t s) {
+    result[s] = rounded<N, Real>(unit<N>(detail::normal_vector_of<N>(detail::corners_of(contour, s))));
+  });
+  return result;
+}
+
+template <int N, class Real>
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
+    const Contour<N, Real>& contour, NormalWeights weights, const WorkOptions& options) {
+  detail::require_vertices(contour);
+  // By simplex: its unit normal, and what it counts for at its corners.
+  struct Share {
+    PointOf<N> normal;
+    std::array<double, N> weights;
+  };
+  constexpr std::size_t kBatch = std::size_t{1} << 20;  // so that shares are never many
+  std::vector<PointOf<N>> sums(contour.vertices.size());
+  Buffer<Share> shares(std::min(kBatch, contour.simplices.size()));
+  const std::size_t count = contour.simplices.size();
+  for (std::size_t first = 0; first < count; first += kBatch) {
+    const std::size_t batch = std::min(kBatch, count - first);
+    const auto progress = [&](double fraction) {
+      const double done = static_cast<double>(first) + fraction * static_cast<double>(batch);
+      return !options.progress || options.progress(done / static_cast<double>(count));
+    };
+    detail::for_each_item(batch, options.threads, progress, [&](std::size_t i) {
+      const auto corners = detail::corners_of(contour, first + i);
+      const PointOf<N> normal = detail::normal_vector_of<N>(corners);
+      shares[i].normal = unit<N>(normal);
+      const double measure = detail::length_of<N>(normal);
+      for (int j = 0; j < N; ++j) shares[i].weights[j] = weight_of<N>(corners, j, measure, weights);
+    });
+    // In the order of simplices, whoever works.
+    for (std::size_t i = 0; i < batch; ++i)
+      for (int j = 0; j < N; ++j)
+        for (int a = 0; a < N; ++a)
+          sums[contour.simplices[first + i][j]][a] += shares[i].weights[j] * shares[i].normal[a];
+  }
+  Buffer<typename Contour<N, Real>::Vertex> result(sums.size());
+  detail::for_each_item(sums.size(), options.threads, {},
+                        [&](std::size_t v) { result[v] = rounded<N, Real>(unit<N>(sums[v])); });
+  return result;
+}
+
+template <Value T, int N, class Real>
+requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(
+    const Image<T, N>& image, const Contour<N, Real>& contour, GradientKind kind, const WorkOptions& options) {
+  const detail::GridLocator<N> locator(image.grid());
+  const detail::ImageSource<T, N> source(image, 0.0, 0.0);
+  const detail::NormalWriter<N, Real> writer(source, image.grid(), contour.direction, kind);
+  Buffer<typename Contour<N, Real>::Vertex> result(contour.vertices.size());
+  detail::for_each_item(result.size(), options.threads, options.progress, [&](std::size_t v) {
+    std::array<double, N> point;
+    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
+    detail::CellPlace<N> place;
+    result[v] = {};
+    if (locator.find(point, place))
+      result[v] = writer.template in_cell<detail::CellFrame<N, (1u << N) - 1>>(place.base, place.share);
+  });
+  return result;
+}
+
+#define TEGL_INSTANTIATE_IMAGE(T, N, Real)                                                                            \
+  template Buffer<Contour<N, Real>::Vertex> gradient_normals<T, N, Real>(const Image<T, N>&, const Contour<N, Real>&, \
+                                                                         GradientKind, const WorkOptions&);
+#define TEGL_INSTANTIATE(N, Real)                                                                               \
+  template Buffer<Contour<N, Real>::Vertex> flat_normals<N, Real>(const Contour<N, Real>&, const WorkOptions&); \
+  template Buffer<Contour<N, Real>::Vertex> geometric_normals<N, Real>(const Contour<N, Real>&, NormalWeights,  \
+                                                                       const WorkOptions&);                     \
+  TEGL_INSTANTIATE_IMAGE(std::uint8_t, N, Real)                                                                 \
+  TEGL_INSTANTIATE_IMAGE(std::int8_t, N, Real)                                                                  \
+  TEGL_INSTANTIATE_IMAGE(std::uint16_t, N, Real)                                                                \
+  TEGL_INSTANTIATE_IMAGE(std::int16_t, N, Real)                                                                 \
+  TEGL_INSTANTIATE_IMAGE(std::int32_t, N, Real)                                                                 \
+  TEGL_INSTANTIATE_IMAGE(float, N, Real)                                                                        \
+  TEGL_INSTANTIATE_IMAGE(double, N, Real)
+TEGL_INSTANTIATE(2, float)
+TEGL_INSTANTIATE(2, double)
+TEGL_INSTANTIATE(3, float)
+TEGL_INSTANTIATE(3, double)
+TEGL_INSTANTIATE(4, float)
+TEGL_INSTANTIATE(4, double)
+#undef TEGL_INSTANTIATE
+#undef TEGL_INSTANTIATE_IMAGE
+
+}  // namespace tegl

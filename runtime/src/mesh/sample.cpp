@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Multilinear interpolation of images at the vertices of contours; see tegl/sample.hpp.
+#include "tegl/sample.hpp"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/workers.hpp"
+#include "image/locate.hpp"
+
+namespace tegl {
+
+namespace {
+
+/// The value at a place of a cell; NaN if samples of more than kSlack of the weight are missing.
+template <Value T, int N>
+double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noexcept {
+  double sum = 0.0;
+  double present = 0.0;
+  for (unsigned corner = 0; corner < 1u << N; ++corner) {
+    double weight = 1.0;
+    std::array<std::size_t, N> index = place.base;
+    for (int a = 0; a < N; ++a) {
+      const bool ahead = (corner >> a & 1u) != 0;
+      weight *= ahead ? place.share[a] : 1.0 - place.share[a];
+      index[a] += ahead ? 1 : 0;
+    }
+    // Also what is ahead of an axis' only sample.
+    if (weight == 0.0) continue;
+    const auto value = static_cast<double>(image(index));
+    if (std::isnan(value)) continue;
+    present += weight;
+    sum += weight * value;
+  }
+  if (present < 1.0 - detail::kSlack) return std::numeric_limits<double>::quiet_NaN();
+  // Weights add up to 1 but for a rounding, which is none of the image's.
+  return present < 1.0 - 1e-12 ? sum / present : sum;
+}
+
+}  // namespace
+
+template <Value T, int N, class Real>
+Attribute sample(const Image<T, N>& image, const Contour<N, Real>& contour, std::string name, std::string unit,
+                 const WorkOptions& options) {
+  Attribute attribute{std::move(name), std::move(unit), 1, {}};
+  attribute.values.resize(contour.vertices.size());
+  const detail::GridLocator<N> locator(image.grid());
+  detail::for_each_item(contour.vertices.size(), options.threads, options.progress, [&](std::size_t v) {
+    std::array<double, N> point;
+    for (int a = 0; a < N; ++a) point[a] = static_cast<double>(contour.vertices[v][a]);
+    detail::CellPlace<N> place;
+    attribute.values[v] =
+        locator.find(point, place) ? value_at(image, place) : std::numeric_limits<double>::quiet_NaN();
+  });
+  return attribute;
+}
+
+#define TEGL_INSTANTIATE(T, N)                                                                       \
+  template Attribute sample(const Image<T, N>&, const Contour<N, float>&, std::string, std::string,  \
+                            const WorkOptions&);                                                     \
+  template Attribute sample(const Image<T, N>&, const Contour<N, double>&, std::string, std::string, \
+                            const WorkOptions&);
+#define TEGL_INSTANTIATE_ALL(T) \
+  TEGL_INSTANTIATE(T, 2)        \
+  TEGL_INSTANTIATE(T, 3)        \
+  TEGL_INSTANTIATE(T, 4)        \
+  TEGL_INSTANTIATE(T, 5)
+TEGL_INSTANTIATE_ALL(std::uint8_t)
+TEGL_INSTANTIATE_ALL(std::int8_t)
+TEGL_INSTANTIATE_ALL(std::uint16_t)
+TEGL_INSTANTIATE_ALL(std::int16_t)
+TEGL_INSTANTIATE_ALL(std::int32_t)
+TEGL_INSTANTIATE_ALL(float)
+TEGL_INSTANTIATE_ALL(double)
+#undef TEGL_INSTANTIATE_ALL
+#undef TEGL_INSTANTIATE
+
+}  // namespace tegl

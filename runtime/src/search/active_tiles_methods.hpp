@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The ways to find active tiles: each is built from an image, or read from a file, whose head says of which image.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "search/index_file.hpp"
+#include "tegl/active_tiles.hpp"
+
+namespace tegl::detail {
+
+template <int N>
+using ActiveTilesPtr = std::unique_ptr<tegl::ActiveTiles<N>>;
+
+/// What a method works on. All must outlive the building or reading, the image's values the index too.
+template <Value T, int N>
+struct IndexTask {
+  const Image<T, N>& image;
+  const IndexedImage<N>& identity;
+  const ActiveTilesOptions& options;
+
+  /// Throws Cancelled where the caller's progress says stop.
+  void tell(double fraction) const {
+    if (options.progress && !options.progress(fraction))
+      throw Error(ErrorCode::Cancelled, fmt::format("building of the index cancelled at {:.0f} %", 100 * fraction));
+  }
+};
+
+/// Numbers of tiles in trees and buckets.
+using TileId = std::uint32_t;
+
+template <Value T, int N>
+ActiveTilesPtr<N> make_full_scan(const IndexTask<T, N>& task);
+
+template <Value T, int N>
+ActiveTilesPtr<N> build_interval_tree(const IndexTask<T, N>& task);
+template <Value T, int N>
+ActiveTilesPtr<N> read_interval_tree(IndexReader& from, const IndexTask<T, N>& task);
+
+template <Value T, int N>
+ActiveTilesPtr<N> build_span_space(const IndexTask<T, N>& task);
+template <Value T, int N>
+ActiveTilesPtr<N> read_span_space(IndexReader& from, const IndexTask<T, N>& task);
+
+template <Value T, int N>
+ActiveTilesPtr<N> build_min_max_tree(const IndexTask<T, N>& task);
+template <Value T, int N>
+ActiveTilesPtr<N> read_min_max_tree(IndexReader& from, const IndexTask<T, N>& task);
+
+template <Value T, int N>
+ActiveTilesPtr<N> build_seed_index(const IndexTask<T, N>& task);
+template <Value T, int N>
+ActiveTilesPtr<N> read_seed_index(IndexReader& from, const IndexTask<T, N>& task);
+
+inline constexpr std::array<char, 8> kIndexMagic = {'T', 'E', 'G', 'L', 'I', 'D', 'X', '\n'};
+inline constexpr std::uint32_t kIndexByteOrder = 0x01020304;
+/// To be raised with any change of what is behind it.
+inline constexpr std::uint32_t kIndexVersion = 1;
+
+void write_magic(IndexWriter& to, ActiveMethod method, int dim);
+
+template <int N>
+void write_head(IndexWriter& to, ActiveMethod method, const IndexedImage<N>& image) {
+  write_magic(to, method, N);
+  for (const std::size_t size : image.sizes) to.value(std::uint64_t{size});
+  to.text(image.value_type);
+  to.value(image.digest);
+  to.value(static_cast<std::uint8_t>(image.any_missing ? 1 : 0));
+}
+
+/// Throws MalformedFile, UnsupportedFormat.
+ActiveTilesHead read_head(IndexReader& from);
+
+/// Throws InvalidArgument, saying what differs.
+void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, std::string_view value_type,
+                        std::uint64_t digest);
+
+}  // namespace tegl::detail

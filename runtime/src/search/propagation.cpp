@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Propagation. Based on: Bajaj, Pascucci, Schikore, Fast isocontouring for improved interactivity, 1996.
+#include "search/propagation.hpp"
+
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <new>
+
+#include "base/workers.hpp"
+
+namespace tegl::detail {
+
+/// A bit for each tile, set by whichever thread comes first. The system gives zeros where there are bits to be set, and
+/// nothing elsewhere.
+template <Value T, int N>
+class TileFlood<T, N>::Seen {
+ public:
+  explicit Seen(TileNumber tiles) : words_(static_cast<Word*>(std::calloc((tiles + 63) / 64, sizeof(Word)))) {
+    if (words_ == nullptr) throw std::bad_alloc();
+  }
+  /// Whether the tile was not seen before.
+  bool add(TileNumber tile) noexcept {
+    const Word bit = Word{1} << (tile % 64);
+    const std::atomic_ref<Word> word(words_.get()[tile / 64]);
+    if ((word.load(std::memory_order_relaxed) & bit) != 0) return false;
+    return (word.fetch_or(bit, std::memory_order_relaxed) & bit) == 0;
+  }
+
+ private:
+  struct Free {
+    void operator()(Word* words) const noexcept { std::free(words); }
+  };
+  std::unique_ptr<Word, Free> words_;
+};
+
+template <Value T, int N>
+TileFlood<T, N>::TileFlood(const Image<T, N>& image, double isovalue)
+    : image_(image), grid_(image.grid().sizes()), threshold_(make_threshold<T>(isovalue)) {
+  for (unsigned corner = 0; corner < corners_.size(); ++corner) {
+    corners_[corner] = 0;
+    for (int a = 0; a < N; ++a)
+      if ((corner >> a & 1u) != 0) corners_[corner] += image.strides()[a];
+  }
+}
+
+template <Value T, int N>
+std::uint32_t TileFlood<T, N>::signature(TileNumber tile) const noexcept {
+  return signature_at(grid_.index(tile));
+}
+
+template <Value T, int N>
+std::uint32_t TileFlood<T, N>::signature_at(const Index& index) const noexcept {
+  std::ptrdiff_t at = 0;
+  for (int a = 0; a < N; ++a) at += static_cast<std::ptrdiff_t>(index[a]) * image_.strides()[a];
+  std::uint32_t signature = 0;
+  bool missing = threshold_.never;
+  for (unsigned corner = 0; corner < corners_.size(); ++corner) {
+    const T value = image_.data()[at + corners_[corner]];
+    signature |= (value >= threshold_.value ? 1u : 0u) << corner;
+    if constexpr (std::is_floating_point_v<T>) missing = missing || value != value;
+  }
+  return missing ? 0 : signature;
+}
+
+template <Value T, int N>
+std::vector<typename TileFlood<T, N>::Move> TileFlood<T, N>::moves(Neighbourhood neighbourhood) const {
+  std::vector<Move> result;
+  for (const Step& step : neighbour_steps(N, neighbourhood)) {
+    Move move{{}, 0, kAllHigh};
+    for (int a = 0; a < N; ++a) {
+      move.along[a] = step[a];
+      move.distance += step[a] * static_cast<std::ptrdiff_t>(grid_.stride(a));
+      for (unsigned corner = 0; corner < corners_.size(); ++corner)
+        if (step[a] != 0 && (corner >> a & 1u) != (step[a] > 0 ? 1u : 0u)) move.face &= ~(1u << corner);
+    }
+    result.push_back(move);
+  }
+  return result;
+}
+
+template <Value T, int N>
+void TileFlood<T, N>::visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen,
+                            Found& found) const {
+  const Index index = grid_.index(tile);
+  const std::uint32_t own = signature_at(index);
+  for (const Move& move : moves) {
+    const std::uint32_t shared = own & move.face;
+    if (rule == FloodRule::crossed_faces && (shared == 0 || shared == move.face)) continue;
+    Index next = index;
+    bool inside = true;
+    for (int a = 0; a < N; ++a) {
+      next[a] += static_cast<std::size_t>(static_cast<std::ptrdiff_t>(move.along[a]));
+      inside = inside && next[a] < grid_.size(a);  // below 0 is far above
+    }
+    if (!inside) continue;
+    const auto other = static_cast<TileNumber>(static_cast<std::ptrdiff_t>(tile) + move.distance);
+    if (!seen.add(other)) continue;
+    if (is_active(signature_at(next)))
+      found.tiles.push_back(other);
+    else
+      found.stopped = true;
+  }
+}
+
+template <Value T, int N>
+std::vector<TileNumber> TileFlood<T, N>::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
+                                             unsigned threads, const Progress& progress, bool* stopped) const {
+  const std::vector<Move> moves = this->moves(neighbourhood);
+  Seen seen(grid_.count());
+  Found all;
+  for (const TileNumber tile : from)
+    if (seen.add(tile)) all.tiles.push_back(tile);
+  constexpr std::size_t kGrain = 512;  // fewer are found sooner by one thread
+  Workers<Found> workers(threads, [] { return Found(); });
+  std::mutex mutex;
+  for (std::size_t first = 0; first < all.tiles.size();) {
+    const std::size_t end = all.tiles.size();
+    report_progress(progress, static_cast<double>(end) / (1.0 + static_cast<double>(grid_.count())));
+    if (end - first <= kGrain) {
+      for (std::size_t i = first; i < end; ++i) visit(all.tiles[i], moves, rule, seen, all);
+    } else {
+      Found layer;
+      workers.for_range(end - first, kGrain, [&](std::size_t begin, std::size_t stop, Found& found) {
+        found.tiles.clear();
+        found.stopped = false;
+        for (std::size_t i = first + begin; i < first + stop; ++i) visit(all.tiles[i], moves, rule, seen, found);
+        const std::lock_guard lock(mutex);
+        layer.tiles.insert(layer.tiles.end(), found.tiles.begin(), found.tiles.end());
+        layer.stopped = layer.stopped || found.stopped;
+      });
+      all.tiles.insert(all.tiles.end(), layer.tiles.begin(), layer.tiles.end());
+      all.stopped = all.stopped || layer.stopped;
+    }
+    first = end;
+  }
+  if (stopped != nullptr) *stopped = all.stopped;
+  return std::move(all.tiles);
+}
+
+template <Value T, int N>
+std::vector<TileNumber> TileFlood<T, N>::beside(const std::vector<TileNumber>& tiles, FloodRule rule,
+                                                Neighbourhood neighbourhood) const {
+  const std::vector<Move> moves = this->moves(neighbourhood);
+  Seen seen(grid_.count());
+  for (const TileNumber tile : tiles) seen.add(tile);
+  Found found;
+  for (const TileNumber tile : tiles) visit(tile, moves, rule, seen, found);
+  return std::move(found.tiles);
+}
+
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N) template class TileFlood<T, N>;
+#include "base/instantiate.hpp"
+
+}  // namespace tegl::detail

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The tiles of an image as intervals of values, and ways to put them in order in linear time: what interval trees and
+// buckets are built from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "search/active_tiles_methods.hpp"
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+/// The tiles that are active at some isovalue, ascending.
+template <Value T>
+struct TileIntervals {
+  Buffer<TileId> tiles;
+  Buffer<T> least, greatest;  ///< of each of them, least < greatest
+};
+
+/// Throws TooLarge if there are more tiles than TileId can number.
+template <Value T, int N>
+TileIntervals<T> gather_intervals(const IndexTask<T, N>& task);
+
+/// The places of keys in ascending order; equal ones stay in order. Radix sort, O(keys).
+template <Value T>
+Buffer<TileId> ascending_order(const Buffer<T>& keys);
+
+/// Adds every `step`-th of the keys in this order, from the first on.
+template <Value T>
+void add_quantiles(const Buffer<T>& keys, const Buffer<TileId>& order, std::size_t step, std::vector<T>& values);
+
+/// Makes values ascending, each once.
+template <Value T>
+void sort_unique(std::vector<T>& values);
+
+/// For each key, how many of the (ascending) bounds are not above it.
+template <Value T>
+Buffer<std::uint32_t> cells_of(const Buffer<T>& keys, const Buffer<TileId>& order, const std::vector<T>& bounds);
+
+/// Places 0 ... size - 1 of an order, brought together by bin.
+struct Bins {
+  std::vector<std::uint64_t> first;  ///< by bin, and the end: where its places are in `order`
+  Buffer<TileId> order;              ///< within a bin in the order that they came in
+};
+Bins distribute(const Buffer<TileId>& order, const Buffer<std::uint32_t>& bin_of, std::size_t bins);
+
+/// values[order[0]], values[order[1]], ...
+template <class V>
+std::vector<V> in_order(const Buffer<V>& values, const Buffer<TileId>& order) {
+  std::vector<V> result;
+  result.reserve(order.size());
+  for (const TileId i : order) result.push_back(values.data()[i]);
+  return result;
+}
+
+/// Throws MalformedFile unless all are numbers of tiles.
+void require_tiles(const std::vector<TileId>& tiles, TileNumber end);
+
+}  // namespace tegl::detail

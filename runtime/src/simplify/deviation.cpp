@@ -1,0 +1,601 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far every point of one contour is from another, simplex by simplex: by the sheets of the other contour that pass
+// over all of it, or else by how far its corners are from one simplex; in parts, where that tells too little.
+#include "tegl/deviation.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/workers.hpp"
+#include "mesh/measure_pieces.hpp"
+#include "mesh/simplex_shapes.hpp"
+#include "mesh/validate.hpp"
+#include "simplify/box_tree.hpp"
+#include "simplify/prism_cover.hpp"
+
+namespace tegl {
+namespace detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// How much more than a distance that is reached a bound may be; and where it is measured again.
+constexpr double kLooseness = 1.25;
+constexpr double kRefinedLooseness = 1.05;
+/// A bound below these shares, of the longest edge and of the largest distance of a vertex, is good enough.
+constexpr double kEdgeShare = 0.02;
+constexpr double kLeastShare = 0.5;
+/// Sheets are looked for as far off as the corners are, by this factor and this share of the longest edge; then wider.
+constexpr double kSlack = 1.5;
+constexpr double kReachShare = 0.05;
+constexpr double kWider = 4.0;
+/// Farther away than this share of the longest edge, distances alone tell enough.
+constexpr double kFarAway = 2.0;
+/// Of the longest edge: the rim that is left out of a simplex where it decides. Much more than rounding.
+constexpr double kRim = 1e-11;
+/// Of the longest edge: much more than the rim.
+constexpr double kBeyond = 1e-9;
+/// Flatter simplices are looked at along the normal of what is next to them.
+constexpr double kFlat = 1e-2;
+/// In how many parts a simplex is measured at most; and where the largest bounds are measured again, how many
+/// simplices those are (and which share of all), in how many parts.
+constexpr std::size_t kMostParts = 24;
+constexpr std::size_t kMostRefined = 64;
+constexpr std::size_t kRefinedShare = 4000;
+constexpr std::size_t kRefinedParts = 400;
+/// The middle of each of so many simplices tells beforehand how large distances are.
+constexpr std::size_t kSampled = 8;
+constexpr std::size_t kGrain = 256;
+
+void raise(double& value, double candidate) {
+  std::atomic_ref<double> shared(value);
+  double old = shared.load(std::memory_order_relaxed);
+  while (candidate > old && !shared.compare_exchange_weak(old, candidate, std::memory_order_relaxed)) {
+  }
+}
+
+template <int N>
+PointN<N> middle_of(const CornersN<N>& corners) {
+  PointN<N> middle{};
+  for (const PointN<N>& corner : corners)
+    for (int a = 0; a < N; ++a) middle[a] += corner[a] / N;
+  return middle;
+}
+
+/// The simplices of a contour, scaled.
+template <int N>
+struct Pieces {
+  std::span<const std::array<Index, N>> simplices;
+  std::vector<PointN<N>> points;
+  std::vector<CornersN<N>> corners;
+
+  template <class Real>
+  Pieces(const Contour<N, Real>& contour, const std::array<double, N>& scale) : simplices(contour.simplices) {
+    points.reserve(contour.vertices.size());
+    for (const auto& vertex : contour.vertices) {
+      PointN<N> point;
+      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]) * scale[a];
+      points.push_back(point);
+    }
+    corners.reserve(contour.simplices.size());
+    for (const auto& simplex : contour.simplices) {
+      CornersN<N>& at = corners.emplace_back();
+      for (int i = 0; i < N; ++i) at[i] = points[simplex[i]];
+    }
+  }
+};
+
+/// Where the chain of a contour's simplices ends: of each simplex, bit i: its face opposite to corner i is one whose
+/// orientations do not cancel.
+template <int N>
+class OpenFaces {
+ public:
+  OpenFaces(const Pieces<N>& pieces, unsigned threads, const Progress& progress)
+      : rows_(pieces.simplices.begin(), pieces.simplices.end()), faces_(rows_.size(), 0) {
+    find(pieces.points.size(), threads, part_of(progress, 0.0, 0.5));
+    // Vertices at one place are one: files may have each simplex with corners of its own.
+    if (!ridges_.empty() && unite(pieces.points)) find(pieces.points.size(), threads, part_of(progress, 0.5, 1.0));
+    rows_ = {};
+  }
+  [[nodiscard]] unsigned of(Index simplex) const { return faces_[simplex]; }
+
+ private:
+  using Ridge = typename FacesOfStars<N>::Ridge;
+
+  void find(std::size_t vertices, unsigned threads, const Progress& progress) {
+    const std::span<const Index> rows(rows_.empty() ? nullptr : rows_[0].data(), rows_.size() * N);
+    const Stars stars = make_stars<N>(rows, vertices, part_of(progress, 0.0, 0.2));
+    std::vector<std::vector<Ridge>> parts(block_count(vertices, kBlock));
+    count_faces<N>(rows, stars, {}, 1, false, threads, part_of(progress, 0.2, 1.0),
+                   [&](std::size_t block, const Ridge& ridge) { parts[block].push_back(ridge); });
+    std::fill(faces_.begin(), faces_.end(), std::uint8_t{0});
+    ridges_.clear();
+    for (const auto& part : parts)
+      for (const Ridge& ridge : part) {
+        ridges_.push_back(ridge);
+        for (const Index s : stars.of(ridge[0])) mark(s, ridge);
+      }
+  }
+
+  void mark(Index s, const Ridge& ridge) {
+    unsigned others = 0;
+    for (int i = 0; i < N; ++i)
+      if (std::find(ridge.begin(), ridge.end(), rows_[s][i]) == ridge.end()) others |= 1u << i;
+    if (std::has_single_bit(others)) faces_[s] |= static_cast<std::uint8_t>(others);
+  }
+
+  /// False if no two vertices of open faces are at one place.
+  bool unite(const std::vector<PointN<N>>& points) {
+    std::vector<Index> open;
+    for (const Ridge& ridge : ridges_) open.insert(open.end(), ridge.begin(), ridge.end());
+    const auto before = [&](Index a, Index b) { return points[a] != points[b] ? points[a] < points[b] : a < b; };
+    std::sort(open.begin(), open.end(), before);
+    open.erase(std::unique(open.begin(), open.end()), open.end());
+    std::vector<Index> first(points.size());
+    std::iota(first.begin(), first.end(), Index{0});
+    bool any = false;
+    for (std::size_t i = 1; i < open.size(); ++i) {
+      if (points[open[i]] != points[open[i - 1]]) continue;
+      first[open[i]] = first[open[i - 1]];
+      any = true;
+    }
+    if (any)
+      for (auto& row : rows_)
+        for (Index& v : row) v = first[v];
+    return any;
+  }
+
+  std::vector<std::array<Index, N>> rows_;
+  std::vector<std::uint8_t> faces_;
+  std::vector<Ridge> ridges_;
+};
+
+/// What all simplices are measured with.
+template <int N>
+struct Measure {
+  const Pieces<N>& from;
+  const Pieces<N>& to;
+  const BoxTree<N>& tree;
+  const OpenFaces<N>& open;
+  const std::vector<double>& of_vertices;  ///< how far each vertex of `from` is from the nearest of `to`
+  double enough;                           ///< no bound needs to be less
+  std::vector<double>& of_to;
+};
+
+/// Measures one simplex after the other. One per thread.
+template <int N>
+class Matcher {
+ public:
+  static constexpr int D = N - 1;
+
+  explicit Matcher(const Measure<N>& measure) : m_(measure) {}
+
+  /// No point of simplex s is farther than that; `least` is raised to a distance that is reached.
+  double bound(Index s, double& least) {
+    load(s);
+    looseness_ = kLooseness;
+    const double enough = std::max(m_.enough, kEdgeShare * edge_);
+    const double result = in_parts(enough, kMostParts, least);
+    for (const Part& part : parts_)
+      for (const auto& [t, distance] : part.matches) raise(m_.of_to[t], distance);
+    return result;
+  }
+
+  /// A bound that took more pains, until it is `enough`, or as long as is worth it.
+  double refined_bound(Index s, double enough) {
+    load(s);
+    looseness_ = kRefinedLooseness;
+    double least = 0.0;
+    return in_parts(enough, kRefinedParts, least);
+  }
+
+ private:
+  /// A simplex of `to`, in the frame.
+  struct Near {
+    Index simplex;
+    CornersN<N> at;
+    double low, high;  ///< the last coordinates
+  };
+  /// What is left of such a one over a part.
+  struct Sheet {
+    double low, high;
+    Index near;
+    bool open;
+  };
+  struct Part {
+    double bound = kInfinity;
+    CornersN<N> corners;              ///< in the frame
+    std::vector<std::uint32_t> near;  ///< numbers in near_: all that come near it
+    std::vector<std::pair<Index, double>> matches;
+    std::uint32_t farthest = 0;  ///< the number in near_ of the match with the largest distance
+    Index next = 0;              ///< one of those nearest to it
+    bool operator<(const Part& other) const { return bound < other.bound; }
+  };
+
+  void load(Index s) {
+    const CornersN<N>& corners = m_.from.corners[s];
+    edge_ = longest_edge<N>(corners);
+    nearest_ = 0.0;
+    for (const Index v : m_.from.simplices[s]) nearest_ = std::max(nearest_, m_.of_vertices[v]);
+    PointN<N> normal = normal_of<N>(corners);
+    double length = norm(normal);
+    if (!(shape_of_simplex<N>(corners, length) > kFlat)) {
+      const PointN<N> next = normal_of<N>(m_.to.corners[m_.tree.nearest(middle_of<N>(corners)).simplex]);
+      if (norm(next) > 0.0) {
+        normal = next;
+        length = norm(next);
+      }
+    }
+    if (!(length > 0.0)) {
+      normal = {};
+      normal[0] = length = 1.0;
+    }
+    for (double& x : normal) x /= length;
+    frame_ = Frame<N>(normal, corners[0]);
+    for (int i = 0; i < N; ++i) whole_[i] = frame_.to_frame(corners[i]);
+  }
+
+  /// Whether a closer bound is of no use.
+  [[nodiscard]] bool is_enough(const Part& part, double enough) const {
+    return part.bound <= std::max(enough, looseness_ * nearest_);
+  }
+
+  /// The largest bound of the parts; they are left in parts_.
+  double in_parts(double enough, std::size_t most, double& least) {
+    parts_.clear();
+    Part whole;
+    whole.corners = whole_;
+    for (const double wider : {1.0, kWider}) {
+      gather_near(wider * (kSlack * nearest_ + kReachShare * edge_));
+      whole.near.resize(near_.size());
+      std::iota(whole.near.begin(), whole.near.end(), 0u);
+      if (nearest_ > kFarAway * edge_) break;
+      measure(whole, enough);
+      if (is_enough(whole, enough) || whole.bound <= reach_) break;
+    }
+    if (!(whole.bound < kInfinity)) measure_by_distances(whole);
+    parts_.push_back(std::move(whole));
+    while (!is_enough(parts_.front(), enough) && parts_.size() < most) {
+      std::pop_heap(parts_.begin(), parts_.end());
+      const Part worst = std::move(parts_.back());
+      parts_.pop_back();
+      for (const CornersN<N>& half : halves(worst.corners)) {
+        Part part = worst;  // with what bounds the whole, until there is something nearer
+        part.corners = half;
+        measure(part, enough);
+        parts_.push_back(std::move(part));
+        std::push_heap(parts_.begin(), parts_.end());
+      }
+    }
+    least = std::max(least, nearest_);
+    return parts_.front().bound;
+  }
+
+  /// All that comes within `reach` of the whole along the frame's normal.
+  void gather_near(double reach) {
+    reach_ = reach;
+    near_.clear();
+    const Prism<N> prism(whole_, edge_);
+    Box<N> box;
+    const auto add = [&](PointN<N> x) {
+      const double level = x[D];
+      for (const double away : {-reach, reach}) {
+        x[D] = level + away;
+        box.add(frame_.to_space(x));
+      }
+    };
+    for (const PointN<N>& corner : whole_) add(corner);
+    if (prism.thin()) {
+      Box<N> whole;
+      for (const PointN<N>& corner : whole_) whole.add(corner);
+      for (unsigned k = 0; k < 1u << N; ++k) {
+        PointN<N> x;
+        for (int a = 0; a < N; ++a) x[a] = (k >> a & 1u) != 0 ? whole.high[a] : whole.low[a];
+        add(x);
+      }
+    }
+    Box<N> around;  // in the frame
+    for (const PointN<N>& corner : whole_) around.add(corner);
+    around.low[D] -= reach;
+    around.high[D] += reach;
+    const double rounding = 10.0 * prism.rounding();
+    m_.tree.visit_near(box, rounding, [&](Index t) {
+      Near near;
+      near.simplex = t;
+      Box<N> of_near;
+      for (int i = 0; i < N; ++i) {
+        near.at[i] = frame_.to_frame(m_.to.corners[t][i]);
+        of_near.add(near.at[i]);
+      }
+      near.low = of_near.low[D];
+      near.high = of_near.high[D];
+      if (of_near.meets(around, rounding)) near_.push_back(near);
+    });
+  }
+
+  /// By the nearest of the sheets that pass over all of the part, or by distances. What is not near it is dropped from
+  /// its list.
+  void measure(Part& part, double enough) {
+    const Prism<N> prism(part.corners, edge_);
+    // If all of each simplex is near enough, none needs to be cut.
+    gather_sheets(prism, part, false);
+    take_best_sheet(prism, part, 0.0);
+    if (is_enough(part, m_.enough)) return;
+    // Where sheets did not tell of the whole they will hardly tell of its parts; distances cost less, and these are
+    // smaller.
+    if (!parts_.empty()) measure_by_distances(part);
+    if (!parts_.empty() && is_enough(part, enough)) return;
+    // All but a rim, every point of which is nearer than that to the rest: borders and walls that begin at the edge of
+    // the part are not over it then.
+    CornersN<N> inner = part.corners;
+    const PointN<N> middle = middle_of<N>(part.corners);
+    for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
+    const Prism<N> inner_prism(inner, edge_);
+    gather_sheets(inner_prism, part, true);
+    const bool found = take_best_sheet(inner_prism, part, kRim * edge_);
+    if (part.bound <= 2.0 * kRim * edge_) {  // the same contour: without a rim it is as near as rounding allows
+      gather_sheets(prism, part, true);
+      take_best_sheet(prism, part, 0.0);
+    }
+    if (found && !is_enough(part, enough) && !prism.thin()) probe(inner_prism, part);
+    if (parts_.empty() && !is_enough(part, enough)) measure_by_distances(part);
+  }
+
+  /// `cut`: what is left of them over the part; else what their corners and hyperplanes tell of that.
+  void gather_sheets(const Prism<N>& prism, Part& part, bool cut) {
+    sheets_.clear();
+    // What is farther off than the bound that is known, by more than rounding, will not better it.
+    double lowest = kInfinity, highest = -kInfinity;
+    for (const PointN<N>& corner : part.corners) {
+      lowest = std::min(lowest, corner[D]);
+      highest = std::max(highest, corner[D]);
+    }
+    const double limit = part.bound + kBeyond * edge_;
+    lowest -= limit;
+    highest += limit;
+    std::size_t kept = 0;
+    for (const std::uint32_t number : part.near) {
+      const Near& near = near_[number];
+      if (near.low > highest || near.high < lowest) continue;
+      if (!remnant_.load(near.at, prism)) continue;
+      const unsigned open = m_.open.of(near.simplex);
+      if ((cut || open != 0) && !remnant_.cut(prism)) continue;
+      auto [low, high] = remnant_.heights(prism);
+      part.near[kept++] = number;
+      if (!cut) {
+        const auto [least, largest] = heights_of_plane<N>(near.at, part.corners, prism);
+        low = std::max(low, least);
+        high = std::min(high, largest);
+        if (low > high) continue;
+      }
+      sheets_.push_back({low, high, number, open != 0 && (remnant_.facets() & open) != 0});
+    }
+    part.near.resize(kept);
+    std::sort(sheets_.begin(), sheets_.end(),
+              [](const Sheet& a, const Sheet& b) { return a.low != b.low ? a.low < b.low : a.near < b.near; });
+  }
+
+  /// Of the groups of sheets that are apart from others by their heights, the nearest that passes over all of the part
+  /// for sure. False if none is nearer than what is known.
+  bool take_best_sheet(const Prism<N>& prism, Part& part, double rim) {
+    const double apart = prism.rounding() + 1e-15 * reach_;
+    const double reach = reach_ - std::max(-prism.low(), prism.high());
+    bool found = false;
+    for (std::size_t i = 0, j = 0; i < sheets_.size(); i = j) {
+      double high = sheets_[i].high;
+      bool open = false;
+      for (; j < sheets_.size() && sheets_[j].low <= high + apart; ++j) {
+        high = std::max(high, sheets_[j].high);
+        open = open || sheets_[j].open;
+      }
+      const double low = sheets_[i].low;
+      if (!(low > -reach && high < reach)) continue;
+      const double bound = std::max(high - prism.low(), prism.high() - low) + rim;
+      if (!(bound < part.bound)) continue;
+      if (open || !covered(std::span(sheets_).subspan(i, j - i), part.corners)) continue;
+      found = true;
+      part.bound = bound;
+      part.matches.clear();
+      for (std::size_t k = i; k < j; ++k) {
+        const double far = std::max(sheets_[k].high - prism.low(), prism.high() - sheets_[k].low) + rim;
+        part.matches.emplace_back(near_[sheets_[k].near].simplex, far);
+        if (far == bound) part.farthest = sheets_[k].near;
+      }
+    }
+    return found;
+  }
+
+  /// Finds out how far the part is below or above the farthest corner of its sheets.
+  void probe(const Prism<N>& prism, Part& part) {
+    if (!remnant_.load(near_[part.farthest].at, prism) || !remnant_.cut(prism)) return;
+    const PointN<N> below = prism.at_level(remnant_.farthest(prism));
+    nearest_ = std::max(nearest_, m_.tree.nearest(frame_.to_space(below), near_[part.farthest].simplex).distance);
+  }
+
+  /// Whether sheets cover some point of the part other than as often from above as from below.
+  [[nodiscard]] bool covered(std::span<const Sheet> sheets, const CornersN<N>& part) const {
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      // Points without any symmetry to the part.
+      PointN<N> x{};
+      double sum = 0.0;
+      for (int i = 0; i < N; ++i) {
+        const double weight = 1.0 + 0.37 * ((i * (attempt + 1) + attempt) % N) + 0.11 * i;
+        sum += weight;
+        for (int a = 0; a < N; ++a) x[a] += weight * part[i][a];
+      }
+      for (double& coordinate : x) coordinate /= sum;
+      int times = 0;
+      bool sure = true;
+      for (const Sheet& sheet : sheets) {
+        const std::optional<int> side = covers<N>(near_[sheet.near].at, flat<N>(x));
+        sure = sure && side.has_value();
+        if (!sure) break;
+        times += *side;
+      }
+      if (sure) return times != 0;
+    }
+    return false;
+  }
+
+  /// The distance from one simplex is convex, so its largest value is at a corner; and no distance grows faster than
+  /// the way does. Either bound will do.
+  void measure_by_distances(Part& part) {
+    CornersN<N> corners;
+    for (int i = 0; i < N; ++i) corners[i] = frame_.to_space(part.corners[i]);
+    const PointN<N> middle = middle_of<N>(corners);
+    const auto [distance, t] = m_.tree.nearest(middle, part.next);
+    part.next = t;
+    nearest_ = std::max(nearest_, distance);
+    double radius = 0.0, farthest = 0.0;
+    for (const PointN<N>& corner : corners) {
+      radius = std::max(radius, norm(minus(corner, middle)));
+      farthest = std::max(farthest, distance_to_simplex<N>(corner, m_.to.corners[t], N));
+    }
+    const double bound = std::min(distance + radius, farthest);
+    if (!(bound < part.bound)) return;
+    part.bound = bound;
+    part.matches.assign(1, {t, bound});
+  }
+
+  /// The two halves of a simplex, across its longest edge.
+  static std::array<CornersN<N>, 2> halves(const CornersN<N>& part) {
+    int first = 0, second = 1;
+    double longest = -1.0;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < i; ++j) {
+        const PointN<N> edge = minus(part[i], part[j]);
+        if (dot(edge, edge) > longest) {
+          longest = dot(edge, edge);
+          first = j;
+          second = i;
+        }
+      }
+    std::array<CornersN<N>, 2> result = {part, part};
+    result[0][second] = result[1][first] = between(part[first], part[second], 0.5);
+    return result;
+  }
+
+  const Measure<N>& m_;
+  // Of the simplex at hand.
+  double edge_ = 0.0;
+  double looseness_ = kLooseness;
+  double nearest_ = 0.0;  ///< the largest distance of a point of it that is known
+  Frame<N> frame_ = Frame<N>({1.0}, {});
+  CornersN<N> whole_;
+  double reach_ = 0.0;
+  std::vector<Near> near_;
+  std::vector<Part> parts_;
+  // Of the part at hand.
+  std::vector<Sheet> sheets_;
+  Remnant<N> remnant_;
+};
+
+template <int N>
+void require_scale(const std::array<double, N>& scale) {
+  for (const double s : scale)
+    if (!(s > 0.0 && std::isfinite(s)))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("a scale is {}; expected a positive number", s));
+}
+
+/// Measures the simplices with the largest bounds again: few decide on the bound of all.
+template <int N>
+void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
+  std::vector<std::size_t> order(result.of_from.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t most = std::min(order.size() - 1, kMostRefined + order.size() / kRefinedShare);
+  const auto larger = [&](std::size_t a, std::size_t b) {
+    return result.of_from[a] != result.of_from[b] ? result.of_from[a] > result.of_from[b] : a < b;
+  };
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(), larger);
+  // No use in a closer bound of some than the others have.
+  const double enough = std::max(result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
+  for_each_block(
+      std::max<std::size_t>(most, 1), 1, threads, progress, [&] { return Matcher<N>(measure); },
+      [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
+        for (std::size_t i = first; i < end; ++i) {
+          double& bound = result.of_from[order[i]];
+          if (bound > enough) bound = std::min(bound, matcher.refined_bound(static_cast<Index>(order[i]), enough));
+        }
+      });
+  result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
+  for (double& bound : result.of_to) bound = std::min(bound, result.bound);
+}
+
+template <int N>
+void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsigned threads, const Progress& progress,
+                 Deviation& result) {
+  const OpenFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
+  const BoxTree<N> tree(to.corners);
+  std::vector<double> of_vertices(from.points.size());
+  for_each_block(from.points.size(), kGrain, threads, part_of(progress, 0.1, 0.2),
+                 [&](std::size_t, std::size_t first, std::size_t end) {
+                   auto nearest = tree.nearest(from.points[first]);
+                   for (std::size_t v = first; v < end; ++v) {
+                     nearest = tree.nearest(from.points[v], nearest.simplex);
+                     of_vertices[v] = nearest.distance;
+                   }
+                 });
+  for (const auto& simplex : from.simplices)
+    for (const Index v : simplex) result.least = std::max(result.least, of_vertices[v]);
+  for_each_block(from.simplices.size() / kSampled, kGrain, threads, part_of(progress, 0.2, 0.25),
+                 [&](std::size_t, std::size_t first, std::size_t end) {
+                   double farthest = 0.0;
+                   for (std::size_t s = first; s < end; ++s)
+                     farthest = std::max(farthest, tree.nearest(middle_of<N>(from.corners[s * kSampled])).distance);
+                   raise(result.least, farthest);
+                 });
+  const Measure<N> measure{from,        to, tree, open, of_vertices, std::max(enough, kLeastShare * result.least),
+                           result.of_to};
+  for_each_block(
+      from.simplices.size(), kGrain, threads, part_of(progress, 0.25, 0.9), [&] { return Matcher<N>(measure); },
+      [&](std::size_t, std::size_t first, std::size_t end, Matcher<N>& matcher) {
+        double reached = 0.0;
+        for (std::size_t s = first; s < end; ++s) result.of_from[s] = matcher.bound(static_cast<Index>(s), reached);
+        raise(result.least, reached);
+      });
+  refine_largest(measure, result, threads, part_of(progress, 0.9, 1.0));
+}
+
+}  // namespace
+}  // namespace detail
+
+template <int N, class Real>
+requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
+                                                       const DeviationOptions<N>& options) {
+  using namespace detail;
+  require_scale<N>(options.scale);
+  if (!(options.enough >= 0.0))
+    throw Error(ErrorCode::InvalidArgument, fmt::format("enough is {}; expected 0 or more", options.enough));
+  for (const auto* contour : {&from, &to}) {
+    require_vertices(*contour);
+    require_finite(*contour);
+  }
+  Deviation result;
+  result.of_from.assign(from.simplices.size(), 0.0);
+  result.of_to.assign(to.simplices.size(), 0.0);
+  if (from.simplices.empty()) return result;
+  if (to.simplices.empty()) {
+    result.bound = result.least = kInfinity;
+    result.of_from.assign(from.simplices.size(), kInfinity);
+    return result;
+  }
+  const Pieces<N> from_pieces(from, options.scale), to_pieces(to, options.scale);
+  measure_all(from_pieces, to_pieces, options.enough, options.threads, options.progress, result);
+  return result;
+}
+
+template Deviation deviation(const Contour<2, float>&, const Contour<2, float>&, const DeviationOptions<2>&);
+template Deviation deviation(const Contour<2, double>&, const Contour<2, double>&, const DeviationOptions<2>&);
+template Deviation deviation(const Contour<3, float>&, const Contour<3, float>&, const DeviationOptions<3>&);
+template Deviation deviation(const Contour<3, double>&, const Contour<3, double>&, const DeviationOptions<3>&);
+template Deviation deviation(const Contour<4, float>&, const Contour<4, float>&, const DeviationOptions<4>&);
+template Deviation deviation(const Contour<4, double>&, const Contour<4, double>&, const DeviationOptions<4>&);
+
+}  // namespace tegl

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Places, shapes and tolerances of contractions.
+//
+// Based on: M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997, section 3 (places,
+// border planes) and section 4.3 (no flips), here in any dimension.
+#include "simplify/edge_collapse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/progress.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// No normal may turn so far that the cosine is less: 78 degrees.
+constexpr double kLeastCosine = 0.2;
+/// Simplices of this shape are good enough, whatever was there before. Those below kFlat count as flat.
+template <int N>
+constexpr double kGoodShape = N == 4 ? 0.01 : 0.05;
+constexpr double kFlat = 1e-6;
+/// How much more a border face weighs than the simplex that it belongs to.
+constexpr double kBorderWeight = 10.0;
+/// A place may be this many lengths of the edge away from it.
+constexpr double kFarthestPlace = 2.0;
+
+constexpr double factorial(int n) { return n <= 1 ? 1.0 : n * factorial(n - 1); }
+
+template <int N>
+PointN<N> unit(const PointN<N>& vector, double length) {
+  PointN<N> result;
+  for (int a = 0; a < N; ++a) result[a] = vector[a] / length;
+  return result;
+}
+
+}  // namespace
+
+template <int N>
+Shrinker<N>::Shrinker(ShrinkStart<N> start)
+    : complex_(start.simplices, start.points.size(), part_of(start.progress, 0.0, 0.6)),
+      points_(std::move(start.points)),
+      scaled_(points_.size()),
+      scale_(start.scale),
+      quadrics_(points_.size()),
+      bound_(points_.size(), 0),
+      tolerance_(std::move(start.tolerance)),
+      version_(points_.size(), 0),
+      merged_into_(points_.size()),
+      carried_width_(start.carried_width),
+      carried_(std::move(start.carried)),
+      border_fixed_(start.border_fixed),
+      single_precision_(start.single_precision) {
+  std::iota(merged_into_.begin(), merged_into_.end(), Index{0});
+  if (!points_.empty()) {
+    PointN<N> low = points_[0], high = points_[0];
+    for (const PointN<N>& point : points_)
+      for (int a = 0; a < N; ++a) {
+        low[a] = std::min(low[a], point[a]);
+        high[a] = std::max(high[a], point[a]);
+      }
+    centre_ = between(low, high, 0.5);
+  }
+  for (std::size_t v = 0; v < points_.size(); ++v) {
+    scaled_[v] = to_scaled(points_[v]);
+    if (complex_.on_border(static_cast<Index>(v))) bound_[v] |= kBorderBit;
+  }
+  add_quadrics(part_of(start.progress, 0.6, 1.0));
+}
+
+template <int N>
+PointN<N> Shrinker<N>::to_scaled(const PointN<N>& point) const {
+  PointN<N> result;
+  for (int a = 0; a < N; ++a) result[a] = (point[a] - centre_[a]) * scale_[a];
+  return result;
+}
+
+template <int N>
+PointN<N> Shrinker<N>::from_scaled(const PointN<N>& point) const {
+  PointN<N> result;
+  for (int a = 0; a < N; ++a) result[a] = point[a] / scale_[a] + centre_[a];
+  return result;
+}
+
+template <int N>
+PointN<N> Shrinker<N>::rounded(PointN<N> point) const {
+  if (single_precision_)
+    for (double& x : point) x = static_cast<double>(static_cast<float>(x));
+  return point;
+}
+
+template <int N>
+CornersN<N> Shrinker<N>::corners(Index s) const {
+  CornersN<N> result;
+  for (int i = 0; i < N; ++i) result[i] = scaled_[complex_.simplex(s)[i]];
+  return result;
+}
+
+template <int N>
+void Shrinker<N>::add_quadrics(const Progress& progress) {
+  const auto add = [&](Index s) {
+    const CornersN<N> at = corners(s);
+    const PointN<N> normal = normal_of<N>(at);
+    const double length = norm(normal);
+    if (!(length > 0.0)) return;
+    const double weight = length / factorial(N - 1);
+    const PointN<N> direction = unit<N>(normal, length);
+    for (const Index v : complex_.simplex(s)) quadrics_[v].add_plane(direction, at[0], weight);
+    if (complex_.border_faces(s) != 0) add_border_quadrics(s, at, kBorderWeight * weight);
+  };
+  in_parts(complex_.simplex_count(), progress, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) add(static_cast<Index>(s));
+  });
+}
+
+/// The hyperplane through a border face at right angles to its simplex: what keeps borders that may move in shape.
+template <int N>
+void Shrinker<N>::add_border_quadrics(Index s, const CornersN<N>& at, double weight) {
+  for (int omitted = 0; omitted < N; ++omitted) {
+    if ((complex_.border_faces(s) >> omitted & 1u) == 0) continue;
+    // What is left of the way to the opposite corner when the directions of the face are taken out.
+    std::array<PointN<N>, N> basis{};
+    int found = 0;
+    const int base = omitted == 0 ? 1 : 0;
+    const auto rest_of = [&](int corner) {
+      PointN<N> way = minus(at[corner], at[base]);
+      for (int k = 0; k < found; ++k) {
+        const double along = dot(way, basis[k]);
+        for (int a = 0; a < N; ++a) way[a] -= along * basis[k][a];
+      }
+      return way;
+    };
+    for (int i = 0; i < N; ++i) {
+      if (i == omitted || i == base) continue;
+      const PointN<N> way = rest_of(i);
+      if (norm(way) > 0.0) basis[found++] = unit<N>(way, norm(way));
+    }
+    const PointN<N> height = rest_of(omitted);
+    if (!(norm(height) > 0.0)) continue;
+    for (int i = 0; i < N; ++i)
+      if (i != omitted) quadrics_[complex_.simplex(s)[i]].add_plane(unit<N>(height, norm(height)), at[base], weight);
+  }
+}
+
+template <int N>
+Index Shrinker<N>::survivor(Index v) {
+  while (merged_into_[v] != v) v = merged_into_[v] = merged_into_[merged_into_[v]];
+  return v;
+}
+
+template <int N>
+bool Shrinker<N>::may_move_to(Index v, Index u) const {
+  if ((bound_[v] & ~bound_[u]) != 0) return false;
+  return !border_fixed_ || (bound_[v] & kBorderBit) == 0;
+}
+
+template <int N>
+std::optional<MeetingPlace<N>> Shrinker<N>::meeting_place(Index u, Index v) const {
+  Quadric<N> sum = quadrics_[u];
+  sum += quadrics_[v];
+  MeetingPlace<N> place;
+  const std::uint32_t of_u = bound_[u], of_v = bound_[v];
+  if (border_fixed_ && (of_u & of_v & kBorderBit) != 0) return std::nullopt;
+  if (of_u == of_v && of_u != 0) {
+    place.share = sum.least_between(scaled_[u], scaled_[v]);
+    place.at = rounded(between(points_[u], points_[v], place.share));
+  } else if (of_u != of_v) {
+    if (!may_move_to(v, u) && !may_move_to(u, v)) return std::nullopt;
+    place.share = may_move_to(v, u) ? 0.0 : 1.0;
+    place.at = place.share == 0.0 ? points_[u] : points_[v];
+  } else {
+    const PointN<N> middle = between(scaled_[u], scaled_[v], 0.5);
+    const PointN<N> edge = minus(scaled_[v], scaled_[u]);
+    PointN<N> best = sum.least_near(middle);
+    const double square = dot(edge, edge);
+    const PointN<N> away = minus(best, middle);
+    if (!(dot(away, away) <= kFarthestPlace * kFarthestPlace * square))
+      best = between(scaled_[u], scaled_[v], sum.least_between(scaled_[u], scaled_[v]));
+    if (square > 0.0) place.share = std::clamp(dot(minus(best, scaled_[u]), edge) / square, 0.0, 1.0);
+    place.at = square > 0.0 ? rounded(from_scaled(best)) : points_[u];
+  }
+  place.cost = sum(to_scaled(place.at));
+  return place;
+}
+
+template <int N>
+MeetingPlace<N> Shrinker<N>::place_at(Index u, Index v, const PointN<N>& at, double share) const {
+  const PointN<N> scaled_at = to_scaled(at);
+  return {at, share, quadrics_[u](scaled_at) + quadrics_[v](scaled_at)};
+}
+
+template <int N>
+auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::optional<CommonPlace> {
+  std::uint32_t all = 0;
+  int of_border = 0;
+  bool equal = true;
+  for (const Index v : vertices) {
+    all |= bound_[v];
+    equal = equal && bound_[v] == bound_[vertices[0]];
+    of_border += (bound_[v] & kBorderBit) != 0;
+  }
+  if (border_fixed_ && of_border > 1) return std::nullopt;
+  if (!equal) {
+    for (const Index v : vertices)
+      if (bound_[v] == all) return CommonPlace{points_[v], v};
+    return std::nullopt;
+  }
+  // Relative to the first, so that a coordinate that is common to all stays as it is.
+  PointN<N> middle = points_[vertices[0]];
+  for (const Index v : vertices)
+    for (int a = 0; a < N; ++a)
+      middle[a] += (points_[v][a] - points_[vertices[0]][a]) / static_cast<double>(vertices.size());
+  if (all != 0) return CommonPlace{rounded(middle), std::nullopt};
+  Quadric<N> sum;
+  double size = 0.0;
+  const PointN<N> from = to_scaled(middle);
+  for (const Index v : vertices) {
+    sum += quadrics_[v];
+    size = std::max(size, norm(minus(scaled_[v], from)));
+  }
+  const PointN<N> best = sum.least_near(from);
+  const bool near = norm(minus(best, from)) <= kFarthestPlace * size;
+  return CommonPlace{rounded(near ? from_scaled(best) : middle), std::nullopt};
+}
+
+/// The root mean square of the distances from all hyperplanes that went into the two vertices. No tolerance forbids
+/// all: where simplices have no size there are no hyperplanes, so that all places would cost nothing.
+template <int N>
+bool Shrinker<N>::within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const {
+  const double tolerance = std::min(tolerance_[u], tolerance_[v]);
+  if (!(tolerance > 0.0)) return false;
+  if (tolerance == std::numeric_limits<double>::infinity()) return true;
+  const double weight = quadrics_[u].weight() + quadrics_[v].weight();
+  return place.cost <= tolerance * tolerance * weight;
+}
+
+template <int N>
+double Shrinker<N>::worst_shape(const Edge& edge) const {
+  double worst = std::numeric_limits<double>::infinity();
+  for (const auto* part : {&edge.only_u, &edge.only_v, &edge.both})
+    for (const Index s : *part) {
+      const CornersN<N> at = corners(s);
+      worst = std::min(worst, shape_of_simplex<N>(at, norm(normal_of<N>(at))));
+    }
+  return worst;
+}
+
+template <int N>
+PointN<N> Shrinker<N>::normal_around(const Edge& edge) const {
+  PointN<N> sum{};
+  for (const auto* part : {&edge.only_u, &edge.only_v, &edge.both})
+    for (const Index s : *part) {
+      const PointN<N> normal = normal_of<N>(corners(s));
+      for (int a = 0; a < N; ++a) sum[a] += normal[a];
+    }
+  return sum;
+}
+
+/// Whether simplex s stays on its side, and sound, when its vertex moves. `worst`: worst_shape(edge), once it is known.
+template <int N>
+bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edge& edge,
+                        std::optional<double>& worst) const {
+  const CornersN<N> before = corners(s);
+  CornersN<N> after = before;
+  for (int i = 0; i < N; ++i)
+    if (complex_.simplex(s)[i] == moving) after[i] = place;
+  const PointN<N> old_normal = normal_of<N>(before), new_normal = normal_of<N>(after);
+  const double old_length = norm(old_normal), new_length = norm(new_normal);
+  const double old_shape = shape_of_simplex<N>(before, old_length);
+  const double new_shape = shape_of_simplex<N>(after, new_length);
+  const bool was_flat = old_shape <= kFlat;
+  if (new_shape <= kFlat) return was_flat && new_shape >= old_shape;
+  if (was_flat) {
+    if (!(dot(new_normal, normal_around(edge)) > 0.0)) return false;
+  } else if (!(dot(new_normal, old_normal) > kLeastCosine * old_length * new_length)) {
+    return false;
+  }
+  if (new_shape >= kGoodShape<N>) return true;
+  if (!worst) worst = worst_shape(edge);
+  return new_shape >= *worst;
+}
+
+template <int N>
+bool Shrinker<N>::keeps_shapes(const Edge& edge, const PointN<N>& place) const {
+  std::optional<double> worst;
+  if (place != scaled_[edge.u])
+    for (const Index s : edge.only_u)
+      if (!bears(s, edge.u, place, edge, worst)) return false;
+  if (place != scaled_[edge.v])
+    for (const Index s : edge.only_v)
+      if (!bears(s, edge.v, place, edge, worst)) return false;
+  return true;
+}
+
+template <int N>
+void Shrinker<N>::blend_carried(Index u, Index v, double share) {
+  if (share == 0.0) return;
+  for (std::size_t i = 0; i < carried_width_; ++i) {
+    double& of_u = carried_[u * carried_width_ + i];
+    const double of_v = carried_[v * carried_width_ + i];
+    of_u = share == 1.0 ? of_v : of_u + share * (of_v - of_u);
+  }
+}
+
+template <int N>
+bool Shrinker<N>::try_contract(Index u, Index v, const MeetingPlace<N>& place) {
+  if (!within_tolerance(u, v, place)) {
+    note_limit(u, v, place);
+    return false;
+  }
+  complex_.load(u, v, edge_);
+  if (edge_.both.empty()) return false;
+  const PointN<N> scaled_place = to_scaled(place.at);
+  if (!keeps_shapes(edge_, scaled_place) || !complex_.is_contractible(edge_)) return false;
+  complex_.contract(edge_);
+  points_[u] = place.at;
+  scaled_[u] = scaled_place;
+  quadrics_[u] += quadrics_[v];
+  bound_[u] |= bound_[v];
+  tolerance_[u] = std::min(tolerance_[u], tolerance_[v]);
+  blend_carried(u, v, place.share);
+  merged_into_[v] = u;
+  ++version_[u];
+  ++version_[v];
+  return true;
+}
+
+template <int N>
+void Shrinker<N>::note_limit(Index u, Index v, const MeetingPlace<N>& place) {
+  if (limited_) return;
+  complex_.load(u, v, edge_);
+  limited_ = !edge_.both.empty() && keeps_shapes(edge_, to_scaled(place.at)) && complex_.is_contractible(edge_);
+}
+
+template <int N>
+PointN<N> Shrinker<N>::mean_normal(Index v, std::vector<Index>& star) {
+  complex_.star(v, star);
+  PointN<N> sum{};
+  for (const Index s : star) {
+    const PointN<N> normal = normal_of<N>(corners(s));
+    for (int a = 0; a < N; ++a) sum[a] += normal[a];
+  }
+  return sum;
+}
+
+template class Shrinker<2>;
+template class Shrinker<3>;
+template class Shrinker<4>;
+
+}  // namespace tegl::detail

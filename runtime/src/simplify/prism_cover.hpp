@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Does one contour pass over the whole of a simplex of another, and how far from it? Sheets of a contour in the prism
+// over the simplex, told apart by their heights.
+//
+// What this rests on: let a chain of oriented simplices pass a prism (a convex base times a range of heights) without
+// reaching its two ends, and let the chain's boundary stay outside of it. Then the chain runs over every point of the
+// base the same number of times, counted with signs (the degree of its projection is constant, as the base is
+// connected); and if that number is not zero at one point, every line along the prism meets the chain between the ends.
+// So gaps, folds and flat pieces need no comparison of sizes, and nothing is hidden by rounding but rounding itself.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "mesh/simplex_shapes.hpp"
+#include "tegl/contour.hpp"
+
+namespace tegl::detail {
+
+/// Coordinates along a hyperplane, of D = N - 1 dimensions, and the height above it as the last one.
+template <int N>
+class Frame {
+ public:
+  static constexpr int D = N - 1;
+
+  /// `unit_normal` becomes the last of an orthonormal basis by the reflection that carries an axis to it.
+  Frame(const PointN<N>& unit_normal, const PointN<N>& at) : origin_(at) {
+    int longest = 0;
+    for (int a = 1; a < N; ++a)
+      if (std::abs(unit_normal[a]) > std::abs(unit_normal[longest])) longest = a;
+    PointN<N> mirror = unit_normal;
+    mirror[longest] += unit_normal[longest] > 0.0 ? 1.0 : -1.0;
+    const double square = dot(mirror, mirror);
+    for (int a = 0, k = 0; a < N; ++a) {
+      if (a == longest) continue;
+      for (int b = 0; b < N; ++b) basis_[k][b] = (a == b ? 1.0 : 0.0) - 2.0 * mirror[a] * mirror[b] / square;
+      ++k;
+    }
+    basis_[D] = unit_normal;
+  }
+  [[nodiscard]] const PointN<N>& normal() const noexcept { return basis_[D]; }
+  [[nodiscard]] PointN<N> to_frame(const PointN<N>& p) const {
+    const PointN<N> way = minus(p, origin_);
+    PointN<N> result;
+    for (int k = 0; k < N; ++k) result[k] = dot(way, basis_[k]);
+    return result;
+  }
+  [[nodiscard]] PointN<N> to_space(const PointN<N>& x) const {
+    PointN<N> result = origin_;
+    for (int k = 0; k < N; ++k)
+      for (int a = 0; a < N; ++a) result[a] += x[k] * basis_[k][a];
+    return result;
+  }
+
+ private:
+  std::array<PointN<N>, N> basis_;
+  PointN<N> origin_;
+};
+
+/// The coordinates of a point of a frame without its height.
+template <int N>
+PointN<N - 1> flat(const PointN<N>& x) {
+  PointN<N - 1> result;
+  std::copy(x.begin(), x.end() - 1, result.begin());
+  return result;
+}
+
+/// The lines along a frame's normal through a simplex: half-spaces that hold all of it, whatever the rounding.
+template <int N>
+class Prism {
+ public:
+  static constexpr int D = N - 1;
+  static constexpr int kMostSides = N + 2 * D;
+
+  /// `part`: the simplex, in the frame; `edge`: its longest edge.
+  Prism(const CornersN<N>& part, double edge) : edge_(edge) {
+    double cube = 1.0;
+    for (int k = 0; k < D; ++k) cube *= edge;
+    std::array<PointN<D>, N> at;
+    for (int i = 0; i < N; ++i) at[i] = flat<N>(part[i]);
+    bool thin = false;
+    for (int omitted = 0; omitted < N; ++omitted) {
+      std::array<PointN<D>, D> face;
+      for (int i = 0, k = 0; i < N; ++i)
+        if (i != omitted) face[k++] = at[i];
+      PointN<D> normal = normal_of<D>(face);
+      const double size = norm(normal);
+      const double content = dot(normal, minus(at[omitted], face[0]));  // D! times that of the simplex
+      thin = thin || !(std::abs(content) > kThin * cube);
+      if (!(size > kThin * kThin * cube / edge)) continue;
+      for (double& x : normal) x /= content < 0.0 ? -size : size;
+      add_side(normal, at);
+      if (thin) continue;
+      const double height = std::abs(content) / size;
+      for (int k = 0; k < D; ++k) slope_[k] += part[omitted][D] * normal[k] / height;
+    }
+    if (thin) {
+      slope_ = {};
+      for (int k = 0; k < D; ++k)
+        for (const double sign : {1.0, -1.0}) {
+          PointN<D> normal{};
+          normal[k] = sign;
+          add_side(normal, at);
+        }
+    }
+    level_ = part[0][D] - dot(slope_, at[0]);
+    low_ = high_ = 0.0;
+    for (const PointN<N>& corner : part) {
+      low_ = std::min(low_, height(corner));
+      high_ = std::max(high_, height(corner));
+    }
+    thin_ = thin;
+  }
+
+  [[nodiscard]] int sides() const noexcept { return count_; }
+  [[nodiscard]] double inside(int side, const PointN<N>& x) const {
+    double sum = -offsets_[side];
+    for (int k = 0; k < D; ++k) sum += normals_[side][k] * x[k];
+    return sum;
+  }
+  /// Of a point, over the simplex (or over a level that the simplex is at about).
+  [[nodiscard]] double height(const PointN<N>& x) const {
+    double sum = x[D] - level_;
+    for (int k = 0; k < D; ++k) sum -= slope_[k] * x[k];
+    return sum;
+  }
+  /// The heights of the simplex itself: 0, or if it is seen from the side, a range with 0 in it.
+  [[nodiscard]] double low() const noexcept { return low_; }
+  [[nodiscard]] double high() const noexcept { return high_; }
+  /// Whether it is that: then the sides hold more than the simplex.
+  [[nodiscard]] bool thin() const noexcept { return thin_; }
+  /// The point of the simplex (if it is not thin) below or above x.
+  [[nodiscard]] PointN<N> at_level(PointN<N> x) const {
+    x[D] -= height(x);
+    return x;
+  }
+  [[nodiscard]] double edge() const noexcept { return edge_; }
+  /// What rounding may change of places in it.
+  [[nodiscard]] double rounding() const noexcept { return kRounding * edge_; }
+
+ private:
+  /// Of the cube of the longest edge.
+  static constexpr double kThin = 1e-3;
+  /// Of the longest edge. Places relative to a corner are good to some 1e-16.
+  static constexpr double kRounding = 1e-14;
+
+  void add_side(const PointN<D>& normal, const std::array<PointN<D>, N>& at) {
+    double least = dot(normal, at[0]);
+    for (int i = 1; i < N; ++i) least = std::min(least, dot(normal, at[i]));
+    normals_[count_] = normal;
+    offsets_[count_++] = least - kRounding * edge_;
+  }
+
+  std::array<PointN<D>, kMostSides> normals_;
+  std::array<double, kMostSides> offsets_;
+  int count_ = 0;
+  PointN<D> slope_{};
+  double level_ = 0.0, low_ = 0.0, high_ = 0.0;
+  double edge_;
+  bool thin_ = false;
+};
+
+/// What is left of a simplex between the sides of a prism: a convex body that is simple (each corner in D of its
+/// facets, or taken to be), as each corner that a cut makes lies on one edge. So corners share an edge if they share
+/// D - 1 facets. Facets: bit i: the simplex's, opposite to corner i; bit N + k: side k of the prism.
+template <int N>
+class Remnant {
+ public:
+  static constexpr int D = N - 1;
+
+  /// The whole simplex. False if all of it is beyond one side of the prism.
+  bool load(const CornersN<N>& simplex, const Prism<N>& prism) {
+    cutting_ = 0;
+    for (int side = 0; side < prism.sides(); ++side) {
+      int beyond = 0;
+      for (int i = 0; i < N; ++i) beyond += prism.inside(side, simplex[i]) < 0.0;
+      if (beyond == N) return false;
+      if (beyond > 0) cutting_ |= 1u << side;
+    }
+    count_ = N;
+    for (int i = 0; i < N; ++i) corners_[i] = {simplex[i], ((1u << N) - 1) & ~(1u << i)};
+    return true;
+  }
+
+  /// Of the simplex that was loaded. False if nothing is left.
+  bool cut(const Prism<N>& prism) {
+    for (unsigned rest = cutting_; rest != 0; rest &= rest - 1)
+      if (!cut_off(prism, std::countr_zero(rest))) return false;
+    return true;
+  }
+
+  /// Whether facet i of the simplex has a part in it.
+  [[nodiscard]] unsigned facets() const {
+    unsigned all = 0;
+    for (int i = 0; i < count_; ++i) all |= corners_[i].facets;
+    return all & ((1u << N) - 1);
+  }
+  /// The least and the largest height; of what is only loaded, that of its corners.
+  [[nodiscard]] std::pair<double, double> heights(const Prism<N>& prism) const {
+    std::pair<double, double> range = {prism.height(corners_[0].at), 0.0};
+    range.second = range.first;
+    for (int i = 1; i < count_; ++i) {
+      const double height = prism.height(corners_[i].at);
+      range.first = std::min(range.first, height);
+      range.second = std::max(range.second, height);
+    }
+    return range;
+  }
+  /// The corner with the largest height above or below.
+  [[nodiscard]] const PointN<N>& farthest(const Prism<N>& prism) const {
+    const auto last = corners_.begin() + count_;
+    return std::max_element(corners_.begin(), last,
+                            [&](const Corner& a, const Corner& b) {
+                              return std::abs(prism.height(a.at)) < std::abs(prism.height(b.at));
+                            })
+        ->at;
+  }
+
+ private:
+  struct Corner {
+    PointN<N> at;
+    std::uint32_t facets;
+  };
+  /// A simple body of dimension 3 with F facets has 2 F - 4 corners and 3 F - 6 edges: none has more with those that a
+  /// cut makes.
+  static constexpr int kMostCorners = 5 * (N + Prism<N>::kMostSides) - 10;
+
+  /// Whether the facets that two corners have in common are D - 1.
+  static bool share_an_edge(std::uint32_t common) noexcept {
+    if constexpr (D == 1) return true;
+    if constexpr (D == 2) return common != 0;
+    return (common & (common - 1)) != 0;
+  }
+
+  bool cut_off(const Prism<N>& prism, int side) {
+    std::array<double, kMostCorners> inside;
+    const int before = count_;
+    for (int i = 0; i < before; ++i) inside[i] = prism.inside(side, corners_[i].at);
+    int end = before;
+    for (int i = 0; i < before; ++i) {
+      if (!(inside[i] >= 0.0)) continue;
+      for (int j = 0; j < before; ++j) {
+        if (inside[j] >= 0.0) continue;
+        const std::uint32_t common = corners_[i].facets & corners_[j].facets;
+        if (!share_an_edge(common)) continue;
+        if (end == kMostCorners) return true;  // never, but for rounding: uncut it holds all that it has to
+        corners_[end++] = {between(corners_[i].at, corners_[j].at, inside[i] / (inside[i] - inside[j])),
+                           common | 1u << (N + side)};
+      }
+    }
+    count_ = 0;
+    for (int i = 0; i < end; ++i)
+      if (i >= before || inside[i] >= 0.0) corners_[count_++] = corners_[i];
+    return count_ > 0;
+  }
+
+  std::array<Corner, kMostCorners> corners_;
+  int count_ = 0;
+  unsigned cutting_ = 0;  ///< sides that have corners of the simplex beyond them
+};
+
+/// The least and the largest height over a part at which its prism's lines meet the hyperplane of a simplex, with what
+/// rounding may add; all heights, where the hyperplane is too steep or the simplex too flat to tell.
+template <int N>
+std::pair<double, double> heights_of_plane(const CornersN<N>& simplex, const CornersN<N>& part, const Prism<N>& prism) {
+  constexpr int D = N - 1;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::pair<double, double> range = {-kInfinity, kInfinity};
+  if (prism.thin()) return range;
+  const PointN<N> normal = normal_of<N>(simplex);
+  double size = prism.edge();
+  for (int i = 1; i < N; ++i)
+    for (int a = 0; a < N; ++a) size = std::max(size, std::abs(simplex[i][a] - simplex[0][a]));
+  double error = 1e-14 * size / std::abs(normal[D]);  // of the normal's direction, times a length
+  for (int k = 0; k < D; ++k) error *= size;
+  if (!(error < 1e-6 * prism.edge())) return range;
+  range = {kInfinity, -kInfinity};
+  for (const PointN<N>& corner : part) {
+    const double height = -dot(normal, minus(corner, simplex[0])) / normal[D];
+    range.first = std::min(range.first, height - error);
+    range.second = std::max(range.second, height + error);
+  }
+  return range;
+}
+
+/// Whether a simplex, seen along the frame's normal, covers x: 1 or -1 by the side it shows, 0 if it does not. Nothing
+/// if x is too near to its outline to tell.
+template <int N>
+std::optional<int> covers(const CornersN<N>& simplex, const PointN<N - 1>& x) {
+  constexpr int D = N - 1;
+  std::array<PointN<D>, N> way;
+  double longest = 0.0;
+  for (int k = 0; k < D; ++k) {
+    bool above = false, below = false;
+    for (int i = 0; i < N; ++i) {
+      way[i][k] = simplex[i][k] - x[k];
+      longest = std::max(longest, std::abs(way[i][k]));
+      above = above || way[i][k] >= 0.0;
+      below = below || way[i][k] <= 0.0;
+    }
+    if (!above || !below) return 0;
+  }
+  double enough = 1e-13;
+  for (int k = 0; k < D; ++k) enough *= longest;
+  int positive = 0, negative = 0;
+  for (int omitted = 0; omitted < N; ++omitted) {
+    // The determinant of the others.
+    double content = 0.0;
+    if constexpr (D == 1) {
+      content = way[1 - omitted][0];
+    } else {
+      std::array<PointN<D>, D> face;
+      for (int i = 0, k = 0; i < N; ++i)
+        if (i != omitted) face[k++] = way[i];
+      content = dot(normal_of<D>(face), face[0]);
+    }
+    if (omitted % 2 != 0) content = -content;
+    positive += content > enough;
+    negative += content < -enough;
+  }
+  if (positive > 0 && negative > 0) return 0;
+  if (positive == N) return 1;
+  if (negative == N) return -1;
+  return std::nullopt;
+}
+
+}  // namespace tegl::detail

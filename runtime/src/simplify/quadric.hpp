@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The sum of squared distances from hyperplanes, as one quadratic function.
+//
+// Based on: M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997, and Simplifying
+// surfaces with color and texture using quadric error metrics, 1998 (any number of dimensions).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "mesh/simplex_shapes.hpp"
+
+namespace tegl::detail {
+
+/// x -> sum of w (n.x - d)^2 over hyperplanes with unit normal n, offset d and weight w.
+template <int N>
+class Quadric {
+ public:
+  void add_plane(const PointN<N>& normal, const PointN<N>& point, double weight) {
+    const double offset = dot(normal, point);
+    int k = 0;
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j <= i; ++j) matrix_[k++] += weight * normal[i] * normal[j];
+      vector_[i] += weight * offset * normal[i];
+    }
+    constant_ += weight * offset * offset;
+    weight_ += weight;
+  }
+
+  Quadric& operator+=(const Quadric& other) {
+    for (std::size_t k = 0; k < matrix_.size(); ++k) matrix_[k] += other.matrix_[k];
+    for (int i = 0; i < N; ++i) vector_[i] += other.vector_[i];
+    constant_ += other.constant_;
+    weight_ += other.weight_;
+    return *this;
+  }
+
+  [[nodiscard]] double weight() const noexcept { return weight_; }
+
+  /// Never negative, whatever the rounding.
+  [[nodiscard]] double operator()(const PointN<N>& x) const {
+    double sum = constant_;
+    int k = 0;
+    for (int i = 0; i < N; ++i) {
+      double row = -2.0 * vector_[i];
+      for (int j = 0; j < i; ++j) row += 2.0 * matrix_[k++] * x[j];
+      row += matrix_[k++] * x[i];
+      sum += row * x[i];
+    }
+    return std::max(0.0, sum);
+  }
+
+  /// Where the function and a little of the squared distance from `near` are least together. The latter decides along
+  /// directions in which the surface is flat, so there is always one such point.
+  [[nodiscard]] PointN<N> least_near(const PointN<N>& near) const {
+    Eigen::Matrix<double, N, N> a;
+    Eigen::Matrix<double, N, 1> b;
+    double trace = 0.0;
+    int k = 0;
+    for (int i = 0; i < N; ++i) {
+      for (int j = 0; j <= i; ++j) a(i, j) = a(j, i) = matrix_[k++];
+      trace += a(i, i);
+    }
+    const double pull = kPull * trace;
+    if (!(pull > 0.0)) return near;
+    for (int i = 0; i < N; ++i) {
+      b(i) = vector_[i] + pull * near[i];
+      a(i, i) += pull;
+    }
+    const Eigen::Matrix<double, N, 1> x = a.llt().solve(b);
+    PointN<N> result;
+    for (int i = 0; i < N; ++i) result[i] = x(i);
+    return result;
+  }
+
+  /// The t in [0, 1] for which a + t (b - a) has the least value; 1/2 where it does not matter.
+  [[nodiscard]] double least_between(const PointN<N>& a, const PointN<N>& b) const {
+    const double at_a = (*this)(a), at_b = (*this)(b), middle = (*this)(between(a, b, 0.5));
+    const double bend = at_a + at_b - 2.0 * middle;  // half of the second derivative over t, twice
+    if (!(bend > 1e-12 * (at_a + at_b))) return at_a < at_b ? 0.0 : (at_b < at_a ? 1.0 : 0.5);
+    return std::clamp(0.5 + (at_a - at_b) / (4.0 * bend), 0.0, 1.0);
+  }
+
+ private:
+  static constexpr double kPull = 1e-3;
+
+  std::array<double, N*(N + 1) / 2> matrix_{};
+  std::array<double, N> vector_{};
+  double constant_ = 0.0;
+  double weight_ = 0.0;
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,690 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Simplification from the options to the result: what is bound to hyperplanes, rounds until the error bound holds, and
+// what vertices and simplices carry along.
+#include "tegl/simplify.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <span>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/progress.hpp"
+#include "mesh/validate.hpp"
+#include "simplify/collapsible_complex.hpp"
+#include "simplify/edge_collapse.hpp"
+#include "simplify/simplify_fast.hpp"
+#include "simplify/simplify_options.hpp"
+#include "simplify/simplify_orders.hpp"
+#include "tegl/check.hpp"
+#include "tegl/deviation.hpp"
+
+namespace tegl {
+namespace detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kErrorName = "simplification_error";
+constexpr std::string_view kScaleUnit = "scale ";
+/// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
+constexpr unsigned kGentleRounds = 6;
+constexpr unsigned kMostRounds = 12;
+/// As many more that stop at a count.
+constexpr unsigned kMostRoundsOfStop = 4;
+/// By a count alone: so many errors are tried, from this many times the least tolerance, in steps of this factor, until
+/// the least error that reaches the count is known up to this one.
+constexpr unsigned kMostTries = 10;
+constexpr double kErrorOfTolerance = 3.0;
+constexpr double kNextError = 1.5;
+constexpr double kNarrow = 1.25;
+/// So many steps down to a quarter, before it is tried whether next to no tolerance will do.
+constexpr unsigned kMostSteps = 2;
+/// How far the progress of one round is when it is ready to begin, and when there is less.
+constexpr double kReady = 0.2;
+constexpr double kShrunk = 0.97;
+/// Of the size of the contour: what rounding may add to an error.
+constexpr double kRounding = 1e-12;
+/// Of the size of the contour: an error as good as none. Sums of squared distances are no more exact than this squared.
+constexpr double kNothing = 1e-8;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// What is left of a contour, before it is one again.
+template <int N>
+struct Remains {
+  std::vector<std::array<Index, N>> simplices;  ///< numbers of the original's vertices
+  std::vector<std::size_t> sources;             ///< #S: the original's simplex; empty if there is no such thing
+};
+
+template <int N, class Real>
+class Simplifier {
+ public:
+  Simplifier(const Contour<N, Real>& contour, const SimplifyOptions<N>& options)
+      : contour_(contour), options_(options) {
+    require_options(options);
+    require_sound(contour);
+    for (int a = 0; a < N; ++a) {
+      double low = kInfinity, high = -kInfinity;
+      for (const auto& vertex : contour.vertices) {
+        low = std::min(low, static_cast<double>(vertex[a]));
+        high = std::max(high, static_cast<double>(vertex[a]));
+      }
+      box_[a] = {low, high};
+      if (low <= high) size_ = std::max({size_, (high - low) * options.scale[a], kEpsilon * std::abs(high)});
+    }
+    const auto before = static_cast<double>(contour.simplices.size());
+    if (options.ratio) count_ = static_cast<std::size_t>(std::llround(*options.ratio * before));
+    if (options.count) count_ = std::max<std::size_t>(count_, *options.count);
+    gather_carried();
+  }
+
+  Contour<N, Real> run() {
+    stats_.simplices_before = contour_.simplices.size();
+    stats_.vertices_before = contour_.vertices.size();
+    Contour<N, Real> result = contour_.simplices.empty() ? contour_ : run_rounds();
+    stats_.simplices_after = result.simplices.size();
+    stats_.vertices_after = result.vertices.size();
+    tell(options_.progress, 1.0, "simplification cancelled at its end");
+    return result;
+  }
+  [[nodiscard]] const SimplifyStats& stats() const noexcept { return stats_; }
+
+ private:
+  static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+  /// By how much distances have grown at most since an earlier error was taken, under the scale that its unit says.
+  [[nodiscard]] double factor_of_earlier(const Attribute& attribute) const {
+    const bool scaled = attribute.unit.starts_with(kScaleUnit);
+    std::istringstream numbers(scaled ? attribute.unit.substr(kScaleUnit.size()) : "");
+    numbers.imbue(std::locale::classic());
+    double factor = 0.0;
+    for (int a = 0; a < N; ++a) {
+      double earlier = 1.0;
+      const bool read =
+          !scaled || ((a == 0 || numbers.get() == ',') && numbers >> earlier && (a + 1 < N || numbers.eof()));
+      if (!read || !(earlier > 0.0))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the attribute {} has the unit '{}'; expected {} positive numbers after '{}'",
+                                attribute.name, attribute.unit, N, kScaleUnit));
+      factor = std::max(factor, options_.scale[a] / earlier);
+    }
+    return factor;
+  }
+
+  /// Of errors: that of the axes, or else what was done to them.
+  [[nodiscard]] std::string error_unit() const {
+    const auto& units = contour_.axis_units;
+    const auto is_one = [](double scale) { return scale == 1.0; };
+    if (!std::all_of(options_.scale.begin(), options_.scale.end(), is_one))
+      return fmt::format("{}{}", kScaleUnit, fmt::join(options_.scale, ","));
+    const bool same =
+        std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units[0]; });
+    return same ? units[0] : std::string();
+  }
+
+  /// Normals and attributes of each vertex, side by side. An error from before is no attribute but a debt.
+  void gather_carried() {
+    if (!contour_.normals.empty()) carried_width_ = N;
+    for (const Attribute& attribute : contour_.vertex_attributes) {
+      if (attribute.name == kErrorName) {
+        const double factor = factor_of_earlier(attribute);
+        for (const double error : attribute.values) {
+          if (!(error >= 0.0 && std::isfinite(error)))
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("the attribute {} has the value {}; expected finite numbers, 0 or more",
+                                    attribute.name, error));
+          earlier_error_ = std::max(earlier_error_, factor * error);
+        }
+        continue;
+      }
+      carried_attributes_.push_back(&attribute);
+      carried_width_ += static_cast<std::size_t>(attribute.width);
+    }
+    carried_.reserve(contour_.vertices.size() * carried_width_);
+    for (std::size_t v = 0; v < contour_.vertices.size(); ++v) {
+      if (!contour_.normals.empty())
+        for (const Real x : contour_.normals[v]) carried_.push_back(static_cast<double>(x));
+      for (const Attribute* attribute : carried_attributes_) {
+        const auto width = static_cast<std::size_t>(attribute->width);
+        carried_.insert(carried_.end(), attribute->values.begin() + static_cast<std::ptrdiff_t>(v * width),
+                        attribute->values.begin() + static_cast<std::ptrdiff_t>((v + 1) * width));
+      }
+    }
+  }
+
+  /// A result, and what is known of it.
+  struct Round {
+    Contour<N, Real> result;
+    std::vector<double> errors;  ///< #S; empty if not measured
+    std::optional<double> error_of_original, error_of_result;
+    SimplifyEnd end = SimplifyEnd::count;
+    std::vector<Index> survivors;  ///< #V: what each vertex became part of; empty if that is not known
+    std::vector<Index> kept;       ///< the original numbers of the result's vertices
+  };
+
+  Contour<N, Real> run_rounds() {
+    if (options_.max_error && earlier_error_ > *options_.max_error + kRounding * size_)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format(
+              "the largest error is {}, but the contour's error from before (its attribute {}, by this scale) is {}; "
+              "expected at least that, or a contour without one",
+              *options_.max_error, kErrorName, earlier_error_));
+    // Rounding alone moves points by more than nothing: only what is left as it is has no error.
+    if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
+      return hand_out(untouched(may_anything_go() ? SimplifyEnd::error : end_without_limits(contour_)));
+    if (options_.max_error) return hand_out(until_error_holds());
+    if (!options_.measure) return hand_out(one_round(uniform_tolerance(kInfinity), 1.0, count_));
+    return hand_out(as_near_as_can_be(kInfinity));
+  }
+
+  [[nodiscard]] std::vector<double> uniform_tolerance(double error) const {
+    return std::vector<double>(contour_.vertices.size(), error);
+  }
+  [[nodiscard]] bool by_count() const { return options_.count || options_.ratio; }
+
+  /// By the largest error, or what an earlier one leaves of it; with a count too, as by that alone, if it is within the
+  /// error. Nothing was near enough after all rounds: then what is sure to be is the contour itself.
+  Round until_error_holds() {
+    const double allowed = *options_.max_error - earlier_error_ + kRounding * size_;
+    if (by_count() && count_ > 0) {
+      Round by_count = as_near_as_can_be(allowed);
+      if (by_count.end == SimplifyEnd::count && own_error(by_count) <= allowed) return by_count;
+    }
+    Round best;
+    if (!comes_within(allowed, best, false)) return untouched(SimplifyEnd::rounds);
+    if (own_error(best) <= 0.5 * allowed) measure_closer(best);
+    return best;
+  }
+
+  /// Whether there is a round that keeps this error (and reaches the count, if it has to). `best` becomes that, or, of
+  /// those that reach a count that has to be, one that is nearer.
+  bool comes_within(double allowed, Round& best, bool to_count) {
+    std::vector<double> tolerance = uniform_tolerance(allowed);
+    std::optional<Round> all = all_that_goes(allowed, tolerance, to_count);
+    if (!all) return false;
+    if (all->result.simplices.size() >= count_ || !by_count()) {
+      best = std::move(*all);
+      return true;
+    }
+    for (unsigned tried = 1; tried <= kMostRoundsOfStop; ++tried) {
+      Round round = one_round(tolerance, part_of_rest(0.25), count_);
+      if (round.end != SimplifyEnd::count) break;
+      measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      const bool near = own_error(round) <= allowed;
+      if (!near) tighten(tolerance, round, allowed, tried);
+      if (near || (to_count && error(round) < error(best))) best = std::move(round);
+      if (near) return true;
+    }
+    if (!to_count) best = std::move(*all);
+    return !to_count;
+  }
+
+  /// Simplified as far as this error lets it, whatever the count: parts that are too far off are simplified anew with
+  /// less tolerance. (Stopped at a count, others would go in their place, and be too far off in their turn.) Nothing if
+  /// that is not enough for a count that has to be, or after too many rounds.
+  std::optional<Round> all_that_goes(double allowed, std::vector<double>& tolerance, bool to_count) {
+    for (unsigned tried = 1; tried <= kMostRounds; ++tried) {
+      Round round = one_round(tolerance, part_of_rest(0.25), 0);
+      if (to_count && round.end != SimplifyEnd::count) break;
+      // Closer bounds than half of what decides are of no use to anyone.
+      measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
+      if (own_error(round) <= allowed) return round;
+      tighten(tolerance, round, allowed, tried);
+    }
+    return std::nullopt;
+  }
+
+  /// By a count: a few contractions, where parts are thin, make most of the error. So the least of the largest errors
+  /// is searched for with which the count is still reached; up to `most`, beyond which it is of no use.
+  Round as_near_as_can_be(double most) {
+    const bool fast = options_.method == SimplifyMethod::fast;
+    Round best = one_round(uniform_tolerance(fast ? most : kInfinity), part_of_rest(0.25), count_);
+    measure(best, part_of_rest(1.0 / 3.0));
+    if (best.end != SimplifyEnd::count || fast) return best;
+    double low = least_tolerance(best);
+    double factor = kErrorOfTolerance;
+    bool found = false, failed = false;
+    for (unsigned tried = 0; tried < kMostTries && low < most && own_error(best) > kNarrow * low; ++tried) {
+      const double middle = std::sqrt(low * own_error(best));
+      double allowed = middle;
+      if (!found) allowed = std::min(factor * low, middle);
+      if (found && !failed) allowed = own_error(best) / kNarrow;
+      allowed = std::min(allowed, most);
+      if (comes_within(allowed, best, true)) {
+        found = true;
+        continue;
+      }
+      low = allowed;
+      // Up slowly at first: mostly, the least is not far.
+      factor = failed ? factor * factor : kNextError;
+      failed = true;
+    }
+    return best;
+  }
+
+  /// The least for all vertices by which the count is reached, or somewhat less, below the error of `best`; above 0,
+  /// as flat parts alone may reach it with next to none. `best` becomes what is reached by it, if that is nearer.
+  double least_tolerance(Round& best) {
+    const double least = kNothing * size_;
+    double low = 0.0, high = own_error(best);
+    std::optional<Round> reached;
+    for (unsigned tried = 0; tried < kMostTries && high > kNextError * std::max(low, least); ++tried) {
+      double middle = low > 0.0 ? std::sqrt(low * high) : 0.25 * high;
+      if (low == 0.0 && (tried >= kMostSteps || middle < least)) middle = least;
+      Round round = one_round(uniform_tolerance(middle), part_of_rest(0.05), count_);
+      const bool is_enough = round.end == SimplifyEnd::count;
+      (is_enough ? high : low) = middle;
+      if (is_enough) reached = std::move(round);
+    }
+    if (reached) {
+      measure(*reached, part_of_rest(0.05));
+      if (error(*reached) < error(best)) best = std::move(*reached);
+    }
+    return std::max(low, least);
+  }
+
+  static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }
+  /// Without what was there before.
+  [[nodiscard]] double own_error(const Round& round) const { return error(round) - earlier_error_; }
+
+  /// How far the progress is after this share of what is left: nobody knows how many rounds there will be.
+  [[nodiscard]] double part_of_rest(double share) const { return progress_ + share * (1.0 - progress_); }
+
+  /// Simplified once, which brings the progress to `to`; not measured.
+  Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop) {
+    stop_ = stop;
+    ++stats_.rounds;
+    survivors_.clear();
+    const Progress shrinking = detail::part_of(options_.progress, progress_, to);
+    progress_ = to;
+    Round round;
+    round.result =
+        options_.method == SimplifyMethod::fast ? shrink_fast(tolerance, shrinking) : shrink(tolerance, shrinking);
+    round.end = end_without_limits(round.result);
+    if (round.end == SimplifyEnd::shape && limited_) round.end = SimplifyEnd::error;
+    if (round.result.simplices.size() == contour_.simplices.size()) return untouched(round.end);
+    round.survivors = std::move(survivors_);
+    round.kept = std::move(kept_);
+    return round;
+  }
+
+  /// Why there are not fewer, if it is not for a largest error or curvature.
+  [[nodiscard]] SimplifyEnd end_without_limits(const Contour<N, Real>& result) const {
+    return by_count() && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
+  }
+
+  /// Whether there is more than was asked for, and anything of it could go, whatever the error. Errors: those of a
+  /// contour that is no manifold, too.
+  bool may_anything_go() {
+    const std::size_t before = contour_.simplices.size();
+    is_trial_ = true;
+    const Round round = one_round(uniform_tolerance(kInfinity), part_of_rest(0.5), before - 1);
+    stats_.rounds = 0;
+    if (end_without_limits(contour_) == SimplifyEnd::count) return false;
+    return limited_ || round.result.simplices.size() < before;
+  }
+
+  /// The contour itself.
+  Round untouched(SimplifyEnd end) const {
+    Round round;
+    round.result = contour_;
+    std::erase_if(round.result.vertex_attributes, [](const Attribute& other) { return other.name == kErrorName; });
+    round.errors.assign(contour_.simplices.size(), 0.0);
+    round.error_of_original = round.error_of_result = earlier_error_;
+    round.end = end;
+    return round;
+  }
+
+  Contour<N, Real> hand_out(Round round) {
+    if (round.result.simplices.empty())
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("meshoptimizer left none of {} triangles; expected some: a larger count, or another "
+                              "method",
+                              contour_.simplices.size()));
+    stats_.end = round.end;
+    if (!options_.measure && !options_.max_error) return std::move(round.result);
+    stats_.error_of_original = round.error_of_original;
+    stats_.error_of_result = round.error_of_result;
+    add_errors(round.result, round.errors);
+    return std::move(round.result);
+  }
+
+  /// One round of a method that contracts edges.
+  Contour<N, Real> shrink(const std::vector<double>& tolerance, const Progress& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    ShrinkStart<N> what;
+    what.simplices = contour_.simplices;
+    what.points.reserve(contour_.vertices.size());
+    for (const auto& vertex : contour_.vertices) {
+      PointN<N> point;
+      for (int a = 0; a < N; ++a) point[a] = static_cast<double>(vertex[a]);
+      what.points.push_back(point);
+    }
+    what.tolerance = tolerance;
+    what.scale = options_.scale;
+    what.carried_width = carried_width_;
+    what.carried = carried_;
+    what.border_fixed = options_.border == SimplifyBorder::fixed;
+    what.single_precision = std::is_same_v<Real, float>;
+    what.progress = detail::part_of(progress, 0.0, kReady);
+    Shrinker<N> shrinker(std::move(what));
+    bind_to_planes(shrinker);
+
+    ShrinkGoal goal{stop_, options_.max_curvature, &progress, kReady, kShrunk};
+    if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
+    if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
+    if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
+
+    limited_ = shrinker.is_limited();
+    survivors_.resize(contour_.vertices.size());
+    for (std::size_t v = 0; v < survivors_.size(); ++v) survivors_[v] = shrinker.survivor(static_cast<Index>(v));
+    Remains<N> remains;
+    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
+      if (!shrinker.complex().is_alive(s)) continue;
+      remains.simplices.push_back(shrinker.complex().simplex(s));
+      remains.sources.push_back(s);
+    }
+    Contour<N, Real> result = to_contour(remains, &shrinker);
+    stats_.simplify_seconds += seconds_since(start);
+    detail::tell(progress, 1.0);
+    return result;
+  }
+
+  Contour<N, Real> shrink_fast(const std::vector<double>& tolerance, const Progress& progress) {
+    Remains<N> remains;
+    if constexpr (N == 3) {
+      const auto start = std::chrono::steady_clock::now();
+      if (progress && !progress(0.0)) throw Error(ErrorCode::Cancelled, "simplification cancelled before it began");
+      std::vector<PointN<3>> points;
+      points.reserve(contour_.vertices.size());
+      for (const auto& vertex : contour_.vertices) {
+        PointN<3> point;
+        for (int a = 0; a < 3; ++a) point[a] = static_cast<double>(vertex[a]) * options_.scale[a];
+        points.push_back(point);
+      }
+      const auto within = [&](double error) {
+        return simplify_fast(contour_.simplices, points, stop_, error, options_.border == SimplifyBorder::fixed);
+      };
+      if (!options_.allow_nonmanifold) {
+        const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // throws what it does for other methods
+        require_manifold(contour_, "the contour");
+      }
+      const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
+      remains.simplices = within(tightest);
+      limited_ = remains.simplices.size() > count_ && tightest < kInfinity &&
+                 within(kInfinity).size() < remains.simplices.size();
+      stats_.simplify_seconds += seconds_since(start);
+    }
+    Contour<N, Real> result = to_contour(remains, nullptr);
+    if (!options_.allow_nonmanifold && !is_trial_) require_manifold(result, "meshoptimizer's result");
+    return result;
+  }
+
+  static void require_manifold(const Contour<N, Real>& contour, const char* what) {
+    const MeshReport report = check(contour);
+    auto sorted = contour.simplices;  // two triangles with the same corners pass for a sphere
+    for (auto& simplex : sorted) std::sort(simplex.begin(), simplex.end());
+    std::sort(sorted.begin(), sorted.end());
+    const bool twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+    if (report.nonmanifold_simplices + report.bad_links + report.orientation_conflicts == 0 && !twice) return;
+    throw Error(
+        ErrorCode::UnsupportedData,
+        fmt::format("{} is no oriented manifold ({} faces in more than two triangles, {} bad links, {} orientation "
+                    "conflicts{}); expected one: allow nonmanifold results, or take another method",
+                    what, report.nonmanifold_simplices, report.bad_links, report.orientation_conflicts,
+                    twice ? ", triangles with the same corners" : ""));
+  }
+
+  // ---- hyperplanes ----
+
+  void bind_to_planes(Shrinker<N>& shrinker) const {
+    unsigned number = 0;
+    for (int a = 0; a < N; ++a)
+      for (const double side : {box_[a].first, box_[a].second}) {
+        if (has_part_in_side(shrinker, a, side))
+          for (Index v = 0; v < shrinker.points().size(); ++v)
+            if (shrinker.points()[v][a] == side) shrinker.bind(v, number);
+        ++number;
+      }
+    const double precision = std::is_same_v<Real, float> ? 1e-6 : 1e-12;
+    for (const Hyperplane<N>& plane : options_.planes) {
+      for (Index v = 0; v < shrinker.points().size(); ++v) {
+        double sum = -plane.offset, size = std::abs(plane.offset);
+        for (int a = 0; a < N; ++a) {
+          sum += plane.normal[a] * shrinker.points()[v][a];
+          size += std::abs(plane.normal[a] * shrinker.points()[v][a]);
+        }
+        if (std::abs(sum) <= precision * size) shrinker.bind(v, number);
+      }
+      ++number;
+    }
+  }
+
+  /// Whether a whole simplex, or a whole face of the border, lies in a side of the bounding box.
+  static bool has_part_in_side(Shrinker<N>& shrinker, int axis, double side) {
+    for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
+      int outside = 0, last_outside = 0;
+      for (int i = 0; i < N; ++i)
+        if (shrinker.points()[shrinker.complex().simplex(s)[i]][axis] != side) {
+          ++outside;
+          last_outside = i;
+        }
+      if (outside == 0) return true;
+      if (outside == 1 && (shrinker.complex().border_faces(s) >> last_outside & 1u) != 0) return true;
+    }
+    return false;
+  }
+
+  // ---- errors ----
+
+  /// The bound of each simplex of the result, both ways.
+  void measure(Round& round, double to, double enough = 0.0) {
+    if (round.error_of_original) return;  // the contour itself
+    const double from = std::exchange(progress_, to);
+    const auto start = std::chrono::steady_clock::now();
+    DeviationOptions<N> options;
+    options.scale = options_.scale;
+    options.threads = options_.threads;
+    options.progress = detail::part_of(options_.progress, from, 0.5 * (from + to));
+    options.enough = enough;
+    Deviation of_original = deviation(contour_, round.result, options);
+    options.progress = detail::part_of(options_.progress, 0.5 * (from + to), to);
+    options.enough = enough > 0.0 ? enough : 0.5 * of_original.least;
+    const Deviation of_result = deviation(round.result, contour_, options);
+    round.errors = std::move(of_original.of_to);
+    for (std::size_t s = 0; s < round.errors.size(); ++s)
+      round.errors[s] = std::max(round.errors[s], of_result.of_from[s]);
+    round.error_of_original = of_original.bound + earlier_error_;
+    round.error_of_result = of_result.bound + earlier_error_;
+    stats_.measure_seconds += seconds_since(start);
+  }
+
+  /// What was near enough not to look closer, looked at closer.
+  void measure_closer(Round& round) {
+    if (round.survivors.empty()) return;  // the contour itself
+    const Round before{{}, round.errors, round.error_of_original, round.error_of_result, round.end, {}, {}};
+    round.error_of_original.reset();
+    measure(round, part_of_rest(0.5));
+    if (error(round) <= error(before)) return;
+    round.errors = before.errors;  // other parts, other bounds: both hold
+    round.error_of_original = before.error_of_original;
+    round.error_of_result = before.error_of_result;
+  }
+
+  /// Less tolerance (or care) for all that became part of a simplex with too large an error.
+  void tighten(std::vector<double>& tolerance, const Round& round, double allowed, unsigned tried) const {
+    const bool gently = tried <= kGentleRounds;
+    const auto factor_for = [&](double error) { return std::clamp(0.8 * allowed / error, 0.1, 0.8); };
+    if (round.survivors.empty()) {
+      const double factor = factor_for(own_error(round));
+      for (double& t : tolerance) t = tried + 2 < kMostRounds ? factor * t : 0.0;
+      return;
+    }
+    std::vector<double> factors(contour_.vertices.size(), 1.0);
+    for (std::size_t s = 0; s < round.errors.size(); ++s) {
+      const double error = round.errors[s];
+      if (error <= allowed) continue;
+      const double factor = gently ? factor_for(error) : 0.0;
+      for (const Index v : round.result.simplices[s]) factors[round.kept[v]] = std::min(factors[round.kept[v]], factor);
+    }
+    // What is around may be the cause: were it left as it is, the next round would do the same once more.
+    if (!gently) widen(factors, round, std::size_t{1} << (tried - kGentleRounds - 1));
+    for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[round.survivors[v]];
+  }
+
+  /// Spreads the least factors by so many rings of simplices.
+  void widen(std::vector<double>& factors, const Round& round, std::size_t rings) const {
+    for (std::size_t ring = 0; ring < rings; ++ring) {
+      const std::vector<double> before = factors;
+      for (const auto& simplex : round.result.simplices) {
+        double least = 1.0;
+        for (const Index v : simplex) least = std::min(least, before[round.kept[v]]);
+        for (const Index v : simplex) factors[round.kept[v]] = std::min(factors[round.kept[v]], least);
+      }
+    }
+  }
+
+  /// The attribute: for each vertex the largest bound of its simplices.
+  void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
+    Attribute attribute;
+    attribute.name = kErrorName;
+    attribute.unit = error_unit();
+    attribute.values.assign(result.vertices.size(), earlier_error_);
+    for (std::size_t s = 0; s < errors.size(); ++s)
+      for (const Index v : result.simplices[s])
+        attribute.values[v] = std::max(attribute.values[v], errors[s] + earlier_error_);
+    result.vertex_attributes.push_back(std::move(attribute));
+  }
+
+  // ---- the result ----
+
+  /// Vertices that are used, in their order, and what goes with them. `shrinker`: where they are now; null: where they
+  /// were.
+  Contour<N, Real> to_contour(const Remains<N>& remains, const Shrinker<N>* shrinker) {
+    Contour<N, Real> result;
+    result.axis_names = contour_.axis_names;
+    result.axis_units = contour_.axis_units;
+    result.direction = contour_.direction;
+    std::vector<Index> number(contour_.vertices.size(), 0);
+    for (const auto& simplex : remains.simplices)
+      for (const Index v : simplex) number[v] = 1;
+    kept_.clear();
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] == 0) continue;
+      number[v] = static_cast<Index>(kept_.size());
+      kept_.push_back(static_cast<Index>(v));
+    }
+    result.simplices.reserve(remains.simplices.size());
+    for (auto simplex : remains.simplices) {
+      for (Index& v : simplex) v = number[v];
+      result.simplices.push_back(simplex);
+    }
+    result.vertices.reserve(kept_.size());
+    for (const Index v : kept_) {
+      auto vertex = contour_.vertices[v];
+      if (shrinker != nullptr)
+        for (int a = 0; a < N; ++a) vertex[a] = static_cast<Real>(shrinker->points()[v][a]);
+      result.vertices.push_back(vertex);
+    }
+    carry_along(result, shrinker);
+    if (!remains.sources.empty()) carry_simplex_attributes(result, remains.sources);
+    return result;
+  }
+
+  void carry_along(Contour<N, Real>& result, const Shrinker<N>* shrinker) const {
+    for (const Attribute* attribute : carried_attributes_) {
+      result.vertex_attributes.push_back({attribute->name, attribute->unit, attribute->width, {}});
+      result.vertex_attributes.back().values.reserve(kept_.size() * static_cast<std::size_t>(attribute->width));
+    }
+    for (const Index v : kept_) {
+      std::span<const double> values =
+          shrinker != nullptr ? shrinker->carried(v) : std::span(carried_).subspan(v * carried_width_, carried_width_);
+      if (!contour_.normals.empty()) {
+        const bool same = shrinker == nullptr || shrinker->version(v) == 0;
+        result.normals.push_back(same ? contour_.normals[v] : unit_normal(values.first(N)));
+        values = values.subspan(N);
+      }
+      for (std::size_t i = 0; i < carried_attributes_.size(); ++i) {
+        const auto width = static_cast<std::size_t>(carried_attributes_[i]->width);
+        auto& target = result.vertex_attributes[i].values;
+        target.insert(target.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width));
+        values = values.subspan(width);
+      }
+    }
+  }
+
+  static std::array<Real, N> unit_normal(std::span<const double> sum) {
+    PointN<N> normal;
+    std::copy(sum.begin(), sum.end(), normal.begin());
+    const double length = norm(normal);
+    std::array<Real, N> result{};
+    if (length > 0.0)
+      for (int a = 0; a < N; ++a) result[a] = static_cast<Real>(normal[a] / length);
+    return result;
+  }
+
+  void carry_simplex_attributes(Contour<N, Real>& result, const std::vector<std::size_t>& sources) const {
+    for (const Attribute& attribute : contour_.simplex_attributes) {
+      Attribute& left = result.simplex_attributes.emplace_back();
+      left.name = attribute.name;
+      left.unit = attribute.unit;
+      left.width = attribute.width;
+      const auto width = static_cast<std::ptrdiff_t>(attribute.width);
+      left.values.reserve(sources.size() * static_cast<std::size_t>(attribute.width));
+      for (const std::size_t s : sources) {
+        const auto first = attribute.values.begin() + static_cast<std::ptrdiff_t>(s) * width;
+        left.values.insert(left.values.end(), first, first + width);
+      }
+    }
+  }
+
+  const Contour<N, Real>& contour_;
+  const SimplifyOptions<N>& options_;
+  std::array<std::pair<double, double>, N> box_;
+  double size_ = 0.0;
+  std::size_t count_ = 0;
+  std::size_t stop_ = 0;
+  std::size_t carried_width_ = 0;
+  std::vector<double> carried_;
+  std::vector<const Attribute*> carried_attributes_;
+  double earlier_error_ = 0.0;
+  bool limited_ = false;          ///< of the round: more would have gone but for a largest error or curvature
+  bool is_trial_ = false;         ///< the round is none whose result anyone gets
+  double progress_ = 0.0;         ///< told so far
+  std::vector<Index> survivors_;  ///< of the round: what each vertex became part of; empty if that is not known
+  std::vector<Index> kept_;       ///< of the round: the original numbers of the result's vertices
+  SimplifyStats stats_;
+};
+
+}  // namespace
+}  // namespace detail
+
+template <int N, class Real>
+requires DimensionBetween<N, 2, 4> Contour<N, Real> simplify(const Contour<N, Real>& contour,
+                                                             const SimplifyOptions<N>& options, SimplifyStats* stats) {
+  detail::Simplifier<N, Real> simplifier(contour, options);
+  Contour<N, Real> result = simplifier.run();
+  if (stats != nullptr) *stats = simplifier.stats();
+  return result;
+}
+
+template Contour<2, float> simplify(const Contour<2, float>&, const SimplifyOptions<2>&, SimplifyStats*);
+template Contour<2, double> simplify(const Contour<2, double>&, const SimplifyOptions<2>&, SimplifyStats*);
+template Contour<3, float> simplify(const Contour<3, float>&, const SimplifyOptions<3>&, SimplifyStats*);
+template Contour<3, double> simplify(const Contour<3, double>&, const SimplifyOptions<3>&, SimplifyStats*);
+template Contour<4, float> simplify(const Contour<4, float>&, const SimplifyOptions<4>&, SimplifyStats*);
+template Contour<4, double> simplify(const Contour<4, double>&, const SimplifyOptions<4>&, SimplifyStats*);
+
+}  // namespace tegl

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Queues of candidates. What changes near a contraction gets a new key. Edges have no number by which to find them in
+// their queue, so they are put into it anew, with a stamp; what was there before is known by its old stamp, and
+// skipped.
+//
+// Based on: M. Liversage, thesis, 1994, sections 8.3.8 to 8.3.14 (facets by curvature, vertices); G. Turk, Re-tiling
+// polygonal surfaces, 1992 (curvature); W. Schroeder, J. Zarge and W. Lorensen, Decimation of triangle meshes, 1992
+// (distance); M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997.
+#include "simplify/simplify_orders.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/keyed_queue.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// What counts of the length of an edge beside its error: a thousandth, so that flat parts begin with short edges.
+constexpr double kLengthShare = 1e-6;
+constexpr std::size_t kTellEvery = 1024;
+constexpr int kMostPasses = 20;
+constexpr double kLeastGain = 0.02;
+
+/// How far the work is, told now and then.
+class Teller {
+ public:
+  Teller(const ShrinkGoal& goal, std::size_t before) : goal_(goal), before_(before) {}
+
+  /// Whether there is more to do with `alive` simplices. Throws Cancelled.
+  bool goes_on(std::size_t alive) {
+    if (alive <= goal_.count) return false;
+    wait(alive);
+    return true;
+  }
+  /// One step that makes nothing less. Throws Cancelled.
+  void wait(std::size_t alive) {
+    if (calls_++ % kTellEvery == 0) tell(alive);
+  }
+
+ private:
+  void tell(std::size_t alive) {
+    if (goal_.progress == nullptr || !*goal_.progress) return;
+    const double share = before_ <= goal_.count
+                             ? 1.0
+                             : static_cast<double>(before_ - alive) / static_cast<double>(before_ - goal_.count);
+    last_ = std::max(last_, goal_.from + (goal_.to - goal_.from) * std::min(1.0, share));
+    if (!(*goal_.progress)(last_))
+      throw Error(ErrorCode::Cancelled, fmt::format("simplification cancelled at {} of {} simplices", alive, before_));
+  }
+
+  const ShrinkGoal& goal_;
+  std::size_t before_;
+  std::size_t calls_ = 0;
+  double last_ = 0.0;
+};
+
+// ---- edges by quadrics ----
+
+struct EdgeCandidate {
+  double key;
+  Index a;
+  Index b;
+  std::uint64_t stamp;
+  bool operator<(const EdgeCandidate& other) const {  // the least is on top
+    return std::tie(other.key, other.a, other.b, other.stamp) < std::tie(key, a, b, stamp);
+  }
+};
+
+template <int N>
+class QuadricOrder {
+ public:
+  QuadricOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
+      : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()) {}
+
+  void fill() {
+    for (Index v = 0; v < shrinker_.points().size(); ++v) {
+      teller_.wait(shrinker_.complex().alive());
+      shrinker_.complex().neighbours(v, around_);
+      for (const Index a : around_)
+        if (a > v) push(v, a);
+    }
+  }
+  void empty() {
+    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+      const EdgeCandidate next = queue_.top();
+      queue_.pop();
+      if (next.stamp != stamp(next.a, next.b) || !contract(next.a, next.b)) continue;
+      shrinker_.complex().neighbours(next.a, around_);
+      for (const Index a : around_) push(std::min(next.a, a), std::max(next.a, a));
+    }
+  }
+
+ private:
+  /// At the best place, or else at one of the ends.
+  bool contract(Index a, Index b) {
+    const auto place = shrinker_.meeting_place(a, b);
+    if (!place) return false;
+    if (shrinker_.try_contract(a, b, *place)) return true;
+    auto at_a = shrinker_.place_at(a, b, shrinker_.points()[a], 0.0);
+    auto at_b = shrinker_.place_at(a, b, shrinker_.points()[b], 1.0);
+    if (at_b.cost < at_a.cost) std::swap(at_a, at_b);
+    for (const auto& end : {at_a, at_b})
+      if (end.share == 0.0 ? shrinker_.may_move_to(b, a) : shrinker_.may_move_to(a, b))
+        if (shrinker_.try_contract(a, b, end)) return true;
+    return false;
+  }
+  [[nodiscard]] std::uint64_t stamp(Index a, Index b) const {
+    return std::uint64_t{shrinker_.version(a)} + shrinker_.version(b);
+  }
+  void push(Index a, Index b) {
+    const auto place = shrinker_.meeting_place(a, b);
+    if (!place) return;
+    const PointN<N> edge = minus(shrinker_.scaled()[a], shrinker_.scaled()[b]);
+    const double weight = shrinker_.quadric(a).weight() + shrinker_.quadric(b).weight();
+    queue_.push({place->cost + kLengthShare * weight * dot(edge, edge), a, b, stamp(a, b)});
+  }
+
+  Shrinker<N>& shrinker_;
+  Teller teller_;
+  std::priority_queue<EdgeCandidate> queue_;
+  std::vector<Index> around_;
+};
+
+// ---- facets by curvature ----
+
+template <int N>
+class CurvatureOrder {
+ public:
+  CurvatureOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
+      : shrinker_(shrinker),
+        max_curvature_(goal.max_curvature),
+        teller_(goal, shrinker.complex().alive()),
+        queue_(shrinker.complex().simplex_count()),
+        curvature_(shrinker.points().size()) {}
+
+  void fill() {
+    for (Index v = 0; v < curvature_.size(); ++v) {
+      teller_.wait(shrinker_.complex().alive());
+      curvature_[v] = curvature(v);
+    }
+    for (Index s = 0; s < shrinker_.complex().simplex_count(); ++s) {
+      teller_.wait(shrinker_.complex().alive());
+      if (shrinker_.complex().is_alive(s)) push(s);
+    }
+  }
+  void empty() {
+    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+      const Index next = queue_.pop();
+      if (!shrinker_.complex().is_alive(next)) continue;
+      if (curvature_of(next) > max_curvature_) {
+        note_limit(shrinker_.complex().simplex(next));
+        continue;
+      }
+      const Index left = remove(shrinker_.complex().simplex(next));
+      if (left != ShrinkingComplex<N>::kNone) update(left);
+    }
+  }
+
+ private:
+  /// The largest over the edges at v of the curvature of the circle that touches the edge and its mirror image about
+  /// the normal in their middles (thesis, 8.3.12): 2 cot(angle) / length.
+  double curvature(Index v) {
+    const PointN<N> normal = shrinker_.mean_normal(v, star_);
+    const double length = norm(normal);
+    if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
+    double largest = 0.0;  // a quarter of the square
+    for (const Index s : star_)
+      for (const Index a : shrinker_.complex().simplex(s)) {
+        if (a == v) continue;
+        const PointN<N> edge = minus(shrinker_.scaled()[a], shrinker_.scaled()[v]);
+        const double square = dot(edge, edge);
+        if (!(square > 0.0)) continue;
+        const double way = dot(edge, normal) / length, along = way * way;
+        largest = std::max(largest, along / (std::max(0.0, square - along) * square));
+      }
+    return 2.0 * std::sqrt(largest);
+  }
+
+  /// The mean of its vertices'.
+  [[nodiscard]] double curvature_of(Index s) const {
+    double sum = 0.0;
+    for (const Index v : shrinker_.complex().simplex(s)) sum += curvature_[v];
+    return sum / N;
+  }
+
+  /// The curvature decides, times the square of the longest edge: that is (8 times) how far an arc of this curvature
+  /// rises over the facet. Among facets of one size, as tiles make them, the order is that of the thesis; by curvature
+  /// alone, facets that have grown in even parts would go on growing whatever that costs.
+  void push(Index s) {
+    const double edge = longest_edge<N>(shrinker_.corners(s));
+    queue_.set(s, curvature_of(s) * edge * edge);
+  }
+
+  /// Draws the facet together to one point, edge by edge. The vertex that is left; none if no edge could go.
+  Index remove(std::array<Index, N> facet) {
+    const auto place = shrinker_.common_place(facet);
+    if (!place) return ShrinkingComplex<N>::kNone;
+    if (place->anchor) std::iter_swap(facet.begin(), std::find(facet.begin(), facet.end(), *place->anchor));
+    const auto try_pair = [&](Index u, Index v, double share) {
+      return shrinker_.try_contract(u, v, shrinker_.place_at(u, v, place->at, place->anchor ? 0.0 : share));
+    };
+    for (int i = 0; i < (place->anchor ? 1 : N - 1); ++i)
+      for (int j = i + 1; j < N; ++j) {
+        if (!try_pair(facet[i], facet[j], 0.5)) continue;
+        double met = 2.0;
+        for (int k = 0; k < N; ++k)
+          if (k != i && k != j && try_pair(facet[i], facet[k], 1.0 / (met + 1.0))) met += 1.0;
+        return facet[i];
+      }
+    return ShrinkingComplex<N>::kNone;
+  }
+
+  /// Whether the largest curvature is what keeps the facet.
+  void note_limit(const std::array<Index, N>& facet) {
+    if (shrinker_.is_limited()) return;
+    const auto place = shrinker_.common_place(facet);
+    if (!place) return;
+    const Index u = place->anchor.value_or(facet[0]);
+    for (const Index v : facet)
+      if (v != u) shrinker_.note_limit(u, v, shrinker_.place_at(u, v, place->at, place->anchor ? 0.0 : 0.5));
+  }
+
+  /// The vertices around have other curvatures now, and the facets at the one that is left other neighbours.
+  void update(Index left) {
+    shrinker_.complex().neighbours(left, around_);
+    for (const Index v : around_) curvature_[v] = curvature(v);
+    curvature_[left] = curvature(left);  // leaves its star
+    for (const Index s : star_) push(s);
+  }
+
+  Shrinker<N>& shrinker_;
+  double max_curvature_;
+  Teller teller_;
+  KeyedQueue queue_;
+  std::vector<double> curvature_;
+  std::vector<Index> star_, around_;
+};
+
+// ---- vertices by distance ----
+
+template <int N>
+class DistanceOrder {
+ public:
+  DistanceOrder(Shrinker<N>& shrinker, const ShrinkGoal& goal)
+      : shrinker_(shrinker), teller_(goal, shrinker.complex().alive()), queue_(shrinker.points().size()) {}
+
+  void fill() {
+    for (Index v = 0; v < shrinker_.points().size(); ++v) {
+      teller_.wait(shrinker_.complex().alive());
+      push(v);
+    }
+  }
+  void empty() {
+    while (teller_.goes_on(shrinker_.complex().alive()) && !queue_.empty()) {
+      const Index left = remove(queue_.pop());
+      if (left == ShrinkingComplex<N>::kNone) continue;
+      shrinker_.complex().neighbours(left, around_);
+      around_.push_back(left);
+      for (const Index v : around_) push(v);
+    }
+  }
+
+ private:
+  /// From the hyperplane through the middle of what surrounds v, at right angles to the mean normal: the mean, weighted
+  /// by measure, of how far the middles of the faces opposite to v are along it.
+  double distance(Index v) {
+    shrinker_.complex().star(v, star_);
+    PointN<N> normal{}, middle{};
+    double weight = 0.0;
+    for (const Index s : star_) {
+      const CornersN<N> corners = shrinker_.corners(s);
+      const PointN<N> of_simplex = normal_of<N>(corners);
+      const double measure = norm(of_simplex);
+      weight += measure;
+      for (int a = 0; a < N; ++a) {
+        normal[a] += of_simplex[a];
+        double sum = -N * shrinker_.scaled()[v][a];  // v is one of the corners
+        for (const PointN<N>& corner : corners) sum += corner[a];
+        middle[a] += measure * sum / (N - 1);
+      }
+    }
+    const double length = norm(normal);
+    if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
+    return std::abs(dot(normal, middle) / (weight * length));
+  }
+
+  void push(Index v) {
+    const double key = distance(v);
+    if (!star_.empty()) queue_.set(v, key);
+  }
+
+  /// Fills the hole that v leaves from the neighbour that lies best in the planes around. That neighbour; or none.
+  Index remove(Index v) {
+    shrinker_.complex().neighbours(v, around_);
+    targets_.clear();
+    for (const Index u : around_)
+      if (shrinker_.may_move_to(v, u))
+        targets_.emplace_back(shrinker_.place_at(u, v, shrinker_.points()[u], 0.0).cost, u);
+    std::sort(targets_.begin(), targets_.end());
+    for (const auto& [cost, u] : targets_)
+      if (shrinker_.try_contract(u, v, {shrinker_.points()[u], 0.0, cost})) return u;
+    return ShrinkingComplex<N>::kNone;
+  }
+
+  Shrinker<N>& shrinker_;
+  Teller teller_;
+  KeyedQueue queue_;
+  std::vector<Index> star_, around_;
+  std::vector<std::pair<double, Index>> targets_;
+};
+
+/// What could not go at first may be able to when its surroundings have changed: passes, as long as they are worth it.
+template <class Order, int N>
+void shrink(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
+  Order order(shrinker, goal);
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const std::size_t before = shrinker.complex().alive();
+    order.fill();
+    order.empty();
+    const std::size_t after = shrinker.complex().alive();
+    if (after <= goal.count || static_cast<double>(before - after) < kLeastGain * static_cast<double>(before)) return;
+  }
+}
+
+}  // namespace
+
+template <int N>
+void shrink_by_quadrics(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
+  shrink<QuadricOrder<N>>(shrinker, goal);
+}
+template <int N>
+void shrink_by_curvature(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
+  shrink<CurvatureOrder<N>>(shrinker, goal);
+}
+template <int N>
+void shrink_by_distance(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
+  shrink<DistanceOrder<N>>(shrinker, goal);
+}
+
+template void shrink_by_quadrics(Shrinker<2>&, const ShrinkGoal&);
+template void shrink_by_quadrics(Shrinker<3>&, const ShrinkGoal&);
+template void shrink_by_quadrics(Shrinker<4>&, const ShrinkGoal&);
+template void shrink_by_curvature(Shrinker<2>&, const ShrinkGoal&);
+template void shrink_by_curvature(Shrinker<3>&, const ShrinkGoal&);
+template void shrink_by_curvature(Shrinker<4>&, const ShrinkGoal&);
+template void shrink_by_distance(Shrinker<2>&, const ShrinkGoal&);
+template void shrink_by_distance(Shrinker<3>&, const ShrinkGoal&);
+template void shrink_by_distance(Shrinker<4>&, const ShrinkGoal&);
+
+}  // namespace tegl::detail

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From the contour of a tile as it is built to the form that extractions go through; see built_tile.hpp.
+#include "tile/built_tile.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace tegl::detail {
+
+using facets::VertexId;
+using facets::VertexKind;
+
+CubeFaces::CubeFaces(int n) : lattice_(facets::FaceLattice::cube(n)), numbers_(std::size_t{1} << (2 * n)) {
+  for (const facets::Face& face : lattice_.faces()) {
+    const auto least = static_cast<unsigned>(std::countr_zero(face.corners));
+    const unsigned most = 63u - static_cast<unsigned>(std::countl_zero(face.corners));
+    numbers_[least << n | (least ^ most)] = static_cast<std::uint16_t>(cells_.size());
+    cells_.push_back({static_cast<std::uint8_t>(least), static_cast<std::uint8_t>(least ^ most),
+                      static_cast<std::uint8_t>(face.dim)});
+    if (face.dim < 2) first_choice_ = cells_.size();
+  }
+}
+
+namespace {
+
+constexpr std::uint16_t kUnused = std::numeric_limits<std::uint16_t>::max();
+
+bool is_of_contour(VertexKind kind) {
+  return kind == VertexKind::edge || kind == VertexKind::barycentre || kind == VertexKind::side;
+}
+
+/// Numbers the vertices that are needed: the contour's own first, in the builder's order, then what they depend on.
+class Numbering {
+ public:
+  explicit Numbering(const facets::TileFacets& tile) : number_(tile.vertices.size(), kUnused) {
+    for (std::size_t v = 0; v < tile.vertices.size(); ++v)
+      if (is_of_contour(tile.vertices[v].kind)) add(static_cast<VertexId>(v));
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const facets::Vertex& vertex = tile.vertices[order_[i]];
+      if (vertex.copied != facets::kNoVertex) add(vertex.copied);
+      for (const facets::Simplex& s : vertex.of)
+        for (int j = 0; j < facets::size(s); ++j) add(s[j]);
+    }
+  }
+  [[nodiscard]] const std::vector<VertexId>& order() const { return order_; }
+  [[nodiscard]] std::uint16_t operator[](VertexId v) const { return number_[v]; }
+
+ private:
+  void add(VertexId v) {
+    if (number_[v] != kUnused) return;
+    if (order_.size() >= BuiltTile::kIsMiddle)
+      throw Error(ErrorCode::TooLarge, fmt::format("a tile with more than {} vertices", BuiltTile::kIsMiddle));
+    number_[v] = static_cast<std::uint16_t>(order_.size());
+    order_.push_back(v);
+  }
+
+  std::vector<std::uint16_t> number_;
+  std::vector<VertexId> order_;
+};
+
+/// Simplices below a barycentre. Their order, here and in `append_mean`, depends on the face alone: so do sums over
+/// them.
+void append_simplices(const CubeFaces& cube, const facets::TileFacets& tile, const facets::Vertex& vertex,
+                      const Numbering& number, std::vector<std::uint16_t>& of) {
+  for (const facets::Simplex& simplex : vertex.of) {
+    const std::size_t start = of.size();
+    for (int j = 0; j < facets::size(simplex); ++j) {
+      of.push_back(number[simplex[j]]);
+      const facets::Vertex& corner = tile.vertices[simplex[j]];
+      const bool is_middle =
+          corner.kind == VertexKind::barycentre && cube.cells()[corner.face].dim + 1 == cube.cells()[vertex.face].dim;
+      if (!is_middle) continue;
+      std::swap(of[start], of.back());
+      of[start] |= BuiltTile::kIsMiddle;
+    }
+  }
+}
+
+/// The vertices around a centre.
+void append_mean(const facets::Vertex& vertex, const Numbering& number, std::vector<std::uint16_t>& of) {
+  std::vector<VertexId> around;
+  for (const facets::Simplex& simplex : vertex.of)
+    around.insert(around.end(), simplex.begin(), simplex.begin() + facets::size(simplex));
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const VertexId v : around) of.push_back(number[v]);
+}
+
+}  // namespace
+
+BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
+  const Numbering number(tile);
+  for (const VertexId v : number.order()) {
+    const facets::Vertex& vertex = tile.vertices[v];
+    const auto n = static_cast<std::uint16_t>(vertices.size());
+    const auto face = static_cast<std::uint16_t>(vertex.face);
+    if (is_of_contour(vertex.kind)) {
+      if (faces.empty() || faces.back().face != face) faces.push_back({face, n, 0, true});
+      ++faces.back().count;
+      if (vertex.kind == VertexKind::side) faces.back().by_edges = false;
+      has_sides = has_sides || vertex.kind == VertexKind::side;
+    }
+    const auto first = static_cast<std::uint32_t>(of.size());
+    if (vertex.kind == VertexKind::barycentre) append_simplices(cube, tile, vertex, number, of);
+    if (vertex.kind == VertexKind::centre) append_mean(vertex, number, of);
+    const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
+    vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size()), 0, 0});
+  }
+  is_settled = tile.facets.size() == 1 && tile.facets[0].filling != facets::Filling::side;
+  for (const facets::Facet& facet : tile.facets)
+    for (const facets::Simplex& s : facet.simplices)
+      for (int j = 0; j < facets::size(s); ++j) simplices.push_back(number[s[j]]);
+  for (FaceVertices& face : faces) {
+    if (face.count == 1 || face.face == cube.tile()) face.by_edges = false;
+    for (std::size_t v = face.first; face.by_edges && v < std::size_t{face.first} + face.count; ++v) list_edges(v);
+  }
+  for (auto* list : {&of, &edges, &simplices}) list->shrink_to_fit();
+}
+
+void BuiltTile::list_edges(std::size_t v) {
+  std::vector<std::uint16_t> below(of.begin() + vertices[v].first, of.begin() + vertices[v].end);
+  for (std::uint16_t& w : below) w &= static_cast<std::uint16_t>(~kIsMiddle);
+  std::sort(below.begin(), below.end());
+  below.erase(std::unique(below.begin(), below.end()), below.end());
+  vertices[v].first_edge = static_cast<std::uint32_t>(edges.size());
+  for (const std::uint16_t w : below)
+    if (vertices[w].kind == VertexKind::edge) edges.push_back(w);
+  vertices[v].end_edge = static_cast<std::uint32_t>(edges.size());
+}
+
+std::size_t BuiltTile::bytes() const noexcept {
+  return sizeof *this + faces.capacity() * sizeof(FaceVertices) + vertices.capacity() * sizeof(Vertex) +
+         (of.capacity() + edges.capacity() + simplices.capacity()) * sizeof(std::uint16_t);
+}
+
+BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
+  const std::lock_guard lock(from_.mutex_);
+  if (from_.builders_.empty()) {
+    from_.builders_.reserve(from_.made_ + 1);  // so that none is lost when it comes back
+    builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice(), from_.max_builder_bytes_);
+    ++from_.made_;
+  } else {
+    builder_ = std::move(from_.builders_.back());
+    from_.builders_.pop_back();
+  }
+}
+
+BuiltTiles::BuilderLoan::~BuilderLoan() {
+  const std::lock_guard lock(from_.mutex_);
+  from_.builders_.push_back(std::move(builder_));
+}
+
+BuiltTiles::Pointer BuiltTiles::BuilderLoan::build(const TileKey& key) const {
+  std::vector<facets::Choice> choices;
+  if (key.has_choices()) {
+    const auto& cells = from_.cube_.cells();
+    choices.assign(cells.size(), facets::Choice::separate);
+    for (std::size_t face = from_.cube_.first_choice(); face < cells.size(); ++face)
+      choices[face] = key.choice(face - from_.cube_.first_choice());
+  }
+  return too_large_as_error([&] {
+    return std::make_shared<const BuiltTile>(
+        from_.cube_, builder_->build(key.signature, {.choices = choices, .alternative = from_.alternative_}));
+  });
+}
+
+std::size_t BuiltTiles::kept_bytes() {
+  const std::lock_guard lock(mutex_);
+  std::size_t bytes = bytes_;
+  for (const auto& builder : builders_) bytes += builder->kept_bytes();
+  return bytes;
+}
+
+void BuiltTiles::keep(const TileKey& key, const Pointer& tile) {
+  const std::size_t bytes = tile->bytes();
+  if (bytes_ + bytes > max_bytes_) {
+    known_.clear();  // the most frequent ones are soon back
+    bytes_ = 0;
+  }
+  if (bytes > max_bytes_) return;
+  bytes_ += bytes;
+  known_.emplace(key, tile);
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Keys of cubes: which of its fillings a cube has.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "tegl/facets/facets.hpp"
+
+namespace tegl::detail {
+
+/// `signature | variant << 8`. Variant 0 is the plain table's cube. Variant 1 + 3 r + choice has resolution r of its
+/// ambiguous squares (tables::ResolvedTable) and its own choice.
+class CubeKey {
+ public:
+  static constexpr unsigned kSignatures = 256;
+  static constexpr unsigned kVariants = 1 + 3 * 64;
+
+  explicit constexpr CubeKey(unsigned bits) noexcept : bits_(static_cast<std::uint16_t>(bits)) {}
+  constexpr CubeKey(unsigned signature, unsigned resolution, facets::Choice choice) noexcept
+      : CubeKey(signature | (1 + 3 * resolution + static_cast<unsigned>(choice)) << 8) {}
+
+  [[nodiscard]] constexpr std::uint16_t bits() const noexcept { return bits_; }
+  [[nodiscard]] constexpr unsigned signature() const noexcept { return bits_ & 255u; }
+  [[nodiscard]] constexpr unsigned variant() const noexcept { return bits_ >> 8; }
+  [[nodiscard]] constexpr bool is_plain() const noexcept { return variant() == 0; }
+  /// Of a plain cube: the first resolution, and no choice.
+  [[nodiscard]] constexpr unsigned resolution() const noexcept { return is_plain() ? 0 : (variant() - 1) / 3; }
+  [[nodiscard]] constexpr facets::Choice choice() const noexcept {
+    return is_plain() ? facets::Choice::separate : static_cast<facets::Choice>((variant() - 1) % 3);
+  }
+
+ private:
+  std::uint16_t bits_;
+};
+
+/// The bits of a set of a cube's squares at those of another one, `ambiguous`, pushed together: the number of a
+/// resolution.
+inline constexpr auto kPackedSquares = [] {
+  std::array<std::array<std::uint8_t, 64>, 64> packed{};  // by `ambiguous`
+  for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
+    for (unsigned squares = 0; squares < 64; ++squares)
+      for (unsigned q = 0, bit = 1; q < 6; ++q) {
+        if ((ambiguous >> q & 1u) == 0) continue;
+        if ((squares >> q & 1u) != 0)
+          packed[ambiguous][squares] = static_cast<std::uint8_t>(packed[ambiguous][squares] | bit);
+        bit *= 2;
+      }
+  return packed;
+}();
+[[nodiscard]] constexpr unsigned packed_squares(unsigned squares, unsigned ambiguous) noexcept {
+  return kPackedSquares[ambiguous][squares & 63u];
+}
+
+/// The keys of squares and cubes, N = 2 or 3. A square's key is `signature | 16` where its centre is high.
+template <int N>
+inline constexpr std::size_t kKeys = N == 2 ? 32 : std::size_t{CubeKey::kSignatures} * CubeKey::kVariants;
+template <int N>
+constexpr unsigned signature_of(unsigned key) noexcept {
+  return key & ((1u << (1u << N)) - 1);
+}
+
+}  // namespace tegl::detail

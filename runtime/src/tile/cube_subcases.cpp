@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The table's lists, numbered, and their parts in the frame of the tile.
+#include "tile/cube_subcases.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "base/corners.hpp"
+#include "tile/variant_table.hpp"
+
+namespace tegl::detail {
+namespace {
+
+using tables::kTile3Resolved;
+
+constexpr unsigned kCubeEdges = 12;
+
+using Triangles = std::span<const std::uint8_t>;  ///< three vertices each
+
+/// Sets of a list's vertices that are joined by an edge, by vertex, itself among them.
+using Neighbours = std::array<std::uint32_t, kCubeEdges + ResolvedCubes::kMostOwn>;
+
+Neighbours neighbours_of(Triangles triangles) {
+  Neighbours result{};
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const std::uint8_t* const v = triangles.data() + t;
+    for (unsigned i = 0; i < 3; ++i) result[v[i]] |= 1u << v[0] | 1u << v[1] | 1u << v[2];
+  }
+  return result;
+}
+
+/// The set of vertices connected with `vertex`.
+std::uint32_t connected(const Neighbours& neighbours, unsigned vertex) {
+  std::uint32_t reached = 1u << vertex, before = 0;
+  while (reached != before) {
+    before = reached;
+    for (std::uint32_t rest = before; rest != 0; rest &= rest - 1) reached |= neighbours[std::countr_zero(rest)];
+  }
+  return reached;
+}
+
+/// Whether a cone from this vertex has no simplex in the cube that is not the list's: it is joined with all vertices of
+/// its part, and any three that are joined one with another, it among them, are a triangle.
+bool may_be_apex(Triangles triangles, const Neighbours& neighbours, unsigned vertex, std::uint32_t part) {
+  if ((part & ~neighbours[vertex]) != 0) return false;
+  unsigned around = 0, edges = 0;
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+    if (std::count(triangles.begin() + static_cast<std::ptrdiff_t>(t),
+                   triangles.begin() + static_cast<std::ptrdiff_t>(t + 3), vertex) != 0)
+      ++around;
+  for (std::uint32_t rest = part & ~(1u << vertex); rest != 0; rest &= rest - 1)
+    edges += static_cast<unsigned>(std::popcount(neighbours[std::countr_zero(rest)] & part & ~(1u << vertex))) - 1;
+  return edges == 2 * around;  // each edge was counted from both ends
+}
+
+}  // namespace
+
+std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsigned vertex) {
+  std::array<double, 3> place{};
+  const auto middle_of_edge = [](unsigned e, std::array<double, 3>& to) {
+    const unsigned base = edge_base(3, e);
+    for (unsigned a = 0; a < 3; ++a) to[a] += a == e / 4 ? 0.5 : static_cast<double>(base >> a & 1u);
+  };
+  if (vertex < kCubeEdges) {
+    middle_of_edge(vertex, place);
+    return place;
+  }
+  const std::uint32_t mask = kTile3Resolved.masks[list.first_mask + vertex - kCubeEdges];
+  for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+    const auto bit = static_cast<unsigned>(std::countr_zero(rest));
+    if (bit >= 8)
+      middle_of_edge(bit - 8, place);
+    else
+      for (unsigned a = 0; a < 3; ++a) place[a] += static_cast<double>(bit >> a & 1u);
+  }
+  for (double& x : place) x /= std::popcount(mask);
+  if ((mask & 0xffu) != 0)
+    for (double& x : place) x = 0.5 * (0.5 + x);
+  return place;
+}
+
+const ResolvedCubes& ResolvedCubes::instance(int triangulation) {
+  if (triangulation == kBarycentric) {
+    static const ResolvedCubes barycentric(kBarycentric);
+    return barycentric;
+  }
+  static const ResolvedCubes compact(kCompact);
+  return compact;
+}
+
+ResolvedCubes::ResolvedCubes(int triangulation) {
+  for (unsigned tile = 0; tile < 256; ++tile)
+    for (unsigned f = 0; f < kCubes; ++f) {
+      for (unsigned half = 0; half < 2; ++half) {
+        const unsigned corners = tile << (8 * half);
+        signatures_[half][tile] |= std::uint64_t{squeezed_corners<4>(corners >> (f % 2 << f / 2), f / 2)} << (8 * f);
+      }
+    }
+  for (unsigned pair = 0, c = 0; c < 4; ++c)
+    for (unsigned d = c + 1; d < 4; ++d, ++pair)
+      for (unsigned sides = 0; sides < 4; ++sides) {
+        // In the cube that leaves out one of the axes the other one's number is less by one if it is higher.
+        const unsigned f_of_c = 2 * c + (sides & 1u), q_of_c = 2 * (d - 1) + (sides >> 1);
+        const unsigned f_of_d = 2 * d + (sides >> 1), q_of_d = 2 * c + (sides & 1u);
+        const std::uint64_t bits = std::uint64_t{1} << (8 * f_of_c + q_of_c) | std::uint64_t{1}
+                                                                                   << (8 * f_of_d + q_of_d);
+        for (unsigned set = 0; set < 16; ++set)
+          if ((set >> sides & 1u) != 0) squares_[pair][set] |= bits;
+      }
+  for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
+    for (unsigned high = 0; high < 64; ++high) {
+      unsigned result = 0, at = 0;
+      for (unsigned q = 0; q < 6; ++q)
+        if ((ambiguous >> q & 1u) != 0) result |= (high >> q & 1u) << at++;
+      compressed_[ambiguous << 6 | high] = static_cast<std::uint8_t>(result);
+    }
+  number_lists(triangulation);
+  make_frames();
+  for (unsigned f = 0; f < kCubes; ++f) {
+    for (unsigned i = 0; i < lists_.size(); ++i) {
+      const auto first = static_cast<std::uint32_t>(parts_.size());
+      make_parts(f, i);
+      // Points of one part are not joined with those of another one in the cube.
+      apexes_.push_back(parts_[first].apexes & (parts_.size() - first > 1 ? ~edges_of_[f] : ~std::uint32_t{0}));
+      if (f != 0) continue;
+      summaries_[i].first_part = first;
+      summaries_[i].part_count = static_cast<std::uint8_t>(parts_.size() - first);
+      summaries_[i].triangle_count = static_cast<std::uint8_t>(triangles_of(i).size() / 3);
+    }
+    apexes_.push_back(~std::uint32_t{0});  // of kNone
+    if (f == 0) parts_of_cube_ = static_cast<std::uint32_t>(parts_.size());
+  }
+  summaries_.push_back({});
+  parts_.resize(parts_.size() + kMostParts);
+  part_vertices_.resize(parts_.size());
+  triangles_.resize(triangles_.size() + kWordsBehind);
+}
+
+void ResolvedCubes::number_lists(int triangulation) {
+  list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
+  for (unsigned entry = 0; entry < kTile3Resolved.entry_count; ++entry)
+    has_choice_.push_back(kTile3Resolved.entries[entry].components > 1 ? 1 : 0);
+  for (unsigned s = 0; s < 256; ++s)
+    of_signatures_[s] = {kTile3Resolved.first_entry[s], kTile3Resolved.ambiguous_squares[s]};
+  for (unsigned s = 1; s < 255; ++s) {
+    const unsigned ambiguous = kTile3Resolved.ambiguous_squares[s];
+    for (unsigned high = 0, entry = kTile3Resolved.first_entry[s];; ++entry) {
+      const tables::ResolvedEntry& of = kTile3Resolved.entries[entry];
+      const std::array<const tables::ResolvedList*, 3> lists = {&of.separate, &of.low, &of.high};
+      for (unsigned choice = 0; choice < 3; ++choice) {
+        unsigned same = 0;
+        while (lists[same]->first_triangle != lists[choice]->first_triangle) ++same;
+        if (same == choice) {
+          list_of_[3 * entry + choice] = static_cast<std::uint16_t>(lists_.size());
+          lists_.push_back({lists[choice], static_cast<std::uint8_t>(s), static_cast<std::uint8_t>(high)});
+          const CubeKey resolved(s, entry - kTile3Resolved.first_entry[s], static_cast<facets::Choice>(choice));
+          key_of_.push_back((ambiguous_signatures<3>()[s] ? resolved : CubeKey(s)).bits());
+          Summary& summary = summaries_.emplace_back();
+          summary.is_not_low = high == 0 && choice == 0 ? 0 : 1;
+          if (triangulation == kCompact)
+            take_compact(*lists[choice]);
+          else
+            take_barycentric();
+        } else {
+          list_of_[3 * entry + choice] = list_of_[3 * entry + same];
+        }
+      }
+      high = (high - ambiguous) & ambiguous;
+      if (high == 0) break;
+    }
+  }
+}
+
+/// Triangles, masks and summary of the list that is numbered last.
+void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
+  const std::uint8_t* const first = kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
+  of_cube_.insert(of_cube_.end(), first, first + 3 * std::size_t{list.triangle_count});
+  first_of_cube_.push_back(static_cast<std::uint32_t>(of_cube_.size()));
+  auto& masks = masks_.emplace_back();
+  for (unsigned j = 0; j < list.own_vertices; ++j) masks[j] = kTile3Resolved.masks[list.first_mask + j];
+  summaries_.back().own_vertices = list.own_vertices;
+}
+
+/// The same from the table that contours of 3D images are made of.
+void ResolvedCubes::take_barycentric() {
+  const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
+  const tables::List& list = table.lists[table.list_of[key_of_.back()]];
+  const std::uint8_t* const first = table.simplices + 3 * std::size_t{list.first_simplex};
+  const std::span<const std::uint8_t> triangles(first, 3 * std::size_t{list.simplex_count});
+  of_cube_.insert(of_cube_.end(), triangles.begin(), triangles.end());
+  first_of_cube_.push_back(static_cast<std::uint32_t>(of_cube_.size()));
+  auto& masks = masks_.emplace_back();
+  const unsigned own = unsigned{list.cone_vertices} + list.side_vertices;
+  if (own > kMostOwn) throw std::logic_error("a cube with more vertices of its own than tesseracts have numbers for");
+  for (unsigned j = 0; j < own; ++j)
+    if (j >= list.cone_vertices)
+      masks[j] = static_cast<std::uint32_t>(table.side_masks[list.first_side + j - list.cone_vertices]);
+  for (std::size_t t = 0; t < triangles.size(); t += 3)  // a barycentre stands first
+    if (triangles[t] >= kCubeEdges && triangles[t] < kCubeEdges + list.cone_vertices)
+      masks[triangles[t] - kCubeEdges] |= 1u << (8 + triangles[t + 1]) | 1u << (8 + triangles[t + 2]);
+  summaries_.back().own_vertices = static_cast<std::uint8_t>(own);
+  summaries_.back().barycentres = list.cone_vertices;
+}
+
+void ResolvedCubes::make_frames() {
+  for (unsigned f = 0; f < kCubes; ++f) {
+    for (unsigned e = 0; e < kCubeEdges; ++e) {
+      const unsigned axis = e / 4 < f / 2 ? e / 4 : e / 4 + 1;
+      const unsigned edge = axis << 3 | squeeze(lifted_corner(f, edge_base(3, e)), axis);
+      lifted_[f][e] = static_cast<std::uint8_t>(edge);
+      edges_of_[f] |= 1u << edge;
+    }
+    for (unsigned j = 0; j < kMostOwn; ++j)
+      lifted_[f][kCubeEdges + j] = static_cast<std::uint8_t>(kEdges + kMostOwn * f + j);
+    // The corner that axis f / 2 leaves at f % 2: over all cubes alike, (point on the edge out of the cube, triangle)
+    // is the tetrahedron that cuts it off.
+    reversed_[f] = (f / 2 + f % 2) % 2 == 0;
+  }
+  for (unsigned f = 0; f < kCubes; ++f)
+    for (unsigned e = 0; e < kEdges; ++e)
+      if ((edges_of_[f] >> e & 1u) != 0)
+        beside_[e] |= edges_of_[f] | ((std::uint64_t{1} << kMostOwn) - 1) << (kEdges + kMostOwn * f);
+}
+
+void ResolvedCubes::make_parts(unsigned cube, unsigned list) {
+  const Triangles triangles = triangles_of(list);
+  const Neighbours neighbours = neighbours_of(triangles);
+  std::uint32_t done = 0;
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    if ((done >> triangles[t] & 1u) != 0) continue;
+    const std::uint32_t vertices = connected(neighbours, triangles[t]);
+    done |= vertices;
+    Part part{~std::uint32_t{0}, static_cast<std::uint32_t>(triangles_.size()), 0, static_cast<std::uint8_t>(cube)};
+    std::uint64_t& in_tile = part_vertices_.emplace_back(0);
+    for (std::uint32_t rest = vertices; rest != 0; rest &= rest - 1) {
+      const auto v = static_cast<unsigned>(std::countr_zero(rest));
+      in_tile |= std::uint64_t{1} << lifted(cube, v);
+      if (v < kCubeEdges && !may_be_apex(triangles, neighbours, v, vertices)) part.apexes &= ~(1u << lifted(cube, v));
+    }
+    for (std::size_t u = t; u < triangles.size(); u += 3) {
+      const std::uint8_t* const v = triangles.data() + u;
+      if ((vertices >> v[0] & 1u) == 0) continue;
+      std::array<std::uint8_t, 4> word = {0, 0, 0, 0};
+      for (unsigned i = 0; i < 3; ++i) word[1 + i] = static_cast<std::uint8_t>(lifted(cube, v[i]));
+      if (is_reversed(cube)) std::swap(word[2], word[3]);
+      triangles_.push_back(std::bit_cast<std::uint32_t>(word));
+      ++part.triangle_count;
+    }
+    parts_.push_back(part);
+  }
+}
+
+unsigned list_of_key(unsigned key) noexcept {
+  const CubeKey cube(key);
+  if (cube.signature() == 0 || cube.signature() == 255) return ResolvedCubes::kNone;
+  unsigned squares = 0;
+  unsigned bit = 0;
+  for (unsigned rest = kTile3Resolved.ambiguous_squares[cube.signature()]; rest != 0; rest &= rest - 1, ++bit)
+    if ((cube.resolution() >> bit & 1u) != 0) squares |= rest & (~rest + 1);
+  return ResolvedCubes::instance().list(cube.signature(), squares, cube.choice());
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Reading of the generated tables: simplices of a signature in either layout, and the places of the
+// vertices that a cell owns (table contract: "Positions").
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "base/corners.hpp"
+#include "tegl/table_contract.hpp"
+
+namespace tegl::detail {
+
+/// The simplices of one signature of a k-tile.
+template <int K>
+class SimplexList {
+ public:
+  SimplexList(const tables::TileTable& table, unsigned signature) noexcept
+      : list_(&table.lists[table.list_of[signature]]),
+        simplices_(table.simplices + std::size_t{list_->first_simplex} * K),
+        side_masks_(table.side_masks + list_->first_side) {
+    if (table.element_of != nullptr) {
+      const std::uint16_t element = table.element_of[signature];
+      permutation_ = table.permutations + std::size_t{element} * table.permutation_stride;
+      reversed_ = table.reverses[element] != 0;
+      if constexpr (K == 4) swaps_ = table.slot_swaps[signature];
+    }
+  }
+  [[nodiscard]] const tables::List& list() const noexcept { return *list_; }
+  [[nodiscard]] unsigned size() const noexcept { return list_->simplex_count; }
+  [[nodiscard]] unsigned own_vertices() const noexcept { return list_->cone_vertices + unsigned{list_->side_vertices}; }
+  [[nodiscard]] bool reversed() const noexcept { return reversed_; }
+  /// True in the class layout: stored vertices are those of the representative.
+  [[nodiscard]] bool is_permuted() const noexcept { return permutation_ != nullptr; }
+
+  /// Vertex j of simplex q, as stored: ids from first_tile_vertex(K) on are as they are.
+  [[nodiscard]] unsigned stored(unsigned q, unsigned j) const noexcept { return simplices_[q * K + j]; }
+  /// A stored vertex in the frame of the signature.
+  [[nodiscard]] unsigned mapped(unsigned v) const noexcept {
+    if (permutation_ == nullptr || v >= tables::first_tile_vertex(K)) return v;
+    v = permutation_[(1u << K) + v];
+    if constexpr (K == 4) {
+      static_assert(tables::kFaceSlots == 2);
+      if (v >= tables::edge_count(K)) v ^= swaps_ >> ((v - tables::edge_count(K)) / 2) & 1u;
+    }
+    return v;
+  }
+  /// A stored corner in the frame of the signature.
+  [[nodiscard]] unsigned mapped_corner(unsigned v) const noexcept {
+    return permutation_ == nullptr ? v : permutation_[v];
+  }
+  /// The mask of side vertex j: bit v a corner, bit 2^K + e an edge point, as stored.
+  [[nodiscard]] std::uint64_t side_mask(unsigned j) const noexcept { return side_masks_[j]; }
+
+ private:
+  const tables::List* list_;
+  const std::uint8_t* simplices_;
+  const std::uint64_t* side_masks_;
+  const std::uint8_t* permutation_ = nullptr;
+  unsigned swaps_ = 0;
+  bool reversed_ = false;
+};
+
+/// A point in the frame of a k-tile, in [0, 1]^k.
+template <int K>
+using TilePoint = std::array<double, K>;
+
+template <int K>
+constexpr TilePoint<K> corner_point(unsigned corner) noexcept {
+  TilePoint<K> point{};
+  for (int a = 0; a < K; ++a) point[a] = static_cast<double>(corner >> a & 1u);
+  return point;
+}
+
+/// The base corners of a k-tile's edges.
+template <int K>
+inline constexpr auto kEdgeBases = [] {
+  std::array<TilePoint<K>, tables::edge_count(K)> result{};
+  for (unsigned e = 0; e < result.size(); ++e) result[e] = corner_point<K>(edge_base(K, e));
+  return result;
+}();
+
+template <int K>
+[[gnu::always_inline]] inline TilePoint<K> edge_point(unsigned edge, double alpha) noexcept {
+  TilePoint<K> point = kEdgeBases<K>[edge];
+  point[edge >> (K - 1)] = alpha;
+  return point;
+}
+
+/// The same without a store at a place that is not known, for which loads of the whole point would have to wait.
+template <int K>
+[[gnu::always_inline]] inline TilePoint<K> edge_point_at_once(unsigned edge, double alpha) noexcept {
+  static constexpr auto kUnits = [] {
+    std::array<TilePoint<K>, K> units{};
+    for (std::size_t a = 0; a < K; ++a) units[a][a] = 1.0;
+    return units;
+  }();
+  TilePoint<K> point = kEdgeBases<K>[edge];
+  for (std::size_t a = 0; a < K; ++a) point[a] += alpha * kUnits[edge >> (K - 1)][a];
+  return point;
+}
+
+/// A point of the 3-face `cube` in the frame of its 4-tile.
+inline TilePoint<4> cube_point(unsigned cube, const TilePoint<3>& inside) noexcept {
+  TilePoint<4> point;
+  for (unsigned a = 0, j = 0; a < 4; ++a) point[a] = a == cube / 2 ? static_cast<double>(cube % 2) : inside[j++];
+  return point;
+}
+
+// Inlined by force, like what calls them: compilers otherwise leave calls in the innermost loops, at half the speed.
+
+template <std::size_t K>
+[[gnu::always_inline]] inline double distance(const std::array<double, K>& p, const std::array<double, K>& q) noexcept {
+  double sum = 0;
+  for (std::size_t a = 0; a < K; ++a) sum += (q[a] - p[a]) * (q[a] - p[a]);
+  return std::sqrt(sum);
+}
+
+/// A point with a weight: measure and barycentre of a piece of a facet.
+template <int K>
+struct Weighted {
+  TilePoint<K> point{};
+  double weight = 0;
+
+  [[gnu::always_inline]] void add(const TilePoint<K>& p, double w) noexcept {
+    for (int a = 0; a < K; ++a) point[a] += w * p[a];
+    weight += w;
+  }
+};
+
+/// Area of a triangle by the Gram determinant.
+template <std::size_t K>
+[[gnu::always_inline]] inline double triangle_area(const std::array<double, K>& p, const std::array<double, K>& q,
+                                                   const std::array<double, K>& r) noexcept {
+  double uu = 0, uv = 0, vv = 0;
+  for (std::size_t a = 0; a < K; ++a) {
+    const double u = q[a] - p[a];
+    const double v = r[a] - p[a];
+    uu += u * u;
+    uv += u * v;
+    vv += v * v;
+  }
+  return 0.5 * std::sqrt(std::max(0.0, uu * vv - uv * uv));
+}
+
+template <int K>
+[[gnu::always_inline]] inline TilePoint<K> midpoint(const TilePoint<K>& p, const TilePoint<K>& q) noexcept {
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) point[a] = 0.5 * (p[a] + q[a]);
+  return point;
+}
+
+/// Measure and barycentre of the face of a cone that lies opposite of the apex (table contract:
+/// "Positions"). `barycentred`: its first vertex is a cube's barycentre.
+template <int K>
+[[gnu::always_inline]] inline Weighted<K> opposite_face(const std::array<TilePoint<K>, K - 1>& face,
+                                                        bool barycentred) noexcept {
+  if constexpr (K == 2) return {face[0], 1.0};
+  if constexpr (K == 3) return {midpoint<3>(face[0], face[1]), distance(face[0], face[1])};
+  if constexpr (K == 4) {
+    const double area = triangle_area(face[0], face[1], face[2]);
+    if (barycentred) return {face[0], area};
+    Weighted<4> outline;
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto& p = face[i];
+      const auto& q = face[(i + 1) % 3];
+      outline.add(midpoint<4>(p, q), distance(p, q));
+    }
+    if (!(outline.weight > 0)) return {face[0], area};
+    for (double& x : outline.point) x /= outline.weight;
+    return {outline.point, area};
+  }
+}
+
+/// The mean of the faces that lie opposite of `apex` in its cone, each weighted by its measure or (`plain`) all alike.
+template <int K, class Place>
+[[gnu::always_inline]] inline Weighted<K> cone_sum(const SimplexList<K>& list, unsigned apex, bool plain,
+                                                   const Place& place) noexcept {
+  Weighted<K> sum;
+  for (unsigned q = 0; q < list.size(); ++q) {
+    if (list.stored(q, 0) != apex) continue;
+    std::array<TilePoint<K>, K - 1> face;
+    for (unsigned j = 1; j < K; ++j) face[j - 1] = place(list.stored(q, j));
+    const Weighted<K> part = opposite_face<K>(face, list.stored(q, 1) >= tables::edge_count(K));
+    sum.add(part.point, plain ? 1.0 : part.weight);
+  }
+  return sum;
+}
+
+/// The barycentre of the facet that is the cone from `apex`.
+template <int K, class Place>
+TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
+  Weighted<K> sum = cone_sum(list, apex, false, place);
+  if (!(sum.weight > 0)) sum = cone_sum(list, apex, true, place);  // a facet that has shrunk to a point
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
+/// The mean of the points that the cone from `apex` is over: what the compact triangulation puts there.
+template <int K, class Place>
+TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
+  static_assert(tables::edge_count(K) <= 64);
+  std::uint64_t points = 0;
+  for (unsigned q = 0; q < list.size(); ++q)
+    if (list.stored(q, 0) == apex)
+      for (unsigned j = 1; j < K; ++j) points |= std::uint64_t{1} << list.stored(q, j);
+  Weighted<K> sum;
+  for (; points != 0; points &= points - 1) sum.add(place(static_cast<unsigned>(std::countr_zero(points))), 1.0);
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
+/// The place of an own vertex by its mask (bit v: corner v, bit 2^K + e: edge e): of edges alone their mean, with
+/// corners half way from the tile's centre to the mean of all. `corner(v)`: that corner in the frame at hand.
+///
+/// `uneven`: all a little aside, by unequal weights. Samples of few values, such as masks, put edges' points at few
+/// places, so that the mean itself may lie on the line through two of them, and a triangle of the three has no size.
+/// And nearer to the centre: the edges may be all in one face of the tile, where nothing but the face's own is to be.
+template <int K, class Corner, class Place>
+TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
+  Weighted<K> sum;
+  for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    sum.add(v < (1u << K) ? corner_point<K>(corner(v)) : place(v - (1u << K)), uneven ? 1.0 + 0.01 * v : 1.0);
+  }
+  const bool has_corners = (mask & ((std::uint64_t{1} << (1u << K)) - 1)) != 0;
+  TilePoint<K> point;
+  for (int a = 0; a < K; ++a) {
+    const double mean = sum.point[a] / sum.weight;
+    const double centre = uneven ? 0.487 + 0.01 * a : 0.5;
+    const double share = has_corners ? 0.5 : uneven ? 0.1 : 0.0;  // of the centre
+    point[a] = share == 0.0 ? mean : share * centre + (1.0 - share) * mean;
+  }
+  return point;
+}
+
+/// The places of a tile's cone vertices and side vertices, in the unit tile: so they don't depend on the
+/// units of the axes. `place(v)` is the place of the stored vertex v < first_tile_vertex(K), in the frame
+/// of the signature. out: list.own_vertices() points.
+///
+/// One function for the tiles of a 3D image and the cubes of a 4D image: their barycentres agree bit by
+/// bit, so that a 4D contour contains the 3D contours of its steps.
+template <int K, class Place>
+void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const Place& place,
+                TilePoint<K>* out) noexcept {
+  const unsigned cones = list.list().cone_vertices;
+  for (unsigned j = 0; j < cones; ++j) {
+    const unsigned apex = tables::first_tile_vertex(K) + j;
+    if constexpr (K == 4) {
+      out[j] = compact ? mean_place(list, apex, place) : cone_place(list, apex, place);
+    } else {
+      out[j] = cone_place(list, apex, place);  // compact polygons have none
+    }
+  }
+  const auto corner = [&](unsigned v) { return list.mapped_corner(v); };
+  for (unsigned j = 0; j < list.list().side_vertices; ++j)
+    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, K == 3);  // cubes have them by data alone
+}
+
+}  // namespace tegl::detail

@@ -1,0 +1,580 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A tile from its eight cubes: which lists, which components, how each is filled.
+#include "tile/tesseract_fill.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/corners.hpp"
+#include "tile/cube_regions.hpp"
+#include "tile/local_simplices.hpp"
+#include "tile/variant_table.hpp"
+
+namespace tegl::detail {
+namespace {
+
+using facets::Choice;
+
+constexpr unsigned kCubes = ResolvedCubes::kCubes;
+constexpr unsigned kMaskEdge = 16;  ///< bit of edge 0 in masks
+
+constexpr std::uint32_t word(std::array<std::uint8_t, 4> vertices) { return std::bit_cast<std::uint32_t>(vertices); }
+
+/// Corners of squares, as sets.
+constexpr std::array<std::uint32_t, 24> kCornersOfSquares = [] {
+  std::array<std::uint32_t, 24> result{};
+  for (unsigned q = 0; q < 24; ++q)
+    for (unsigned v = 0; v < 16; ++v)
+      if ((v & ~unsigned{kTesseractSquares[q].axes}) == kTesseractSquares[q].base) result[q] |= 1u << v;
+  return result;
+}();
+constexpr std::array<std::uint32_t, 8> kCornersOfCubes = [] {
+  std::array<std::uint32_t, 8> result{};
+  for (unsigned f = 0; f < 8; ++f)
+    for (unsigned v = 0; v < 16; ++v)
+      if ((v >> (f / 2) & 1u) == f % 2) result[f] |= 1u << v;
+  return result;
+}();
+
+/// The corners of a set and those that an edge joins with it.
+constexpr std::uint32_t grown(std::uint32_t corners) {
+  constexpr std::array<std::uint32_t, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};
+  std::uint32_t result = corners;
+  for (unsigned a = 0; a < 4; ++a) result |= (corners & kLower[a]) << (1u << a) | (corners >> (1u << a) & kLower[a]);
+  return result;
+}
+
+/// The pairs of axes that squares span: bit i of `base` is set where a square's lowest corner is corner i, and `square`
+/// is then its number.
+struct SquarePlane {
+  unsigned a, b;
+  std::uint32_t base;
+  std::array<std::uint8_t, 16> square;
+};
+constexpr std::array<SquarePlane, 6> kSquarePlanes = [] {
+  std::array<SquarePlane, 6> result{};
+  std::size_t plane = 0;
+  for (unsigned a = 0; a < 4; ++a)
+    for (unsigned b = a + 1; b < 4; ++b, ++plane) {
+      result[plane].a = a;
+      result[plane].b = b;
+      for (unsigned q = 0; q < 24; ++q)
+        if (kTesseractSquares[q].axes == (1u << a | 1u << b)) {
+          result[plane].base |= 1u << kTesseractSquares[q].base;
+          result[plane].square[kTesseractSquares[q].base] = static_cast<std::uint8_t>(q);
+        }
+    }
+  return result;
+}();
+
+/// The ambiguous ones of the 24 squares.
+std::uint32_t ambiguous_squares(std::uint32_t signature) {
+  std::array<std::uint32_t, 4> changes;  // bit v: corner v and the next one along the axis are different
+  for (unsigned a = 0; a < 4; ++a) changes[a] = signature ^ signature >> (1u << a);
+  std::uint32_t result = 0;
+  for (const SquarePlane& plane : kSquarePlanes) {
+    const std::uint32_t along_b = changes[plane.b];
+    std::uint32_t found = changes[plane.a] & along_b & along_b >> (1u << plane.a) & plane.base;
+    for (; found != 0; found &= found - 1) result |= 1u << plane.square[std::countr_zero(found)];
+  }
+  return result;
+}
+
+Choice choice_of(const ResolvedKey& key, unsigned cube) {
+  if ((key.low_cubes >> cube & 1u) != 0) return Choice::low;
+  return (key.high_cubes >> cube & 1u) != 0 ? Choice::high : Choice::separate;
+}
+
+}  // namespace
+
+ResolvedTesseract::ResolvedTesseract(int triangulation)
+    : is_barycentric_(triangulation == kBarycentric),
+      cubes_(ResolvedCubes::instance(triangulation)),
+      in_table_(in_table().data()) {}
+
+const CubeRegions& ResolvedTesseract::regions() {
+  if (regions_ == nullptr) regions_ = &CubeRegions::instance(is_barycentric_ ? kBarycentric : kCompact);
+  return *regions_;
+}
+
+const std::vector<ResolvedTesseract::InTable>& ResolvedTesseract::in_table() {
+  static const std::vector<InTable> entries = [] {
+    std::vector<InTable> result;
+    for (unsigned s = 0; s < 65536; ++s) {
+      const tables::List& list = tables::kTile4Compact.lists[tables::kTile4Compact.list_of[s]];
+      result.push_back({list.first_simplex, list.simplex_count,
+                        static_cast<std::uint16_t>(unsigned{list.cone_vertices} + list.side_vertices)});
+    }
+    return result;
+  }();
+  return entries;
+}
+
+const ResolvedView& ResolvedTesseract::find(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
+  find_cubes(lists);
+  const bool has_regions = find_joined(key);
+  simplex_count_ = 0;
+  masks_.clear();
+  if (is_in_table(key)) {
+    const InTable& entry = in_table_[key.signature];
+    if (entry.own_vertices == 0) {
+      view_ = {tables::kTile4Compact.simplices + 4 * std::size_t{entry.first_simplex}, entry.simplex_count, 0, nullptr};
+      return view_;
+    }
+    take_from_table(key);
+  } else {
+    fill(key, has_regions);
+  }
+  view_ = {reinterpret_cast<const std::uint8_t*>(simplices_.data()), static_cast<std::uint32_t>(simplex_count_),
+           static_cast<std::uint32_t>(masks_.size()), masks_.data()};
+  return view_;
+}
+
+ResolvedSize ResolvedTesseract::size(const ResolvedKey& key, const ResolvedCubes::Lists& lists) {
+  find_cubes(lists);
+  const bool has_regions = find_joined(key);
+  if (is_in_table(key)) {
+    const InTable& entry = in_table_[key.signature];
+    return {entry.simplex_count, entry.own_vertices};
+  }
+  const bool high = choose_cones(key, has_regions);
+  ResolvedSize size{0, 0};
+  for (unsigned c = 0; c < component_count_; ++c) {
+    const Component& component = components_[c];
+    if (component.is_coned) {
+      const unsigned apex = apex_of(component);
+      size.simplices += component.triangles;
+      if (apex < kFirstOwn)
+        size.simplices -= static_cast<std::uint32_t>(std::popcount(component.vertices & cubes_.beside(apex))) - 1;
+      else
+        ++size.own_vertices;
+    } else if (is_first_of_region(c)) {
+      add_region_size(component.region, high, size);
+    }
+  }
+  return size;
+}
+
+ResolvedCubes::Lists ResolvedTesseract::lists_of(const ResolvedKey& key) const noexcept {
+  const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
+  ResolvedCubes::Lists lists;
+  for (unsigned f = 0; f < kCubes; ++f)
+    lists[f] = cubes_.list(signatures >> (8 * f) & 255u, squares >> (8 * f) & 63u, choice_of(key, f));
+  return lists;
+}
+
+void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
+  unsigned others = 0, count = 0, opposite = 0;
+  lists_ = lists;
+  triangle_count_ = 0;
+  apexes_ = ~std::uint32_t{0};
+  for (unsigned f = 0; f < kCubes; ++f) {
+    const ResolvedCubes::Summary& summary = cubes_.summary(lists[f]);
+    apexes_ &= cubes_.apexes(f, lists[f]);
+    others |= summary.is_not_low;
+    triangle_count_ += summary.triangle_count;
+    // As many as a cube can have, without a branch for how many it has: those behind are written over.
+    const std::uint32_t first = cubes_.first_part(f) + summary.first_part;
+    for (unsigned i = 0; i < ResolvedCubes::kMostParts; ++i) parts_.data()[count + i] = first + i;
+    std::memcpy(&part_vertices_.data()[count], cubes_.part_vertices() + first,
+                ResolvedCubes::kMostParts * sizeof(std::uint64_t));
+    count += summary.part_count;
+    if (f < 2) opposite = f == 0 ? count : count | opposite << 8;
+  }
+  part_count_ = count;
+  as_low_ = others == 0;
+  // What hangs together with the first part, as far as it is seen in one go. Cubes 0 and 1 have nothing in common, so
+  // the parts of 1 come last.
+  std::uint64_t vertices = count == 0 ? 0 : part_vertices_[0];
+  std::uint32_t connected = 0;
+  const auto look_at = [&](unsigned from, unsigned to) {
+    for (unsigned i = from; i < to; ++i) {
+      const std::uint64_t of_part = part_vertices_.data()[i];
+      const std::uint64_t meets = (of_part & vertices) != 0 ? 1 : 0;
+      vertices |= of_part & (0 - meets);
+      connected |= static_cast<std::uint32_t>(meets << i);
+    }
+  };
+  const unsigned first_of_1 = opposite >> 8, end_of_1 = opposite & 255u;
+  look_at(0, first_of_1);
+  look_at(end_of_1, count);
+  look_at(first_of_1, end_of_1);
+  find_components(vertices, connected);
+}
+
+/// `vertices`, `connected`: of parts that hang together with the first one.
+void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t connected) {
+  component_count_ = 0;
+  auto left = static_cast<std::uint32_t>((std::uint64_t{1} << part_count_) - 1) & ~connected;
+  while (connected != 0) {
+    std::uint32_t triangles = triangle_count_;
+    for (bool grown = left != 0; grown;) {
+      grown = false;
+      for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
+        const std::uint64_t of_part = part_vertices_[std::countr_zero(rest)];
+        if ((of_part & vertices) == 0) continue;
+        vertices |= of_part;
+        connected |= rest & (0 - rest);
+        grown = true;
+      }
+      left &= ~connected;
+    }
+    if (left != 0 || component_count_ != 0) {
+      triangles = 0;
+      for (std::uint32_t rest = connected; rest != 0; rest &= rest - 1)
+        triangles += part(static_cast<unsigned>(std::countr_zero(rest))).triangle_count;
+    }
+    const bool is_sphere = 2 * static_cast<unsigned>(std::popcount(vertices)) == triangles + 4;
+    components_[component_count_++] = {vertices, connected, triangles, 0, is_sphere, false};
+    connected = left & (0 - left);
+    left ^= connected;
+    if (connected != 0) vertices = part_vertices_[std::countr_zero(connected)];
+  }
+}
+
+/// The table holds the low-connected contour, its spheres coned and what is none filled as by a low centre.
+bool ResolvedTesseract::is_in_table(const ResolvedKey& key) const {
+  if (!as_low_ || is_barycentric_) return false;
+  if (key.tile == Choice::separate) return true;
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (!components_[c].is_sphere && key.tile == Choice::high) return false;
+  if (component_count_ < 2) return true;
+  std::uint32_t seen = 0;
+  for (unsigned c = 0; c < component_count_; ++c) {
+    if ((components_[c].region & seen) != 0) return false;
+    seen |= components_[c].region;
+  }
+  return true;
+}
+
+void ResolvedTesseract::take_from_table(const ResolvedKey& key) {
+  const tables::TileTable& table = tables::kTile4Compact;
+  const tables::List& list = table.lists[table.list_of[key.signature]];
+  constexpr unsigned kFirstOfTable = tables::first_tile_vertex(4);
+  simplices_.resize(list.simplex_count);
+  const std::uint8_t* at = table.simplices + 4 * std::size_t{list.first_simplex};
+  for (unsigned j = 0; j < list.cone_vertices; ++j) masks_.push_back(0);
+  for (unsigned j = 0; j < list.side_vertices; ++j) masks_.push_back(table.side_masks[list.first_side + j]);
+  for (; simplex_count_ < list.simplex_count; ++simplex_count_, at += 4) {
+    std::array<std::uint8_t, 4> vertices = {at[0], at[1], at[2], at[3]};
+    for (std::uint8_t& v : vertices)
+      if (v >= kFirstOfTable) v = static_cast<std::uint8_t>(v - kFirstOfTable + kFirstOwn);
+    simplices_[simplex_count_] = word(vertices);
+    // A cone's vertex stands first, and lies at the mean of the points that it is over.
+    if (vertices[0] < kFirstOwn || vertices[0] >= kFirstOwn + list.cone_vertices) continue;
+    for (unsigned i = 1; i < 4; ++i) masks_[vertices[0] - kFirstOwn] |= std::uint64_t{1} << (kMaskEdge + vertices[i]);
+  }
+}
+
+/// Where several components may be joined by the tile's centre: what is around each. Returns whether that is so.
+bool ResolvedTesseract::find_joined(const ResolvedKey& key) {
+  const bool joins = component_count_ > 1 && key.tile != Choice::separate;
+  if (joins) find_regions(key, key.tile == Choice::low);
+  return joins;
+}
+
+/// Of each component, the corners of a sign that hang together with those beside it, in the tile's boundary.
+void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
+  const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
+  if (component_count_ == 1) {  // it has one region on either side
+    components_[0].region = corners;
+    return;
+  }
+  // What faces join that edges do not.
+  std::array<std::uint32_t, 8 + 24> joined;
+  unsigned count = 0;
+  const unsigned cubes = high ? key.high_cubes & ~unsigned{key.low_cubes} : key.low_cubes;
+  for (unsigned rest = cubes; rest != 0; rest &= rest - 1)
+    joined[count++] = corners & kCornersOfCubes[std::countr_zero(rest)];
+  for (std::uint32_t rest = ambiguous_squares(key.signature) & (high ? key.squares : ~key.squares); rest != 0;
+       rest &= rest - 1)
+    joined[count++] = corners & kCornersOfSquares[std::countr_zero(rest)];
+  std::uint32_t seen = 0;
+  for (unsigned c = 0; c < component_count_; ++c) {
+    const auto edge = static_cast<unsigned>(std::countr_zero(components_[c].vertices));
+    const std::uint32_t one = 1u << edge_base(4, edge);
+    const std::uint32_t from = (corners & one) != 0 ? one : one << (1u << edge / 8);
+    if ((from & seen) != 0) {
+      for (unsigned d = 0; d < c; ++d)
+        if ((components_[d].region & from) != 0) components_[c].region = components_[d].region;
+      continue;
+    }
+    std::uint32_t reached = from;
+    for (std::uint32_t before = 0; reached != before;) {
+      before = reached;
+      reached = grown(grown(reached) & corners) & corners;
+      for (unsigned j = 0; j < count; ++j) reached |= (reached & joined[j]) != 0 ? joined[j] : 0;
+    }
+    components_[c].region = reached;
+    seen |= reached;
+  }
+}
+
+/// Of what is a sphere, and alone around its region if the tile's centre may join. Returns which side is copied for the
+/// rest; then regions are known.
+bool ResolvedTesseract::choose_cones(const ResolvedKey& key, bool joins) {
+  const bool high = key.tile != Choice::high;
+  bool all = true;
+  for (unsigned c = 0; c < component_count_; ++c) {
+    components_[c].is_coned = components_[c].is_sphere && (!joins || is_alone(c));
+    all = all && components_[c].is_coned;
+  }
+  if (!all && !joins) find_regions(key, high);
+  return high;
+}
+
+/// Whether it is the first of those around its region that are not coned.
+bool ResolvedTesseract::is_first_of_region(unsigned component) const {
+  for (unsigned d = 0; d < component; ++d)
+    if (!components_[d].is_coned && components_[d].region == components_[component].region) return false;
+  return true;
+}
+
+void ResolvedTesseract::fill(const ResolvedKey& key, bool joins) {
+  constexpr std::size_t kMore = ResolvedCubes::kWordsBehind;
+  if (simplices_.size() < triangle_count_ + kMore) simplices_.resize(triangle_count_ + kMore);
+  const bool high = choose_cones(key, joins);
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (components_[c].is_coned) cone(components_[c]);
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (!components_[c].is_coned && is_first_of_region(c)) fill_region(components_[c].region, high);
+}
+
+bool ResolvedTesseract::is_alone(unsigned component) const {
+  for (unsigned d = 0; d < component_count_; ++d)
+    if (d != component && components_[d].region == components_[component].region) return false;
+  return true;
+}
+
+/// The point of most triangles, of those that may be a cone's apex; if there is none, a number of own vertices. All its
+/// neighbours are beside it, and of the component there is nothing else beside it. In the barycentric triangulation
+/// only a tetrahedron has one.
+unsigned ResolvedTesseract::apex_of(const Component& component) const {
+  if (is_barycentric_)
+    return component.triangles == 4 ? static_cast<unsigned>(std::countr_zero(component.vertices)) : kFirstOwn;
+  auto apexes = static_cast<std::uint32_t>(component.vertices) & (component_count_ == 1 ? apexes_ : ~std::uint32_t{0});
+  unsigned cubes = 0;
+  for (std::uint32_t rest = component.parts; component_count_ > 1 && rest != 0 && apexes != 0; rest &= rest - 1) {
+    const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
+    apexes &= (cubes >> of_part.cube & 1u) != 0 ? ~cubes_.edges_of(of_part.cube) : of_part.apexes;
+    cubes |= 1u << of_part.cube;
+  }
+  unsigned apex = kFirstOwn;
+  int most = 0;
+  for (; apexes != 0; apexes &= apexes - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(apexes));
+    const int around = std::popcount(component.vertices & cubes_.beside(e));
+    if (around > most) most = around, apex = e;
+  }
+  return apex;
+}
+
+void ResolvedTesseract::cone(const Component& component) {
+  unsigned apex = apex_of(component);
+  const bool is_own = apex == kFirstOwn;
+  if (is_own) {
+    const std::uint64_t edges = component.vertices & 0xffffffffu;
+    apex = add_own(edges << kMaskEdge | (is_barycentric_ ? kIsBarycentre : 0));
+  }
+  const std::uint32_t first = ResolvedCubes::apex_word(apex), repeated = apex * 0x01010101u;
+  Word* out = simplices_.data() + simplex_count_;
+  for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
+    const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
+    const std::uint32_t* const triangles = cubes_.triangles(of_part);
+    if (is_own) {
+      // By registers, so a few too many, which are written over.
+      for (unsigned t = 0; t < of_part.triangle_count; t += ResolvedCubes::kWordsBehind)
+        for (unsigned i = t; i < t + ResolvedCubes::kWordsBehind; ++i) out[i] = triangles[i] | first;
+      out += of_part.triangle_count;
+      continue;
+    }
+    for (unsigned t = 0; t < of_part.triangle_count; ++t) {
+      const std::uint32_t simplex = triangles[t] | first;
+      // Whether the apex stands once in it: then one byte of the difference is zero. All are less than 128.
+      const std::uint32_t zero_bytes = ~((simplex ^ repeated) + 0x7f7f7f7fu) & 0x80808080u;
+      *out = simplex;
+      out += (zero_bytes & (zero_bytes - 1)) == 0 ? 1 : 0;
+    }
+  }
+  simplex_count_ = static_cast<std::size_t>(out - simplices_.data());
+}
+
+/// A copy of a region of the tile's boundary: it keeps the vertices of Sigma, and has a vertex for each of its corners
+/// and for each that the regions of cubes add. Spheres around it that are coned are cut off from it first: of these it
+/// has a copy too, closed by a cone of its own.
+void ResolvedTesseract::fill_region(unsigned corners, bool high) {
+  std::array<std::uint8_t, 16> copy{};
+  for (unsigned rest = corners; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    copy[v] = static_cast<std::uint8_t>(add_own(std::uint64_t{1} << v));
+  }
+  std::array<std::uint8_t, ResolvedCubes::kVertices> sigma;
+  for (unsigned v = 0; v < sigma.size(); ++v) sigma[v] = static_cast<std::uint8_t>(v);
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (components_[c].is_coned && components_[c].region == corners) cap(components_[c], corners, sigma);
+  const std::size_t first_centre = masks_.size();
+  for (unsigned f = 0; f < kCubes; ++f) add_cube_regions(f, corners, high, first_centre, copy, sigma);
+}
+
+void ResolvedTesseract::add_region_size(unsigned corners, bool high, ResolvedSize& size) {
+  const CubeRegions& all = regions();
+  size.own_vertices += static_cast<std::uint32_t>(std::popcount(corners));
+  for (unsigned c = 0; c < component_count_; ++c)
+    if (components_[c].is_coned && components_[c].region == corners) {
+      size.own_vertices += static_cast<std::uint32_t>(std::popcount(components_[c].vertices)) + 1;
+      size.simplices += components_[c].triangles;
+    }
+  for (unsigned f = 0; f < kCubes; ++f)
+    for (const CubeRegions::Region& region : all.regions(lists_[f], high))
+      if (is_in(f, region, corners)) {
+        size.own_vertices += region.centre_count;
+        size.simplices += region.tetrahedron_count;
+      }
+}
+
+bool ResolvedTesseract::is_in(unsigned cube, const CubeRegions::Region& region, unsigned corners) noexcept {
+  return (corners >> lifted_corner(cube, static_cast<unsigned>(std::countr_zero(unsigned{region.corners}))) & 1u) != 0;
+}
+
+/// Copies the vertices of a component, and closes the copy.
+void ResolvedTesseract::cap(const Component& component, unsigned corners, std::span<std::uint8_t> sigma) {
+  std::uint64_t all = 0;
+  for (std::uint64_t rest = component.vertices; rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    const std::uint64_t mask = mask_of(v, corners);
+    all |= mask;
+    sigma[v] = static_cast<std::uint8_t>(add_own(mask));
+  }
+  const auto apex = static_cast<std::uint8_t>(add_own(all));
+  for (std::uint32_t rest = component.parts; rest != 0; rest &= rest - 1) {
+    const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
+    for (unsigned t = 0; t < of_part.triangle_count; ++t) {
+      const auto triangle = std::bit_cast<std::array<std::uint8_t, 4>>(cubes_.triangles(of_part)[t]);
+      add_simplex({apex, sigma[triangle[2]], sigma[triangle[1]], sigma[triangle[3]]});
+    }
+  }
+}
+
+/// Between a vertex of Sigma and the corners of a region: the corners that its edges have there.
+std::uint64_t ResolvedTesseract::mask_of(unsigned vertex, unsigned corners) const {
+  std::uint64_t mask = 0;
+  const auto add_edge = [&](unsigned e) {
+    const unsigned base = edge_base(4, e);
+    mask |= std::uint64_t{1} << (kMaskEdge + e) | ((1u << base | 1u << (base | 1u << e / 8)) & corners);
+  };
+  if (vertex < ResolvedCubes::kEdges) {
+    add_edge(vertex);
+    return mask;
+  }
+  const unsigned cube = (vertex - ResolvedCubes::kEdges) / ResolvedCubes::kMostOwn;
+  const unsigned own = (vertex - ResolvedCubes::kEdges) % ResolvedCubes::kMostOwn;
+  for (std::uint32_t rest = cubes_.mask(lists_[cube], own); rest != 0; rest &= rest - 1) {
+    const auto v = static_cast<unsigned>(std::countr_zero(rest));
+    if (v < 8)
+      mask |= std::uint64_t{1} << lifted_corner(cube, v);
+    else
+      add_edge(cubes_.lifted(cube, v - 8));
+  }
+  return mask;
+}
+
+void ResolvedTesseract::add_cube_regions(unsigned cube, unsigned corners, bool high, std::size_t first_centre,
+                                         std::span<const std::uint8_t, 16> copy,
+                                         std::span<const std::uint8_t, ResolvedCubes::kVertices> sigma) {
+  const CubeRegions& all = regions();
+  std::array<std::uint8_t, CubeRegions::kVertices> local{};
+  for (unsigned v = 0; v < 8; ++v) local[v] = copy[lifted_corner(cube, v)];
+  for (unsigned v = 0; v < 12 + ResolvedCubes::kMostOwn; ++v)
+    local[CubeRegions::kFirstEdge + v] = sigma[cubes_.lifted(cube, v)];
+  for (const CubeRegions::Region& region : all.regions(lists_[cube], high)) {
+    if (!is_in(cube, region, corners)) continue;
+    unsigned centre = CubeRegions::kFirstCentre;
+    for (const std::uint32_t mask : all.centres(region)) {
+      std::uint64_t lifted = 0;
+      for (std::uint32_t rest = mask; rest != 0; rest &= rest - 1) {
+        const auto v = static_cast<unsigned>(std::countr_zero(rest));
+        lifted |= std::uint64_t{1} << (v < 8 ? lifted_corner(cube, v) : kMaskEdge + cubes_.lifted(cube, v - 8));
+      }
+      local[centre++] = static_cast<std::uint8_t>(add_apart(lifted, first_centre));
+    }
+    static_assert(CubeRegions::kMoreTetrahedra >= kMoreSimplices, "map_simplices reads so many behind them");
+    const auto tetrahedra = all.tetrahedra(region);
+    const std::size_t needed = simplex_count_ + tetrahedra.size() + kMoreSimplices;
+    if (simplices_.size() < needed) simplices_.resize(std::max(2 * simplex_count_ + 256, needed));
+    map_simplices(tetrahedra.data()->data(), tetrahedra.size(), local.data(), cubes_.is_reversed(cube),
+                  reinterpret_cast<std::uint8_t*>(simplices_.data() + simplex_count_));
+    simplex_count_ += tetrahedra.size();
+  }
+}
+
+void ResolvedTesseract::add_simplex(const std::array<std::uint8_t, 4>& vertices) {
+  if (simplex_count_ == simplices_.size()) simplices_.resize(2 * simplex_count_ + 64);
+  simplices_[simplex_count_++] = word(vertices);
+}
+
+unsigned ResolvedTesseract::add_own(std::uint64_t mask) {
+  masks_.push_back(mask);
+  return kFirstOwn + static_cast<unsigned>(masks_.size()) - 1;
+}
+
+/// Of the own vertices from number `first` on another one may have the same mask: where regions of two cubes are cut by
+/// the same curve in the square between them.
+unsigned ResolvedTesseract::add_apart(std::uint64_t mask, std::size_t first) {
+  constexpr std::uint64_t kPoints = (std::uint64_t{1} << kRepeat) - 1;
+  std::uint64_t repeats = 0;
+  for (std::size_t j = first; j < masks_.size(); ++j) repeats += (masks_[j] & kPoints) == mask ? 1 : 0;
+  return add_own(mask | repeats << kRepeat);
+}
+
+bool ResolvedTesseract::is_settled(std::uint16_t signature) noexcept {
+  static const std::vector<bool> settled = [] {
+    std::vector<bool> result(65536);
+    ResolvedTesseract tile;
+    for (unsigned s = 0; s < result.size(); ++s) {
+      const std::uint64_t cubes = tile.cubes_.signatures(static_cast<std::uint16_t>(s));
+      bool none = true;
+      for (unsigned f = 0; f < kCubes && none; ++f) {
+        const unsigned in_cube = cubes >> (8 * f) & 255u;
+        none = tables::kTile3Resolved.ambiguous_squares[in_cube] == 0 &&
+               tables::kTile3Resolved.entries[tables::kTile3Resolved.first_entry[in_cube]].components < 2;
+      }
+      if (!none) continue;
+      ResolvedKey key;
+      key.signature = static_cast<std::uint16_t>(s);
+      tile.find_cubes(tile.lists_of(key));
+      result[s] = tile.component_count_ == 0 || (tile.component_count_ == 1 && tile.components_[0].is_sphere);
+    }
+    return result;
+  }();
+  return settled[signature];
+}
+
+const RowTable& estimated_tesseracts(int triangulation) {
+  const auto make = [](bool all) {
+    RowTable result(tables::tile_table(4, kCompact));
+    for (unsigned s = 0; s < 65536; ++s)
+      if (all || ambiguous_signatures<4>()[s]) result.mark_as_own(s);
+    return result;
+  };
+  if (triangulation == kBarycentric) {
+    static const RowTable barycentric = make(true);
+    return barycentric;
+  }
+  static const RowTable compact = make(false);
+  return compact;
+}
+
+template <>
+const std::array<bool, 65536>& ambiguous_signatures<4>() noexcept {
+  static const auto kAmbiguous = [] {
+    std::array<bool, 65536> result{};
+    for (unsigned s = 0; s < result.size(); ++s)
+      result[s] = !ResolvedTesseract::is_settled(static_cast<std::uint16_t>(s));
+    return result;
+  }();
+  return kAmbiguous;
+}
+
+}  // namespace tegl::detail

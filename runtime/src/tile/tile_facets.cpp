@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Single tiles of any dimension: arguments, and the hand-over to the builder.
+#include "tegl/tile_facets.hpp"
+
+#include <fmt/format.h>
+
+#include "tegl/error.hpp"
+#include "tile/built_tile.hpp"
+
+namespace tegl {
+namespace {
+
+template <int N>
+const detail::CubeFaces& cube_faces() {
+  static const detail::CubeFaces faces(N);
+  return faces;
+}
+
+}  // namespace
+
+template <int N>
+requires DimensionBetween<N, 2, 6> std::size_t face_number(unsigned base, unsigned axes) {
+  if ((base & axes) != 0 || (base | axes) >> N != 0)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("face with base {:#b} and axes {:#b}; expected disjoint sets of {} bits", base, axes, N));
+  return cube_faces<N>().number(base, axes);
+}
+
+template <int N>
+requires DimensionBetween<N, 2, 6> facets::TileFacets tile_facets(std::uint64_t signature,
+                                                                  std::span<const facets::Choice> signs,
+                                                                  facets::Alternative otherwise) {
+  constexpr std::uint64_t kCorners = ~std::uint64_t{0} >> (64 - (1 << N));
+  if ((signature & ~kCorners) != 0)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("signature {:#x} of a {}D tile; expected at most {:#x}", signature, N, kCorners));
+  if (!signs.empty() && signs.size() != kFaceCount<N>)
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} signs for the faces of a {}D tile; expected 0 or {}", signs.size(), N, kFaceCount<N>));
+  return detail::too_large_as_error([&] {
+    return facets::build_facets(cube_faces<N>().lattice(), signature, {.choices = signs, .alternative = otherwise});
+  });
+}
+
+#define TEGL_INSTANTIATE(N)                                          \
+  template std::size_t face_number<N>(unsigned base, unsigned axes); \
+  template facets::TileFacets tile_facets<N>(std::uint64_t, std::span<const facets::Choice>, facets::Alternative);
+TEGL_INSTANTIATE(2)
+TEGL_INSTANTIATE(3)
+TEGL_INSTANTIATE(4)
+TEGL_INSTANTIATE(5)
+TEGL_INSTANTIATE(6)
+#undef TEGL_INSTANTIATE
+
+}  // namespace tegl

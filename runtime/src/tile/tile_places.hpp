@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The places of the vertices of a built tile, in the unit tile: so they don't depend on the units of the axes.
+//
+// Based on: M. Liversage, thesis, 1994, definition 10.1.4: the barycentre of a facet is the mean of those of the facets
+// around it, weighted by their measure. A place depends on the face that the vertex lies in alone: what the frame of a
+// tile adds to it are exact zeros.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "tile/built_tile.hpp"
+#include "tile/extract_tables.hpp"
+
+namespace tegl::detail {
+
+/// Six times the volume of a tetrahedron, by the Gram determinant.
+template <std::size_t N>
+double tetrahedron_volume(std::span<const std::array<double, N>> points) noexcept {
+  std::array<std::array<double, N>, 3> edges;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t a = 0; a < N; ++a) edges[i][a] = points[i + 1][a] - points[0][a];
+  const auto dot = [&](std::size_t i, std::size_t j) {
+    double sum = 0;
+    for (std::size_t a = 0; a < N; ++a) sum += edges[i][a] * edges[j][a];
+    return sum;
+  };
+  const double uu = dot(0, 0), uv = dot(0, 1), uw = dot(0, 2), vv = dot(1, 1), vw = dot(1, 2), ww = dot(2, 2);
+  const double gram = uu * (vv * ww - vw * vw) - uv * (uv * ww - vw * uw) + uw * (uv * vw - vv * uw);
+  return std::sqrt(std::max(0.0, gram));
+}
+
+/// The measure of a simplex of 1 to 4 points, up to a factor that depends on its dimension alone.
+template <std::size_t N>
+double simplex_measure(std::span<const std::array<double, N>> points) noexcept {
+  static_assert(N <= 5, "larger simplices in more dimensions");
+  switch (points.size()) {
+    case 1:
+      return 1.0;
+    case 2:
+      return distance(points[0], points[1]);
+    case 3:
+      return triangle_area(points[0], points[1], points[2]);
+    default:
+      return tetrahedron_volume(points);
+  }
+}
+
+/// The barycentre of a simplex that is a facet by itself.
+template <std::size_t N>
+std::array<double, N> simplex_barycentre(std::span<const std::array<double, N>> points) noexcept {
+  if (points.size() == 1) return points[0];
+  if (points.size() == 2) return midpoint<static_cast<int>(N)>(points[0], points[1]);
+  Weighted<static_cast<int>(N)> sum;
+  for (std::size_t omitted = 0; omitted < points.size(); ++omitted) {
+    std::array<std::array<double, N>, N> rest;
+    for (std::size_t i = 0, j = 0; i < points.size(); ++i)
+      if (i != omitted) rest[j++] = points[i];
+    const std::span<const std::array<double, N>> face(rest.data(), points.size() - 1);
+    sum.add(simplex_barycentre<N>(face), simplex_measure<N>(face));
+  }
+  if (!(sum.weight > 0)) return points[0];
+  for (double& x : sum.point) x /= sum.weight;
+  return sum.point;
+}
+
+/// Places on demand, for one tile at a time.
+template <int N>
+class TilePlaces {
+ public:
+  using Point = TilePoint<N>;
+
+  TilePlaces(const CubeFaces& cube, const CubeSymmetries& symmetries) : cube_(cube), symmetries_(symmetries) {}
+  /// `flat_axis`: an axis along which all places are 0; -1: none. Of edges, `set_edge` has to tell.
+  void begin(const SeenTile& seen, int flat_axis) {
+    tile_ = seen.tile.get();
+    symmetry_ = seen.symmetry;
+    flat_axis_ = flat_axis;
+    const BuiltTile& tile = *tile_;
+    points_.resize(tile.vertices.size());
+    known_.assign(tile.vertices.size(), false);
+  }
+  void set_edge(std::size_t v, double alpha) noexcept {
+    const CubeFaces::Cell& edge = cube_.cells()[tile_->vertices[v].face];
+    const unsigned axes = symmetries_.axes(symmetry_, edge.axes);
+    points_[v] = corner_point<N>(symmetries_.base(symmetry_, edge.base, axes));
+    points_[v][std::countr_zero(axes)] = alpha;
+    known_[v] = true;
+  }
+
+  const Point& operator()(std::size_t v) noexcept {
+    if (!known_[v]) {
+      points_[v] = find(tile_->vertices[v]);
+      known_[v] = true;
+    }
+    return points_[v];
+  }
+
+ private:
+  Point find(const BuiltTile::Vertex& vertex) noexcept {
+    switch (vertex.kind) {
+      case facets::VertexKind::barycentre:
+        return barycentre(vertex);
+      case facets::VertexKind::centre:
+        return vertex.first == vertex.end ? beside(vertex) : mean(vertex);
+      case facets::VertexKind::side:
+        return pushed_inwards(vertex);
+      default:
+        return corner_point<N>(cube_.cells()[vertex.face].base);
+    }
+  }
+
+  Point barycentre(const BuiltTile::Vertex& vertex) noexcept {
+    const std::size_t width = cube_.cells()[vertex.face].dim - 1u;
+    // Tiles around a face come upon its simplices in different orders; and a 4D tile is to agree with 5D ones that have
+    // it as a face.
+    const bool is_shared = N <= 4 || vertex.face != cube_.tile();
+    const auto first_term = static_cast<std::ptrdiff_t>(terms_.size());  // after those of barycentres that wait
+    std::array<Point, N> corners;
+    const std::span<const Point> simplex(corners.data(), width);
+    for (std::size_t at = vertex.first; at < vertex.end; at += width) {
+      const bool has_middle = (tile_->of[at] & BuiltTile::kIsMiddle) != 0;
+      for (std::size_t j = 0; j < width; ++j)
+        corners[j] = (*this)(tile_->of[at + j] & static_cast<std::uint16_t>(~BuiltTile::kIsMiddle));
+      const Point middle = corners[0];
+      if (is_shared || !has_middle) std::sort(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(width));
+      terms_.push_back({has_middle ? middle : simplex_barycentre<N>(simplex), simplex_measure<N>(simplex)});
+    }
+    if (is_shared)
+      std::sort(terms_.begin() + first_term, terms_.end(), [](const Weighted<N>& a, const Weighted<N>& b) {
+        return a.point != b.point ? a.point < b.point : a.weight < b.weight;
+      });
+    Weighted<N> sum;
+    Weighted<N> plain;  // for a facet that has shrunk to a point: all weights equal
+    for (auto term = terms_.begin() + first_term; term != terms_.end(); ++term) {
+      sum.add(term->point, term->weight);
+      plain.add(term->point, 1.0);
+    }
+    terms_.erase(terms_.begin() + first_term, terms_.end());
+    return divided(sum.weight > 0 ? sum : plain);
+  }
+
+  Point mean(const BuiltTile::Vertex& vertex) noexcept {
+    Weighted<N> sum;
+    for (std::size_t at = vertex.first; at < vertex.end; ++at) sum.add((*this)(tile_->of[at]), 1.0);
+    return divided(sum);
+  }
+
+  /// Between a vertex and the contour's copy of it.
+  Point beside(const BuiltTile::Vertex& vertex) noexcept {
+    return midpoint<N>((*this)(vertex.copied), pushed_inwards(vertex));
+  }
+
+  /// Half of the way to the middle of the face.
+  Point pushed_inwards(const BuiltTile::Vertex& vertex) noexcept {
+    Point point = (*this)(vertex.copied);
+    for (int a = 0; a < N; ++a)
+      if (a != flat_axis_ && (cube_.cells()[vertex.face].axes >> a & 1u) != 0) point[a] = 0.5 * (0.5 + point[a]);
+    return point;
+  }
+
+  static Point divided(const Weighted<N>& sum) noexcept {
+    Point point;
+    for (int a = 0; a < N; ++a) point[a] = sum.point[a] / sum.weight;
+    return point;
+  }
+
+  const CubeFaces& cube_;
+  const CubeSymmetries& symmetries_;
+  const BuiltTile* tile_ = nullptr;
+  CubeSymmetry symmetry_;
+  int flat_axis_ = -1;
+  std::vector<Point> points_;
+  std::vector<bool> known_;
+  std::vector<Weighted<N>> terms_;
+};
+
+}  // namespace tegl::detail

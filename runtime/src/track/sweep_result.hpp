@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a sweep through time finds: the components between two times, and the vertices where they change.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tegl/track.hpp"
+
+namespace tegl::detail {
+
+/// What lies at the very time of a vertex, of what is around it: a simplex, or more than that a facet in the border.
+enum class Flatness : std::uint8_t { none, simplex, border };
+
+/// A vertex where components start, end, merge or split.
+struct SweepNode {
+  Index vertex = 0;
+  double time = 0;
+  std::int64_t euler_change = 0;
+  bool at_border = false;
+  Flatness flatness = Flatness::none;
+};
+
+/// A component between two nodes.
+struct SweepArc {
+  Index from = kNone;
+  Index to = kNone;
+  // Just after all vertices of the time of `from`, and just before those of the time of `to`.
+  std::uint64_t size_at_start = 0;
+  std::uint64_t size_at_end = 0;
+  std::int64_t euler_at_start = 0;
+  std::int64_t euler_at_end = 0;
+};
+
+/// A vertex where a component changes its Euler characteristic and remains one.
+struct SweepHandle {
+  Index vertex = 0;
+  double time = 0;
+  Index arc = 0;
+  bool at_border = false;
+  std::int64_t euler_change = 0;
+};
+
+struct SweepSample {
+  Index arc = 0;
+  TrackSample sample;
+};
+
+struct SweepResult {
+  std::vector<SweepNode> nodes;      ///< by time, then vertex
+  std::vector<SweepArc> arcs;        ///< in the order of their start
+  std::vector<SweepHandle> handles;  ///< by time, then vertex
+  std::vector<SweepSample> samples;  ///< by time, then arc
+  std::vector<Index> simplex_arcs;   ///< #S, if asked for; kNone for simplices that repeat a vertex
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The graph of a contour's parts through time: the sweep's result, made simple and given names.
+#include "tegl/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "base/progress.hpp"
+#include "mesh/validate.hpp"
+#include "track/track_graph.hpp"
+#include "track/track_sweep.hpp"
+
+namespace tegl {
+namespace {
+
+using detail::kNone;
+using detail::SweepResult;
+using detail::SweptGraph;
+
+[[noreturn]] void refuse(const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); }
+
+void require_sound(const TrackOptions& options) {
+  if (!(options.min_lifetime >= 0) || !std::isfinite(options.min_lifetime))
+    refuse(fmt::format("min_lifetime is {}; expected 0 or more", options.min_lifetime));
+  for (const std::optional<double>& end : {options.first, options.last})
+    if (end && !std::isfinite(*end)) refuse(fmt::format("the data begin or end at {}; expected a finite time", *end));
+  if (options.first && options.last && *options.first > *options.last)
+    refuse(fmt::format("the data begin at {} and end at {}; expected the reverse", *options.first, *options.last));
+  for (std::size_t i = 0; i < options.times.size(); ++i) {
+    if (!std::isfinite(options.times[i]))
+      refuse(fmt::format("times[{}] is {}; expected a number", i, options.times[i]));
+    if (i > 0 && options.times[i] <= options.times[i - 1])
+      refuse(fmt::format("times[{}] is {}, after {}; expected ascending times", i, options.times[i],
+                         options.times[i - 1]));
+  }
+}
+
+template <int N, class Real>
+void require_sound(const Contour<N, Real>& contour) {
+  detail::require_vertices(contour);
+  detail::require_finite(contour);
+}
+
+/// Puts the graph together: from the sweep's numbers to those of the result.
+template <int N, class Real>
+class Builder {
+ public:
+  Builder(const Contour<N, Real>& contour, const TrackOptions& options, SweepResult&& swept)
+      : contour_(contour),
+        options_(options),
+        samples_(std::move(swept.samples)),
+        simplex_arcs_(std::move(swept.simplex_arcs)),
+        graph_(std::move(swept.nodes), std::move(swept.arcs), std::move(swept.handles)) {}
+
+  TrackGraph build() {
+    describe();
+    tell(0.1);
+    graph_.contract(tolerance_);
+    tell(0.3);
+    graph_.prune(std::max(options_.min_lifetime, tolerance_));
+    tell(0.5);
+    add_events();
+    add_segments();
+    for (TrackEvent& event : result_.events) finish(event);
+    tell(0.6);
+    follow();
+    if (options_.handles) add_handles();
+    tell(0.8);
+    add_samples();
+    label();
+    tell(1.0);
+    return std::move(result_);
+  }
+
+ private:
+  /// After this share of what is left after the sweep.
+  void tell(double share) const {
+    detail::tell(options_.progress, share < 1.0 ? detail::kSwept + (1.0 - detail::kSwept) * share : 1.0,
+                 "tracking was cancelled");
+  }
+
+  void describe() {
+    result_.space_dim = N;
+    std::copy(contour_.axis_names.begin(), contour_.axis_names.end(), result_.axis_names.begin());
+    std::copy(contour_.axis_units.begin(), contour_.axis_units.end(), result_.axis_units.begin());
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -least;
+    for (const auto& simplex : contour_.simplices)
+      for (const Index v : simplex) {
+        least = std::min(least, static_cast<double>(contour_.vertices[v][N - 1]));
+        greatest = std::max(greatest, static_cast<double>(contour_.vertices[v][N - 1]));
+      }
+    if (contour_.simplices.empty()) least = greatest = 0;
+    result_.first = options_.first.value_or(least);
+    result_.last = options_.last.value_or(greatest);
+    tolerance_ =
+        4 * static_cast<double>(std::numeric_limits<Real>::epsilon()) * std::max(std::abs(least), std::abs(greatest));
+  }
+
+  void add_events() {
+    event_of_node_.assign(graph_.nodes().size(), kNone);
+    for (Index i = 0; i < graph_.nodes().size(); ++i) {
+      const SweptGraph::Node& node = graph_.nodes()[i];
+      if (node.in.empty() && node.out.empty()) continue;
+      event_of_node_[i] = static_cast<Index>(result_.events.size());
+      node_of_event_.push_back(i);
+      TrackEvent& event = result_.events.emplace_back();
+      event.time = node.event.time;
+      event.vertex = node.event.vertex;
+      event.place = place(event.vertex);
+      event.at_border = node.event.at_border;
+      event.euler_change = node.event.euler_change;
+    }
+  }
+
+  void add_segments() {
+    std::vector<Index> arcs;
+    for (Index a = 0; a < graph_.arc_count(); ++a)
+      if (graph_.is_left(a)) arcs.push_back(a);
+    std::sort(arcs.begin(), arcs.end(),
+              [&](Index a, Index b) { return std::pair(graph_.arc(a).from, a) < std::pair(graph_.arc(b).from, b); });
+    segment_of_arc_.assign(graph_.arc_count(), kNone);
+    for (const Index a : arcs) {
+      const detail::SweepArc& arc = graph_.arc(a);
+      segment_of_arc_[a] = static_cast<Index>(result_.segments.size());
+      TrackSegment& segment = result_.segments.emplace_back();
+      segment.from = event_of_node_[arc.from];
+      segment.to = event_of_node_[arc.to];
+      segment.start = result_.events[segment.from].time;
+      segment.end = result_.events[segment.to].time;
+      segment.size_at_start = arc.size_at_start;
+      segment.size_at_end = arc.size_at_end;
+      segment.euler_at_start = arc.euler_at_start;
+      segment.euler_at_end = arc.euler_at_end;
+    }
+    for (Index s = 0; s < result_.segments.size(); ++s) {
+      result_.events[result_.segments[s].from].out.push_back(s);
+      result_.events[result_.segments[s].to].in.push_back(s);
+    }
+  }
+
+  void finish(TrackEvent& event) const {
+    const auto number = static_cast<std::size_t>(&event - result_.events.data());
+    const detail::Flatness flatness = graph_.nodes()[node_of_event_[number]].event.flatness;
+    const auto one_sided = [&](double limit, bool given, TrackEventKind at_limit, TrackEventKind at_border,
+                               TrackEventKind inside) {
+      const bool flat = flatness == detail::Flatness::border || (given && flatness == detail::Flatness::simplex);
+      if (flat && std::abs(event.time - limit) <= tolerance_) return at_limit;
+      return event.at_border ? at_border : inside;
+    };
+    if (event.in.empty())
+      event.kind = one_sided(result_.first, options_.first.has_value(), TrackEventKind::begin, TrackEventKind::enter,
+                             TrackEventKind::birth);
+    else if (event.out.empty())
+      event.kind = one_sided(result_.last, options_.last.has_value(), TrackEventKind::end, TrackEventKind::leave,
+                             TrackEventKind::death);
+    else if (event.out.size() == 1)
+      event.kind = TrackEventKind::merge;
+    else
+      event.kind = event.in.size() == 1 ? TrackEventKind::split : TrackEventKind::exchange;
+  }
+
+  /// Gives each segment its track. Events come by time, so what comes in has one.
+  void follow() {
+    const auto largest = [&](const std::vector<Index>& segments, auto size) {
+      return *std::max_element(segments.begin(), segments.end(), [&](Index a, Index b) {
+        return std::pair(result_.segments[a].*size, b) < std::pair(result_.segments[b].*size, a);
+      });
+    };
+    for (const TrackEvent& event : result_.events) {
+      Index heir = kNone;
+      if (!event.in.empty() && !event.out.empty()) {
+        heir = largest(event.out, &TrackSegment::size_at_start);
+        extend(result_.segments[largest(event.in, &TrackSegment::size_at_end)].track, heir);
+      }
+      for (const Index s : event.out) {
+        if (s == heir) continue;
+        const auto number = static_cast<Index>(result_.tracks.size());
+        result_.tracks.push_back({number, {}, event.time, event.time});
+        extend(number, s);
+      }
+    }
+  }
+
+  void extend(Index track, Index segment) {
+    result_.segments[segment].track = track;
+    result_.tracks[track].segments.push_back(segment);
+    result_.tracks[track].end = result_.segments[segment].end;
+  }
+
+  void add_handles() {
+    for (const detail::SweepHandle& handle : graph_.handles())
+      result_.handles.push_back({handle.time, place(handle.vertex), handle.vertex, handle.at_border,
+                                 segment_of_arc_[handle.arc], handle.euler_change});
+  }
+
+  void add_samples() {
+    for (const detail::SweepSample& sample : samples_) {
+      const Index arc = graph_.represent(sample.arc);
+      if (arc != kNone) result_.segments[segment_of_arc_[arc]].samples.push_back(sample.sample);
+    }
+  }
+
+  void label() {
+    result_.simplex_segments = std::move(simplex_arcs_);
+    for (Index& label : result_.simplex_segments) {
+      const Index arc = label == kNone ? kNone : graph_.represent(label);
+      label = arc == kNone ? TrackGraph::kNoSegment : segment_of_arc_[arc];
+    }
+  }
+
+  [[nodiscard]] std::array<double, 3> place(Index v) const {
+    std::array<double, 3> result{};
+    for (int a = 0; a < N - 1; ++a) result[a] = static_cast<double>(contour_.vertices[v][a]);
+    return result;
+  }
+
+  const Contour<N, Real>& contour_;
+  const TrackOptions& options_;
+  std::vector<detail::SweepSample> samples_;
+  std::vector<Index> simplex_arcs_;
+  SweptGraph graph_;
+  double tolerance_ = 0;  ///< what is apart by less may be so by rounding
+  std::vector<Index> event_of_node_;
+  std::vector<Index> node_of_event_;
+  std::vector<Index> segment_of_arc_;
+  TrackGraph result_;
+};
+
+/// For each number that is kept, its new one; kNone for the others.
+std::vector<Index> renumber(const std::vector<bool>& keep) {
+  std::vector<Index> numbers(keep.size(), kNone);
+  Index next = 0;
+  for (std::size_t i = 0; i < keep.size(); ++i)
+    if (keep[i]) numbers[i] = next++;
+  return numbers;
+}
+
+void renumber_all(std::vector<Index>& list, const std::vector<Index>& numbers) {
+  for (Index& i : list) i = numbers[i];
+  std::erase(list, kNone);
+}
+
+template <class T>
+void keep_only(std::vector<T>& list, const std::vector<Index>& numbers) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (numbers[i] != kNone && numbers[i] != i) list[numbers[i]] = std::move(list[i]);
+  list.resize(
+      static_cast<std::size_t>(std::count_if(numbers.begin(), numbers.end(), [](Index i) { return i != kNone; })));
+}
+
+}  // namespace
+
+const char* event_name(TrackEventKind kind) noexcept {
+  constexpr std::array kNames{"begin", "birth", "enter", "end", "death", "leave", "merge", "split", "exchange"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<double> even_times(double first, double last, std::size_t count) {
+  std::vector<double> times(count);
+  for (std::size_t i = 0; i < count; ++i)
+    times[i] = first + (last - first) * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+  return times;
+}
+
+template <int N, class Real>
+requires DimensionBetween<N, 2, 4> TrackGraph track(const Contour<N, Real>& contour, const TrackOptions& options) {
+  require_sound(options);
+  require_sound(contour);
+  return Builder<N, Real>(contour, options, detail::sweep(contour, options)).build();
+}
+
+TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep) {
+  if (keep.size() != graph.tracks.size())
+    refuse(fmt::format("{} tracks are to be kept or not; expected {}", keep.size(), graph.tracks.size()));
+  TrackGraph result = graph;
+  std::vector<bool> keep_segment(graph.segments.size());
+  std::vector<bool> keep_event(graph.events.size(), false);
+  for (std::size_t s = 0; s < graph.segments.size(); ++s) {
+    const TrackSegment& segment = graph.segments[s];
+    keep_segment[s] = keep[segment.track];
+    if (keep_segment[s]) keep_event[segment.from] = keep_event[segment.to] = true;
+  }
+  const std::vector<Index> tracks = renumber(keep);
+  const std::vector<Index> segments = renumber(keep_segment);
+  const std::vector<Index> events = renumber(keep_event);
+  keep_only(result.tracks, tracks);
+  keep_only(result.segments, segments);
+  keep_only(result.events, events);
+  for (Track& track : result.tracks) renumber_all(track.segments, segments);
+  for (TrackSegment& segment : result.segments) {
+    segment.from = events[segment.from];
+    segment.to = events[segment.to];
+    segment.track = tracks[segment.track];
+  }
+  for (TrackEvent& event : result.events) {
+    renumber_all(event.in, segments);
+    renumber_all(event.out, segments);
+  }
+  std::erase_if(result.handles, [&](const TrackHandle& handle) { return segments[handle.segment] == kNone; });
+  for (TrackHandle& handle : result.handles) handle.segment = segments[handle.segment];
+  for (Index& label : result.simplex_segments) label = label == TrackGraph::kNoSegment ? label : segments[label];
+  return result;
+}
+
+template TrackGraph track(const Contour<2, float>&, const TrackOptions&);
+template TrackGraph track(const Contour<2, double>&, const TrackOptions&);
+template TrackGraph track(const Contour<3, float>&, const TrackOptions&);
+template TrackGraph track(const Contour<3, double>&, const TrackOptions&);
+template TrackGraph track(const Contour<4, float>&, const TrackOptions&);
+template TrackGraph track(const Contour<4, double>&, const TrackOptions&);
+
+}  // namespace tegl

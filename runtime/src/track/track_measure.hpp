@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The parts of a cut, summed up simplex by simplex: size, enclosed content, centroid and box.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Dense>
+
+#include "mesh/simplex_geometry.hpp"
+#include "tegl/track.hpp"
+
+namespace tegl::detail {
+
+/// What one simplex, or many, contribute to a sample.
+struct PartSums {
+  bool open = false;
+  double measure = 0;
+  double content = 0;
+  std::array<double, 3> moment{};
+  std::array<double, 3> lower{kFar, kFar, kFar};
+  std::array<double, 3> upper{-kFar, -kFar, -kFar};
+
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  /// `dim` components of places are used; `origin` is the place that the sums were taken from.
+  [[nodiscard]] TrackSample to_sample(double time, int dim, const std::array<double, 3>& origin) const {
+    TrackSample sample;
+    sample.time = time;
+    sample.measure = measure;
+    if (!open) sample.content = content;
+    for (int a = 0; a < dim; ++a) {
+      // What is cut to no size at all has its centre in the middle of its box.
+      const double middle = measure > 0 ? moment[a] / measure : 0.5 * (lower[a] + upper[a]);
+      sample.centroid[a] = origin[a] + middle;
+      sample.lower[a] = origin[a] + lower[a];
+      sample.upper[a] = origin[a] + upper[a];
+    }
+    return sample;
+  }
+};
+
+/// A simplex cut at a time that lies above its first `low` vertices (sorted by time) and not above the others.
+template <int N>
+class CutCell {
+ public:
+  static constexpr int D = N - 1;  ///< dimension of the space that the cut lies in
+  using Place = Eigen::Matrix<double, D, 1>;
+  using Corner = PointOf<N>;
+
+  /// `corners`: the vertices sorted by time, seen from the origin.
+  CutCell(const std::array<Corner, N>& corners, int low, double time) {
+    const auto point = [&](int a, int b) {
+      const double share = (time - corners[a][D]) / (corners[b][D] - corners[a][D]);
+      for (int i = 0; i < D; ++i) points_[count_][i] = corners[a][i] + share * (corners[b][i] - corners[a][i]);
+      ++count_;
+    };
+    for (int a = 0; a < low; ++a)
+      for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // a quadrilateral's way round
+  }
+
+  /// `normal`: of the simplex, to the low side; of any length.
+  void add_to(PartSums& sums, const Corner& normal) const {
+    const Eigen::Map<const Place> outward(normal.data());  // within the cut
+    const auto [size, centre] = size_and_centre();
+    sums.measure += size;
+    for (int a = 0; a < D; ++a) {
+      sums.moment[a] += size * centre[a];
+      for (int i = 0; i < count_; ++i) {
+        sums.lower[a] = std::min(sums.lower[a], points_[i][a]);
+        sums.upper[a] = std::max(sums.upper[a], points_[i][a]);
+      }
+    }
+    const double length = outward.norm();
+    if (length > 0) sums.content += size * outward.dot(points_[0]) / (length * D);
+  }
+
+ private:
+  [[nodiscard]] std::pair<double, Place> size_and_centre() const {
+    if constexpr (D == 1) return {1.0, points_[0]};
+    if constexpr (D == 2) return {(points_[1] - points_[0]).norm(), 0.5 * (points_[0] + points_[1])};
+    if constexpr (D == 3) {
+      double size = 0;
+      Place moment = Place::Zero();
+      for (int i = 2; i < count_; ++i) {
+        const double area = 0.5 * (points_[i - 1] - points_[0]).cross(points_[i] - points_[0]).norm();
+        size += area;
+        moment += area / 3.0 * (points_[0] + points_[i - 1] + points_[i]);
+      }
+      return {size, size > 0 ? Place(moment / size) : points_[0]};
+    }
+  }
+
+  std::array<Place, 4> points_;
+  int count_ = 0;
+};
+
+}  // namespace tegl::detail

@@ -1,0 +1,497 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A level rises over a simplicial complex, vertex by vertex. The level set consists of cells, one in each simplex that
+// has vertices at or below the level and above it; two cells touch if their simplices share an edge that does so too.
+//
+// Each cell has a label, and labels are joined in sets (union-find); a set is a component. Around a vertex v the cells
+// just below it fall into as many connected groups as the link of v has pieces below, and just above it likewise. One
+// group below and one above: nothing happens, new cells take the label of the old ones. Otherwise the components
+// of the groups below meet in v, hence become one set; and what leaves v in several groups above may be several
+// components. Whether it is, is searched for from all groups at once, a cell of each in turn, over the cells just
+// above v, until all groups but one (connected groups count as one) are seen to the end. The cells of those get
+// labels of their own, and the one that was not seen to the end keeps the set. So a part that splits off costs its own
+// size, or that of the remainder if that is smaller, and two groups that are connected cost the cells around the
+// place where the searches meet.
+//
+// The Euler characteristic of the level set changes at v by that of the link above less that of the link below: the
+// level set below, near v, is what is around the link below, likewise above, and the two have the same border.
+//
+// Based on: S. Parsa, A deterministic O(m log m) time algorithm for the Reeb graph, 2012 (components of the level set
+// under insertion and deletion); H. Doraiswamy and V. Natarajan, Output-sensitive construction of Reeb graphs, 2012
+// (only vertices whose link below or above is not in one piece count).
+#include "track/track_sweep.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "base/progress.hpp"
+#include "base/slice_at.hpp"
+#include "track/track_link.hpp"
+#include "track/track_measure.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// A component of the level set.
+struct Component {
+  Index arc = kNone;
+  std::uint64_t size = 0;  ///< cells
+  std::int64_t euler = 0;
+  // As it was before the vertices of the time at hand, if it has met any of them:
+  std::uint64_t time = 0;  ///< the number of that time
+  std::uint64_t size_before = 0;
+  std::int64_t euler_before = 0;
+};
+
+template <int N, class Real>
+class Sweeper {
+ public:
+  Sweeper(const Contour<N, Real>& contour, const TrackOptions& options)
+      : options_(options), complex_(contour, options.threads, part_of(options.progress, 0.0, kReady)), star_(complex_) {
+    const std::size_t count = contour.simplices.size();
+    labels_.assign(count, kNone);
+    seen_.assign(count, 0);
+    for (const double time : options.times) times_.push_back(static_cast<double>(rounded_at<Real>(time)));
+    if (options.label_simplices) result_.simplex_arcs.assign(count, kNone);
+    if (times_.empty() || count == 0) return;
+    first_ = complex_.time(complex_.order().front());
+    plan_samples();
+  }
+
+  SweepResult run() {
+    const std::span<const Index> order = complex_.order();
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const double time = complex_.time(order[i]);
+      while (!starts_.empty() && next_time_ < times_.size() && is_due(times_[next_time_], time)) take_sample();
+      if (i == 0 || time != complex_.time(order[i - 1])) settle_starts();
+      fraction_ = static_cast<double>(i) / static_cast<double>(order.size());
+      visit(order[i]);
+    }
+    settle_starts();
+    fraction_ = 1.0;
+    tell_all(kTellEvery);
+    return std::move(result_);
+  }
+
+ private:
+  /// Whether a sample is to be taken before the first vertex at `time` is visited. At the contour's first time it is
+  /// the limit from above, as in `slice`: all vertices there come first.
+  [[nodiscard]] bool is_due(double sample, double time) const {
+    return sample < time || (sample == time && time != first_);
+  }
+
+  /// So many more simplices were looked at: by that, and not by vertices, the caller is told now and then, for a vertex
+  /// may be one where searches for a long time whether something falls apart.
+  void tell_all(std::size_t seen) {
+    seen_since_ += seen;
+    if (seen_since_ < kTellEvery) return;
+    seen_since_ = 0;
+    detail::tell(options_.progress, kReady + (kSwept - kReady) * fraction_, "tracking was cancelled");
+  }
+
+  // ---- the sweep ----
+
+  void visit(Index v) {
+    star_.load(v);
+    tell_all(1 + star_.cells().size());
+    if (star_.cells().empty()) return;
+    born_ = died_ = 0;
+    for (const Index s : star_.cells()) {
+      born_ += star_.part(s, false) == kNone ? 1 : 0;
+      died_ += star_.part(s, true) == kNone ? 1 : 0;
+    }
+    if (star_.parts_below() == 1 && star_.parts_above() == 1 && !(N == 4 && star_.at_border()))
+      pass(find_incoming().front(), 0);
+    else
+      visit_special(v);
+  }
+
+  /// The sets of the cells below the vertex, each once, by their arcs.
+  const std::vector<Index>& find_incoming() {
+    incoming_.clear();
+    const bool one = star_.parts_below() == 1;
+    for (const Index s : star_.cells()) {
+      if (labels_[s] == kNone) continue;
+      const Index set = sets_.find(labels_[s]);
+      if (std::find(incoming_.begin(), incoming_.end(), set) == incoming_.end()) incoming_.push_back(set);
+      if (one) break;
+    }
+    std::sort(incoming_.begin(), incoming_.end(),
+              [&](Index a, Index b) { return components_[a].arc < components_[b].arc; });
+    return incoming_;
+  }
+
+  /// The cells above the vertex belong to the set.
+  void pass(Index set, std::int64_t euler_change) {
+    Component& component = components_[set];
+    if (component.time != time_) {
+      component.time = time_;
+      component.size_before = component.size;
+      component.euler_before = component.euler;
+    }
+    component.size = component.size + born_ - died_;
+    component.euler += euler_change;
+    for (const Index s : star_.cells()) {
+      if (labels_[s] != kNone) continue;
+      labels_[s] = set;
+      if (options_.label_simplices) result_.simplex_arcs[s] = component.arc;
+    }
+  }
+
+  void visit_special(Index v) {
+    const std::int64_t euler_change = star_.euler(true) - star_.euler(false);
+    const std::vector<Index>& incoming = find_incoming();
+    std::vector<Component> before;
+    for (const Index set : incoming) before.push_back(components_[set]);
+    const Index set = join(incoming);
+    pass(set, euler_change);
+    const std::vector<Index> outgoing = star_.parts_above() == 0 ? std::vector<Index>{} : separate(v, set);
+    if (before.size() == 1 && outgoing.size() == 1) {
+      if (euler_change != 0)
+        result_.handles.push_back({v, complex_.time(v), before[0].arc, star_.at_border(), euler_change});
+      return;
+    }
+    const auto node = static_cast<Index>(result_.nodes.size());
+    result_.nodes.push_back({v, complex_.time(v), euler_change, star_.at_border(), star_.flatness()});
+    for (const Component& component : before) {
+      SweepArc& arc = result_.arcs[component.arc];
+      arc.to = node;
+      const bool met = component.time == time_;
+      arc.size_at_end = met ? component.size_before : component.size;
+      arc.euler_at_end = met ? component.euler_before : component.euler;
+    }
+    for (const Index part : outgoing) start_arc(node, part);
+    relabel_new_cells(v);
+  }
+
+  /// One set of all, or a new one of none.
+  Index join(const std::vector<Index>& sets) {
+    if (sets.empty()) return new_set({});
+    if (sets.size() == 1) return sets.front();
+    Component sum;
+    Index joined = sets.front();
+    for (const Index set : sets) {
+      sum.arc = components_[set].arc;
+      sum.size += components_[set].size;
+      sum.euler += components_[set].euler;
+      sets_.join(joined, set);
+    }
+    joined = sets_.find(joined);
+    components_[joined] = sum;
+    return joined;
+  }
+
+  Index new_set(const Component& component) {
+    components_.push_back(component);
+    return sets_.add();
+  }
+
+  void start_arc(Index node, Index set) {
+    Component& component = components_[set];
+    component.arc = static_cast<Index>(result_.arcs.size());
+    result_.arcs.push_back({node, kNone, 0, 0, 0, 0});
+    started_.push_back(set);
+  }
+
+  /// Takes down the arcs that have started, once all vertices of a time have been visited.
+  void settle_starts() {
+    for (const Index set : started_) {
+      const Component& component = components_[sets_.find(set)];
+      SweepArc& arc = result_.arcs[component.arc];
+      arc.size_at_start = component.size;
+      arc.euler_at_start = component.euler;
+    }
+    started_.clear();
+    ++time_;
+  }
+
+  /// The cells that begin at a node are in the arcs that begin there.
+  void relabel_new_cells(Index v) {
+    if (!options_.label_simplices) return;
+    for (const Index s : star_.cells())
+      if (star_.part(s, true) != kNone && lowest_rank(s) == complex_.rank(v))
+        result_.simplex_arcs[s] = components_[sets_.find(labels_[s])].arc;
+  }
+
+  // ---- do the cells above a vertex fall apart? ----
+
+  /// Cells reached from one group, in the order in which they were reached.
+  struct Front {
+    std::vector<Index> cells;
+    std::size_t next = 0;
+    [[nodiscard]] bool is_done() const { return next == cells.size(); }
+  };
+
+  /// The components of the level set just above v among the cells of `set`: the set itself, and new ones for parts that
+  /// were seen to the end, in the order of their least group.
+  std::vector<Index> separate(Index v, Index set) {
+    std::vector<Index> parts{set};
+    if (star_.parts_above() <= 1) return parts;
+    const std::size_t count = start_fronts();
+    const Index level = complex_.rank(v);
+    for (std::size_t open = count; open > 1;) {
+      bool changed = false;
+      for (std::size_t f = 0; f < count; ++f) {
+        Front& front = fronts_[f];
+        if (front.is_done()) continue;
+        changed = expand(front.cells[front.next], f, level) || changed;
+        changed = ++front.next == front.cells.size() || changed;
+      }
+      if (changed) open = open_groups(count);
+    }
+    const Index rest = find_rest(count);
+    for (Index group = 0; group < count; ++group)
+      if (groups_.find(group) == group && group != rest) parts.push_back(part_off(group, count, set, level));
+    first_seen_ += static_cast<std::uint32_t>(count);
+    return parts;
+  }
+
+  /// One front for each piece of the link above the vertex, its cells marked.
+  std::size_t start_fronts() {
+    const auto count = std::size_t{star_.parts_above()};
+    if (fronts_.size() < count) fronts_.resize(count);
+    if (std::numeric_limits<std::uint32_t>::max() - first_seen_ < count) {
+      std::fill(seen_.begin(), seen_.end(), 0u);
+      first_seen_ = 1;
+    }
+    for (std::size_t f = 0; f < count; ++f) {
+      fronts_[f].cells.clear();
+      fronts_[f].next = 0;
+    }
+    front_of_part_.assign(star_.link_size(), kNone);
+    Index used = 0;
+    for (const Index s : star_.cells()) {
+      const Index part = star_.part(s, true);
+      if (part == kNone) continue;
+      if (front_of_part_[part] == kNone) front_of_part_[part] = used++;
+      fronts_[front_of_part_[part]].cells.push_back(s);
+      seen_[s] = first_seen_ + front_of_part_[part];
+    }
+    groups_.reset(count);
+    return count;
+  }
+
+  /// Marks the cells that touch a cell; true if groups were joined.
+  bool expand(Index s, std::size_t front, Index level) {
+    bool joined = false;
+    const auto& simplex = complex_.simplex(s);
+    for (const Index a : simplex) {
+      if (complex_.rank(a) > level) continue;
+      for (const Index b : simplex)
+        if (complex_.rank(b) > level) joined = expand_over(a, b, front) || joined;
+    }
+    return joined;
+  }
+
+  bool expand_over(Index a, Index b, std::size_t front) {
+    if (complex_.star(b).size() < complex_.star(a).size()) std::swap(a, b);
+    bool joined = false;
+    tell_all(complex_.star(a).size());
+    for (const Index t : complex_.star(a)) {
+      const auto& other = complex_.simplex(t);
+      if (std::find(other.begin(), other.end(), b) == other.end()) continue;
+      if (seen_[t] < first_seen_) {
+        seen_[t] = first_seen_ + static_cast<std::uint32_t>(front);
+        fronts_[front].cells.push_back(t);
+        continue;
+      }
+      const Index here = groups_.find(static_cast<Index>(front));
+      const Index there = groups_.find(seen_[t] - first_seen_);
+      if (here == there) continue;
+      groups_.join(here, there);
+      joined = true;
+    }
+    return joined;
+  }
+
+  [[nodiscard]] bool is_done(Index group, std::size_t count) {
+    for (Index f = 0; f < count; ++f)
+      if (groups_.find(f) == group && !fronts_[f].is_done()) return false;
+    return true;
+  }
+  /// The group that was not seen to the end; the last one if all were.
+  [[nodiscard]] Index find_rest(std::size_t count) {
+    Index rest = 0;
+    for (Index f = 0; f < count; ++f) {
+      if (groups_.find(f) != f) continue;
+      rest = f;
+      if (!is_done(f, count)) break;
+    }
+    return rest;
+  }
+  [[nodiscard]] std::size_t open_groups(std::size_t count) {
+    std::size_t open = 0;
+    for (Index f = 0; f < count; ++f) open += groups_.find(f) == f && !is_done(f, count) ? 1 : 0;
+    return open;
+  }
+
+  /// A new set for a group that was seen to the end, taken from the old one.
+  Index part_off(Index group, std::size_t count, Index old_set, Index level) {
+    faces_.clear();
+    Component part;
+    const Index set = new_set({});
+    for (Index f = 0; f < count; ++f) {
+      if (groups_.find(f) != group) continue;
+      for (const Index s : fronts_[f].cells) {
+        tell_all(1);
+        labels_[s] = set;
+        add_cell_faces(s, level);
+      }
+      part.size += fronts_[f].cells.size();
+    }
+    part.euler = -faces_.euler();  // a k-face of the complex is a (k-1)-face of the level set
+    components_[old_set].size -= part.size;
+    components_[old_set].euler -= part.euler;
+    components_[set] = part;
+    return set;
+  }
+
+  void add_cell_faces(Index s, Index level) {
+    const auto& simplex = complex_.simplex(s);
+    unsigned above = 0;
+    for (int i = 0; i < N; ++i) above |= complex_.rank(simplex[i]) > level ? 1u << i : 0u;
+    faces_.add(simplex, N, [above](unsigned mask) { return (mask & above) != 0 && (mask & ~above) != 0; });
+  }
+
+  [[nodiscard]] Index lowest_rank(Index s) const {
+    Index lowest = kNone;
+    for (const Index v : complex_.simplex(s)) lowest = std::min(lowest, complex_.rank(v));
+    return lowest;
+  }
+
+  // ---- samples ----
+
+  /// Lists the simplices that are cut at some time, by the first such time.
+  void plan_samples() {
+    const auto& contour = complex_.contour();
+    const auto first_cut = [&](Index s) {
+      const auto [low, high] = span(s);
+      const auto at = low == first_ ? std::lower_bound(times_.begin(), times_.end(), low)
+                                    : std::upper_bound(times_.begin(), times_.end(), low);
+      const bool is_cut =
+          low < high && at != times_.end() && *at <= high && !is_collapsed<N>(complex_.simplex(s).data());
+      return is_cut ? static_cast<std::size_t>(at - times_.begin()) : times_.size();
+    };
+    starts_.assign(times_.size() + 3, 0);
+    for (Index s = 0; s < contour.simplices.size(); ++s) {
+      tell_all(1);
+      ++starts_[first_cut(s) + 2];
+    }
+    for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
+    starting_.resize(contour.simplices.size());
+    for (Index s = 0; s < contour.simplices.size(); ++s) {
+      tell_all(1);
+      starting_[starts_[first_cut(s) + 1]++] = s;
+    }
+    for (int a = 0; a < N - 1; ++a) origin_[a] = static_cast<double>(contour.vertices[0][a]);
+  }
+
+  [[nodiscard]] std::pair<double, double> span(Index s) const {
+    std::pair<double, double> result{complex_.time(complex_.simplex(s)[0]), complex_.time(complex_.simplex(s)[0])};
+    for (const Index v : complex_.simplex(s)) {
+      result.first = std::min(result.first, complex_.time(v));
+      result.second = std::max(result.second, complex_.time(v));
+    }
+    return result;
+  }
+
+  /// All vertices before the time have been visited; a vertex at the time counts as above it, as in `slice`, but at the
+  /// first time as below.
+  void take_sample() {
+    const double time = times_[next_time_];
+    const double asked_for = options_.times[next_time_];
+    std::erase_if(cut_, [&](Index s) { return span(s).second < time; });
+    cut_.insert(cut_.end(), starting_.begin() + static_cast<std::ptrdiff_t>(starts_[next_time_]),
+                starting_.begin() + static_cast<std::ptrdiff_t>(starts_[next_time_ + 1]));
+    ++next_time_;
+    sums_.clear();
+    for (const Index s : cut_) {
+      tell_all(1);
+      const Index arc = components_[sets_.find(labels_[s])].arc;
+      if (slots_.size() <= arc) slots_.resize(result_.arcs.size(), kNone);
+      if (slots_[arc] == kNone) {
+        slots_[arc] = static_cast<Index>(sums_.size());
+        sums_.push_back({arc, {}});
+      }
+      add_cut(s, time, sums_[slots_[arc]].second);
+    }
+    for (const auto& [arc, sums] : sums_) slots_[arc] = kNone;
+    std::sort(sums_.begin(), sums_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [arc, sums] : sums_) result_.samples.push_back({arc, sums.to_sample(asked_for, N - 1, origin_)});
+  }
+
+  void add_cut(Index s, double time, PartSums& sums) const {
+    std::array<PointOf<N>, N> corners = corners_of(complex_.contour(), s);
+    for (auto& corner : corners)
+      for (int a = 0; a < N - 1; ++a) corner[a] -= origin_[a];
+    PointOf<N> normal = normal_vector_of<N>(corners);
+    if (complex_.contour().direction == GradientDirection::ascent)
+      for (double& x : normal) x = -x;
+    if constexpr (N == 2) sums.open = true;  // a point encloses nothing
+    unsigned below = 0;
+    const auto is_below = [&](const PointOf<N>& corner) {
+      return corner[N - 1] < time || (time == first_ && corner[N - 1] == time);
+    };
+    for (int i = 0; i < N; ++i) below |= is_below(corners[i]) ? 1u << i : 0u;
+    for (int i = 0; i < N; ++i)
+      if (((complex_.border(s) >> i) & 1u) != 0 && (below & ~(1u << i)) != 0 && (~below & kAll & ~(1u << i)) != 0)
+        sums.open = true;
+    std::stable_partition(corners.begin(), corners.end(), is_below);
+    CutCell<N>(corners, std::popcount(below), time).add_to(sums, normal);
+  }
+
+  static constexpr unsigned kAll = (1u << N) - 1;
+  static constexpr std::size_t kTellEvery = std::size_t{1} << 16;
+  static constexpr double kReady = 0.2;  ///< of the progress, when the sweep begins
+
+  const TrackOptions& options_;
+  double fraction_ = 0.0;       ///< of the sweep
+  std::size_t seen_since_ = 0;  ///< simplices, since the progress was told
+  SweptComplex<N, Real> complex_;
+  VertexStar<N, Real> star_;
+  SweepResult result_;
+  DisjointSets sets_;
+  std::vector<Component> components_;  ///< of each set, valid at its leader
+  std::vector<Index> labels_;          ///< #S: a member of the set of the simplex's cell; kNone before it has one
+  std::vector<Index> incoming_;
+  std::vector<Index> started_;  ///< sets whose arcs started at the time at hand
+  std::uint64_t time_ = 0;      ///< how many different times there were
+  std::uint64_t born_ = 0;      ///< cells that begin, and end, at the vertex
+  std::uint64_t died_ = 0;
+
+  std::vector<Front> fronts_;
+  DisjointSets groups_;              ///< of fronts
+  std::vector<std::uint32_t> seen_;  ///< #S: first_seen_ + the front that has the cell
+  std::uint32_t first_seen_ = 1;
+  std::vector<Index> front_of_part_;
+  Faces<N> faces_;
+
+  double first_ = 0.0;         ///< the least time of a vertex, if there are samples
+  std::vector<double> times_;  ///< those of the options in the precision of the vertices, as `slice` rounds them
+  std::size_t next_time_ = 0;
+  std::vector<std::size_t> starts_;  ///< per time: where in `starting_` its simplices start
+  std::vector<Index> starting_;
+  std::vector<Index> cut_;  ///< those cut at the time before
+  std::array<double, 3> origin_{};
+  std::vector<Index> slots_;  ///< per arc: its place in `sums_`
+  std::vector<std::pair<Index, PartSums>> sums_;
+};
+
+}  // namespace
+
+template <int N, class Real>
+SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options) {
+  return Sweeper<N, Real>(contour, options).run();
+}
+
+template SweepResult sweep(const Contour<2, float>&, const TrackOptions&);
+template SweepResult sweep(const Contour<2, double>&, const TrackOptions&);
+template SweepResult sweep(const Contour<3, float>&, const TrackOptions&);
+template SweepResult sweep(const Contour<3, double>&, const TrackOptions&);
+template SweepResult sweep(const Contour<4, float>&, const TrackOptions&);
+template SweepResult sweep(const Contour<4, double>&, const TrackOptions&);
+
+}  // namespace tegl::detail

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Faces of many tiles decided at once (face_signs.hpp) against the same faces decided one by one, exactly.
+#include "ambiguity/face_signs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ambiguity/face_estimator.hpp"
+#include "tegl/generated/tables.hpp"
+#include "tegl/saddle.hpp"
+#include "tile/tesseract_fill.hpp"
+
+namespace tegl::detail {
+namespace {
+
+/// Kinds of samples, and an isovalue.
+struct Kind {
+  const char* name;
+  std::function<double(std::mt19937_64&)> sample;
+  double isovalue;
+  bool is_sure;  ///< all is to be decided at once: nothing is so near that rounding could decide, or nothing is rounded
+};
+
+double uniform(std::mt19937_64& random) { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
+
+std::vector<Kind> kinds() {
+  using Random = std::mt19937_64;
+  const auto pick = [](std::vector<double> values) {
+    return [values = std::move(values)](Random& random) { return values[random() % values.size()]; };
+  };
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {
+      {"noise", [](Random& random) { return static_cast<double>(static_cast<float>(uniform(random))); }, 0.0, true},
+      {"noise in doubles", uniform, 0.1, true},
+      {"masks", pick({0.0, 1.0}), 0.5, true},
+      {"bytes", [](Random& random) { return static_cast<double>(random() % 256); }, 128.0, true},
+      {"bytes beside a fraction", [](Random& random) { return static_cast<double>(random() % 4); }, 1.3, false},
+      {"few whole numbers", [](Random& random) { return static_cast<double>(random() % 5) - 2.0; }, 0.0, true},
+      {"zeros of both signs", pick({-0.0, 0.0, -1.0, 1.0}), 0.0, true},
+      {"tenths", [](Random& random) { return 0.1 * static_cast<double>(random() % 5); }, 0.2, false},
+      {"next to each other", [](Random& random) { return 1.0 + static_cast<double>(random() % 5) * 0x1p-52; },
+       1.0 + 0x1p-51, false},
+      {"of all sizes",
+       [](Random& random) { return std::ldexp(uniform(random), static_cast<int>(random() % 2000) - 1000); }, 0.0,
+       false},
+      {"tiny", [](Random& random) { return std::ldexp(uniform(random), -1060); }, 0.0, false},
+      {"huge", pick({-1.7e308, -1.6e308, 1.6e308, 1.7e308}), 0.0, false},
+      {"infinite", pick({-kInfinity, kInfinity, -1.0, 1.0}), 0.0, false},
+  };
+}
+
+template <int N>
+FaceBlock<N> random_block(const Kind& kind, std::size_t tiles, std::mt19937_64& random) {
+  FaceBlock<N> block;
+  block.tiles = tiles;
+  for (auto& row : block.samples) {
+    row.fill(0.0);
+    for (std::size_t i = 0; i <= tiles; ++i) row[i] = kind.sample(random);
+  }
+  return block;
+}
+
+/// The values at the corners of a face of tile `bit`, in the order of its own corners.
+template <int N>
+std::vector<double> face_values(const FaceBlock<N>& block, std::size_t bit, unsigned axes, unsigned base) {
+  std::vector<double> values;
+  for (unsigned corner = 0; corner < 1u << N; ++corner)
+    if ((corner & ~axes) == base) values.push_back(block.samples[corner >> 1][bit + (corner & 1u)]);
+  return values;
+}
+
+/// As face_signs.hpp says.
+template <int N>
+unsigned number_of(unsigned axes, unsigned base) {
+  const unsigned across = ((1u << N) - 1) & ~axes;
+  if (N == 4 && across == 0) return kTesseractFace;
+  if (N == 3 && across == 0) return kFirstCube<3>;
+  const auto axis = static_cast<unsigned>(std::countr_zero(across));
+  if (std::popcount(across) == 1) return (N == 3 ? 0 : kFirstCube<4>)+2 * axis + (base >> axis & 1u);
+  unsigned number = 0;
+  while (kTesseractSquares[number].axes != axes || kTesseractSquares[number].base != base) ++number;
+  return number;
+}
+
+template <int N>
+void for_all_faces(const std::function<void(unsigned axes, unsigned base, unsigned number)>& visit) {
+  for (unsigned axes = 0; axes < 1u << N; ++axes)
+    for (unsigned base = 0; base < 1u << N; ++base)
+      if ((axes & base) == 0 && std::popcount(axes) >= 2) visit(axes, base, number_of<N>(axes, base));
+}
+
+bool is_ambiguous(const std::vector<double>& square, double isovalue) {
+  const auto high = [&](std::size_t v) { return square[v] >= isovalue; };
+  return high(0) == high(3) && high(1) == high(2) && high(0) != high(1);
+}
+
+template <int N>
+void compare_means(const Kind& kind) {
+  std::mt19937_64 random(1);
+  for (const std::size_t tiles : {64, 64, 1, 7, 8, 9, 63}) {
+    FaceBlock<N> block = random_block<N>(kind, tiles, random);
+    decide_by_means(block, kind.isovalue);
+    for (std::size_t bit = 0; bit < tiles; ++bit) {
+      EXPECT_TRUE(!kind.is_sure || block.unsure[bit] == 0) << kind.name;
+      if (block.unsure[bit] != 0) continue;
+      for_all_faces<N>([&](unsigned axes, unsigned base, unsigned number) {
+        const auto values = face_values(block, bit, axes, base);
+        ASSERT_EQ((block.high[bit] >> number & 1u) != 0, is_mean_high(values, kind.isovalue))
+            << kind.name << ", axes " << axes << ", base " << base;
+      });
+    }
+  }
+}
+
+template <int N>
+void compare_saddles(const Kind& kind) {
+  std::mt19937_64 random(2);
+  for (const std::size_t tiles : {64, 64, 64, 1, 7, 8, 9, 63}) {
+    FaceBlock<N> block = random_block<N>(kind, tiles, random);
+    decide_by_saddles(block, kind.isovalue);
+    for (std::size_t bit = 0; bit < tiles; ++bit) {
+      EXPECT_TRUE(!kind.is_sure || block.unsure[bit] == 0) << kind.name;
+      if (block.unsure[bit] != 0) continue;
+      for_all_faces<N>([&](unsigned axes, unsigned base, unsigned number) {
+        const auto values = face_values(block, bit, axes, base);
+        const bool is_high = (block.high[bit] >> number & 1u) != 0;
+        if (values.size() == 4 && is_ambiguous(values, kind.isovalue)) {
+          ASSERT_EQ(is_high, square_is_high_exactly({values[0], values[1], values[2], values[3]}, kind.isovalue))
+              << kind.name << ", axes " << axes << ", base " << base;
+        } else if (values.size() == 16) {
+          ASSERT_EQ(is_high, is_mean_high(values, kind.isovalue)) << kind.name;
+        }
+      });
+    }
+  }
+}
+
+TEST(FaceSigns, MeansAreThoseOfEachFaceByItself) {
+  for (const Kind& kind : kinds()) {
+    compare_means<3>(kind);
+    compare_means<4>(kind);
+  }
+}
+
+TEST(FaceSigns, SaddlesAreThoseOfEachSquareByItself) {
+  for (const Kind& kind : kinds()) {
+    compare_saddles<3>(kind);
+    compare_saddles<4>(kind);
+  }
+}
+
+/// The entry of the table of a cube whose squares are decided.
+unsigned entry_of(unsigned signature, unsigned high_squares) {
+  unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
+  for (unsigned q = 0; q < 6; ++q) {
+    if ((tables::kTile3Resolved.ambiguous_squares[signature] >> q & 1u) == 0) continue;
+    if ((high_squares >> q & 1u) != 0) entry += bit;
+    bit *= 2;
+  }
+  return entry;
+}
+
+void compare_joins(const Kind& kind) {
+  std::mt19937_64 random(3);
+  std::size_t asked = 0, joined = 0, unsure = 0;
+  for (int round = 0; round < 300; ++round) {
+    JoinQuestions questions;
+    std::array<facets::Choice, JoinQuestions::kMost> expected;
+    for (int cube = 0; cube < 64; ++cube) {
+      std::array<double, 8> values;
+      for (double& value : values) value = kind.sample(random);
+      const CubeDecision decision = decide_cube_exactly(values, kind.isovalue);
+      const CubeJoin& join = cube_joins()[entry_of(signature_of(values, kind.isovalue), decision.high_squares)];
+      if (join.pairs == 0) {
+        ASSERT_EQ(decision.centre, facets::Choice::separate);
+      } else if (join.pairs == 1) {
+        for (std::size_t e = 0; e < 8; ++e) questions.ends[e][questions.count] = values[join.corners[e]];
+        questions.sign[questions.count] = join.high ? 1.0 : -1.0;
+        expected[questions.count++] = decision.centre;
+      }
+    }
+    answer(questions, kind.isovalue);
+    for (std::size_t q = 0; q < questions.count; ++q, ++asked) {
+      const auto found = questions.answers[q];
+      const auto by_sign = questions.sign[q] > 0.0 ? facets::Choice::high : facets::Choice::low;
+      unsure += found == JoinQuestions::unsure ? 1 : 0;
+      joined += expected[q] != facets::Choice::separate ? 1 : 0;
+      ASSERT_TRUE(found == JoinQuestions::unsure ||
+                  (found == JoinQuestions::yes ? by_sign : facets::Choice::separate) == expected[q])
+          << kind.name;
+    }
+  }
+  if (kind.is_sure) {
+    EXPECT_EQ(unsure, 0u) << kind.name;
+    EXPECT_GT(asked, 100u) << kind.name;
+    EXPECT_GT(joined, 0u) << kind.name;
+  }
+}
+
+TEST(FaceSigns, JoinsInCubesAreThoseOfEachCubeByItself) {
+  for (const Kind& kind : kinds()) compare_joins(kind);
+}
+
+}  // namespace
+}  // namespace tegl::detail

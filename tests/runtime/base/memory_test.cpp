@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How much memory an extraction takes beside its image and its contour: every allocation of this program is counted.
+// (Blocks of 2 MiB and more come from the system, past the counter; extract_into_test watches the process itself.)
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "ambiguity/variants.hpp"
+#include "counted_memory.hpp"
+#include "fields.hpp"
+#include "tegl/extract.hpp"
+
+namespace tegl::test {
+namespace {
+
+/// The kinds of tables, and one that the data choose from, in either way.
+std::vector<ExtractOptions> all_variants() {
+  auto result = variants();
+  for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
+    result.push_back(result.front());
+    result.back().ambiguity = ambiguity;
+  }
+  return result;
+}
+
+/// With 1 and 4 threads, without normals and with them.
+template <Value T, int N>
+void expect_at_most(std::size_t bytes, const OwnedImage<T, N>& image, double isovalue,
+                    const std::vector<ExtractOptions>& all) {
+  for (ExtractOptions options : all)
+    for (const unsigned threads : {1u, 4u})
+      for (const bool normals : {false, true}) {
+        options.threads = threads;
+        options.normals = normals;
+        SCOPED_TRACE(testing::Message() << describe(options) << ", threads " << threads << ", normals " << normals);
+        EXPECT_LE(bytes_beside(image, isovalue, options), bytes);
+      }
+}
+
+template <Value T, int N>
+void expect_a_sixteenth(const OwnedImage<T, N>& image, double isovalue) {
+  expect_at_most(image.values.size() * sizeof(T) / 16, image, isovalue, all_variants());
+}
+
+TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn2d) { expect_a_sixteenth(noise<float, 2>(2048, 1), 0.5); }
+TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn3d) { expect_a_sixteenth(noise<float, 3>(112, 2), 0.9); }
+TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn4d) {
+  expect_a_sixteenth(noise<float, 4>({64, 16, 16, 72}, 3), 0.98);
+}
+
+/// 128 KiB and what is not by slabs, however small the image.
+TEST(Memory, BesideASmallImageIsAnEighthOfAMebibyte) {
+  constexpr std::size_t kMost = (std::size_t{1} << 17) + 8192;
+  expect_at_most(kMost, noise<float, 3>(64, 5), 0.5, all_variants());
+  expect_at_most(kMost, noise<std::uint8_t, 3>(64, 6), 127.5, variants());
+  expect_at_most(kMost, noise<float, 2>(512, 7), 0.5, all_variants());
+}
+TEST(Memory, BesideAnImageOfAFewMebibytesIsASixteenthOfIt) {
+  expect_a_sixteenth(noise<float, 2>(1024, 8), 0.5);
+  expect_a_sixteenth(noise<float, 3>(96, 9), 0.5);
+}
+
+/// Of few long rows, a thread's lists of edges are the most.
+TEST(Memory, BesideLongRows) {
+  const auto image = noise<float, 2>({50000, 50}, 10);
+  for (const auto& o : variants()) expect_at_most(image.values.size() * sizeof(float) / 3, image, 0.5, {o});
+}
+
+/// What is needed beside a long image is a few slabs' worth: a longer one needs no more.
+TEST(Memory, DoesNotGrowWithTheContour) {
+  const auto image = noise<float, 4>({64, 16, 16, 72}, 3);
+  for (ExtractOptions options : variants()) {
+    options.threads = 1;
+    SCOPED_TRACE(describe(options));
+    const std::size_t few = bytes_beside(image, 0.9999, options);
+    EXPECT_LE(bytes_beside(image, 0.98, options), few + 4096);
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
