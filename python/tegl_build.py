@@ -44,7 +44,8 @@ def _project():
 
 
 def _version():
-    return re.search(r"project\(tegl VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")).group(1)
+    header = (ROOT / "runtime/include/tegl/version.hpp").read_text(encoding="utf-8")
+    return ".".join(re.search(rf"#define TEGL_VERSION_{part} (\d+)", header).group(1) for part in ("MAJOR", "MINOR", "PATCH"))
 
 
 def _metadata():

@@ -7,7 +7,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
-#include "tegl/elements_io.hpp"
+#include "tegl/io/elements.hpp"
 
 namespace tegl::python {
 

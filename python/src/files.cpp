@@ -6,7 +6,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/io.hpp"
-#include "tegl/series.hpp"
+#include "tegl/io/series.hpp"
 
 namespace tegl::python {
 

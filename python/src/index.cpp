@@ -8,7 +8,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/active_tiles.hpp"
-#include "tegl/active_tiles_io.hpp"
+#include "tegl/io/active_tiles.hpp"
 #include "tegl/pick.hpp"
 
 namespace tegl::python {

@@ -5,7 +5,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
-#include "tegl/track_io.hpp"
+#include "tegl/io/tracks.hpp"
 
 namespace tegl::python {
 

@@ -15,14 +15,13 @@ what moves, which can be cut at any time.
 """
 
 from . import _tegl
-from ._contour import Contour, load
-from ._image import Image, contour, read
+from ._contour import Components, Contour, check, components, elements, load, measure, simplify, track
+from ._image import Image, contour, read, slice
 from ._index import Index, PickReport
-from ._operations import (Component, Components, CutMeasures, Elements, ElementSum, Measures, MeshReport, SimplifyStats,
-                          check, components, elements, measure, simplify, slice)
+from ._results import Component, CutMeasures, Elements, ElementSum, Measures, MeshReport, SimplifyStats
 from ._skimage import marching_cubes
 from ._tegl import Cancelled, __version__
-from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment, track
+from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment
 
 __all__ = [
     "Cancelled", "Component", "Components", "Contour", "CutMeasures", "Elements", "ElementSum", "Image", "Index",

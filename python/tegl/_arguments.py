@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import datetime
 import inspect
 import operator
 import os
 import re
 import typing
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -23,6 +24,19 @@ from . import _dates, _kinds, _tegl
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
+
+Progress = Callable[[float], object]
+#: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
+Place = typing.Union[float, str, datetime.date, datetime.timedelta, np.generic]
+#: Several of them.
+Places = typing.Union["list[typing.Any]", "tuple[typing.Any, ...]", "np.ndarray[typing.Any, typing.Any]"]
+
+
+class Labelled(typing.Protocol):
+    """An xarray of one place or of several: its type does not say."""
+
+    @property
+    def dims(self) -> typing.Any: ...
 
 
 _Documented = typing.TypeVar("_Documented", bound=typing.Callable[..., typing.Any])

@@ -1,33 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The contour as Python sees it, and what it can do."""
+"""The contour as Python sees it, what it can do, and its components."""
 
 from __future__ import annotations
 
-import datetime
+import builtins
 import os
 import typing
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _kinds, _tegl
-
-if typing.TYPE_CHECKING:
-    from ._operations import Components, CutMeasures, Elements, Measures, MeshReport, SimplifyStats
-    from ._track import TrackGraph
-
-Progress = Callable[[float], object]
-#: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
-Place = typing.Union[float, str, datetime.date, datetime.timedelta, np.generic]
-#: Several of them.
-Places = typing.Union["list[typing.Any]", "tuple[typing.Any, ...]", "np.ndarray[typing.Any, typing.Any]"]
-
-
-class Labelled(typing.Protocol):
-    """An xarray of one place or of several: its type does not say."""
-
-    @property
-    def dims(self) -> typing.Any: ...
+from . import _arguments, _export, _kinds, _results, _outside, _tegl
+from ._arguments import Labelled, Place, Places, Progress
+from ._results import Component, CutMeasures, Elements, Measures, MeshReport, SimplifyStats
+from ._track import TrackGraph
 
 
 class Contour:
@@ -194,6 +180,18 @@ class Contour:
         level = "" if self.isovalue is None else f" at {self.isovalue:g}"
         return f"<tegl.Contour{level}: {len(self._core.vertices)} vertices, {len(self._core.simplices)} {what}>"
 
+    def _extent_around(self) -> tuple[np.ndarray | None, str]:
+        """The extent that cuts have to meet, and what has it: the image, or, if that is not known, the contour itself."""
+        if self._extent is not None:
+            return self._extent, "image"
+        return _outside.extent_around(self.vertices), "contour"
+
+    def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
+        """Raises a ValueError unless all places along an axis lie in that extent."""
+        extent, of = self._extent_around()
+        _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],
+                                self.axis_units[axis], of)
+
     # What can be done with it: see the functions of the same names.
 
     @typing.overload
@@ -218,13 +216,52 @@ class Contour:
     def slice(self, at=None, *, axis: int | str | None = None, normal=None, offset=None, allow_empty: bool = False,
               threads: int = 0, progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
         """The cut by a hyperplane: see `tegl.slice`."""
-        from . import _operations
-        return _operations._cut(self, at, axis, normal, offset, allow_empty, threads, progress, coordinate)
+        return self._cut(at, axis, normal, offset, allow_empty, threads, progress, coordinate)
+
+    def _cut(self, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
+        is_checked = not _arguments.as_bool("allow_empty", allow_empty) and self.ndim in (3, 4)
+        is_list = _results.is_list
+        if normal is not None:
+            if at is not None or axis is not None or offset is None or more:
+                raise ValueError("normal goes with offset alone; expected normal= and offset=, or at=")
+            direction = _arguments.as_numbers("normal", normal, "a number for each axis")
+            places: typing.Any = _arguments.as_numbers("offset", offset) if is_list(offset) else \
+                _arguments.as_number("offset", offset)
+            left = None
+            if is_checked:
+                extent, of = self._extent_around()
+                _outside.require_offsets(extent, direction, places if is_list(offset) else [places], self.vertices.dtype, of)
+        else:
+            if offset is not None:
+                raise ValueError(_results.offset_alone(self.axis_names))
+            number, places = _results.named_axis(self.axis_names, self.ndim, self.time_axis, at, axis, more)
+            if more:
+                raise ValueError(f"no axis is named '{next(iter(more))}'; the contour's are "
+                                 f"{', '.join(repr(name) for name in self.axis_names)}")
+            direction = [float(a == number) for a in range(self.ndim)]
+            unit = self.axis_units[number]
+            given = list(places) if is_list(places) else [places]
+            wanted = [_arguments.number_on_axis(place, unit) for place in given]
+            if is_checked:
+                self._require_places(number, wanted, given)
+            left = _outside.without_axis(self._extent, number)
+            places = wanted if is_list(places) else wanted[0]
+        several = is_list(places)
+        cuts = _tegl.slice_stack(self._core, self._listed(direction), list(places) if several else [places],
+                                 _arguments.threads_of(threads), progress)
+        found = [Contour._of(cut, self._is_reversed, left) for cut in cuts]
+        return found if several else found[0]
 
     def components(self, *, threads: int = 0, progress: Progress | None = None) -> Components:
         """The connected pieces: see `tegl.components`."""
-        from . import _operations
-        return _operations.components(self, threads=threads, progress=progress)
+        core, threads = self._core, _arguments.threads_of(threads)
+        labels = _tegl.label_components(core, threads, _arguments.part_of(progress, 0.0, 0.3))
+        found = []
+        for one in _tegl.components(core, labels, threads, _arguments.part_of(progress, 0.3, 1.0)):
+            for name in ("centroid", "lowest", "highest"):
+                one[name] = np.array(self._listed(one[name]))
+            found.append(Component(**one))
+        return Components(self, labels, found)
 
     @typing.overload
     def measure(self, *, at: None = None, allow_empty: bool = False, threads: int = 0,
@@ -237,13 +274,23 @@ class Contour:
     def measure(self, *, at=None, allow_empty: bool = False, threads: int = 0,
                 progress: Progress | None = None) -> Measures | CutMeasures:
         """Size, content, centroid; with `at`, sizes and contents of cuts: see `tegl.measure`."""
-        from . import _operations
-        return _operations.measure(self, at=at, allow_empty=allow_empty, threads=threads, progress=progress)
+        allow_empty = _arguments.as_bool("allow_empty", allow_empty)
+        if at is not None:
+            unit = self.axis_units[self.time_axis]
+            given = list(at) if _results.is_list(at) else [at]
+            places = [_arguments.number_on_axis(place, unit) for place in given]
+            if not allow_empty and self.ndim > 2:
+                self._require_places(self.time_axis, places, given)
+            size, content = _tegl.measure_cuts(self._core, places, _arguments.threads_of(threads), progress)
+            return CutMeasures(np.array(places), np.array(size), np.array(content))
+        found = _tegl.measure(self._core, _arguments.threads_of(threads), progress)
+        for name in ("centroid", "lowest", "highest"):
+            found[name] = np.array(self._listed(found[name]))
+        return Measures(**found)
 
     def check(self, *, progress: Progress | None = None) -> MeshReport:
         """Is it a manifold? See `tegl.check`."""
-        from . import _operations
-        return _operations.check(self, progress=progress)
+        return MeshReport(**_tegl.check(self._core, progress))
 
     @typing.overload
     def simplify(self, ratio: float | None = None, *, count: int | None = None,
@@ -268,22 +315,71 @@ class Contour:
                  allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
                  return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
         """Fewer simplices, the same manifold: see `tegl.simplify`."""
-        from . import _operations
-        return _operations._simplify(self, ratio, count, max_error, method, border, max_curvature, scale, measure,
-                                     allow_nonmanifold, threads, progress, return_stats)
+        return self._simplify(ratio, count, max_error, method, border, max_curvature, scale, measure, allow_nonmanifold,
+                              threads, progress, return_stats)
+
+    def _simplify(self, ratio, count, max_error, method, border, max_curvature, scale, measure, allow_nonmanifold, threads,
+                  progress, return_stats) -> typing.Any:
+        if isinstance(scale, str) and scale != "auto":
+            raise ValueError(f"scale is '{scale}'; expected 'auto' or a number for each axis")
+        factors: list[float] | None = None
+        if isinstance(scale, str):
+            factors = _tegl.automatic_scale(self._core)
+        elif scale is not None:
+            given = _arguments.as_numbers("scale", scale, "'auto' or a number for each axis")
+            for axis, factor in enumerate(given):
+                if not 0 < factor < np.inf:
+                    raise ValueError(f"the scale of axis {axis} is {factor:g}; expected a finite number above 0")
+            factors = self._listed(given)
+        number, either, truth = _arguments.as_number, _arguments.or_none, _arguments.as_bool
+        if ratio is not None and (number("ratio", ratio) > 1 or ratio < 0):
+            raise ValueError(f"ratio is {ratio}; expected 0 to 1, the share of the simplices that are left, or count= with "
+                             "their number")
+        is_reported = truth("return_stats", return_stats)
+        options = {"method": _arguments.as_text("method", method), "border": _arguments.as_text("border", border),
+                   "ratio": either(number, "ratio", ratio), "count": either(_arguments.as_whole, "count", count, 0),
+                   "max_error": either(number, "max_error", max_error),
+                   "max_curvature": either(number, "max_curvature", max_curvature), "scale": factors,
+                   "measure": truth("measure", measure),
+                   "allow_nonmanifold": truth("allow_nonmanifold", allow_nonmanifold),
+                   "threads": _arguments.threads_of(threads)}
+        simplified, stats = _tegl.simplify(self._core, options, progress)
+        result = Contour._of(simplified, self._is_reversed, self._extent)
+        return (result, SimplifyStats(**stats)) if is_reported else result
 
     def elements(self, *, by_cell: bool = False, threads: int = 0, progress: Progress | None = None) -> Elements:
         """Hypersurface elements: see `tegl.elements`."""
-        from . import _operations
-        return _operations.elements(self, by_cell=by_cell, threads=threads, progress=progress)
+        core = self._core
+        if _arguments.as_bool("by_cell", by_cell) and self._grid is None:
+            raise ValueError("by_cell of a contour whose grid is not known; expected one that tegl.contour made")
+        found = _tegl.elements(core, self._grid if by_cell else None, _arguments.threads_of(threads), progress)
+        return Elements(found, self._is_reversed,
+                        "normal" in core.simplex_attributes and "normal" not in core.vertex_attributes)
 
     def track(self, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
               first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
               allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
         """What becomes of the parts: see `tegl.track`."""
-        from . import _track
-        return _track.track(self, min_lifetime=min_lifetime, times=times, first=first, last=last, handles=handles,
-                            label_simplices=label_simplices, allow_empty=allow_empty, threads=threads, progress=progress)
+        allow_empty = _arguments.as_bool("allow_empty", allow_empty)
+        unit = self.axis_units[self.time_axis]
+        if times is None:
+            places: list[float] = []
+        elif isinstance(times, (int, np.integer)):
+            count = _arguments.as_whole("times", times, 0)
+            along = self.vertices[:, self.time_axis]
+            places = _tegl.even_times(float(along.min()), float(along.max()), count) if len(along) else []
+        else:
+            given = _arguments.as_list("times", times, "a list of times, or a whole number of even ones")
+            places = [_arguments.number_on_axis(time, unit) for time in given]
+            if not allow_empty:
+                self._require_places(self.time_axis, places, given)
+        found = _tegl.track(self._core, _arguments.as_number("min_lifetime", min_lifetime), places,
+                            None if first is None else _arguments.number_on_axis(first, unit),
+                            None if last is None else _arguments.number_on_axis(last, unit),
+                            _arguments.as_bool("handles", handles),
+                            _arguments.as_bool("label_simplices", label_simplices), _arguments.threads_of(threads),
+                            progress)
+        return TrackGraph(found, self._is_reversed, unit)
 
     @_arguments.documents("sample")
     def sample(self, array, name: str, unit: str = "", *, threads: int = 0, progress: Progress | None = None,
@@ -325,26 +421,78 @@ class Contour:
 
     def points_and_cells(self) -> tuple[np.ndarray, list[tuple[str, np.ndarray]]]:
         """(points, cells) as meshio has them: points #V x N as x, y, z, t; cells [("triangle", #S x N)]."""
-        kind = {2: "line", 3: "triangle", 4: "tetra"}.get(self.ndim)
-        if kind is None:
-            raise ValueError(f"cells of a {self.ndim}D contour; expected 2 to 4 dimensions")
-        return self._core.vertices, [(kind, self._core.simplices)]
+        return _export.points_and_cells(self._core)
 
     def to_meshio(self) -> typing.Any:
         """A meshio.Mesh, points as x, y, z; the t of 4D contours as point data. Needs meshio."""
-        from . import _export
-        return _export.to_meshio(self)
+        return _export.to_meshio(self._core)
 
     def to_vtk(self) -> typing.Any:
         """A vtkPolyData of segments or triangles, or a vtkUnstructuredGrid of tetrahedra with t as a point array, with
         normals and attributes, points as x, y, z. Needs VTK's Python modules."""
-        from . import _export
-        return _export.to_vtk(self)
+        return _export.to_vtk(self._core)
 
     def to_pyvista(self) -> typing.Any:
         """The same as a mesh of pyvista. Needs pyvista."""
-        from . import _export
-        return _export.to_pyvista(self)
+        return _export.to_pyvista(self._core)
+
+
+class Components(Sequence[Component]):
+    """The components of a contour, in the order of their labels."""
+
+    def __init__(self, contour: Contour, labels: _tegl.ComponentLabels, found: list[Component]) -> None:
+        self._contour, self._labels, self._found = contour, labels, found
+
+    @property
+    def vertex_labels(self) -> np.ndarray:
+        """#V; 2**32 - 1 for vertices in no simplex."""
+        return self._labels.vertices
+
+    @property
+    def simplex_labels(self) -> np.ndarray:
+        """#S."""
+        return self._labels.simplices
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    @typing.overload
+    def __getitem__(self, index: typing.SupportsIndex) -> Component: ...
+
+    @typing.overload
+    def __getitem__(self, index: builtins.slice) -> list[Component]: ...
+
+    def __getitem__(self, index):
+        return self._found[index]
+
+    def __repr__(self) -> str:
+        return f"<tegl.Components: {len(self)}>"
+
+    @_arguments.documents("split_components")
+    def split(self, *, progress: Progress | None = None) -> list[Contour]:
+        """A contour for each."""
+        return [Contour._of(part, self._contour._is_reversed, self._contour._extent, self._contour._grid)
+                for part in _tegl.split_components(self._contour._core, self._labels, progress)]
+
+    @_arguments.documents("select_components")
+    def select(self, keep, *, progress: Progress | None = None) -> Contour:
+        """The contour of some: a truth value for each component, or the labels of those to keep."""
+        chosen = np.atleast_1d(np.asarray(keep))
+        if chosen.dtype != bool:
+            if chosen.size and chosen.dtype.kind not in "iu":
+                raise TypeError(f"keep is {keep!r}; expected a truth value for each component, or labels")
+            labels, chosen = chosen.astype(np.int64).ravel(), np.zeros(len(self), dtype=bool)
+            if labels.size and not (0 <= labels.min() and labels.max() < len(self)):
+                raise ValueError(f"labels are {labels.min()} to {labels.max()}; expected 0 to {len(self) - 1}")
+            chosen[labels] = True
+        core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist(), progress)
+        return Contour._of(core, self._contour._is_reversed, self._contour._extent, self._contour._grid)
+
+    def largest(self, count: int = 1, *, progress: Progress | None = None) -> Contour:
+        """The contour of the largest ones by size."""
+        count = _arguments.as_whole("count", count, 0)
+        order = sorted(range(len(self)), key=lambda label: (-self._found[label].size, label))
+        return self.select(np.array(order[:count], dtype=np.int64), progress=progress)
 
 
 def _is_flat_normal(of: str, name: str, values: np.ndarray) -> bool:
@@ -372,3 +520,106 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bo
     core = _tegl.load_contour(os.fspath(path), _arguments.as_bool("allow_outside_paths", allow_outside_paths),
                               _arguments.as_bool("separate_process", separate_process), progress)
     return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))
+
+
+@_arguments.documents("MeshReport")
+def check(contour: Contour, *, progress: Progress | None = None) -> MeshReport:
+    """Counts a contour's invariants: is it a manifold, closed, oriented? In how many pieces?"""
+    _arguments.core_of(contour)
+    return Contour.check(contour, progress=progress)
+
+
+@typing.overload
+def measure(contour: Contour, *, at: None = None, allow_empty: bool = False, threads: int = 0,
+            progress: Progress | None = None) -> Measures: ...
+
+
+@typing.overload
+def measure(contour: Contour, *, at: Place | Places | Labelled, allow_empty: bool = False, threads: int = 0,
+            progress: Progress | None = None) -> CutMeasures: ...
+
+
+@_arguments.documents("measure", "Measures", "measure_cuts")
+def measure(contour: Contour, *, at=None, allow_empty: bool = False, threads: int = 0,
+            progress: Progress | None = None) -> Measures | CutMeasures:
+    """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times.
+
+    Times outside of the image are a ValueError, as in `slice`; with `allow_empty` their sizes and contents are 0.
+    """
+    _arguments.core_of(contour)
+    return Contour.measure(contour, at=at, allow_empty=allow_empty, threads=threads, progress=progress)
+
+
+@_arguments.documents("label_components", "components", "Component")
+def components(contour: Contour, *, threads: int = 0, progress: Progress | None = None) -> Components:
+    """The connected components: labels, what each is, contours of some."""
+    _arguments.core_of(contour)
+    return Contour.components(contour, threads=threads, progress=progress)
+
+
+@_arguments.documents("elements", "elements_by_cell", "Elements")
+def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
+             progress: Progress | None = None) -> Elements:
+    """Hypersurface elements of a contour: one for each simplex, or (`by_cell`) for each piece in a cell of the grid.
+
+    `by_cell` is for contours straight from `tegl.contour`, or some of their components, whose grid is known.
+    """
+    _arguments.core_of(contour)
+    return Contour.elements(contour, by_cell=by_cell, threads=threads, progress=progress)
+
+
+@typing.overload
+def simplify(contour: Contour, ratio: float | None = None, *, count: int | None = None,
+             max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
+             border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
+             scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
+             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             return_stats: typing.Literal[False] = False) -> Contour: ...
+
+
+@typing.overload
+def simplify(contour: Contour, ratio: float | None = None, *, count: int | None = None,
+             max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
+             border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
+             scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
+             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             return_stats: typing.Literal[True]) -> tuple[Contour, SimplifyStats]: ...
+
+
+@_arguments.documents("simplify", "SimplifyOptions", "SimplifyStats")
+def simplify(contour: Contour, ratio: float | None = None, *, count: int | None = None,
+             max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
+             border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
+             scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
+             allow_nonmanifold: bool = False, threads: int = 0, progress: Progress | None = None,
+             return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
+    """The same contour with fewer simplices, and a bound of the error: the attribute "simplification_error".
+
+    ratio, count, max_error
+        How far: to this share of the simplices (0.1: a tenth), to so many, or as long as the error stays below this.
+        One of them, or several: what is reached first ends it.
+    method, border
+        "quadric", "facets", "vertices" or "fast"; "fixed" or "within".
+    scale
+        A number for each axis of the array by which its lengths count, or "auto".
+    return_stats
+        Whether to return (contour, SimplifyStats).
+    """
+    _arguments.core_of(contour)
+    return Contour._simplify(contour, ratio, count, max_error, method, border, max_curvature, scale, measure,
+                             allow_nonmanifold, threads, progress, return_stats)
+
+
+@_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
+def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
+          first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
+          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
+    """Follows the parts of a contour along its time axis: births, merges, splits, deaths.
+
+    times
+        When to measure the parts, ascending; a whole number: at so many even times. Times outside of the image are a
+        ValueError, as in `tegl.slice`, unless `allow_empty` is True: there are no parts then.
+    """
+    _arguments.core_of(contour)
+    return Contour.track(contour, min_lifetime=min_lifetime, times=times, first=first, last=last, handles=handles,
+                         label_simplices=label_simplices, allow_empty=allow_empty, threads=threads, progress=progress)

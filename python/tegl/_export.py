@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contours for VTK, pyvista and meshio, which are imported when they are asked for."""
+"""The library's contours for VTK, pyvista and meshio, which are imported when they are asked for. Points are x, y, z (and
+t): the library's order of axes, as in files."""
 
 from __future__ import annotations
 
@@ -8,8 +9,7 @@ import typing
 
 import numpy as np
 
-if typing.TYPE_CHECKING:
-    from ._contour import Contour
+from . import _tegl
 
 
 def _imported(module: str, function: str, what: str) -> typing.Any:
@@ -19,12 +19,19 @@ def _imported(module: str, function: str, what: str) -> typing.Any:
         raise ImportError(f"{function} needs {what}, which Python does not find: {error}") from error
 
 
-def _points(contour: Contour) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def points_and_cells(contour: _tegl.Contour) -> tuple[np.ndarray, list[tuple[str, np.ndarray]]]:
+    kind = {2: "line", 3: "triangle", 4: "tetra"}.get(contour.ndim)
+    if kind is None:
+        raise ValueError(f"cells of a {contour.ndim}D contour; expected 2 to 4 dimensions")
+    return contour.vertices, [(kind, contour.simplices)]
+
+
+def _points(contour: _tegl.Contour) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """#V x 3, and what has no place in them."""
-    vertices = contour._core.vertices
+    vertices = contour.vertices
     extra = {}
     if contour.ndim == 4:
-        name = contour._core.axis_names[3] or "t"
+        name = contour.axis_names[3] or "t"
         while name in contour.vertex_attributes:
             name += "_"
         extra[name] = np.ascontiguousarray(vertices[:, 3])
@@ -33,23 +40,28 @@ def _points(contour: Contour) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     return np.ascontiguousarray(vertices[:, :3]), extra
 
 
-def _normals(contour: Contour) -> np.ndarray | None:
-    normals = contour._core.normals
+def _normals(contour: _tegl.Contour) -> np.ndarray | None:
+    normals = contour.normals
     if normals is None or contour.ndim == 4:
         return normals
     return normals if contour.ndim == 3 else np.column_stack([normals, np.zeros(len(normals), normals.dtype)])
 
 
-def _of_cells(contour: Contour) -> dict[str, np.ndarray]:
+def _of_points(contour: _tegl.Contour) -> dict[str, np.ndarray]:
+    """Attributes of vertices."""
+    return {name: values for name, (values, _) in contour.vertex_attributes.items()}
+
+
+def _of_cells(contour: _tegl.Contour) -> dict[str, np.ndarray]:
     """Attributes of simplices, vectors among them in the order of the points' coordinates."""
-    return {name: values for name, (values, _) in contour._core.simplex_attributes.items()}
+    return {name: values for name, (values, _) in contour.simplex_attributes.items()}
 
 
-def to_meshio(contour: Contour):
+def to_meshio(contour: _tegl.Contour):
     meshio = _imported("meshio", "to_meshio", "meshio")
-    _, cells = contour.points_and_cells()
+    _, cells = points_and_cells(contour)
     points, extra = _points(contour)
-    data = {**extra, **contour.vertex_attributes}
+    data = {**extra, **_of_points(contour)}
     normals = _normals(contour)
     if normals is not None:
         data["Normals"] = normals
@@ -57,10 +69,10 @@ def to_meshio(contour: Contour):
                        cell_data={name: [values] for name, values in _of_cells(contour).items()})
 
 
-def _cells(contour: Contour):
+def _cells(contour: _tegl.Contour):
     core = _imported("vtkmodules.vtkCommonDataModel", "to_vtk", "VTK's Python modules")
     support = importlib.import_module("vtkmodules.util.numpy_support")
-    simplices = contour._core.simplices
+    simplices = contour.simplices
     cells = core.vtkCellArray()
     offsets = np.arange(0, simplices.size + 1, contour.ndim, dtype=np.int64)
     cells.SetData(support.numpy_to_vtkIdTypeArray(offsets, deep=True),
@@ -68,7 +80,7 @@ def _cells(contour: Contour):
     return core, support, cells
 
 
-def to_vtk(contour: Contour):
+def to_vtk(contour: _tegl.Contour):
     if not 2 <= contour.ndim <= 4:
         raise ValueError(f"cells of a {contour.ndim}D contour; expected 2 to 4 dimensions")
     core, support, cells = _cells(contour)
@@ -82,7 +94,7 @@ def to_vtk(contour: Contour):
         mesh = core.vtkPolyData()
         mesh.SetPoints(points)
         mesh.SetPolys(cells) if contour.ndim == 3 else mesh.SetLines(cells)
-    for data, arrays in ((mesh.GetPointData(), {**extra, **contour.vertex_attributes}),
+    for data, arrays in ((mesh.GetPointData(), {**extra, **_of_points(contour)}),
                          (mesh.GetCellData(), _of_cells(contour))):
         for name, values in arrays.items():
             data.AddArray(_named(support, values, name))
@@ -105,6 +117,6 @@ def _named(support, values: np.ndarray, name: str):
     return array
 
 
-def to_pyvista(contour: Contour):
+def to_pyvista(contour: _tegl.Contour):
     pyvista = _imported("pyvista", "to_pyvista", "pyvista")
     return pyvista.wrap(to_vtk(contour))

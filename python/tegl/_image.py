@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contours of arrays, and images from files."""
+"""Contours of arrays, cuts of contours and of arrays, and images from files."""
 
 from __future__ import annotations
 
+import builtins
 import dataclasses
 import os
 import typing
@@ -10,8 +11,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _kinds, _outside, _tegl
-from ._contour import Contour, Progress
+from . import _arguments, _kinds, _results, _outside, _tegl
+from ._arguments import Labelled, Place, Places, Progress
+from ._contour import Contour
 
 
 @_arguments.documents("extract", "ExtractOptions", "Ambiguity")
@@ -81,6 +83,130 @@ def contour(array, level: float, *, spacing=None, origin=None, coords=None, affi
     if not allow_empty and not len(core.simplices):
         _outside.require_level(prepared, level)
     return Contour._of(core, prepared.is_reversed, prepared.extent, prepared.image.grid)
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: Place | None = None, axis: int | str | None = None,
+          normal: Sequence[float] | np.ndarray | None = None, offset: float | None = None, allow_empty: bool = False,
+          threads: int = 0, progress: Progress | None = None, **coordinate: Place) -> Contour: ...
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: Places, axis: int | str | None = None,
+          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: Labelled, axis: int | str | None = None,
+          allow_empty: bool = False, threads: int = 0,
+          progress: Progress | None = None) -> Contour | list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: Contour, level: None = None, *, at: None = None, axis: None = None, normal: None = None,
+          offset: None = None, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+          **coordinate: Places | Labelled) -> Contour | list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: typing.Any, level: float, *, at: Place, axis: int | str | None = None,
+          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+          **more: typing.Any) -> Contour: ...
+
+
+@typing.overload
+def slice(contour_or_array: typing.Any, level: float, *, at: Places, axis: int | str | None = None,
+          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+          **more: typing.Any) -> list[Contour]: ...
+
+
+@typing.overload
+def slice(contour_or_array: typing.Any, level: float, *, axis: int | str | None = None, allow_empty: bool = False,
+          threads: int = 0, progress: Progress | None = None, **more: typing.Any) -> Contour | list[Contour]: ...
+
+
+@_arguments.documents("slice", "slice_2", "slice_image_across")
+def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | str | None = None, normal=None,
+          offset=None, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
+          **more) -> Contour | list[Contour]:
+    """The cut of a contour by a hyperplane, one dimension less: what a moving surface is like at a time.
+
+    ::
+
+        tegl.slice(contour, at=7.3)                          # the time axis
+        tegl.slice(contour, lat=-20.5)                       # an axis by its name
+        tegl.slice(contour, at=3.0, axis=2)                  # or by its number
+        tegl.slice(contour, at=[1.5, 7.3])                   # several, in one pass: a list
+        tegl.slice(contour, normal=(0, 1, 1, 0), offset=9)   # any hyperplane <normal, x> = offset
+        tegl.slice(array, 20.0, at=7.3)                      # straight from an array: only the layers beside it are read
+
+    The last form takes the arguments of `tegl.contour` too. An axis whose name is that of an argument (level, offset) is
+    cut by at= and axis=. Places may be dates, of any kind or as text, where the axis's unit says since when it counts, and
+    durations where it counts hours, days, ... Of 3D and 4D contours.
+
+    A place outside of the image, or of a contour that does not know its image, is a ValueError that names the range and
+    its unit, and so is a level that no sample of the array is above or below; with `allow_empty` the cut is empty
+    instead. Within the image a cut that meets no contour is empty in any case.
+    """
+    if isinstance(contour_or_array, Contour):
+        if level is not None and "level" in contour_or_array.axis_names:  # an axis of pressures
+            more["level"], level = level, None
+        if level is not None:
+            raise ValueError(f"level is {level} and the first argument a contour, which has its level; expected at=")
+        return contour_or_array._cut(at, axis, normal, offset, allow_empty, threads, progress, more)
+    if level is None:
+        raise ValueError("a cut of an array needs a level; expected tegl.slice(array, level, at=...)")
+    return _cut_image(contour_or_array, _arguments.as_number("level", level), at, axis, normal, offset, allow_empty,
+                      threads, progress, more)
+
+
+_GRID = ("spacing", "origin", "coords", "affine", "mask", "axis_names", "axis_units", "time_axis")
+
+
+def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
+    if normal is not None:  # there is no short way to an oblique cut
+        whole = contour(array, level, allow_empty=allow_empty, threads=threads,
+                        progress=_arguments.part_of(progress, 0.0, 0.5), **more)
+        return whole._cut(at, axis, normal, offset, allow_empty, threads, _arguments.part_of(progress, 0.5, 1.0), {})
+    if offset is not None:
+        raise ValueError(_results.offset_alone(()))
+    prepared = _arguments.prepare(array, **{name: more.pop(name) for name in _GRID if name in more})
+    is_double = _arguments.is_double(more.pop("dtype", np.float32), prepared)
+    time_axis = 0 if prepared.is_reversed else prepared.ndim - 1
+    number, places = _results.named_axis(prepared.names, prepared.ndim, time_axis, at, axis, more)
+    options = _arguments.extract_options(threads=threads, **more)
+    unit = prepared.units[number]
+    given = list(places) if _results.is_list(places) else [places]
+    wanted = [_arguments.number_on_axis(place, unit) for place in given]
+    kind = np.float64 if is_double else np.float32
+
+    extent = prepared.extent if prepared.ndim in (3, 4) else None  # of others the library says that there are no cuts
+    if not _arguments.as_bool("allow_empty", allow_empty):
+        _outside.require_places(extent, number, wanted, given, kind, prepared.names[number], unit, "image")
+
+    def cut(i: int) -> _tegl.Contour:
+        if _outside.is_outside(extent, number, wanted[i], kind):
+            return _nothing(prepared, number, level, options["direction"], kind)
+        return _tegl.slice_image(prepared.image, level, prepared.library_axis(number), wanted[i], is_double, options,
+                                 _arguments.part_of(progress, i / len(wanted), (i + 1) / len(wanted)))
+
+    with prepared.terms():
+        found = [cut(i) for i in range(len(wanted))]
+    if not allow_empty and found and not any(len(one.simplices) for one in found):
+        _outside.require_level(prepared, level, "cut")
+    left = _outside.without_axis(prepared.extent, number)
+    cuts = [Contour._of(one, prepared.is_reversed, left) for one in found]
+    return cuts if _results.is_list(places) else cuts[0]
+
+
+def _nothing(prepared: _arguments.Prepared, axis: int, level: float, direction: str, kind) -> _tegl.Contour:
+    """The empty cut outside of an image."""
+    def others(labels: Sequence[str]) -> list[str]:
+        return prepared.turned([label for number, label in enumerate(labels) if number != axis])
+
+    rows = np.empty((0, prepared.ndim - 1), dtype=kind)
+    return _tegl.Contour.from_arrays(rows, rows.astype(np.uint32), None, others(prepared.names), others(prepared.units),
+                                     direction, level, [], [])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -207,7 +333,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
     array = found["array"]
     ndim = array.ndim
     is_reversed = _arguments.turn_around(time_axis, ndim)
-    turn = slice(None, None, -1) if is_reversed else slice(None)
+    turn = builtins.slice(None, None, -1) if is_reversed else builtins.slice(None)
     affine = None if found["affine"] is None else np.array(found["affine"])
     if affine is not None and is_reversed:
         affine = np.column_stack([affine[::-1, ndim - 1::-1], affine[::-1, ndim]])

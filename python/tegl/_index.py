@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import _arguments, _kinds, _outside, _tegl
-from ._contour import Contour, Progress
+from ._arguments import Progress
+from ._contour import Contour
 
 
 @dataclasses.dataclass(frozen=True)

@@ -13,9 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-if typing.TYPE_CHECKING:
-    from ._arguments import Prepared
-    from ._contour import Contour
+from ._arguments import Prepared
 
 ALLOWED = "or allow_empty=True for an empty {}"
 
@@ -74,7 +72,7 @@ def is_outside(extent: np.ndarray | None, axis: int, place: float, dtype) -> boo
     return not low <= at <= high
 
 
-def require_places_of(extent: np.ndarray | None, axis: int, places: Sequence[float], given: Sequence, dtype, name: str,
+def require_places(extent: np.ndarray | None, axis: int, places: Sequence[float], given: Sequence, dtype, name: str,
                       unit: str, of: str) -> None:
     """Raises a ValueError unless all places along an axis lie in the extent. `given`: the places as the caller has them."""
     for place, said in zip(places, given):
@@ -87,31 +85,21 @@ def require_places_of(extent: np.ndarray | None, axis: int, places: Sequence[flo
                          f"{' ' + unit if unit else ''}, the ends of the {of}, {ALLOWED.format('cut')}")
 
 
-def _extent_around(contour: Contour) -> tuple[np.ndarray | None, str]:
-    """The extent that cuts of a contour have to meet, and what has it. An empty contour without an image has none."""
-    if contour._extent is not None:
-        return contour._extent, "image"
-    if not len(contour.vertices):
-        return None, "contour"
-    ends = np.stack([contour.vertices.min(axis=0), contour.vertices.max(axis=0)]).astype(np.float64)
-    return (ends if np.isfinite(ends).all() else None), "contour"
+def extent_around(vertices: np.ndarray) -> np.ndarray | None:
+    """That of the vertices of a contour. Without vertices, or with some that are not finite, there is none."""
+    if not len(vertices):
+        return None
+    ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)]).astype(np.float64)
+    return ends if np.isfinite(ends).all() else None
 
 
-def require_places(contour: Contour, axis: int, places: Sequence[float], given: Sequence) -> None:
-    """The same for a contour: in the image that it is of, or, if that is not known, in the contour itself."""
-    extent, of = _extent_around(contour)
-    require_places_of(extent, axis, places, given, contour.vertices.dtype, contour.axis_names[axis],
-                      contour.axis_units[axis], of)
-
-
-def require_offsets(contour: Contour, normal: Sequence[float], offsets: Sequence[float]) -> None:
+def require_offsets(extent: np.ndarray | None, normal: Sequence[float], offsets: Sequence[float], dtype, of: str) -> None:
     """The same for hyperplanes <normal, x> = offset. Which of them meet a box is known up to rounding."""
-    extent, of = _extent_around(contour)
-    if extent is None or len(normal) != contour.ndim or not np.isfinite(normal).all():
+    if extent is None or len(normal) != extent.shape[1] or not np.isfinite(normal).all():
         return
     ends = extent * np.asarray(normal, dtype=np.float64)
     low, high = np.min(ends, axis=0).sum(), np.max(ends, axis=0).sum()
-    slack = 4 * np.finfo(contour.vertices.dtype).eps * np.abs(ends).max(axis=0).sum()
+    slack = 4 * np.finfo(dtype).eps * np.abs(ends).max(axis=0).sum()
     for offset in offsets:
         if np.isfinite(offset) and not low - slack <= offset <= high + slack:
             raise ValueError(f"offset is {offset}; expected one between {low:g} and {high:g}, the ends of the {of} along this "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What becomes of the parts of a moving contour."""
+"""What becomes of the parts of a moving contour: events, and the segments between them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ import typing
 
 import numpy as np
 
-from . import _arguments, _kinds, _outside, _tegl
-from ._contour import Contour, Labelled, Place, Places, Progress
+from . import _arguments, _kinds, _tegl
 
 
 @dataclasses.dataclass(frozen=True)
@@ -154,35 +153,3 @@ class TrackGraph:
     def save(self, path: str | os.PathLike, *, title: str = "") -> None:
         """Writes .json, .dot (graphviz) or a picture, .svg."""
         _tegl.write_track(self._core, os.fspath(path), _arguments.as_text("title", title))
-
-
-@_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
-def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
-          first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
-          allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> TrackGraph:
-    """Follows the parts of a contour along its time axis: births, merges, splits, deaths.
-
-    times
-        When to measure the parts, ascending; a whole number: at so many even times. Times outside of the image are a
-        ValueError, as in `tegl.slice`, unless `allow_empty` is True: there are no parts then.
-    """
-    core = _arguments.core_of(contour)
-    allow_empty = _arguments.as_bool("allow_empty", allow_empty)
-    unit = contour.axis_units[contour.time_axis]
-    if times is None:
-        places: list[float] = []
-    elif isinstance(times, (int, np.integer)):
-        count = _arguments.as_whole("times", times, 0)
-        along = contour.vertices[:, contour.time_axis]
-        places = _tegl.even_times(float(along.min()), float(along.max()), count) if len(along) else []
-    else:
-        given = _arguments.as_list("times", times, "a list of times, or a whole number of even ones")
-        places = [_arguments.number_on_axis(time, unit) for time in given]
-        if not allow_empty:
-            _outside.require_places(contour, contour.time_axis, places, given)
-    found = _tegl.track(core, _arguments.as_number("min_lifetime", min_lifetime), places,
-                        None if first is None else _arguments.number_on_axis(first, unit),
-                        None if last is None else _arguments.number_on_axis(last, unit),
-                        _arguments.as_bool("handles", handles), _arguments.as_bool("label_simplices", label_simplices),
-                        _arguments.threads_of(threads), progress)
-    return TrackGraph(found, contour._is_reversed, unit)
