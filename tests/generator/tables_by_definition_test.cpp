@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Every entry of every emitted table against the oracle by definition (definition_oracle.hpp): tiles of two to four
+// dimensions in both triangulations, the resolved cube in all its lists, and regions at the border.
+//
+// The contour of an entry meets the boundary of its tile in closed curves or surfaces. Each of them separates one
+// component of the high part from one of the low part; and these numbers are the same by the oracle and by the entry:
+// - components: curves or surfaces = components of the high part + components of the low part - 1, as the boundary is a
+//   sphere;
+// - Euler characteristic of a component of a part: 2 - its curves in 3D, half of its surfaces' in 4D;
+// - the contour in the tile: as many components as curves or surfaces, each filled by a disc or half of its Euler
+//   characteristic. In a cube with a choice, one component for each component of the part that is cut off, with its
+//   Euler characteristic.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "decode.hpp"
+#include "definition_oracle.hpp"
+#include "tegl/generated/tables.hpp"
+
+namespace tegl::gen {
+namespace {
+
+using test::boundary_of;
+using test::BoundaryPart;
+using test::Corners;
+using test::Piece;
+using test::pieces_of;
+using test::VertexSet;
+
+/// The corners of an edge of an n-cube, the one whose coordinate is 0 first (table contract).
+std::array<unsigned, 2> corners_of_edge(int n, unsigned edge) {
+  const unsigned axis = edge >> (n - 1), rest = edge & ((1u << (n - 1)) - 1);
+  const unsigned base = (rest >> axis << (axis + 1)) | (rest & ((1u << axis) - 1));
+  return {base, base | 1u << axis};
+}
+
+/// The two parts of a tile's boundary.
+struct Parts {
+  int n;
+  Corners high_corners;
+  BoundaryPart high, low;
+
+  /// `is_high`: the centres of ambiguous squares.
+  Parts(int dim, Corners signature, const BoundaryPart::HasCentre& is_high)
+      : n(dim),
+        high_corners(signature),
+        high(dim, signature, is_high),
+        low(dim, ~signature & ((Corners{1} << (1u << dim)) - 1),
+            [&](unsigned base, unsigned axes) { return !is_high(base, axes); }) {}
+};
+
+const BoundaryPart::HasCentre kAllLow = [](unsigned, unsigned) { return false; };
+const BoundaryPart::HasCentre kAllHigh = [](unsigned, unsigned) { return true; };
+
+/// The curves or surfaces in which an entry meets the boundary, by the components that each of them separates.
+struct Separators {
+  std::vector<long> high_eulers, low_eulers;     ///< by component: what the entry says
+  std::vector<std::size_t> high_part, low_part;  ///< by separator
+};
+
+/// What is wrong; empty: nothing.
+std::string fault_of_boundary(const Parts& parts, const std::vector<Piece>& separators) {
+  const unsigned edges = tables::edge_count(static_cast<std::uint32_t>(parts.n));
+  std::vector<long> high(parts.high.components()), low(parts.low.components());
+  std::set<unsigned> met;
+  for (const Piece& separator : separators) {
+    std::optional<std::array<std::size_t, 2>> between;
+    for (const std::uint8_t v : separator.vertices) {
+      if (v >= edges) continue;
+      met.insert(v);
+      auto [inside, outside] = corners_of_edge(parts.n, v);
+      if ((parts.high_corners >> inside & 1u) == 0) std::swap(inside, outside);
+      if ((parts.high_corners >> inside & 1u) == 0 || (parts.high_corners >> outside & 1u) != 0)
+        return "a point on an edge that is not critical";
+      const std::array<std::size_t, 2> here = {parts.high.of_corner(inside), parts.low.of_corner(outside)};
+      if (between && *between != here) return "a separator of several components";
+      between = here;
+    }
+    if (!between) return "a separator without a point on an edge";
+    // In 2D a part is an arc, between two points.
+    const long share = parts.n == 4 ? separator.euler : 1;
+    high[(*between)[0]] += share;
+    low[(*between)[1]] += share;
+  }
+  unsigned critical = 0;
+  for (unsigned e = 0; e < edges; ++e) {
+    const auto [a, b] = corners_of_edge(parts.n, e);
+    critical += (parts.high_corners >> a & 1u) != (parts.high_corners >> b & 1u) ? 1 : 0;
+  }
+  if (met.size() != critical) return "critical edges without a point";
+  const std::size_t expected = parts.n == 2 ? 2 * high.size() : high.size() + low.size() - 1;
+  if (separators.size() != expected) return "another number of separators";
+  for (const auto& [part, sums] : {std::pair(&parts.high, &high), std::pair(&parts.low, &low)})
+    for (std::size_t c = 0; c < sums->size(); ++c) {
+      const long sum = (*sums)[c];
+      const bool agrees = parts.n == 2   ? sum == 2 && part->euler(c) == 1
+                          : parts.n == 3 ? part->euler(c) == 2 - sum
+                                         : 2 * part->euler(c) == sum;
+      if (!agrees) return "a part with another Euler characteristic";
+    }
+  return "";
+}
+
+/// A contour that fills each separator by itself.
+std::string fault_of_separate(const Parts& parts, const std::vector<VertexSet>& simplices) {
+  const auto n = static_cast<unsigned>(parts.n);
+  const std::vector<Piece> separators = pieces_of(boundary_of(simplices, n), n - 1);
+  std::string fault = fault_of_boundary(parts, separators);
+  if (!fault.empty()) return fault;
+  const std::vector<Piece> contour = pieces_of(simplices, n);
+  if (contour.size() != (n == 2 ? separators.size() / 2 : separators.size())) return "another number of components";
+  for (const Piece& piece : contour) {
+    if (n < 4 && piece.euler != 1) return "a component that is no disc";
+    if (n < 4) continue;
+    for (const Piece& separator : separators)
+      if (std::binary_search(piece.vertices.begin(), piece.vertices.end(), separator.vertices[0]) &&
+          2 * piece.euler != separator.euler)
+        return "a component with another Euler characteristic";
+  }
+  return "";
+}
+
+std::vector<VertexSet> simplices_of(const tables::TileTable& table, Signature s) {
+  std::vector<VertexSet> result;
+  for (const Simplex& simplex : decode(table, s).simplices) {
+    VertexSet set;
+    set.fill(0xff);
+    for (std::uint32_t j = 0; j < table.dim; ++j) set[j] = static_cast<std::uint8_t>(simplex[j]);
+    result.push_back(set);
+  }
+  return result;
+}
+
+TEST(TablesByDefinition, EveryEntryOfEveryTileTable) {
+  for (const int n : {2, 3, 4}) {
+    const Signature full = (Signature{1} << (1u << n)) - 1;
+    for (Signature s = 1; s < full; ++s) {
+      const Parts parts(n, s, kAllLow);
+      for (const int triangulation : {0, 1}) {
+        const auto simplices = simplices_of(tables::tile_table(n, triangulation), s);
+        ASSERT_EQ(fault_of_separate(parts, simplices), "") << n << "D, signature " << s << ", table " << triangulation;
+      }
+    }
+    for (const Signature s : {Signature{0}, full})
+      for (const int triangulation : {0, 1}) EXPECT_TRUE(simplices_of(tables::tile_table(n, triangulation), s).empty());
+  }
+}
+
+/// The base and the axes of square q = 2 a + side of the cube.
+struct Square {
+  unsigned base, axes;
+};
+Square square_of(unsigned q) { return {(q % 2) << (q / 2), 7u ^ 1u << (q / 2)}; }
+
+std::vector<VertexSet> triangles_of(const tables::ResolvedList& list) {
+  std::vector<VertexSet> result;
+  for (unsigned t = 0; t < list.triangle_count; ++t) {
+    const std::uint8_t* const v = tables::kTile3Resolved.triangles + 3 * (std::size_t{list.first_triangle} + t);
+    result.push_back({v[0], v[1], v[2], 0xff});
+  }
+  return result;
+}
+
+/// The contour of a cube whose centre belongs to the other part: each component of `part` is cut off by a copy.
+std::string fault_of_cut(const BoundaryPart& part, const Parts& parts, const std::vector<VertexSet>& triangles) {
+  std::string fault = fault_of_boundary(parts, pieces_of(boundary_of(triangles, 3), 2));
+  if (!fault.empty()) return fault;
+  const std::vector<Piece> contour = pieces_of(triangles, 3);
+  if (contour.size() != part.components()) return "another number of components than are cut off";
+  for (const Piece& piece : contour) {
+    auto [a, b] = corners_of_edge(3, piece.vertices[0]);
+    if (((parts.high_corners >> a & 1u) != 0) != (&part == &parts.high)) std::swap(a, b);
+    if (piece.euler != part.euler(part.of_corner(a))) return "a component unlike the one that it cuts off";
+  }
+  return "";
+}
+
+TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
+  const tables::ResolvedTable& table = tables::kTile3Resolved;
+  unsigned entries = 0;
+  for (Signature s = 0; s < 256; ++s) {
+    const unsigned ambiguous = table.ambiguous_squares[s];
+    for (unsigned r = 0; r < 1u << std::popcount(ambiguous); ++r, ++entries) {
+      const auto is_high = [&](unsigned base, unsigned axes) {
+        unsigned q = 0, bit = 0;
+        for (; square_of(q).base != base || square_of(q).axes != axes; ++q) bit += ambiguous >> q & 1u;
+        EXPECT_NE(ambiguous >> q & 1u, 0u) << "square " << q << " of " << s;
+        return (r >> bit & 1u) != 0;
+      };
+      const Parts parts(3, s, is_high);
+      const tables::ResolvedEntry& entry = table.entries[table.first_entry[s] + r];
+      if (s == 0 || s == 255) {
+        EXPECT_EQ(entry.separate.triangle_count, 0);
+        continue;
+      }
+      ASSERT_EQ(fault_of_separate(parts, triangles_of(entry.separate)), "") << s << ", resolution " << r;
+      EXPECT_EQ(entry.components, pieces_of(triangles_of(entry.separate), 3).size());
+      ASSERT_EQ(fault_of_cut(parts.high, parts, triangles_of(entry.low)), "") << s << ", resolution " << r << ", low";
+      ASSERT_EQ(fault_of_cut(parts.low, parts, triangles_of(entry.high)), "") << s << ", resolution " << r << ", high";
+    }
+  }
+  EXPECT_EQ(entries, 656u);
+}
+
+TEST(TablesByDefinition, EveryRegionOfEveryBorderTable) {
+  for (const int k : {1, 2, 3})
+    for (const int triangulation : {0, 1})
+      for (const int alternative : {0, 1}) {
+        const tables::RegionTable& table = tables::region_table(k, triangulation, alternative);
+        const auto size = static_cast<unsigned>(k + 1);
+        for (Signature s = 0; s < Signature{1} << (1u << k); ++s) {
+          std::vector<VertexSet> simplices;
+          for (unsigned i = 0; i < table.lists[s].simplex_count; ++i) {
+            VertexSet set;
+            set.fill(0xff);
+            for (unsigned j = 0; j < size; ++j)
+              set[j] = table.simplices[(std::size_t{table.lists[s].first_simplex} + i) * size + j];
+            simplices.push_back(set);
+          }
+          std::set<Corners> expected, found;
+          const BoundaryPart part(k, s, alternative == 0 ? kAllLow : kAllHigh);
+          expected.insert(part.regions_of_cube().begin(), part.regions_of_cube().end());
+          for (const Piece& piece : pieces_of(simplices, size)) {
+            EXPECT_EQ(piece.euler, 1) << k << "D, signature " << s;
+            Corners corners = 0;
+            for (const std::uint8_t v : piece.vertices)
+              if (v < 1u << k) corners |= Corners{1} << v;
+            found.insert(corners);
+          }
+          ASSERT_EQ(found, expected) << k << "D, signature " << s << ", table " << triangulation << ", " << alternative;
+        }
+      }
+}
+
+/// The comparison notices what it is for.
+TEST(TablesByDefinition, AWrongEntryIsFound) {
+  const auto entry = [](int n, Signature s) { return simplices_of(tables::tile_table(n, 1), s); };
+  const auto fault = [](int n, Signature s, const std::vector<VertexSet>& simplices) {
+    return fault_of_separate(Parts(n, s, kAllLow), simplices);
+  };
+  ASSERT_EQ(fault(3, 0b1001, entry(3, 0b1001)), "");
+  // The square's other connection.
+  EXPECT_EQ(fault_of_separate(Parts(3, 0b1001, kAllHigh), entry(3, 0b1001)), "another number of separators");
+  // Another signature with the same number of triangles.
+  EXPECT_EQ(fault(3, 0b0011, entry(3, 0b0101)), "a point on an edge that is not critical");
+  // A triangle is missing: the quadrilateral's curve is shorter.
+  auto missing = entry(3, 0b1111);
+  missing.pop_back();
+  EXPECT_EQ(fault(3, 0b1111, missing), "critical edges without a point");
+  // A tube in place of two discs: 0 and 7 are opposite corners.
+  const auto low = triangles_of(tables::kTile3Resolved.entries[tables::kTile3Resolved.first_entry[129]].high);
+  EXPECT_EQ(fault(3, 129, low), "another number of components");
+  // A torus that is filled as a sphere would be.
+  auto cone = std::vector<VertexSet>();
+  for (VertexSet facet : boundary_of(entry(4, 1910), 4)) {
+    facet[3] = 200;
+    cone.push_back(facet);
+  }
+  EXPECT_EQ(fault(4, 1910, cone), "a component with another Euler characteristic");
+}
+
+}  // namespace
+}  // namespace tegl::gen
