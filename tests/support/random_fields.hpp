@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -13,15 +12,11 @@
 
 #include "fields.hpp"
 #include "multilinear.hpp"
+#include "share.hpp"
 #include "tegl/image.hpp"
 #include "view_of.hpp"
 
 namespace tegl::test {
-
-/// How many of `count` random fields a test looks at: all where the environment has TEGL_FULL_TOPOLOGY, else `share`.
-inline std::size_t fields_to_test(std::size_t count, std::size_t share) {
-  return std::getenv("TEGL_FULL_TOPOLOGY") != nullptr ? count : share;
-}
 
 /// Integers from -bound to bound, and around them, where `padded`, one layer below all.
 template <int N>

@@ -50,14 +50,14 @@ void expect_closed_manifolds(std::uint64_t seed, std::size_t count, std::size_t 
   }
 }
 
-TEST(Degenerate, IntegersIn2dHaveClosedCurves) { expect_closed_manifolds<2>(1, fields_to_test(10'000, 300), 6, false); }
+TEST(Degenerate, IntegersIn2dHaveClosedCurves) { expect_closed_manifolds<2>(1, cases_to_test(10'000, 300), 6, false); }
 TEST(Degenerate, IntegersIn3dHaveClosedManifolds) {
-  expect_closed_manifolds<3>(2, fields_to_test(10'000, 100), 5, false);
+  expect_closed_manifolds<3>(2, cases_to_test(10'000, 100), 5, false);
 }
-TEST(Degenerate, MasksIn2dHaveClosedCurves) { expect_closed_manifolds<2>(3, fields_to_test(10'000, 300), 6, true); }
-TEST(Degenerate, MasksIn3dHaveClosedManifolds) { expect_closed_manifolds<3>(4, fields_to_test(10'000, 100), 5, true); }
-TEST(Degenerate, IntegersIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(5, fields_to_test(100, 2), 3, false); }
-TEST(Degenerate, MasksIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(6, fields_to_test(100, 2), 3, true); }
+TEST(Degenerate, MasksIn2dHaveClosedCurves) { expect_closed_manifolds<2>(3, cases_to_test(10'000, 300), 6, true); }
+TEST(Degenerate, MasksIn3dHaveClosedManifolds) { expect_closed_manifolds<3>(4, cases_to_test(10'000, 100), 5, true); }
+TEST(Degenerate, IntegersIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(5, cases_to_test(100, 2), 3, false); }
+TEST(Degenerate, MasksIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(6, cases_to_test(100, 2), 3, true); }
 
 /// `expected` is of the field just below the isovalue; epsilon keeps the vertices on their edges.
 template <int N>
@@ -78,12 +78,12 @@ void expect_high_at_ties(std::uint64_t seed, std::size_t count, std::size_t samp
 }
 
 TEST(Degenerate, SaddlesAtTheIsovalueAreHigh) {
-  expect_high_at_ties<3>(7, fields_to_test(100'000, 3000), 2, false, false);
-  expect_high_at_ties<3>(8, fields_to_test(10'000, 200), 5, false, true);
-  expect_high_at_ties<3>(9, fields_to_test(10'000, 200), 5, false, false);
-  expect_high_at_ties<3>(10, fields_to_test(10'000, 200), 5, true, true);
-  expect_high_at_ties<2>(11, fields_to_test(10'000, 300), 6, false, true);
-  expect_high_at_ties<2>(12, fields_to_test(10'000, 300), 6, true, true);
+  expect_high_at_ties<3>(7, cases_to_test(100'000, 3000), 2, false, false);
+  expect_high_at_ties<3>(8, cases_to_test(10'000, 200), 5, false, true);
+  expect_high_at_ties<3>(9, cases_to_test(10'000, 200), 5, false, false);
+  expect_high_at_ties<3>(10, cases_to_test(10'000, 200), 5, true, true);
+  expect_high_at_ties<2>(11, cases_to_test(10'000, 300), 6, false, true);
+  expect_high_at_ties<2>(12, cases_to_test(10'000, 300), 6, true, true);
 }
 
 }  // namespace

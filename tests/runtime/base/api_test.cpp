@@ -7,31 +7,31 @@
 #include <type_traits>
 #include <utility>
 
-#include "tegl/active_tiles_io.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
 #include "tegl/deviation.hpp"
-#include "tegl/elements_io.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/facet_hierarchy.hpp"
 #include "tegl/facets/tile_certifier.hpp"
 #include "tegl/io.hpp"
+#include "tegl/io/active_tiles.hpp"
+#include "tegl/io/elements.hpp"
+#include "tegl/io/pending_path.hpp"
+#include "tegl/io/series.hpp"
+#include "tegl/io/tracks.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/normals.hpp"
-#include "tegl/pending_path.hpp"
 #include "tegl/pick.hpp"
 #include "tegl/polygons.hpp"
 #include "tegl/project.hpp"
 #include "tegl/sample.hpp"
 #include "tegl/scrubber.hpp"
 #include "tegl/seed_set.hpp"
-#include "tegl/series.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream_several.hpp"
 #include "tegl/tile_facets.hpp"
 #include "tegl/track.hpp"
-#include "tegl/track_io.hpp"
 
 namespace {
 
