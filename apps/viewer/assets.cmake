@@ -1,5 +1,5 @@
 # cmake -DOUT=FILE [-DMARKUP=… -DSTYLE=… -DPROGRAM=… -DNOTICE=…] -P assets.cmake: files as texts of a C++ source.
-set(text "// SPDX-License-Identifier: BSD-3-Clause\n// Made by apps/viewer/assets.cmake.\n#include \"view_assets.hpp\"\n")
+set(text "// SPDX-License-Identifier: BSD-3-Clause\n// Made by apps/viewer/assets.cmake.\n#include \"view/view_assets.hpp\"\n")
 string(APPEND text "namespace tegl::cli {\n")
 foreach(part Markup Style Program Notice)
   string(TOUPPER ${part} file)

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "tegl/error.hpp"
-#include "tegl/pending_path.hpp"
+#include "tegl/io/pending_path.hpp"
 
 namespace tegl::cli {
 

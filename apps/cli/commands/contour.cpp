@@ -22,7 +22,7 @@
 #include "input/extraction.hpp"
 #include "output/output.hpp"
 #include "output/result.hpp"
-#include "tegl/active_tiles_io.hpp"
+#include "tegl/io/active_tiles.hpp"
 #include "tegl/pick.hpp"
 
 namespace tegl::cli {

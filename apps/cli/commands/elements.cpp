@@ -17,7 +17,7 @@
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
 #include "tegl/elements.hpp"
-#include "tegl/elements_io.hpp"
+#include "tegl/io/elements.hpp"
 
 namespace tegl::cli {
 

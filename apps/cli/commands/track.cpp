@@ -20,7 +20,7 @@
 #include "base/units.hpp"
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
-#include "tegl/track_io.hpp"
+#include "tegl/io/tracks.hpp"
 
 namespace tegl::cli {
 

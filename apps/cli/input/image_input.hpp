@@ -10,7 +10,7 @@
 
 #include "output/result.hpp"
 #include "tegl/io.hpp"
-#include "tegl/series.hpp"
+#include "tegl/io/series.hpp"
 
 namespace tegl::cli {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "tegl/io.hpp"
-#include "tegl/pending_path.hpp"
+#include "tegl/io/pending_path.hpp"
 
 namespace tegl::cli {
 

@@ -15,8 +15,8 @@
 
 #include "base/numbers.hpp"
 #include "base/printable.hpp"
+#include "tegl/io/tracks.hpp"
 #include "tegl/normals.hpp"
-#include "tegl/track_io.hpp"
 #include "view/view_assets.hpp"
 
 namespace tegl::cli {
