@@ -22,7 +22,7 @@
 #include "arguments.hpp"
 #include "image_file.hpp"
 #include "memory.hpp"
-#include "tegl/active_tiles_io.hpp"
+#include "tegl/io/active_tiles.hpp"
 #include "timing.hpp"
 #include "usage.hpp"
 

@@ -154,8 +154,10 @@ def links(source, _=None):
         to_visit += [to for to in targets if to.suffix == ".md" and to.exists() and to not in seen | set(to_visit)]
     dead += [f"no links lead from docs/index.md to {page.relative_to(source)}" for page in pages(source) if page not in seen]
     front = (source / "docs/index.md").read_text(encoding="utf-8")
-    dead += [f"docs/index.md does not name tegl/{header.name}" for header in sorted((source / "runtime/include/tegl").glob("*.hpp"))
-             if f"`tegl/{header.name}`" not in front]
+    include = source / "runtime/include"
+    dead += [f"docs/index.md does not name {header}"
+             for header in sorted(str(path.relative_to(include)) for path in include.rglob("*.hpp"))
+             if f"`{header}`" not in front]
     if dead:
         sys.exit("\n".join(dead))
     assert count > 0, "no links found"

@@ -16,7 +16,7 @@ foreach(pattern "^include/tegl/extract.hpp$" "^include/tegl/facets/facets.hpp$"
   endif()
 endforeach()
 # A header that includes one that is not installed would only fail for users.
-file(GLOB headers ${PREFIX}/include/tegl/*.hpp)
+file(GLOB_RECURSE headers ${PREFIX}/include/tegl/*.hpp)
 foreach(header IN LISTS headers)
   file(STRINGS ${header} includes REGEX "^#include \"tegl/")
   foreach(line IN LISTS includes)

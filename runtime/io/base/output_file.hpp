@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tegl/error.hpp"
-#include "tegl/pending_path.hpp"
+#include "tegl/io/pending_path.hpp"
 
 namespace tegl::io_detail {
 

@@ -2,7 +2,7 @@
 //
 // Series of files as one image: what fits together, where each file lies along the new axis, and the values one file
 // after the other.
-#include "tegl/series.hpp"
+#include "tegl/io/series.hpp"
 
 #include <algorithm>
 #include <cmath>

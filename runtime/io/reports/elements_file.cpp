@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elements to text and to HDF5; see tegl/elements_io.hpp.
+// Elements to text and to HDF5; see tegl/io/elements.hpp.
 //
 // Based on: P. Huovinen and H. Petersen, "Particlization in hybrid models", Eur. Phys. J. A 48 (2012) 171,
 // arXiv:1206.3371, and the example program that the authors give with their code: what its lines hold.
@@ -17,7 +17,7 @@
 #include "base/hdf5_file.hpp"
 #include "base/output_file.hpp"
 #include "meshes/attributes.hpp"
-#include "tegl/elements_io.hpp"
+#include "tegl/io/elements.hpp"
 
 namespace tegl {
 

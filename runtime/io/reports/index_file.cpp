@@ -6,7 +6,7 @@
 
 #include "base/common.hpp"
 #include "base/output_file.hpp"
-#include "tegl/active_tiles_io.hpp"
+#include "tegl/io/active_tiles.hpp"
 
 namespace tegl {
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/output_file.hpp"
-#include "tegl/track_io.hpp"
+#include "tegl/io/tracks.hpp"
 
 namespace tegl {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "tegl/track_io.hpp"
+#include "tegl/io/tracks.hpp"
 
 namespace tegl {
 namespace {

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include "base/call_apart.hpp"
+#include "base/workers.hpp"
 #include "tegl/error.hpp"
 #include "tegl/saddle.hpp"
 

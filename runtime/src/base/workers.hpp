@@ -16,7 +16,6 @@
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
-#include "base/call_apart.hpp"
 #include "base/progress.hpp"
 
 // The thread sanitizer does not see how the installed TBB, which is not built for it, orders things: there, plain
@@ -33,6 +32,18 @@
 #endif
 
 namespace tegl::detail {
+
+/// Calls a function of the caller's from within the work. If it waits for tasks of its own, the thread does not take up
+/// other parts of the work meanwhile: these would call it anew before it is done, and find in use what the thread keeps
+/// for its work.
+template <class Call>
+auto call_apart(const Call& call) {
+#ifdef TEGL_PLAIN_THREADS
+  return call();
+#else
+  return tbb::this_task_arena::isolate(call);
+#endif
+}
 
 /// `Scratch`: what a thread keeps between parts of the work.
 template <class Scratch>

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "base/call_apart.hpp"
+#include "base/workers.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::detail {

@@ -10,6 +10,9 @@
 
 namespace tegl::detail {
 
+/// No vertex, no arc.
+inline constexpr Index kNone = ~Index{0};
+
 /// What lies at the very time of a vertex, of what is around it: a simplex, or more than that a facet in the border.
 enum class Flatness : std::uint8_t { none, simplex, border };
 

@@ -12,7 +12,6 @@
 
 namespace tegl::detail {
 
-inline constexpr Index kNone = ~Index{0};
 /// The part of the whole progress after which the sweep is done.
 inline constexpr double kSwept = 0.95;
 

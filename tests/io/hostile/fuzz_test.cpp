@@ -19,7 +19,7 @@
 #include "images/netcdf_files.hpp"
 #include "images/nifti_files.hpp"
 #include "io_support.hpp"
-#include "tegl/active_tiles_io.hpp"
+#include "tegl/io/active_tiles.hpp"
 
 namespace tegl::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "tegl/series.hpp"
+#include "tegl/io/series.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Series of files as one image: values, coordinates and order; and what does not fit together.
-#include "tegl/series.hpp"
+#include "tegl/io/series.hpp"
 
 #include "images/layers_support.hpp"
 #include "images/netcdf_files.hpp"

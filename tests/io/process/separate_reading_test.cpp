@@ -14,7 +14,7 @@
 #include "images/layers_support.hpp"
 #include "images/netcdf_files.hpp"
 #include "tegl/extract.hpp"
-#include "tegl/series.hpp"
+#include "tegl/io/series.hpp"
 
 namespace tegl::test {
 namespace {

@@ -23,8 +23,8 @@
 #include "active.hpp"
 #include "errors.hpp"
 #include "fields.hpp"
-#include "tegl/active_tiles_io.hpp"
 #include "tegl/io.hpp"
+#include "tegl/io/active_tiles.hpp"
 
 namespace tegl::test {
 namespace {

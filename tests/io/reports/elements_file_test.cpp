@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "errors.hpp"
-#include "tegl/elements_io.hpp"
 #include "tegl/io.hpp"
+#include "tegl/io/elements.hpp"
 
 namespace tegl::test {
 namespace {

@@ -14,8 +14,8 @@
 #include "io_support.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/io/tracks.hpp"
 #include "tegl/slice.hpp"
-#include "tegl/track_io.hpp"
 
 namespace tegl::test {
 namespace {
