@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Calls of the caller's own functions from within work that threads share.
+// Calls of user functions from within parallel work.
 #pragma once
 
 #include "base/workers.hpp"
 
 namespace tegl::detail {
 
-/// Calls a function of the caller's from within the work. If it waits for tasks of its own, the thread does not take up
-/// other parts of the work meanwhile: these would call it anew before it is done, and find in use what the thread keeps
-/// for its work.
+/// Calls a user function from within parallel work. If the function waits for tasks of its own, the thread does not
+/// take up other parts of the work meanwhile: these would call the function again before it returns, while the thread's
+/// scratch is in use.
 template <class Call>
 auto call_apart(const Call& call) {
 #ifdef TEGL_PLAIN_THREADS

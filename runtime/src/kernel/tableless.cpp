@@ -114,8 +114,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   /// to two, only with choices), writing.
   [[nodiscard]] unsigned passes() const noexcept { return choices_ ? 5 : 3; }
   static constexpr std::size_t kNoCell = ~std::size_t{0};
-  static constexpr std::uint32_t kSlabAbove = std::uint32_t{1}
-                                              << 31;  ///< bit of FaceRanks owners: a cell of the slab above the layer
+  static constexpr std::uint32_t kSlabAbove = std::uint32_t{1} << 31;  ///< for cells of the slab above a layer
 
   TileLayer& layer(std::size_t k) { return layers_[k % layers_.size()]; }
   TileSlab& slab(std::size_t k) { return slabs_[k % slabs_.size()]; }

@@ -34,10 +34,9 @@ std::array<double, 3> cube_vertex_place(const tables::ResolvedList& list, unsign
 class ResolvedCubes {
  public:
   static constexpr unsigned kCubes = 8;
-  static constexpr unsigned kEdges = 32;   ///< of the tile
-  static constexpr unsigned kMostOwn = 3;  ///< maximum per list
-  static constexpr unsigned kMostParts =
-      4;  ///< maximum per list; as many undefined entries follow the parts of each list
+  static constexpr unsigned kEdges = 32;     ///< of the tile
+  static constexpr unsigned kMostOwn = 3;    ///< maximum per list
+  static constexpr unsigned kMostParts = 4;  ///< maximum per list, and undefined entries after the parts of each list
   static constexpr unsigned kVertices = kEdges + kCubes * kMostOwn;
   static constexpr std::uint16_t kNone = 0xffff;  ///< cube without a contour
 

@@ -258,9 +258,9 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
     }
   }
   const auto corner = [&](unsigned v) { return list.mapped_corner(v); };
+  // Cubes (K = 3) have side vertices only if they are resolved from the data.
   for (unsigned j = 0; j < list.list().side_vertices; ++j)
-    out[cones + j] =
-        mask_place<K>(list.side_mask(j), corner, place, K == 3);  // in cubes only if resolved from the data
+    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, K == 3);
 }
 
 }  // namespace tegl::detail

@@ -120,8 +120,8 @@ class TilePlaces {
     // Tiles that share a face list its simplices in different orders, so they are sorted. For N <= 4 the tile itself is
     // sorted as well, to agree with 5D tiles that have it as a face.
     const bool is_shared = N <= 4 || vertex.face != cube_.tile();
-    const auto first_term =
-        static_cast<std::ptrdiff_t>(terms_.size());  // recursion: unfinished barycentres have terms before these
+    // Recursion: barycentres still being computed have terms before these.
+    const auto first_term = static_cast<std::ptrdiff_t>(terms_.size());
     std::array<Point, N> corners;
     const std::span<const Point> simplex(corners.data(), width);
     for (std::size_t at = vertex.first; at < vertex.end; at += width) {
