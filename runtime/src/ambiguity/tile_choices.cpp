@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Finds the ambiguous faces of a tile and asks an estimator for their choices (see tile_choices.hpp).
+// Finds the ambiguous faces of a tile and determines their choices by an estimator (see tile_choices.hpp).
 #include "ambiguity/tile_choices.hpp"
 
 #include <bit>

@@ -315,7 +315,7 @@ void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
   }
 }
 
-/// Chooses the components to cone: spheres, but if the tile's centre may join, only those alone beside their region.
+/// Chooses the components to cone: spheres, but if the tile's centre may join, only the sole ones beside their region.
 /// Returns which side is copied to fill the others; their regions are then known.
 bool ResolvedTesseract::choose_cones(const ResolvedKey& key, bool joins) {
   const bool high = key.tile != Choice::high;
