@@ -290,6 +290,7 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
     const auto difference = hn::Sub(hn::LoadU(d, questions.ends[e].data() + i), hn::Set(d, isovalue));
     return Rounded{difference, hn::Abs(difference)};
   };
+  // the polynomials of PairQuestion
   const Rounded a0 = end(0), a1 = end(1), c0 = end(2), c1 = end(3), b0 = end(4), b1 = end(5), d0 = end(6), d1 = end(7);
   const Rounded q0 = minus(times(a0, c0), times(b0, d0)), q1 = minus(times(a1, c1), times(b1, d1));
   const Rounded m = minus(minus(plus(times(a0, c1), times(a1, c0)), times(b0, d1)), times(b1, d0));
@@ -297,6 +298,7 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
   const Rounded a = plus(times(a0, u1), times(a1, u0)), c = plus(times(c0, u1), times(c1, u0));
   const Rounded hyperdeterminant = minus(times(m, m), twice(twice(times(q0, q1))));
   const auto sign = hn::LoadU(d, questions.sign.data() + i);
+  // answers in rounded arithmetic
   Conditions conditions;
   conditions.take(u0);
   conditions.take(u1);
@@ -316,6 +318,7 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
   const auto exactly = hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant.value, least)), hn::And(is_so(a), is_so(c)));
   const auto is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, conditions.all));
   const auto is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, conditions.none));
+  // write
   alignas(64) double result[hn::MaxLanes(d)];
   hn::Store(hn::IfThenElse(is_yes, hn::Set(d, 1.0), hn::IfThenElse(is_no, zero, hn::Set(d, 2.0))), d, result);
   for (std::size_t j = 0; j < hn::Lanes(d) && i + j < questions.count; ++j)

@@ -27,6 +27,7 @@ class MovedFace {
 
   /// Returns the choice of `choose` for the face.
   [[nodiscard]] facets::Choice ask(const std::function<facets::Choice(const AmbiguousFace&)>& choose) const {
+    // base and axes in the original order
     std::array<std::size_t, N> base{};
     std::array<unsigned, N> bit{};  // by original axis: bit of a corner's number in the moved face
     unsigned axes = 0;
@@ -36,6 +37,7 @@ class MovedFace {
       axes |= 1u << own_[b];
       bit[own_[b]] = next++;
     }
+    // values in the original order of corners
     std::array<double, std::size_t{1} << N> values{};
     for (unsigned corner = 0; corner < face_.values().size(); ++corner) {
       unsigned moved = 0;

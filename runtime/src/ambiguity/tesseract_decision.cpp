@@ -142,6 +142,7 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
     const unsigned of_tile = kCubesIn4D[f][corner];
     return block.samples[of_tile >> 1][bit + (of_tile & 1u)];
   };
+  // collect questions about cubes with one pair, decide cubes with several
   JoinQuestions questions;
   std::array<std::uint8_t, 8> asked;
   for (unsigned f = 0; f < 8; ++f) {
@@ -156,6 +157,7 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
       choices[f] = detail::decide_centre(values, isovalue, entries[f]);
     }
   }
+  // apply the answers
   answer(questions, isovalue);
   for (std::size_t q = 0; q < questions.count; ++q) {
     if (questions.answers[q] == JoinQuestions::unsure) return false;

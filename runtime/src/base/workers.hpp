@@ -54,6 +54,7 @@ class Workers {
     if (count == 0) return;
     if (alone_ || count <= grain) return work(std::size_t{0}, count, own_.local());
 #ifdef TEGL_PLAIN_THREADS
+    // The first exception stops all threads.
     std::atomic<std::size_t> next = 0;
     std::vector<std::exception_ptr> errors(this->count());
     const auto take_parts = [&](std::size_t thread) {

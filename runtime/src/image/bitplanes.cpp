@@ -46,6 +46,7 @@ HWY_INLINE Word high_word(const T* samples, std::size_t length, T threshold, Wor
       word |= bits_of(d, hn::Not(hn::Lt(values, limit))) << i;
     }
   };
+  // compare whole registers, then the rest
   T rest[kLanes] = {};
   const std::size_t whole = length - length % kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes) compare(hn::LoadU(d, samples + i), i);
@@ -53,6 +54,7 @@ HWY_INLINE Word high_word(const T* samples, std::size_t length, T threshold, Wor
     std::memcpy(rest, samples + whole, (length - whole) * sizeof(T));
     compare(hn::LoadU(d, rest), whole);
   }
+  // find NaNs if there are any
   missing = 0;
   if constexpr (std::is_floating_point_v<T>) {
     if (HWY_UNLIKELY(!hn::AllTrue(d, none_missing)))

@@ -58,7 +58,7 @@ HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t coun
 
 template <class T>
 HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) {
-  // Gathered in blocks: loading a register right after scalar stores to it would stall.
+  // Gathered in blocks: a vector load right after scalar stores to the same memory would stall.
   constexpr std::size_t kBlock = 128;
   double from[kBlock];
   double to[kBlock];

@@ -85,6 +85,7 @@ class TurnedLayers final : public LayerReader<T, N> {
     std::size_t planes = 1;  // planes of axis 0 and the nearest axis
     for (int a = 1; a < N; ++a)
       if (a != nearest_) planes *= size[a];
+    // planes in parallel
     const T* const from = image_.data() + static_cast<std::ptrdiff_t>(first) * image_.strides()[N - 1];
     workers_.for_range(planes, 16, [&](std::size_t begin, std::size_t end, Nothing&) {
       for (std::size_t plane = begin; plane < end; ++plane) {

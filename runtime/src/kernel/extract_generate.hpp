@@ -116,6 +116,7 @@ class TileWriter {
             BitWalk(view.slab->active.data() + row * view.shape->words()),
             view.slab->first_own(row),
             nullptr};
+    // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
       if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
@@ -142,6 +143,7 @@ class TileWriter {
       if (has_cubes_) cubes.emplace(view, row);
     Ids ids;
     Index own = view.slab->first_own(row);
+    // active tiles, 64 positions at a time
     for (std::size_t w = 0; w < shape.words(); ++w) {
       Word rest = active[w];
       if (rest == 0) continue;
@@ -160,6 +162,7 @@ class TileWriter {
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
+        // shared and own vertices
         if constexpr (N == 4)
           if (cubes) cube_ids(*cubes, bit, ids);
         if (has_cubes_ || list.own_vertices() != 0) {
@@ -168,6 +171,7 @@ class TileWriter {
           if constexpr (N == 4)
             if (writes_cubes(*view.slab)) write_cubes(places, ids, index, vertices);
         }
+        // simplices
         out = write_simplices(list, ids, own, out);
         own += list.own_vertices();
       }
@@ -200,6 +204,7 @@ class TileWriter {
     std::uint64_t simplices = 0, own_vertices = 0;
     CellBits<N, kAll> cells(view, row);
     const Word* const active = view.slab->active.data() + row * view.shape->words();
+    // resolve each active tile and sum the sizes
     for (std::size_t w = 0, ordinal = 0; w < view.shape->words(); ++w) {
       if (active[w] != 0) cells.load(w);
       for (Word rest = active[w]; rest != 0; rest &= rest - 1, ++ordinal) {
@@ -222,6 +227,7 @@ class TileWriter {
         own_vertices += list.own_vertices();
       }
     }
+    // compare with the counts
     return simplices == view.slab->simplices(row) && own_vertices == view.slab->own_vertices(row);
   }
 

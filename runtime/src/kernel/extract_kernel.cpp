@@ -130,12 +130,14 @@ class Extraction final : public SteppedExtraction<N, Real> {
     const std::size_t slabs = shape_.layers() - 1;
     const std::size_t first = first_, end = next_;
     Stopwatch watch;
+    // classify, count
     if (!is_classified()) {
       classify(first, end);
       watch.add_to(stats_.classify_seconds);
     }
     stats_.active_tiles += count(first, end);
     watch.add_to(stats_.find_seconds);
+    // generate; if possible, classify the next batch in parallel
     part_.done = static_cast<double>(end) / static_cast<double>(slabs);
     const auto room = output_.open(part_);
     if (ahead_ && end < slabs) {
@@ -145,11 +147,13 @@ class Extraction final : public SteppedExtraction<N, Real> {
       generate(first, end, room);
       watch.add_to(stats_.generate_seconds);
     }
+    // close at the border
     gather_border(first, end);
     watch.add_to(stats_.close_seconds);
     if (estimator_) estimator_->rethrow();
     output_.close(part_, pinches_);
     watch.add_to(stats_.generate_seconds);
+    // after the last batch
     if (end < slabs) return;
     output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
     watch.add_to(stats_.close_seconds);

@@ -69,9 +69,11 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
   std::array<hn::Vec<decltype(d)>, N> sums;
   for (auto& sum : sums) sum = hn::Zero(d);
   std::size_t i = 0;
+  // whole registers
   for (; i + kLanes <= words; i += kLanes) {
     const std::size_t w = first + i;
     std::array<hn::Vec<decltype(d)>, kRows> here;
+    // any and all corners of each tile
     auto any = hn::Zero(d), next_any = any;
     auto all = hn::Not(any), next_all = all;
     for (unsigned r = 0; r < kRows; ++r) {
@@ -82,12 +84,14 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
       next_any = hn::Or(next_any, next);
       next_all = hn::And(next_all, next);
     }
+    // critical edges
     const auto next = hn::LoadU(d, rows[kUpper] + w + 1);
     const auto shifted = hn::Or(hn::ShiftRight<1>(here[kUpper]), hn::ShiftLeft<kWordBits - 1>(next));
     sums[0] = hn::Add(sums[0], hn::PopulationCount(hn::Xor(here[kUpper], shifted)));
     for (unsigned a = 1; a + 1 < N; ++a)
       sums[a] = hn::Add(sums[a], hn::PopulationCount(hn::Xor(here[kUpper], here[kUpper | 1u << (a - 1)])));
     sums[N - 1] = hn::Add(sums[N - 1], hn::PopulationCount(hn::Xor(here[kUpper], here[0])));
+    // active tiles
     any = hn::Or(hn::Or(any, hn::ShiftRight<1>(any)), hn::ShiftLeft<kWordBits - 1>(next_any));
     all = hn::And(all, hn::Or(hn::ShiftRight<1>(all), hn::ShiftLeft<kWordBits - 1>(next_all)));
     const auto found = hn::AndNot(all, any);
@@ -95,6 +99,7 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
     present |= bits_of(d, hn::Ne(found, hn::Zero(d))) << i;
   }
   for (unsigned a = 0; a < N; ++a) edges[a] += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(d, sums[a])));
+  // remaining words
   for (; i < words; ++i) {
     mixed[first + i] = mixed_word(rows, kRows, first + i);
     present |= Word{mixed[first + i] != 0} << i;
@@ -190,8 +195,10 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     _mm512_storeu_si512(to, words_of(0));
     if (count > 32) _mm512_storeu_si512(to + 32, words_of(1));
   };
+  // positions of the tiles
   const __m512i along = _mm512_maskz_compress_epi8(mixed, _mm512_load_si512(kCountUp.data()));
   store(room.at + at, [&](int half) HWY_ATTR { return _mm512_add_epi16(first, half_of(along, half)); });
+  // signatures and number of simplices
   const __m512i low = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 0));
   std::uint16_t* const out = room.signatures + at;
   if constexpr (N == 4) {

@@ -27,6 +27,7 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
   CellBits<4, Axes> cells(view, row);
   std::array<TilePoint<3>, tables::kFaceSlots> points;
   Index next = plane.first(row);
+  // cubes with vertices, 64 positions at a time
   for (std::size_t w = 0; w < shape.words(); ++w) {
     Word rest = first[w];
     if (rest == 0) continue;

@@ -142,11 +142,13 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
 }
 
 void ResolvedCubes::number_lists(int triangulation) {
+  // properties of entries and signatures
   list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
   for (unsigned entry = 0; entry < kTile3Resolved.entry_count; ++entry)
     has_choice_.push_back(kTile3Resolved.entries[entry].components > 1 ? 1 : 0);
   for (unsigned s = 0; s < 256; ++s)
     of_signatures_[s] = {kTile3Resolved.first_entry[s], kTile3Resolved.ambiguous_squares[s]};
+  // number distinct lists; `high`: each subset of the ambiguous squares
   for (unsigned s = 1; s < 255; ++s) {
     const unsigned ambiguous = kTile3Resolved.ambiguous_squares[s];
     for (unsigned high = 0, entry = kTile3Resolved.first_entry[s];; ++entry) {

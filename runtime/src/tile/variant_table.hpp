@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// The table of all keys, N = 2 or 3. In the barycentric triangulation, discs are coned from their barycentre and
-/// tunnels are not.
+/// The table of all keys, N = 2 or 3. In the barycentric triangulation, discs of more than
+/// one triangle are coned from their barycentre; tunnels are not.
 template <int N>
 class VariantTable {
  public:
