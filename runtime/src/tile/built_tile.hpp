@@ -87,7 +87,7 @@ struct BuiltTile {
   bool has_sides = false;                ///< has side fillings, so it depends on the order of the axes
   bool is_settled = true;                ///< its boundary's contour is one sphere: its own choice does not matter
 
-  /// Throws Error{TooLarge} for a tile with 32768 vertices or more.
+  /// Throws Error{TooLarge} for a tile with more than 32768 vertices.
   BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile);
   [[nodiscard]] std::size_t bytes() const noexcept;
 
