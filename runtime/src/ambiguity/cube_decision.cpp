@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ambiguous squares and cubes, one at a time and a word of tiles at a time.
+// Resolves ambiguous squares and cubes one at a time and a word of tiles at a time.
 #include "ambiguity/cube_decision.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ unsigned resolved_key<2>(const FaceEstimator<2>& estimator, const std::array<std
 
 namespace {
 
-/// The axis of the image that is number `axis` of a face, by the face's axes.
+/// By the face's axes: the axis of the image for axis number `axis` of the face.
 constexpr auto kAxesOf = [] {
   std::array<std::array<std::uint8_t, 4>, 16> result{};
   for (unsigned axes = 0; axes < 16; ++axes)
@@ -34,7 +34,7 @@ constexpr auto kAxesOf = [] {
   return result;
 }();
 
-/// The corners of a cube that square 2 * across + side has.
+/// Corners of square 2 * across + side of a cube.
 constexpr auto kCornersOfSquares = [] {
   std::array<std::array<std::uint8_t, 4>, 6> result{};
   for (unsigned square = 0; square < 6; ++square)
@@ -43,7 +43,7 @@ constexpr auto kCornersOfSquares = [] {
   return result;
 }();
 
-/// The sums of pairs of values at corners that differ along an axis.
+/// Sums of pairs of values at corners that differ along an axis.
 template <unsigned Axis, std::size_t Count>
 std::array<double, Count / 2> sums_along(const std::array<double, Count>& values) noexcept {
   constexpr std::size_t kStep = std::size_t{1} << Axis;
@@ -53,8 +53,8 @@ std::array<double, Count / 2> sums_along(const std::array<double, Count>& values
   (std::make_index_sequence<Count / 2>());
 }
 
-/// The signs of the means of a cube's squares, at bits 0 to 5, and of its own, at bit 6; and those that rounding could
-/// decide. In noise no branch would be foreseen: there are none.
+/// Signs of the means of a cube's squares (bits 0 to 5) and of the cube (bit 6), and those that rounding could decide.
+/// Without branches, which would be mispredicted in noise.
 struct CubeMeans {
   unsigned high = 0, unsure = 0;
 
@@ -70,7 +70,7 @@ struct CubeMeans {
         across_0[0], across_0[1], across_1[0], across_1[1], across_2[0], across_2[1], across_2[0] + across_2[1]};
     const double limit = 4.0 * isovalue;
     const double size = sums_along<0>(sums_along<0>(sums_along<0>(sizes)))[0] + 2.0 * std::abs(limit);
-    // More than all additions can have rounded off; what is too large, or not finite, is not less than any bound.
+    // A bound of all rounding errors; infinite if values are too large or not finite.
     const double bound = size < 0x1p1000 ? 0x1p-46 * size : std::numeric_limits<double>::infinity();
     [&]<std::size_t... Q>(std::index_sequence<Q...>) {
       const auto take = [&](unsigned q, double difference) {
@@ -83,7 +83,7 @@ struct CubeMeans {
   }
 };
 
-/// A cube whose signature is ambiguous, by means; false where rounding could decide.
+/// Decides a cube with an ambiguous signature by means. Returns false if rounding could decide.
 bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigned signature,
                      CubeDecision& decision) noexcept {
   const auto& table = tables::kTile3Resolved;
@@ -97,7 +97,7 @@ bool decide_by_means(std::span<const double, 8> values, double isovalue, unsigne
   return (means.unsure & (ambiguous | (has_choice ? 64u : 0u))) == 0;
 }
 
-/// The squares and the inside of a cube whose signature is ambiguous.
+/// Decides the squares and the interior of a cube with an ambiguous signature.
 template <int N>
 CubeDecision decide(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
                     std::span<const double, 8> values, unsigned signature) noexcept {
@@ -173,7 +173,7 @@ template class RowFaces<4>;
 
 namespace {
 
-/// The corners of a cell of a block along `axes` based at corner `base` of tile `bit`.
+/// Values at the corners of a cube of a block, along `Axes` and based at corner `base` of tile `bit`.
 template <int N, unsigned Axes>
 std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, unsigned base) noexcept {
   std::array<double, 8> values;
@@ -195,6 +195,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
   JoinQuestions questions;
   std::array<std::uint8_t, kWordBits> asked;
   std::array<std::uint16_t, kWordBits> entries;
+  // tiles that are decided already, and questions about the others
   for (std::size_t j = 0; j < tiles.count; ++j) {
     const unsigned bit = tiles.bits[j], signature = tiles.signatures[j];
     const auto high = static_cast<unsigned>(block.high[bit]);
@@ -216,6 +217,7 @@ void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const Fac
       tiles.variants[j] = table.variant(entry, static_cast<unsigned>(centre));
     }
   }
+  // apply the answers
   answer(questions, estimator.isovalue());
   for (std::size_t q = 0; q < questions.count; ++q) {
     Variant& variant = tiles.variants[asked[q]];

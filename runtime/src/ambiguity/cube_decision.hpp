@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How the data fill an ambiguous square or cube: its key (tile/cube_key.hpp) by an estimator.
+// Resolution of ambiguous squares and cubes from the data: their keys (tile/cube_key.hpp) by an estimator.
 #pragma once
 
 #include <array>
@@ -14,27 +14,27 @@
 
 namespace tegl::detail {
 
-/// The key of the cube along `axes` based at `base` of an image of three or four dimensions.
+/// Key of the cube along `axes` based at `base`, in an image of three or four dimensions.
 template <int N>
 unsigned cube_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base, unsigned axes,
                   unsigned signature) noexcept;
 
-/// The faces of a row's tiles, N = 3 or 4, a word of tiles at a time: where many of a word's tiles are ambiguous this
-/// is quicker than to ask for them one by one.
+/// Decides all faces of a row's tiles, one word of tiles at a time (N = 3 or 4). Faster than deciding tile by tile if
+/// many of a word's tiles are ambiguous.
 template <int N>
 class RowFaces {
  public:
   using Index = std::array<std::size_t, N>;
-  /// So many ambiguous tiles of a word are worth it.
+  /// Number of ambiguous tiles in a word from which this is faster.
   static constexpr std::size_t kMany = 6;
 
-  /// Of the row through `base`, which has `samples`.
+  /// For the row of `base`, which has `samples` samples.
   RowFaces(const FaceEstimator<N>& estimator, const Index& base, std::size_t samples) noexcept
       : estimator_(estimator), base_(base), samples_(samples) {}
-  /// Not for a caller's estimator.
+  /// False for a caller's estimator.
   static bool can_use(const FaceEstimator<N>& estimator) noexcept { return !estimator.is_callers(); }
 
-  /// Decides all faces of a word's tiles, unless it was the last one.
+  /// Returns the faces of a word's tiles, all decided. The most recent word is cached.
   const FaceBlock<N>& look_at(std::size_t word) noexcept;
 
  private:
@@ -45,8 +45,7 @@ class RowFaces {
   FaceBlock<N> block_;
 };
 
-/// Tiles at a word, with ambiguous signatures, and what becomes of them: with key 0, that it is to be asked for by
-/// itself.
+/// The ambiguous tiles of a word, and their variants. A variant with key 0 must be resolved individually.
 struct TilesOfWord {
   std::size_t count = 0;
   std::array<std::uint8_t, kWordBits> bits, signatures;
@@ -55,7 +54,7 @@ struct TilesOfWord {
 void resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
              TilesOfWord& tiles) noexcept;
 
-/// The key of an ambiguous tile.
+/// Key of an ambiguous tile.
 template <int N>
 unsigned resolved_key(const FaceEstimator<N>& estimator, const std::array<std::size_t, N>& base,
                       unsigned signature) noexcept;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The estimators; see face_estimator.hpp.
+// The estimators (see face_estimator.hpp).
 //
 // Based on: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric predicates", 1997
-// (expansions), for means that lie next to the isovalue.
+// (expansions), for means close to the isovalue.
 #include "ambiguity/face_estimator.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ double AmbiguousFace::sample(std::span<const std::ptrdiff_t> steps) const noexce
 namespace detail {
 namespace {
 
-/// x + y as a rounded sum and what is rounded off, exactly (Knuth).
+/// x + y as a rounded sum and its exact rounding error (Knuth).
 struct TwoSum {
   double sum, rest;
   TwoSum(double x, double y) noexcept : sum(x + y) {
@@ -54,7 +54,7 @@ struct TwoSum {
   }
 };
 
-/// The exact sum of at most 33 numbers, as an expansion: parts that do not overlap, of growing size.
+/// The exact sum of at most 33 numbers, as an expansion: non-overlapping parts of increasing magnitude.
 class ExactSum {
  public:
   void add(double x) noexcept {
@@ -76,7 +76,7 @@ class ExactSum {
   std::size_t count_ = 0;
 };
 
-/// The same where the sum is too large for a number, or a value is infinite.
+/// is_mean_high if the sum overflows or a value is infinite.
 bool is_large_mean_high(std::span<const double> values, double isovalue) noexcept {
   constexpr double kSmaller = 0x1p-10;
   double sum = 0.0;
@@ -88,7 +88,7 @@ bool is_large_mean_high(std::span<const double> values, double isovalue) noexcep
 
 namespace {
 
-/// Where rounding could decide; right for all others, too.
+/// is_mean_high if rounding could decide; correct for all values.
 [[gnu::noinline, gnu::cold]] bool is_near_mean_high(std::span<const double> values, double isovalue) noexcept {
   const double limit = static_cast<double>(values.size()) * isovalue;
   double sum = 0.0;
@@ -106,7 +106,7 @@ namespace {
   return !exact.is_negative();
 }
 
-/// Of so many values: a power of two, so that the limit is exact.
+/// is_mean_high for `Count` values. Count is a power of two, so the limit is exact.
 template <std::size_t Count>
 bool is_mean_high_of(const double* values, double isovalue) noexcept {
   const double limit = static_cast<double>(Count) * isovalue;
@@ -116,7 +116,7 @@ bool is_mean_high_of(const double* values, double isovalue) noexcept {
     sums[i] = values[i];
     sizes[i] = std::abs(values[i]);
   }
-  // By halves, which do not wait for one another.
+  // Summed pairwise, so that additions are independent.
   [&]<std::size_t... Level>(std::index_sequence<Level...>) {
     const auto halve = [&](std::size_t half) {
       for (std::size_t i = 0; i < half; ++i) {
@@ -128,7 +128,7 @@ bool is_mean_high_of(const double* values, double isovalue) noexcept {
   }
   (std::make_index_sequence<std::countr_zero(Count)>());
   const double size = sizes[0] + std::abs(limit);
-  // More than all additions can have rounded off; false for what is not finite.
+  // A bound of all rounding errors. The test is false if anything is not finite.
   if (std::abs(sums[0] - limit) > 0x1p-46 * size && size < 0x1p1000) return sums[0] > limit;
   return is_near_mean_high({values, Count}, isovalue);
 }
@@ -189,7 +189,7 @@ facets::Choice FaceEstimator<N>::choice(const Index& base, unsigned axes,
 template <int N>
 facets::Choice FaceEstimator<N>::ask(const Index& base, unsigned axes, std::span<const double> values) const noexcept {
   if (failed_.load(std::memory_order_relaxed)) return facets::Choice::separate;
-  // No farther than the caller said: of streamed images nothing else may be there.
+  // Limited to the caller's reach: streamed images may have no other samples in memory.
   AmbiguousFace::Surroundings near = around_;
   const auto reach = static_cast<std::ptrdiff_t>(std::min<std::size_t>(estimator_.reach, 1u << 30));
   for (unsigned a = 0; a < N; ++a) {
@@ -216,7 +216,7 @@ void FaceEstimator<N>::keep_error(std::exception_ptr error) const noexcept {
 
 template <int N>
 void FaceEstimator<N>::report_change(const Index& row) const noexcept {
-  if (failed_) return;  // what it answers since then is no answer of the caller's
+  if (failed_) return;  // later answers are not the caller's
   try {
     std::string place;
     for (int a = 0; a < N; ++a)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Decides the ambiguous faces of an image from the data, face by face: what the estimators of Ambiguity::mean, saddle
-// and custom say. Tiles around a face ask for it one after the other and get the same answer, as it depends on the
-// face's own corners, in the order of the face's own frame, and nothing else.
+// Decides the ambiguous faces of an image from the data, face by face, for Ambiguity::mean, saddle and custom. All
+// tiles at a face get the same decision, as it depends only on the values at the face's corners, in the order of the
+// face's own frame (and, for a caller's estimator, on samples within its reach).
 #pragma once
 
 #include <array>
@@ -17,25 +17,25 @@
 
 namespace tegl::detail {
 
-/// Whether the mean of values is at or above the isovalue, exactly; of infinite ones of both signs it is.
+/// Whether the mean of the values is at least the isovalue, exactly. True if there are infinite values of both signs.
 bool is_mean_high(std::span<const double> values, double isovalue) noexcept;
 
-/// Whether the data decide.
+/// Whether ambiguities are resolved from the data.
 constexpr bool is_estimated(Ambiguity ambiguity) noexcept {
   return ambiguity != Ambiguity::low && ambiguity != Ambiguity::high;
 }
 
-/// For messages.
+/// Name of the option's value, for messages.
 const char* name_of(Ambiguity ambiguity) noexcept;
 
-/// What an image is a part of: the samples from `first` on along `axis`, all along the others. (Along the last axis
-/// sources know it by themselves.)
+/// Position of the extracted image in a whole image: samples from `first` on along `axis`, all samples along the other
+/// axes. (Along the last axis, sources have this information.)
 struct PartOfImage {
   int axis = -1;
   std::size_t first = 0;
 };
 
-/// Thread safe. The source must outlive it.
+/// Decides faces by the chosen estimator. Thread safe. The source must outlive it.
 template <int N>
 class FaceEstimator {
  public:
@@ -46,25 +46,25 @@ class FaceEstimator {
   FaceEstimator& operator=(const FaceEstimator&) = delete;
 
   [[nodiscard]] const SampleSource<N>& source() const noexcept { return source_; }
-  /// Of the contour that it is asked for, by the number that tables have for it.
+  /// Triangulation of the contour, numbered as in the tables.
   [[nodiscard]] int triangulation() const noexcept { return triangulation_; }
 
-  /// The centre of the ambiguous square along `axes` based at `base`, with these values at its corners.
+  /// Whether the centre of an ambiguous square is high. `values`: at its corners.
   [[nodiscard]] bool is_square_high(const Index& base, unsigned axes, std::span<const double, 4> values) const noexcept;
-  /// Whether cubes are to be decided by decide_cube (tegl/saddle.hpp), squares and all, at once.
+  /// Whether cubes are decided as a whole, including their squares, by decide_cube (tegl/saddle.hpp).
   [[nodiscard]] bool is_by_cubes() const noexcept { return ambiguity_ == Ambiguity::saddle; }
-  /// Whether faces are decided by their means.
+  /// Whether faces are decided by the means of their corners.
   [[nodiscard]] bool is_by_means() const noexcept { return ambiguity_ == Ambiguity::mean; }
   [[nodiscard]] double isovalue() const noexcept { return isovalue_; }
-  /// The filling of a face of three or more dimensions.
+  /// The filling of a face of dimension 3 or more.
   [[nodiscard]] facets::Choice choice(const Index& base, unsigned axes, std::span<const double> values) const noexcept;
 
-  /// Whether a caller decides, whose answers may differ from one time to the next.
+  /// Whether a caller's estimator decides. Its answers may change between calls.
   [[nodiscard]] bool is_callers() const noexcept { return ambiguity_ == Ambiguity::custom; }
-  /// Notes that they did, in the row of tiles based at `row`: ends the extraction as what the caller throws does.
+  /// Records that a caller's answers changed, in the row of tiles based at `row`. `rethrow` then throws an error.
   void report_change(const Index& row) const noexcept;
 
-  /// Throws what a caller's estimator threw, if it did, or that its answers changed.
+  /// Throws the exception of a caller's estimator, or an error if its answers changed.
   void rethrow() const;
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Faces by registers; see face_signs.hpp. This file is compiled once per instruction set (Highway's foreach_target).
+// Decides faces by registers (see face_signs.hpp). Highway's foreach_target compiles this file once per instruction
+// set.
 #include "ambiguity/face_signs.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ambiguity/face_signs.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -22,7 +23,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using Bits = hn::Rebind<std::uint64_t, D>;
 
-/// The number of a face along `axes` (bits) at the sides `base` of the axes across.
+/// Number of the face along `axes` (bits) at sides `base` of the other axes.
 template <int N>
 constexpr unsigned face_number(unsigned axes, unsigned base) {
   std::array<unsigned, 4> across{};
@@ -37,7 +38,7 @@ constexpr unsigned face_number(unsigned axes, unsigned base) {
   return 4 * (pair + across[1] - across[0] - 1) + side(0) + 2 * side(1);
 }
 
-/// The numbers of faces by axes and base.
+/// Face numbers by axes and base.
 template <int N>
 struct FaceNumbers {
   std::array<std::array<std::uint8_t, 16>, 16> of{};
@@ -48,7 +49,7 @@ struct FaceNumbers {
   }
 };
 
-/// Of as many tiles as there are lanes: which faces are high.
+/// Bits of the high faces, for as many tiles as there are lanes.
 struct Highs {
   hn::Vec<Bits> bits;
 
@@ -60,7 +61,7 @@ struct Highs {
   }
 };
 
-/// Faces by the sums of their corners. `least`: how near the nearest sum comes to its limit.
+/// Decides faces by the sums of their corners. `least`: smallest distance of a sum from its limit.
 struct Means {
   Highs highs;
   hn::Vec<D> least;
@@ -75,14 +76,13 @@ struct Means {
   }
 };
 
-/// The samples of some tiles: those at their own places, or at the next.
+/// Samples of some tiles, at their own positions or the next ones.
 template <int N>
 HWY_INLINE auto samples_at(const FaceBlock<N>& block, std::size_t row, std::size_t at) {
   return hn::LoadU(D(), block.samples[row].data() + at);
 }
 
-/// Where rounding could decide: more than all additions can have rounded off. (Of what is too large, or not finite,
-/// this is not less than any bound.)
+/// Bound of the rounding errors of all sums; infinite if values are too large or not finite.
 template <int N>
 HWY_INLINE auto error_of_means(const FaceBlock<N>& block, std::size_t at, double isovalue) {
   const D d;
@@ -93,7 +93,7 @@ HWY_INLINE auto error_of_means(const FaceBlock<N>& block, std::size_t at, double
   return hn::IfThenElse(hn::Lt(size, hn::Set(d, 0x1p1000)), hn::Mul(size, hn::Set(d, 0x1p-46)), infinite);
 }
 
-/// The faces along two axes across the row, and those that these span with the row.
+/// Decides the faces along two axes across the row, and those that these span with the row.
 template <int N>
 HWY_INLINE void take_means_across(const FaceBlock<N>& block, std::size_t at, Means& means) {
   static constexpr FaceNumbers<N> kNumbers;
@@ -113,7 +113,7 @@ HWY_INLINE void take_means_across(const FaceBlock<N>& block, std::size_t at, Mea
       }
 }
 
-/// The squares along the row.
+/// Decides the squares along the row.
 template <int N>
 HWY_INLINE void take_means_along(const FaceBlock<N>& block, std::size_t at, Means& means) {
   static constexpr FaceNumbers<N> kNumbers;
@@ -127,7 +127,7 @@ HWY_INLINE void take_means_along(const FaceBlock<N>& block, std::size_t at, Mean
     }
 }
 
-/// The tesseract and its cubes across the row.
+/// Decides the tesseract and its cubes across the row.
 HWY_INLINE void take_means_of_rows(const FaceBlock<4>& block, std::size_t at, bool cubes, Means& means) {
   const auto sum = [&](std::size_t to) HWY_ATTR {
     auto result = samples_at(block, 0, to);
@@ -142,7 +142,7 @@ HWY_INLINE void take_means_of_rows(const FaceBlock<4>& block, std::size_t at, bo
   means.take(kTesseractFace, 16, hn::Add(here, next));
 }
 
-/// Whether all samples are multiples of 2^-10, and less than `limit`.
+/// Whether all samples are multiples of 2^-10 and less than `limit`.
 template <int N>
 HWY_INLINE bool are_whole(const FaceBlock<N>& block, double limit) {
   const D d;
@@ -156,7 +156,7 @@ HWY_INLINE bool are_whole(const FaceBlock<N>& block, double limit) {
   return hn::AllTrue(d, so_far);
 }
 
-/// What is unsure is sure after all where nothing was rounded.
+/// Clears `unsure` if nothing was rounded.
 template <int N>
 HWY_INLINE void look_again(FaceBlock<N>& block, bool any_unsure, double limit) {
   if (any_unsure && are_whole(block, limit)) std::fill_n(block.unsure.data(), block.tiles, 0);
@@ -178,17 +178,17 @@ HWY_INLINE void means_of(FaceBlock<N>& block, double isovalue) {
     hn::Store(unsure, bits, block.unsure.data() + i);
     any_unsure = hn::Or(any_unsure, unsure);
   }
-  // Sums of 16 are exact then.
+  // Sums of 16 are then exact.
   look_again(block, !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), 0x1p36);
 }
 
-/// Squares by their saddles. `least`: how much more than its possible error the determinant that has the least is.
+/// Decides squares by their saddles. `least`: smallest margin of a determinant over its possible error.
 struct Saddles {
   Highs highs;
   hn::Vec<D> least;
 
   HWY_INLINE Saddles() : least(hn::Set(D(), 0x1p1023)) {}
-  /// Of corner 0, its two neighbours, and the one opposite; the isovalue is subtracted.
+  /// Arguments: corner 0, its two neighbours, and the opposite corner, each minus the isovalue.
   template <class V>
   HWY_INLINE void take(unsigned face, V first, V second, V third, V last) {
     const D d;
@@ -196,7 +196,7 @@ struct Saddles {
     const auto one = hn::Mul(first, last), other = hn::Mul(second, third);
     const auto determinant = hn::Sub(one, other);
     const auto error = hn::Mul(hn::Add(hn::Add(hn::Abs(one), hn::Abs(other)), tiny), hn::Set(d, 0x1p-48));
-    // (The difference of two zeros may be -0.)
+    // The difference of two zeros may be -0.
     const auto of_high = hn::IfThenElse(hn::Lt(first, hn::Zero(d)), hn::Neg(determinant), determinant);
     highs.take(face, hn::Ge(of_high, hn::Zero(d)));
     least = hn::Min(least, hn::Sub(hn::Abs(determinant), error));
@@ -229,7 +229,7 @@ template <int N>
 HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
   const D d;
   const Bits bits;
-  const auto large = hn::Set(d, 0x1p500);  // the product of two is finite
+  const auto large = hn::Set(d, 0x1p500);  // products of two are finite
   auto any_unsure = hn::Zero(bits);
   for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
     Saddles saddles;
@@ -248,13 +248,13 @@ HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
     hn::Store(unsure, bits, block.unsure.data() + i);
     any_unsure = hn::Or(any_unsure, unsure);
   }
-  // Differences of 25 bits then, and products of 50.
+  // Differences then have 25 bits, and products 50.
   constexpr double kMost = 0x1p14;
   const bool is_whole = std::abs(isovalue) < kMost && std::nearbyint(0x1p10 * isovalue) == 0x1p10 * isovalue;
   look_again(block, is_whole && !hn::AllTrue(bits, hn::Eq(any_unsure, hn::Zero(bits))), kMost);
 }
 
-/// Numbers computed in doubles, and the same with all signs positive: see Rounded in saddle.cpp.
+/// Numbers computed in doubles, and the same with all signs positive; see Rounded in saddle.cpp.
 struct Rounded {
   hn::Vec<D> value, size;
 };
@@ -269,7 +269,8 @@ HWY_INLINE Rounded times(const Rounded& x, const Rounded& y) {
 }
 HWY_INLINE Rounded twice(const Rounded& x) { return plus(x, x); }
 
-/// What must be positive, or not negative: which it is for certain, and which it is not for certain.
+/// Conditions that numbers are positive (or not negative): lanes where all hold for certain, and where one certainly
+/// fails.
 struct Conditions {
   hn::Mask<D> all, none;
 
@@ -281,7 +282,7 @@ struct Conditions {
   }
 };
 
-/// As PairQuestion (saddle.cpp), without branches. The answers of as many questions as there are lanes, from `i` on.
+/// Answers as many questions as there are lanes, from `i` on. Same test as PairQuestion (saddle.cpp), without branches.
 HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size_t i) {
   const D d;
   const auto zero = hn::Zero(d);
@@ -289,6 +290,7 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
     const auto difference = hn::Sub(hn::LoadU(d, questions.ends[e].data() + i), hn::Set(d, isovalue));
     return Rounded{difference, hn::Abs(difference)};
   };
+  // the polynomials of PairQuestion
   const Rounded a0 = end(0), a1 = end(1), c0 = end(2), c1 = end(3), b0 = end(4), b1 = end(5), d0 = end(6), d1 = end(7);
   const Rounded q0 = minus(times(a0, c0), times(b0, d0)), q1 = minus(times(a1, c1), times(b1, d1));
   const Rounded m = minus(minus(plus(times(a0, c1), times(a1, c0)), times(b0, d1)), times(b1, d0));
@@ -296,26 +298,27 @@ HWY_INLINE void answer_some(JoinQuestions& questions, double isovalue, std::size
   const Rounded a = plus(times(a0, u1), times(a1, u0)), c = plus(times(c0, u1), times(c1, u0));
   const Rounded hyperdeterminant = minus(times(m, m), twice(twice(times(q0, q1))));
   const auto sign = hn::LoadU(d, questions.sign.data() + i);
+  // answers in rounded arithmetic
   Conditions conditions;
   conditions.take(u0);
   conditions.take(u1);
   conditions.take({hn::Mul(sign, a.value), a.size});
   conditions.take({hn::Mul(sign, c.value), c.size});
   conditions.take(hyperdeterminant);
-  // Nothing was rounded where all values and the isovalue are multiples of a half, of 10 bits. Then what is zero counts
-  // as high.
+  // Nothing was rounded if all values and the isovalue are multiples of 1/2 with 10 bits. A zero then counts as high.
   const auto is_short = [&](hn::Vec<D> value) HWY_ATTR {
     const auto halves = hn::Add(value, value);
     return hn::And(hn::Eq(hn::Round(halves), halves), hn::Le(hn::Abs(value), hn::Set(d, 0x1p9)));
   };
   auto is_whole = is_short(hn::Set(d, isovalue));
   for (const auto& values : questions.ends) is_whole = hn::And(is_whole, is_short(hn::LoadU(d, values.data() + i)));
-  const auto least = hn::IfThenElse(hn::Gt(sign, zero), zero, hn::Set(d, 0x1p-60));  // less than any such number
+  const auto least = hn::IfThenElse(hn::Gt(sign, zero), zero, hn::Set(d, 0x1p-60));  // below any such number
   const auto is_so = [&](const Rounded& x) HWY_ATTR { return hn::Ge(hn::Mul(sign, x.value), least); };
   const auto is_inside = hn::And(hn::Gt(u0.value, zero), hn::Gt(u1.value, zero));
   const auto exactly = hn::And(hn::And(is_inside, hn::Ge(hyperdeterminant.value, least)), hn::And(is_so(a), is_so(c)));
   const auto is_yes = hn::Or(hn::And(is_whole, exactly), hn::AndNot(is_whole, conditions.all));
   const auto is_no = hn::Or(hn::AndNot(exactly, is_whole), hn::AndNot(is_whole, conditions.none));
+  // write
   alignas(64) double result[hn::MaxLanes(d)];
   hn::Store(hn::IfThenElse(is_yes, hn::Set(d, 1.0), hn::IfThenElse(is_no, zero, hn::Set(d, 2.0))), d, result);
   for (std::size_t j = 0; j < hn::Lanes(d) && i + j < questions.count; ++j)
@@ -330,7 +333,7 @@ void answer_all(JoinQuestions& questions, double isovalue) {
   for (std::size_t i = 0; i < questions.count; i += hn::Lanes(d)) answer_some(questions, isovalue, i);
 }
 
-// Highway's tables of functions hold no templates.
+// Highway's dispatch tables cannot hold templates.
 void means3(FaceBlock<3>& block, double isovalue) { means_of<3>(block, isovalue); }
 void means4(FaceBlock<4>& block, double isovalue) { means_of<4>(block, isovalue); }
 void saddles3(FaceBlock<3>& block, double isovalue) { saddles_of<3>(block, isovalue); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A caller's estimator for an image that is looked at with another axis for its last one: it is to see the axes that
-// the image has.
+// Adapts a caller's estimator to an image whose last axis was exchanged: the estimator receives faces with the original
+// order of axes.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace tegl::detail {
 
-/// A face of the image with `axis` moved behind the others, as one of the image itself.
+/// A face of the image whose `axis` was moved to the end, converted to a face of the original image.
 template <int N>
 class MovedFace {
  public:
@@ -25,10 +25,11 @@ class MovedFace {
   MovedFace(const MovedFace&) = delete;
   MovedFace& operator=(const MovedFace&) = delete;
 
-  /// What `choose` says of it.
+  /// Returns the choice of `choose` for the face.
   [[nodiscard]] facets::Choice ask(const std::function<facets::Choice(const AmbiguousFace&)>& choose) const {
+    // base and axes in the original order
     std::array<std::size_t, N> base{};
-    std::array<unsigned, N> bit{};  // of a corner's number in the moved face, by own axis
+    std::array<unsigned, N> bit{};  // by original axis: bit of a corner's number in the moved face
     unsigned axes = 0;
     for (unsigned b = 0, next = 0; b < N; ++b) {
       base[own_[b]] = face_.base()[b];
@@ -36,6 +37,7 @@ class MovedFace {
       axes |= 1u << own_[b];
       bit[own_[b]] = next++;
     }
+    // values in the original order of corners
     std::array<double, std::size_t{1} << N> values{};
     for (unsigned corner = 0; corner < face_.values().size(); ++corner) {
       unsigned moved = 0;
@@ -44,7 +46,7 @@ class MovedFace {
         moved |= (corner >> j & 1u) << bit[static_cast<std::size_t>(std::countr_zero(rest))];
       values[corner] = face_.values()[moved];
     }
-    // How far it may look, and where the image ends, the moved face knows.
+    // The moved face checks the estimator's reach and the image's border.
     constexpr auto kFar = static_cast<std::ptrdiff_t>(std::uint64_t{1} << 62);
     AmbiguousFace::Surroundings around;
     around.image = this;
@@ -64,10 +66,10 @@ class MovedFace {
   }
 
   const AmbiguousFace& face_;
-  std::array<int, N> own_{};  ///< the image's axis that is the moved image's
+  std::array<int, N> own_{};  ///< by axis of the moved image: axis of the original image
 };
 
-/// The estimator for the image with `axis` moved behind the others.
+/// Estimator for the image whose `axis` was moved to the end.
 template <int N>
 Estimator moved_estimator(const Estimator& estimator, int axis) {
   return {[choose = estimator.choose, axis](const AmbiguousFace& face) { return MovedFace<N>(face, axis).ask(choose); },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ambiguous tesseracts, one at a time and a word of tiles at a time.
+// Resolves ambiguous 4D tiles one at a time and a word of tiles at a time.
 #include "ambiguity/tesseract_decision.hpp"
 
 #include <bit>
@@ -14,7 +14,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// The squares of the tesseract that are squares of its cube f, by set of those.
+/// Maps a set of squares of cube f of the tesseract to the set of the tesseract's squares.
 constexpr auto kSquaresOfCubes = [] {
   std::array<std::array<std::uint32_t, 64>, 8> result{};
   for (unsigned f = 0; f < 8; ++f)
@@ -30,7 +30,7 @@ constexpr auto kSquaresOfCubes = [] {
   return result;
 }();
 
-/// The corners of a face of the tesseract, in the face's own order.
+/// Corners of a face of the tesseract, in the face's own order.
 template <std::size_t Count>
 constexpr std::array<std::uint8_t, Count> corners_in(unsigned base, unsigned axes) noexcept {
   std::array<std::uint8_t, Count> result{};
@@ -42,7 +42,7 @@ constexpr std::array<std::uint8_t, Count> corners_in(unsigned base, unsigned axe
   return result;
 }
 
-/// Those of its squares and cubes.
+/// Corners of the tesseract's squares and cubes.
 constexpr auto kSquaresIn4D = [] {
   std::array<std::array<std::uint8_t, 4>, 24> result{};
   for (unsigned q = 0; q < 24; ++q) result[q] = corners_in<4>(kTesseractSquares[q].base, kTesseractSquares[q].axes);
@@ -68,7 +68,7 @@ std::array<std::size_t, 4> moved(std::array<std::size_t, 4> base, unsigned corne
 
 }  // namespace
 
-/// A tile in which there is nothing to decide.
+/// A tile without anything to decide.
 static ResolvedTile settled_tile(const ResolvedCubes& cubes, unsigned signature) noexcept {
   ResolvedTile tile;
   tile.key.signature = static_cast<std::uint16_t>(signature);
@@ -91,6 +91,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   std::array<double, 16> values;
   estimator.source().corner_values(base, 15, values.data());
   const std::uint64_t signatures = cubes.signatures(static_cast<std::uint16_t>(signature));
+  // decide the ambiguous squares
   std::uint32_t ambiguous = 0;
   for (unsigned f = 0; f < 8; ++f)
     ambiguous |= kSquaresOfCubes[f][table.ambiguous_squares[signatures >> (8 * f) & 255]];
@@ -103,6 +104,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
         estimator.is_square_high(moved(base, corner), axes, values_at(values, kSquaresIn4D[q])) ? 1 : 0;
     tile.key.squares |= is_high << q;
   }
+  // decide the cubes
   const std::uint64_t squares = cubes.squares(tile.key.squares);
   for (unsigned f = 0; f < 8; ++f) {
     const auto in_cube = static_cast<unsigned>(signatures >> (8 * f) & 255);
@@ -122,6 +124,7 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
     if (choice == facets::Choice::low) tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | 1u << f);
     if (choice == facets::Choice::high) tile.key.high_cubes = static_cast<std::uint8_t>(tile.key.high_cubes | 1u << f);
   }
+  // cubes with vertices, and the tile itself
   for (unsigned f = 0; f < 8; ++f)
     if (cubes.own_vertices(tile.lists[f]) != 0)
       tile.with_vertices = static_cast<std::uint8_t>(tile.with_vertices | 1u << f);
@@ -129,8 +132,8 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
   return tile;
 }
 
-/// The centres of a tile's cubes by the trilinear interpolant, `entries` being those of its cubes; none where rounding
-/// could decide.
+/// Decides the centres of a tile's cubes by the trilinear interpolant. `entries`: of its cubes. Returns false if
+/// rounding could decide.
 static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isovalue,
                            const std::array<std::uint16_t, 8>& entries,
                            std::array<facets::Choice, 8>& choices) noexcept {
@@ -139,6 +142,7 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
     const unsigned of_tile = kCubesIn4D[f][corner];
     return block.samples[of_tile >> 1][bit + (of_tile & 1u)];
   };
+  // collect questions about cubes with one pair, decide cubes with several
   JoinQuestions questions;
   std::array<std::uint8_t, 8> asked;
   for (unsigned f = 0; f < 8; ++f) {
@@ -153,6 +157,7 @@ static bool decide_centres(const FaceBlock<4>& block, unsigned bit, double isova
       choices[f] = detail::decide_centre(values, isovalue, entries[f]);
     }
   }
+  // apply the answers
   answer(questions, isovalue);
   for (std::size_t q = 0; q < questions.count; ++q) {
     if (questions.answers[q] == JoinQuestions::unsure) return false;
@@ -171,11 +176,13 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
   tile.key.signature = static_cast<std::uint16_t>(signature);
   tile.key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
   tile.key.tile = (high >> kTesseractFace & 1u) != 0 ? facets::Choice::high : facets::Choice::low;
+  // entries of the cubes
   const std::uint64_t signatures = cubes.signatures(tile.key.signature), squares = cubes.squares(tile.key.squares);
   std::array<std::uint16_t, 8> entries;
   for (unsigned f = 0; f < 8; ++f)
     entries[f] = static_cast<std::uint16_t>(cubes.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
                                                         static_cast<unsigned>(squares >> (8 * f) & 63)));
+  // choices of the cubes
   std::array<facets::Choice, 8> choices{};
   if (estimator.is_by_means()) {
     unsigned with_choice = 0;
@@ -198,7 +205,7 @@ bool resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, unsig
     tile.key.low_cubes = static_cast<std::uint8_t>(low);
     tile.key.high_cubes = static_cast<std::uint8_t>(joined);
   }
-  unsigned with_vertices = 0;  // they are few, so a branch for each would be misled
+  unsigned with_vertices = 0;  // without branches: few cubes have vertices, which is hard to predict
   for (unsigned f = 0; f < 8; ++f) {
     tile.lists[f] = cubes.list_of_entry(entries[f], choices[f]);
     with_vertices |= (cubes.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;

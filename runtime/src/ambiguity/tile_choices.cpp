@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which faces of a tile are ambiguous, and what an estimator says of them; see tile_choices.hpp.
+// Finds the ambiguous faces of a tile and determines their choices by an estimator (see tile_choices.hpp).
 #include "ambiguity/tile_choices.hpp"
 
 #include <bit>
@@ -13,7 +13,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// The corners of the tile that a face's corners are.
+/// Corner of the tile for a corner of the face with this base and axes.
 unsigned spread_corner(unsigned corner, unsigned base, unsigned axes) noexcept {
   for (unsigned j = 0; axes != 0; axes &= axes - 1, ++j)
     base |= (corner >> j & 1u) << static_cast<unsigned>(std::countr_zero(axes));
@@ -40,8 +40,8 @@ TileChoices<N>::TileChoices(const CubeFaces& cube, const FaceEstimator<N>& estim
   }
 }
 
-/// Squares with two high corners across; cubes with several polygons; where nothing says that there is nothing to
-/// choose, faces of four dimensions.
+/// Whether a face has a choice: squares with two diagonal high corners, cubes with several polygons, and faces of four
+/// dimensions that are not settled.
 template <int N>
 bool TileChoices<N>::is_open(const Face& face, unsigned signature, const TileKey& key) const noexcept {
   if (face.dim == 2) return signature == 6 || signature == 9;

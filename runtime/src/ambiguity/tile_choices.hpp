@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the data say about the faces of a tile that is built (built_tile.hpp): a choice for each face in which there is
-// something to choose.
+// Choices from the data for the faces of a built tile (built_tile.hpp): one for each face that is ambiguous.
 #pragma once
 
 #include <array>
@@ -15,19 +14,19 @@
 
 namespace tegl::detail {
 
-/// Thread safe, as the estimator is.
+/// Determines the choices by an estimator. Thread safe.
 template <int N>
 class TileChoices {
  public:
   using Index = std::array<std::size_t, N>;
 
-  /// Both must outlive it.
+  /// Both arguments must outlive it.
   TileChoices(const CubeFaces& cube, const FaceEstimator<N>& estimator);
 
-  /// The key of a cell based at `base`, with choices for its faces but, from three dimensions on, none for itself.
-  /// What a cap has outside of the image is not ambiguous.
+  /// Key of a cell based at `base`, with choices for its faces. From three dimensions on, it has no choice for the cell
+  /// itself. The part of a cap outside the image is not ambiguous.
   [[nodiscard]] TileKey of_faces(CellKind<N> kind, const Index& base, std::uint64_t signature) const noexcept;
-  /// With a choice for the tile itself.
+  /// Adds the choice for the tile itself.
   void choose_own(TileKey& key, const Index& base) const noexcept;
 
  private:
@@ -41,7 +40,7 @@ class TileChoices {
                                    unsigned axes) const noexcept;
 
   const FaceEstimator<N>& estimator_;
-  std::vector<Face> faces_;  ///< those that there are choices for, but the tile
+  std::vector<Face> faces_;  ///< faces that have choices, except the tile
 };
 
 }  // namespace tegl::detail

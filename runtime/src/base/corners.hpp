@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Corners and edges of squares, cubes and tesseracts by number (table contract).
+// Numbering of corners and edges of squares, cubes and tesseracts (table contract).
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace tegl::detail {
 
-/// A corner without its bit `axis`: the contract's squeeze.
+/// Removes bit `axis` from a corner (the contract's squeeze).
 constexpr unsigned squeeze(unsigned corner, unsigned axis) noexcept {
   const unsigned low = (1u << axis) - 1;
   return (corner & low) | (corner >> 1 & ~low);
 }
 
-/// Puts a bit `axis` of 0 into a corner: undoes squeeze.
+/// Inserts a 0 bit `axis` into a corner. Inverse of squeeze.
 constexpr unsigned unsqueeze(unsigned corner, unsigned axis) noexcept {
   const unsigned low = (1u << axis) - 1;
   return (corner & low) | (corner & ~low) << 1;
@@ -27,16 +27,16 @@ constexpr unsigned edge_base(unsigned k, unsigned e) noexcept {
   return unsqueeze(e & ((1u << (k - 1)) - 1), e >> (k - 1));
 }
 
-/// Of a set of corners of an N-cube, those at the lower end of `axis`, as corners of the facet there.
+/// From a set of corners of an N-cube, those at the lower end of `axis`, as corners of the facet there.
 template <int N>
 constexpr unsigned squeezed_corners(unsigned corners, unsigned axis) noexcept {
-  constexpr std::array<unsigned, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};  // those at the lower end of each axis
+  constexpr std::array<unsigned, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};  // corners at the lower end of each axis
   corners &= kLower[axis] & ((1u << (1u << N)) - 1);
   for (; axis + 1 < N; ++axis) corners = (corners | corners >> (1u << axis)) & kLower[axis + 1];
   return corners;
 }
 
-/// The critical edges of an N-cube, bit e for local edge e, from its signature.
+/// Critical edges of an N-cube, bit e for local edge e, from its signature.
 template <int N>
 constexpr std::uint32_t critical_edges(unsigned signature) noexcept {
   std::uint32_t edges = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Disjoint sets of numbers, joined one by one: by one thread, or by many at a time. In both the smallest number of a
-// set leads it, so that the outcome does not depend on the order of joins.
+// Union-find for one thread, and for many threads at a time. The smallest number of a set is its root, so the result
+// does not depend on the order of joins.
 //
 // Based on: R. E. Tarjan and J. van Leeuwen, Worst-case analysis of set union algorithms, 1984 (path halving); R. J.
 // Anderson and H. Woll, Wait-free parallel algorithms for the union-find problem, 1991 (roots are linked by
-// compare-and-swap, always in the direction of one order, and so never in a ring).
+// compare-and-swap, always towards the smaller number, so that no cycle can arise).
 #pragma once
 
 #include <atomic>
@@ -28,7 +28,7 @@ class BasicDisjointSets {
     parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), Number{0});
   }
-  /// One number more, in a set of its own.
+  /// Adds one number, in a set of its own.
   Number add() {
     parent_.push_back(static_cast<Number>(parent_.size()));
     return parent_.back();
@@ -37,7 +37,7 @@ class BasicDisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  /// True if the two were in different sets.
+  /// Returns whether the two were in different sets.
   bool join(Number a, Number b) {
     a = find(a);
     b = find(b);
@@ -46,7 +46,7 @@ class BasicDisjointSets {
     parent_[b] = a;
     return true;
   }
-  /// As `join`, where it is known who is to lead instead of the smallest: `leader` and `other` lead their sets.
+  /// Joins two sets with a given root instead of the smallest number. `other` and `leader` must be roots.
   void hang(Number other, Number leader) noexcept { parent_[other] = leader; }
   [[nodiscard]] std::size_t size() const noexcept { return parent_.size(); }
 
@@ -55,8 +55,8 @@ class BasicDisjointSets {
 };
 using DisjointSets = BasicDisjointSets<Index>;
 
-/// Sets of 0 ... n-1. Any number of threads may call `join` and `find` at a time; `find` gives the smallest number of
-/// the set once no thread joins any more. A number's parent is never larger than itself.
+/// Sets of 0 ... n-1. Any number of threads may call `join` and `find` concurrently. `find` returns the smallest number
+/// of the set once no thread calls `join` any more. A number's parent is never larger than the number.
 class SharedDisjointSets {
  public:
   explicit SharedDisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
@@ -66,7 +66,7 @@ class SharedDisjointSets {
       const Index parent = load(i);
       if (parent == i) return i;
       const Index grandparent = load(parent);
-      // Halves the path. A thread that was faster has only moved i closer to the root.
+      // Path halving. If another thread was faster, it moved i closer to the root.
       Index expected = parent;
       if (grandparent != parent) at(i).compare_exchange_weak(expected, grandparent, std::memory_order_relaxed);
       i = grandparent;
@@ -78,7 +78,7 @@ class SharedDisjointSets {
       b = find(b);
       if (a == b) return;
       if (a > b) std::swap(a, b);
-      Index expected = b;  // still a root?
+      Index expected = b;  // is b still a root?
       if (at(b).compare_exchange_strong(expected, a, std::memory_order_relaxed)) return;
     }
   }

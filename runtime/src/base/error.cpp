@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Names of error codes.
 #include "tegl/error.hpp"
 
 namespace tegl {

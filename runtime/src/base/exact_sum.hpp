@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sums of many numbers that lose nothing but the last bits.
+// Compensated summation of many numbers.
 // Based on: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen", ZAMM 54 (1974).
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace tegl::detail {
 
-/// Adds up numbers together with what is rounded off. Needs code without re-association (no -ffast-math).
+/// Adds numbers and, separately, their rounding errors. Requires code without re-association (no -ffast-math).
 class CompensatedSum {
  public:
   void add(double x) noexcept {
@@ -16,7 +16,7 @@ class CompensatedSum {
     rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
     sum_ = sum;
   }
-  /// What is rounded off is of no use once numbers are infinite.
+  /// The sum including the rounding errors. These are ignored if they are not finite, as after infinite numbers.
   [[nodiscard]] double value() const noexcept { return std::isfinite(rest_) ? sum_ + rest_ : sum_; }
 
  private:

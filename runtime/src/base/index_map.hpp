@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Places of vertex numbers in a list.
+// Map from vertex numbers to their positions in a list.
 #pragma once
 
 #include <bit>
@@ -13,7 +13,7 @@
 
 namespace tegl::detail {
 
-/// Ascending numbers, each once, and where each is: a hash table at most half full.
+/// Position of each number in an ascending list without duplicates: a hash table at most half full.
 class IndexMap {
  public:
   IndexMap() = default;
@@ -27,7 +27,7 @@ class IndexMap {
     }
   }
 
-  /// The place of a number that is there.
+  /// Position of a number, which must be in the list.
   [[nodiscard]] std::size_t operator()(Index number) const {
     std::size_t slot = slot_of(number);
     while (numbers_[places_[slot] - 1] != number) slot = (slot + 1) & (places_.size() - 1);
@@ -43,7 +43,7 @@ class IndexMap {
   }
 
   std::vector<Index> numbers_;
-  std::vector<Index> places_;  ///< plus 1; 0: empty
+  std::vector<Index> places_;  ///< position plus 1; 0: empty
 };
 
 }  // namespace tegl::detail

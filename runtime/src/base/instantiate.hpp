@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Instances for all value types. To be included where one of these is defined, hence without a guard:
-// - TEGL_INSTANTIATE_REALS(T, N, Real): of 2 to 4 dimensions, float and double. Not by sources whose instances capture
-//   what is in no namespace with a name: GCC warns.
-// - TEGL_INSTANTIATE_DIMENSIONS(T, N): of 2 to 5 dimensions.
+// Instantiates templates for all value types. Include it after defining one of the following macros; therefore it has
+// no include guard.
+// - TEGL_INSTANTIATE_REALS(T, N, Real): 2 to 4 dimensions, float and double. Not for sources whose instances capture
+// something in an unnamed namespace: GCC warns.
+// - TEGL_INSTANTIATE_DIMENSIONS(T, N): 2 to 5 dimensions.
 #ifdef TEGL_INSTANTIATE_REALS
 #define TEGL_INSTANTIATE(T)            \
   TEGL_INSTANTIATE_REALS(T, 2, float)  \

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A queue in which each number is once at most, and whose keys can change: nothing in it is out of date, so it never
-// grows beyond what it began with.
+// Priority queue with changeable keys. Each number occurs at most once, so there are no outdated entries and the queue
+// never has more than `count` entries.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 
 namespace tegl::detail {
 
-/// Numbers below `count`, the one with the least key first; of equal keys the least number. A heap of four children a
-/// node: half as many steps as with two, and those of a node side by side.
+/// Priority queue of numbers below `count`. The smallest key comes first; of equal keys, the smallest number. A heap
+/// with four children per node: half as many levels as with two, and a node's children are adjacent in memory.
 class KeyedQueue {
  public:
   explicit KeyedQueue(std::size_t count) : place_(count, kNone) {}
 
   [[nodiscard]] bool empty() const noexcept { return heap_.empty(); }
 
-  /// Puts the number into the queue, or gives it another key. O(log count).
+  /// Inserts the number or changes its key. O(log count).
   void set(Index number, double key) {
     if (place_[number] == kNone) {
       heap_.push_back({key, number});
@@ -35,7 +35,7 @@ class KeyedQueue {
     up ? rise(at) : sink(at);
   }
 
-  /// The first, which leaves the queue. It must not be empty. O(log count).
+  /// Removes and returns the first number. The queue must not be empty. O(log count).
   Index pop() {
     const Index first = heap_.front().number;
     place_[first] = kNone;
@@ -82,7 +82,7 @@ class KeyedQueue {
   }
 
   std::vector<Entry> heap_;
-  std::vector<Index> place_;  ///< of each number, in heap_
+  std::vector<Index> place_;  ///< index of each number in heap_
 };
 
 }  // namespace tegl::detail

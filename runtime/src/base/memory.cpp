@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Memory for outputs. Fresh memory costs a page fault per page at the first touch: with pages of 2 MiB instead of
-// 4 KiB that is seven times faster, and several threads can touch different parts at a time.
+// Memory for outputs. Fresh memory costs a page fault per page at the first access. With pages of 2 MiB instead of 4
+// KiB this is seven times faster, and several threads can access different parts concurrently.
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -24,15 +24,15 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;
 
 std::size_t rounded(std::size_t bytes) { return (bytes + kHugePage - 1) / kHugePage * kHugePage; }
 
-/// A child process that reads a file has one thread, and a thread that takes over a block of it allocates nothing else
-/// meanwhile.
+/// Per thread: a child process that reads a file has one thread, and a thread that receives a block from it allocates
+/// nothing else meanwhile.
 thread_local BlockSource* block_source = nullptr;
 
-/// Stands before the samples of a large block.
+/// Stored before the samples of a large block.
 struct ValuesHeader {
-  void* block;        ///< from the block source; null: there is none
-  std::size_t bytes;  ///< of the block
-  void* heap;         ///< from operator new; null: from the block source
+  void* block;        ///< from the block source, or null
+  std::size_t bytes;  ///< size of the block
+  void* heap;         ///< from operator new; null if from the block source
 };
 static_assert(sizeof(ValuesHeader) <= kValuesOffset);
 
@@ -60,8 +60,8 @@ void* allocate_values(std::size_t bytes) {
   if (block_source != nullptr) header.block = block_source->allocate(header.bytes);
   void* begin = header.block;
   if (begin == nullptr) {
-    // Aligned by hand: glibc's aligned allocation does not fit into the gap that one of the same size has left (until
-    // 2.38), and blocks that come and go, the layers of a stream, would be laid one after the other.
+    // Aligned manually: glibc's aligned allocation does not reuse the gap left by a block of the same size (until
+    // 2.38), so that repeatedly allocated blocks, such as the layers of a stream, would be placed one after the other.
     std::size_t space = bytes + 2 * kValuesOffset;
     begin = header.heap = ::operator new(space);
     begin = std::align(kValuesOffset, bytes + kValuesOffset, begin, space);
@@ -94,7 +94,7 @@ void* allocate_large_block(std::size_t bytes) {
   const std::size_t before = (kHugePage - reinterpret_cast<std::uintptr_t>(begin) % kHugePage) % kHugePage;
   if (before != 0) munmap(begin, before);
   if (before != kHugePage) munmap(begin + before + rounded(bytes), kHugePage - before);
-  madvise(begin + before, rounded(bytes), MADV_HUGEPAGE);  // where there are none, small pages do
+  madvise(begin + before, rounded(bytes), MADV_HUGEPAGE);  // without huge pages, small ones are used
   return begin + before;
 }
 

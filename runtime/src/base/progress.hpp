@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Progress of operations that have several passes after each other.
+// Progress reports of operations with several passes.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace tegl::detail {
 
-/// Tells `progress`; throws Cancelled, with this message, where it says stop.
+/// Reports `fraction` to `progress`. Throws Cancelled with `message` if it returns false.
 inline void tell(const Progress& progress, double fraction,
                  const char* message = "cancelled by the progress callback") {
   if (progress && !progress(fraction)) throw Error(ErrorCode::Cancelled, message);
 }
 
-/// The progress of a pass that takes the whole from `first` to `last`. The whole's must outlive it.
+/// Progress of a pass that covers `first` to `last` of the whole. `progress` must outlive the result.
 inline Progress part_of(const Progress& progress, double first, double last) {
   if (!progress) return {};
   return [&progress, first, last](double fraction) {
@@ -25,14 +25,14 @@ inline Progress part_of(const Progress& progress, double first, double last) {
   };
 }
 
-/// The progress of work that comes in pieces of any size: told whenever `every` items more are done.
+/// Progress of work in portions of any size. Reports after every `every` items.
 class CountedProgress {
  public:
-  /// `count`: of all items. `progress` must outlive this.
+  /// `count`: number of all items. `progress` must outlive this object.
   CountedProgress(const Progress& progress, std::uint64_t count, std::uint64_t every = std::uint64_t{1} << 16)
       : progress_(progress), count_(count), every_(every) {}
 
-  /// So many more are done. Throws Cancelled, as `tell` does.
+  /// Adds finished items. Throws Cancelled if requested.
   void add(std::uint64_t items) {
     done_ += items;
     if (done_ < next_) return;
@@ -48,8 +48,8 @@ class CountedProgress {
   std::uint64_t next_ = 0;
 };
 
-/// Calls work(from, to) for one part of 0 … count - 1 after the other, each of `size` (the last one may be smaller), by
-/// the caller's thread; `progress` is told before each, and of the end.
+/// Calls work(from, to) in order for parts of 0 … count - 1 of `size` items each (the last may be smaller), on the
+/// calling thread. Reports progress before each part and at the end.
 template <class Work>
 void in_parts(std::size_t count, const Progress& progress, const Work& work, std::size_t size = std::size_t{1} << 16) {
   for (std::size_t first = 0; first < count; first += size) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sorting of many items by whole numbers of few bits.
+// Radix sort.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace tegl::detail {
 
-/// Sorts by key(item), whole numbers below 2^bits, stably: the least digit first. O(n bits / 11), memory for as many
+/// Sorts stably by key(item), integers below 2^bits, starting with the lowest digit. O(n bits / 11) time; memory for n
 /// items.
 template <class Item, class Key>
 void sort_by_bits(std::vector<Item>& items, unsigned bits, const Key& key) {
-  constexpr std::size_t kFew = 512;  // for which the digits' counters would cost more than comparisons
+  constexpr std::size_t kFew = 512;  // below this, comparisons cost less than counting digits
   if (items.size() < kFew) {
     std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return key(a) < key(b); });
     return;
@@ -24,6 +24,7 @@ void sort_by_bits(std::vector<Item>& items, unsigned bits, const Key& key) {
   std::vector<Item> other(items.size());
   for (unsigned shift = 0; shift < bits; shift += kDigitBits) {
     const auto digit = [&](const Item& item) { return static_cast<std::size_t>(key(item) >> shift) & (kDigits - 1); };
+    // count, skip a digit that all have in common, exclusive scan, move
     std::array<std::size_t, kDigits> next{};
     for (const Item& item : items) ++next[digit(item)];
     if (next[digit(items[0])] == items.size()) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where to cut, as both ways of cutting understand it.
+// Coordinate of a slice, used by both slicing methods.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// The hyperplane's coordinate in the precision of the vertices, so that it meets a vertex computed for the same
-/// number. Rounding is monotone, so what lies on either side of `at` stays there or comes to lie on it.
+/// Rounds the hyperplane's coordinate to the precision of the vertices, so that it equals the coordinate of a vertex
+/// computed for the same number. Rounding is monotone, so no coordinate changes from one side of `at` to the other.
 template <class Real>
 Real rounded_at(double at) {
   if (!std::isfinite(at))

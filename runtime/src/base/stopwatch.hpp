@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Times for reports.
+// Time measurement for reports.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@ class Stopwatch {
     seconds += std::chrono::duration<double>(now - last_).count();
     last_ = now;
   }
-  /// The same, to two: a share of it to the first.
+  /// Divides the time since the last call between two counters: `share` of it is added to the first.
   void share_between(double& first, double share, double& second) noexcept {
     double both = 0.0;
     add_to(both);
@@ -24,7 +24,7 @@ class Stopwatch {
     second += (1.0 - share) * both;
   }
 
-  /// Since some moment.
+  /// Time since an arbitrary fixed moment.
   static std::int64_t nanoseconds() noexcept {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch()).count();
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Threads: loops over ranges, with what each thread keeps between them, and their progress.
+// Parallel loops over ranges, with working storage per thread and progress reports.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 #include "base/progress.hpp"
 
-// The thread sanitizer does not see how the installed TBB, which is not built for it, orders things: there, plain
-// threads do the same work in the same parts.
+// The thread sanitizer does not see the synchronisation of the installed TBB, which is not built for it. With the
+// sanitizer, plain threads do the same work in the same parts.
 #ifdef __SANITIZE_THREAD__
 #define TEGL_PLAIN_THREADS
 #elif defined(__has_feature)
@@ -33,9 +33,9 @@
 
 namespace tegl::detail {
 
-/// Calls a function of the caller's from within the work. If it waits for tasks of its own, the thread does not take up
-/// other parts of the work meanwhile: these would call it anew before it is done, and find in use what the thread keeps
-/// for its work.
+/// Calls a user function from within parallel work. If the function waits for tasks of its own, the thread does not
+/// take up other parts of the work meanwhile: these would call the function again before it returns, while the thread's
+/// scratch is in use.
 template <class Call>
 auto call_apart(const Call& call) {
 #ifdef TEGL_PLAIN_THREADS
@@ -45,11 +45,11 @@ auto call_apart(const Call& call) {
 #endif
 }
 
-/// `Scratch`: what a thread keeps between parts of the work.
+/// Threads for parallel loops. `Scratch`: working storage of a thread, kept between parts of the work.
 template <class Scratch>
 class Workers {
  public:
-  /// `threads`: 0 for all that the machine has. `make_scratch()` is called once for each.
+  /// `threads`: 0 for all of the machine. `make_scratch()` is called once per thread.
   template <class MakeScratch>
   Workers(unsigned threads, const MakeScratch& make_scratch)
       : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(std::min(threads, most()))),
@@ -58,13 +58,14 @@ class Workers {
 
   [[nodiscard]] std::size_t count() const noexcept { return static_cast<std::size_t>(arena_.max_concurrency()); }
 
-  /// Calls work(from, to, scratch) for parts of 0 ... count - 1 that make up the whole, of at least `grain` (but the
-  /// last), with the thread's own scratch.
+  /// Calls work(from, to, scratch) concurrently for disjoint parts that cover 0 ... count - 1, each of at least `grain`
+  /// items (except the last), with the thread's own scratch.
   template <class Work>
   void for_range(std::size_t count, std::size_t grain, const Work& work) {
     if (count == 0) return;
     if (alone_ || count <= grain) return work(std::size_t{0}, count, own_.local());
 #ifdef TEGL_PLAIN_THREADS
+    // The first exception stops all threads.
     std::atomic<std::size_t> next = 0;
     std::vector<std::exception_ptr> errors(this->count());
     const auto take_parts = [&](std::size_t thread) {
@@ -93,30 +94,30 @@ class Workers {
   }
 
  private:
-  /// More than the machine has are as many: TBB has room for no others, and says so where libraries are silent.
+  /// Limits the thread count to the machine's: TBB does not use more, and prints a warning, which a library should not.
   static unsigned most() { return static_cast<unsigned>(std::max(1, tbb::info::default_concurrency())); }
 
   tbb::task_arena arena_;
   bool alone_;
-  tbb::affinity_partitioner affinity_;  ///< a thread gets the parts that it got the last time: they are in its caches
+  tbb::affinity_partitioner affinity_;  ///< a thread gets the same parts as last time, which are in its caches
   tbb::enumerable_thread_specific<Scratch> own_;
 };
 
-/// Counts what the threads have done; the one that made this tells `progress` of it, whenever it is done with a part.
+/// Counts the work of all threads. The thread that constructed it reports progress whenever it finishes a part.
 class LoopProgress {
  public:
-  /// `progress` may hold nothing, and must outlive this.
+  /// `progress` may be empty, and must outlive this object.
   LoopProgress(const Progress& progress, std::size_t count) : progress_(progress), count_(count) { tell_of(0); }
 
-  /// By any thread: so many more items are done. On the thread that made this, tells so; throws Cancelled.
+  /// Adds finished items; any thread. On the constructing thread also reports; then throws Cancelled if requested.
   void add(std::size_t items) {
     if (!progress_) return;
     const std::size_t done = done_.fetch_add(items, std::memory_order_relaxed) + items;
     if (std::this_thread::get_id() == caller_ && done < count_) tell_of(done);
   }
-  /// By the thread that made this, when all is done: tells 1.
+  /// Reports 1. Call on the constructing thread after all work is done.
   void finish() { tell_of(count_); }
-  /// Whether threads may as well leave the rest of their work.
+  /// Whether threads should skip the rest of their work.
   [[nodiscard]] bool stopped() const noexcept { return stopped_.load(std::memory_order_relaxed); }
 
  private:
@@ -138,12 +139,12 @@ class LoopProgress {
   std::atomic<bool> stopped_ = false;
 };
 
-/// How many blocks of `size` there are in `count`; the last one may be smaller.
+/// Number of blocks of `size` in `count`; the last may be smaller.
 constexpr std::size_t block_count(std::size_t count, std::size_t size) noexcept { return (count + size - 1) / size; }
 
-/// Calls work(block, from, to, scratch) for all blocks of 0 … count - 1, side by side on `threads` threads (0: all that
-/// the machine has), each with its own scratch, made by `make_scratch`. `progress` is told by the caller's thread,
-/// after each block that it has done itself.
+/// Calls work(block, from, to, scratch) for all blocks of 0 … count - 1, in parallel on `threads` threads (0: all of
+/// the machine), each with its own scratch from `make_scratch`. The calling thread reports progress after each block
+/// that it has processed.
 template <class MakeScratch, class Work>
 void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress,
                     const MakeScratch& make_scratch, const Work& work) {
@@ -160,7 +161,7 @@ void for_each_block(std::size_t count, std::size_t size, unsigned threads, const
   done.finish();
 }
 
-/// Without scratch: work(block, from, to).
+/// Version without scratch: work(block, from, to).
 template <class Work>
 void for_each_block(std::size_t count, std::size_t size, unsigned threads, const Progress& progress, const Work& work) {
   struct Nothing {};
@@ -169,8 +170,8 @@ void for_each_block(std::size_t count, std::size_t size, unsigned threads, const
       [&](std::size_t block, std::size_t from, std::size_t to, Nothing&) { work(block, from, to); });
 }
 
-/// Calls work(i) for 0 ... count - 1, on `threads` threads (0: all that the machine has). Throws Cancelled where
-/// `progress` says stop. `work` must not throw.
+/// Calls work(i) for 0 ... count - 1 in parallel on `threads` threads (0: all of the machine). Throws Cancelled if
+/// `progress` returns false. `work` must not throw.
 template <class Work>
 void for_each_item(std::size_t count, unsigned threads, const Progress& progress, const Work& work) {
   constexpr std::size_t kGrain = std::size_t{1} << 12;

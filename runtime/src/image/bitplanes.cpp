@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Packing of comparisons into words; compiled once per instruction set (Highway's foreach_target).
+// Packs comparisons into words. Highway's foreach_target compiles this file once per instruction set.
 #include "image/bitplanes.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/bitplanes.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A mask's lanes as bits, lane 0 lowest.
+/// The lanes of a mask as bits, lane 0 lowest.
 template <class D, class M>
 HWY_INLINE Word bits_of(D d, M mask) {
   constexpr std::size_t kLanes = hn::MaxLanes(D());
@@ -30,7 +30,7 @@ HWY_INLINE Word bits_of(D d, M mask) {
   return bits;
 }
 
-/// Adjacent samples against the threshold, at most 64. `missing` gets the NaNs.
+/// Compares at most 64 adjacent samples with the threshold. `missing` receives the NaNs.
 template <class T>
 HWY_INLINE Word high_word(const T* samples, std::size_t length, T threshold, Word& missing) {
   const hn::ScalableTag<T> d;
@@ -46,6 +46,7 @@ HWY_INLINE Word high_word(const T* samples, std::size_t length, T threshold, Wor
       word |= bits_of(d, hn::Not(hn::Lt(values, limit))) << i;
     }
   };
+  // compare whole registers, then the rest
   T rest[kLanes] = {};
   const std::size_t whole = length - length % kLanes;
   for (std::size_t i = 0; i < whole; i += kLanes) compare(hn::LoadU(d, samples + i), i);
@@ -53,18 +54,19 @@ HWY_INLINE Word high_word(const T* samples, std::size_t length, T threshold, Wor
     std::memcpy(rest, samples + whole, (length - whole) * sizeof(T));
     compare(hn::LoadU(d, rest), whole);
   }
+  // find NaNs if there are any
   missing = 0;
   if constexpr (std::is_floating_point_v<T>) {
     if (HWY_UNLIKELY(!hn::AllTrue(d, none_missing)))
       for (std::size_t i = 0; i < length; i += kLanes) {
         const auto values = hn::LoadU(d, i < whole ? samples + i : rest);
-        missing |= bits_of(d, hn::Not(hn::Eq(values, values))) << i;  // Ne is false for NaN on some sets
+        missing |= bits_of(d, hn::Not(hn::Eq(values, values))) << i;  // Ne is false for NaN on some instruction sets
       }
   }
   return word;
 }
 
-/// Samples that are not adjacent, at most 64.
+/// high_word for samples that are not adjacent, at most 64.
 template <class T>
 HWY_INLINE Word gathered_word(const T* samples, std::ptrdiff_t stride, std::size_t length, T threshold, Word& missing) {
   T gathered[kWordBits];
@@ -72,7 +74,7 @@ HWY_INLINE Word gathered_word(const T* samples, std::ptrdiff_t stride, std::size
   return high_word(gathered, length, threshold, missing);
 }
 
-/// One row; returns whether any sample is missing.
+/// Classifies one row. Returns whether any sample is missing.
 template <class T>
 HWY_INLINE bool classify(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold,
                          Word* high, Word* missing) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Samples against an isovalue, one bit each: the first step of the extraction. A row of samples along
+// Classification of samples against an isovalue, one bit each: the first step of the extraction. A row of samples along
 // axis 0 becomes words of 64 bits, lowest bit first.
 #pragma once
 
@@ -17,14 +17,14 @@ namespace tegl::detail {
 using Word = std::uint64_t;
 inline constexpr std::size_t kWordBits = 64;
 
-/// The test `V >= isovalue` in the image's own type, with exactly the outcome of the test in real numbers.
+/// The test `V >= isovalue` in the image's own type, with exactly the result of the test in real numbers.
 template <Value T>
 struct Threshold {
   T value{};
   bool never = false;  ///< no value of the type reaches the isovalue
 };
 
-/// Precondition: `isovalue` is finite.
+/// `isovalue` must be finite.
 template <Value T>
 Threshold<T> make_threshold(double isovalue) {
   using Limits = std::numeric_limits<T>;
@@ -45,28 +45,28 @@ Threshold<T> make_threshold(double isovalue) {
   }
 }
 
-/// Rows of samples, as far apart from each other as from `first` on: in elements.
+/// Rows of samples at equal distances. Strides are in elements.
 template <Value T>
 struct SampleRows {
   const T* first;
-  std::ptrdiff_t stride;  ///< from sample to sample
-  std::size_t count;      ///< samples of a row
+  std::ptrdiff_t stride;  ///< between samples
+  std::size_t count;      ///< samples per row
   std::ptrdiff_t row_stride;
   std::size_t rows;  ///< at most 64
 };
 
-/// Where rows of bits go, each `pitch` words from the one before.
+/// Destination of rows of bits; `pitch`: words between rows.
 struct BitRows {
   Word* first;
   std::size_t pitch;
 };
 
-/// Classifies rows. Writes ceil(count / 64) words for each to `high`; bits past the end are 0. A row of `missing` gets
-/// the NaNs if there are any, and is left alone otherwise. Returns the rows that have any, bit r for row r.
+/// Classifies rows. Writes ceil(count / 64) words per row to `high`; bits past the end are 0. A row of `missing`
+/// receives the bits of NaNs if it has any, and otherwise is not written. Returns the rows with NaNs, bit r for row r.
 template <Value T>
 Word classify_rows(const SampleRows<T>& samples, const Threshold<T>& threshold, BitRows high, BitRows missing) noexcept;
 
-/// The same for one row; returns whether there are any.
+/// Classifies one row. Returns whether it has NaNs.
 template <Value T>
 bool classify_row(const T* samples, std::ptrdiff_t stride, std::size_t count, const Threshold<T>& threshold, Word* high,
                   Word* missing) noexcept {

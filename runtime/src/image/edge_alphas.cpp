@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where contours cross edges; compiled once per instruction set (Highway's foreach_target). Additions and
-// multiplications stay apart, so that all sets give the same bytes.
+// Intersections of contours with edges. Highway's foreach_target compiles this file once per instruction set.
+// Multiplications and additions are not fused, so that all instruction sets give identical bytes.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/edge_alphas.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// One edge, whatever its values.
+/// Interpolation parameter of one edge, for any values.
 HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) {
   const double difference = b - a;
   double alpha = 0;
@@ -30,10 +30,10 @@ HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) 
     alpha = std::isinf(b) ? 0.5 : 1.0;
   else if (!std::isinf(b))
     alpha = (0.5 * isovalue - 0.5 * a) / (0.5 * b - 0.5 * a);
-  return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, of which instruction sets make this or that
+  return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, for which instruction sets differ
 }
 
-/// Some edges, from their samples.
+/// Interpolation parameters of some edges from the samples at their ends.
 HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                           double* out) {
   const hn::ScalableTag<double> d;
@@ -58,7 +58,7 @@ HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t coun
 
 template <class T>
 HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) {
-  // Gathered by blocks: what was stored by numbers is not to be loaded by registers at once.
+  // Gathered in blocks: a vector load right after scalar stores to the same memory would stall.
   constexpr std::size_t kBlock = 128;
   double from[kBlock];
   double to[kBlock];
@@ -73,7 +73,7 @@ HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsi
   }
 }
 
-/// All edges of a tile of four dimensions, whether they are critical or not.
+/// Interpolation parameters of all edges of a 4D tile, critical or not.
 void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
   constexpr unsigned kEdges = tables::edge_count(4);
   double from[kEdges];

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Values around edges by registers; see edge_values.hpp. This file is compiled once per instruction set (Highway's
-// foreach_target).
+// Reads values around edges by registers (see edge_stencil.hpp). Highway's foreach_target compiles this file once per
+// instruction set.
 #include "image/edge_stencil.hpp"
 
 #include <algorithm>
 #include <array>
 #include <type_traits>
 
-// Samples, what is calculated with, and a name. (The file is read once per instruction set.)
+// Type of the samples, type of the arithmetic, function name. Guarded because the file is read once per instruction
+// set.
 #ifndef TEGL_FOR_VALUES
 #define TEGL_FOR_VALUES(APPLY)            \
   APPLY(std::uint8_t, float, pick_u8f)    \
@@ -28,7 +29,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/edge_stencil.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,7 +38,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// As many values as D has lanes.
+/// Loads as many values as D has lanes.
 template <class D, class T>
 HWY_INLINE hn::Vec<D> load_values(D d, const T* from) {
   using Calc = hn::TFromD<D>;
@@ -70,19 +71,20 @@ HWY_INLINE auto lanes_from(D d, hn::Vec<hn::Rebind<std::int32_t, D>> lanes) {
     return hn::IndicesFromVec(d, hn::PromoteTo(hn::RebindToSigned<D>(), lanes));
 }
 
-/// The samples of some edges are in so many registers at the most.
+/// Maximum number of registers that hold the samples of one group of edges.
 constexpr std::size_t kMostRegisters = 8;
 
-/// Where the values of as many edges as D has lanes are.
+/// Location of the values of as many edges as D has lanes.
 template <class D>
 struct Picked {
   using Lanes = decltype(lanes_from(D(), hn::Zero(hn::Rebind<std::int32_t, D>())));
-  std::array<std::ptrdiff_t, kMostRegisters> first;  ///< of its samples, by register
+  std::array<std::ptrdiff_t, kMostRegisters> first;  ///< by register: first sample
   std::array<Lanes, kMostRegisters> lanes;
-  std::array<hn::Mask<D>, kMostRegisters> chosen;  ///< edges in this register or in one behind it
+  std::array<hn::Mask<D>, kMostRegisters> chosen;  ///< edges in this register or a later one
 };
 
-/// Writes the values of as many edges as D has lanes by place. kCount: registers that their samples are in; 0: `count`.
+/// Writes the values of as many edges as D has lanes, by place. kCount: number of registers with their samples; 0:
+/// `count`.
 template <std::size_t kCount, class D, class T>
 HWY_INLINE void pick_some(D d, const EdgesInRow<T, hn::TFromD<D>>& row, const Picked<D>& picked, std::size_t count,
                           hn::TFromD<D>* out) {
@@ -104,16 +106,16 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
   const hn::Rebind<std::int32_t, decltype(d)> integers;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   static_assert(kLanes <= kMostLanes);
-  // Where registers are emulated, nothing is saved.
+  // Emulated registers save nothing.
   if (HWY_TARGET == HWY_EMU128 || HWY_TARGET == HWY_SCALAR) return false;
   if (kEdgesPerRegister * (row.at[row.count - 1] - row.at[0]) >= kLanes * row.count) return false;
-  // Samples are counted from the first edge on, for registers hold no large numbers.
+  // Sample indices are relative to the first edge, because registers cannot hold large numbers.
   const std::size_t origin = std::max<std::size_t>(row.at[0], row.begin);
   const std::size_t limit = std::min<std::size_t>(row.at[row.count - 1], row.end - 1) - origin;
   const std::ptrdiff_t final = static_cast<std::ptrdiff_t>(row.end - kLanes) - static_cast<std::ptrdiff_t>(origin);
   const auto from_origin = [&](std::uint32_t x) { return std::min(std::max<std::size_t>(x, origin) - origin, limit); };
   const auto set = [&](std::ptrdiff_t x) { return hn::Set(integers, static_cast<std::int32_t>(x)); };
-  std::array<std::uint32_t, kEdgesAtOnce + kMostLanes> at;  // those behind the last edge are read too
+  std::array<std::uint32_t, kEdgesAtOnce + kMostLanes> at;  // entries past the last edge are read too
   std::copy_n(row.at, row.count, at.begin());
   std::fill_n(at.begin() + row.count, kLanes, row.at[row.count - 1]);
   Picked<decltype(hn::ScalableTag<Calc>())> picked;
@@ -124,6 +126,7 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
     const std::size_t x = from_origin(at[i]);
     const std::size_t count = (from_origin(at[i + kLanes - 1]) - x) / kLanes + 1;
     if (count > kMostRegisters) return false;
+    // lanes of each edge in the registers
     for (std::size_t r = 0; r < count; ++r) {
       const auto begin = static_cast<std::ptrdiff_t>(x + r * kLanes);
       const std::ptrdiff_t first = std::min(begin, final);
@@ -131,6 +134,7 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
       picked.lanes[r] = lanes_from(d, hn::And(hn::Sub(edges, set(first)), set(kLanes - 1)));
       picked.chosen[r] = chosen_from(d, hn::Gt(edges, set(begin - 1)));
     }
+    // copy the values
     switch (count) {
       case 1:
         pick_some<1>(d, row, picked, count, row.out + i);
@@ -148,7 +152,7 @@ HWY_INLINE bool pick(const EdgesInRow<T, Calc>& row) {
   return true;
 }
 
-// Highway's tables of functions hold no templates.
+// Highway's dispatch tables cannot hold templates.
 #define TEGL_PICK(T, Calc, name) \
   bool name(const EdgesInRow<T, Calc>& row) { return pick(row); }
 TEGL_FOR_VALUES(TEGL_PICK)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Values around the edges of one row, taken out of whole registers; compiled for several instruction sets.
+// Reads the values around the edges of one row by whole registers. Compiled for several instruction sets.
 #pragma once
 
 #include <cstddef>
@@ -10,32 +10,33 @@
 
 namespace tegl::detail {
 
-/// Samples of the longest registers, with the smallest type of the arithmetic (float).
+/// Number of lanes of the longest registers for the smallest arithmetic type (float).
 inline constexpr std::size_t kMostLanes = 16;
 
-/// Edges of one row, whose samples lie next to each other. T: the values' type, Calc: the one they become.
+/// Edges of one row whose samples are adjacent in memory. T: type of the values; Calc: type of the arithmetic.
 template <class T, class Calc>
 struct EdgesInRow {
-  const T* const* from;     ///< by place: the value of an edge that starts at the row's sample `begin`
+  const T* const* from;     ///< by place: value for an edge that starts at sample `begin`
   std::size_t places;       ///< a multiple of 4
-  std::size_t begin, end;   ///< values are there from begin on and before end, kMostLanes at the least
-  const std::uint32_t* at;  ///< by edge: the sample that it starts at, ascending; values of those outside mean nothing
+  std::size_t begin, end;   ///< values exist in [begin, end), at least kMostLanes
+  const std::uint32_t* at;  ///< by edge: its first sample, ascending; results for edges outside are undefined
   std::size_t count;        ///< from 2 to kEdgesAtOnce
   Calc* out;                ///< places x kEdgesAtOnce
 };
 
-/// As many edges as a register has to hold on the average: with fewer, it takes less time to look at them one by one.
+/// Average number of edges per register from which registers are worthwhile. With fewer, reading edge by edge is
+/// faster.
 inline constexpr std::size_t kEdgesPerRegister = 2;
 
-/// Whether edges may be many enough, by the longest registers that there are.
+/// Whether there may be enough edges, judged by the longest registers of any instruction set.
 template <class Calc>
 constexpr bool may_be_dense(std::size_t samples, std::size_t edges) noexcept {
   return kEdgesPerRegister * samples < kMostLanes * sizeof(float) / sizeof(Calc) * edges;
 }
 
-/// Writes the values by place. False: edges are too few for the processor's registers, and what is written means
-/// nothing. Exact, so the bytes are the same in all instruction sets. O(registers that hold the samples from the first
-/// edge to the last).
+/// Writes the values by place. Returns false if there are too few edges for the processor's registers; the output is
+/// then undefined. Exact, so all instruction sets give identical bytes. O(registers that hold the samples from the
+/// first edge to the last).
 template <class T, class Calc>
 bool pick_values(const EdgesInRow<T, Calc>& row) noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the extraction asks of rows of samples; see extract_source.hpp.
+// Access to rows of samples for the extraction (see extract_source.hpp).
 #include "image/extract_source.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void RowSource<T, N>::edge_alphas(std::size_t k, int axis, const EdgesInRows& ed
   detail::edge_alphas<T>({samples, others, edges.rows, edges.at, edges.count, strides_[0]}, isovalue_, epsilon_, out);
 }
 
-/// The values at all corners of a tile, from where its first corner is in the lower layer and in the upper one.
+/// Reads the values at all corners of a tile; `lower` and `upper` point to its first corner in the two layers.
 template <int N, class T, class Out, class Strides>
 [[gnu::always_inline]] static inline void gather_tile(const T* lower, const T* upper, const Strides& strides,
                                                       Out* out) noexcept {
@@ -36,7 +36,7 @@ template <int N, class T, class Out, class Strides>
   const auto offset = [&]<std::size_t... A>(std::size_t corner, std::index_sequence<A...>) {
     return ((static_cast<std::ptrdiff_t>(corner >> A & 1u) * strides[A]) + ...);
   };
-  // Without a loop: then which strides a corner adds up is known.
+  // Unrolled, so that each corner's strides are known at compile time.
   [&]<std::size_t... C>(std::index_sequence<C...>) {
     const std::array<std::ptrdiff_t, kHalf> at = {offset(C, std::make_index_sequence<N - 1>())...};
     ((out[C] = static_cast<Out>(lower[at[C]])), ...);
@@ -50,7 +50,7 @@ unsigned RowSource<T, N>::gather_corners(const Index& base, unsigned axes, Corne
   std::array<std::ptrdiff_t, std::size_t{1} << N> offsets{};
   const std::ptrdiff_t along = static_cast<std::ptrdiff_t>(base[0]) * strides_[0];
   const T* const samples = row(base) + along;
-  // A cell within the last layer has nothing above.
+  // A cell within the last layer has no upper layer.
   const T* const above = (axes >> (N - 1) & 1u) != 0 ? next_row(base, N - 1, 1) + along : nullptr;
   const Strides strides = strides_;
   if (axes == (1u << N) - 1) {
@@ -101,7 +101,7 @@ void RowSource<T, N>::corner_rows(const Index& base, std::size_t count, double* 
 template <Value T, int N>
 void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept {
   if (N == 4 && axes == (1u << N) - 1) {
-    // About half of them are critical: to take all is quicker than to gather these.
+    // About half of the edges are critical: computing all is faster than gathering these.
     std::array<double, std::size_t{1} << N> values;
     corner_values(base, axes, values.data());
     return tile_alphas(values.data(), isovalue_, epsilon_, out);
@@ -114,6 +114,7 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   static constexpr std::array<std::ptrdiff_t, kInOrder.size()> kOneRow{};
   Corners corners;
   const unsigned dim = gather_corners(base, axes, corners);
+  // gather the requested edges
   std::array<T, kInOrder.size()> first{};
   std::array<T, kInOrder.size()> second{};
   std::array<double, kInOrder.size()> alphas;
@@ -126,15 +127,16 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   }
   detail::edge_alphas<T>({first.data(), second.data(), kOneRow.data(), kInOrder.data(), count, 1}, isovalue_, epsilon_,
                          alphas.data());
+  // scatter the results
   const double* next = alphas.data();
   for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
 }
 
 namespace {
 
-/// Where the values around edges along one axis are. By place: the layer that the value is in, displaced so that the
-/// first sample's own place finds it. Those along the row (0 ... 3) have none, but the samples at both ends of the
-/// edge.
+/// Locations of the values around edges along one axis. `from`, by place: the layer that contains the value, displaced
+/// so that the index of the edge's first sample finds it. Places along the row (0 ... 3) use `first` and `second`, the
+/// samples at the two ends of the edge.
 template <Value T, int N>
 struct Places {
   const T* first;
@@ -144,7 +146,7 @@ struct Places {
   std::size_t row_size;
 };
 
-/// One edge after the other.
+/// Reads the values edge by edge.
 template <bool kAlongRow, Value T, int N, class Calc>
 std::uint64_t gather_each(const Places<T, N>& places, const EdgesInRows& edges, Calc* out) noexcept {
   const T* const first = places.first;
@@ -167,31 +169,31 @@ std::uint64_t gather_each(const Places<T, N>& places, const EdgesInRows& edges, 
     to[kEdgesAtOnce] = value(first, kAlongRow ? along : ahead);
     to[2 * kEdgesAtOnce] = kAlongRow ? value(first, 0) : value(second, back);
     to[3 * kEdgesAtOnce] = value(second, ahead);
-    // Without a loop, which not every optimisation takes apart.
+    // Unrolled, as not every optimisation level unrolls a loop.
     [&]<std::size_t... J>(std::index_sequence<J...>) { ((to[(J + 4) * kEdgesAtOnce] = value(from[J + 4], 0)), ...); }
     (std::make_index_sequence<kEdgeValues<N> - 4>());
   }
   return at_ends;
 }
 
-/// Whether edges may be gathered by gather_row, and are many enough for that.
+/// Whether gather_row can be used, and there are enough edges for it.
 template <class Calc, Value T, int N>
 bool may_be_row(const Places<T, N>& places, const EdgesInRows& edges) noexcept {
-  constexpr std::size_t kLeast = kEdgesAtOnce / 2;  // with fewer, to get ready takes longer than what is saved
+  constexpr std::size_t kLeast = kEdgesAtOnce / 2;  // with fewer, the preparation takes longer than it saves
   if (edges.count < kLeast) return false;
   const std::size_t last = edges.count - 1;
   if (places.along != 1 || places.row_size < kMostLanes + 3 || edges.rows[0] != edges.rows[last] ||
       !may_be_dense<Calc>(edges.at[last] - edges.at[0], edges.count))
     return false;
-  // Rows that overlap, or are one and the same by a stride of 0, begin at one place too: then edges do not ascend.
+  // Rows that overlap, or coincide by a stride of 0, may start at the same position; edges do not ascend then.
   bool ascend = true;
   for (std::size_t i = 1; i < edges.count; ++i)
     ascend &= edges.rows[i] == edges.rows[0] && edges.at[i] > edges.at[i - 1];
   return ascend;
 }
 
-/// Edges of one row: inside by registers, if they are many enough for those; at its ends, where they lack a neighbour,
-/// one by one.
+/// Reads the values of edges in one row: by registers if there are enough edges, except at the row's ends, where edges
+/// lack a neighbour and are read one by one.
 template <bool kAlongRow, Value T, int N, class Calc>
 std::uint64_t gather_row(const Places<T, N>& places, const EdgesInRows& edges, Calc* out) noexcept {
   const std::size_t last = edges.count - 1;
@@ -244,7 +246,7 @@ std::uint64_t RowSource<T, N>::around_edges(const EdgeSurroundings<N>& around, c
   if constexpr (std::numeric_limits<T>::digits <= std::numeric_limits<float>::digits)
     return around.axis == 0 ? gather<true>(around, edges, out) : gather<false>(around, edges, out);
   else
-    return 0;  // never asked for
+    return 0;  // never called
 }
 
 template <Value T, int N>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the extraction asks of an image: rows of bits, and places on edges. Everything else in the
+// The interface through which the extraction reads an image: rows of bits, and positions on edges. The rest of the
 // kernel is independent of the value type, so it is compiled once per dimension.
 #pragma once
 
@@ -26,17 +26,17 @@ struct EdgeSamples {
   std::ptrdiff_t stride;
 };
 
-/// The place of the isovalue on edges, of whose ends one is below the isovalue and the other is not: 0 at the first, 1
-/// at the second (theory, section 1), kept `epsilon` away from both. Infinite samples are taken as limits: the point
-/// goes to the finite end, or to the middle between two infinities.
+/// Interpolation parameters of the isovalue on critical edges: 0 at the first end, 1 at the second (theory, section 1),
+/// clamped to [epsilon, 1 - epsilon]. Infinite samples are treated as limits: the vertex is at the finite end, or at
+/// the middle between two infinities.
 template <Value T>
 void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
-/// The same of all 32 edges of a tile of four dimensions, from the values at its 16 corners; what is written for edges
-/// that are not critical means nothing.
+/// Interpolation parameters for all 32 edges of a 4D tile, from the values at its 16 corners. Results for non-critical
+/// edges are undefined.
 void tile_alphas(const double* corners, double isovalue, double epsilon, double* out) noexcept;
 
-/// Edges in rows of one layer, by how far their rows are from the first (SampleSource::strides), and where they are
-/// along the row.
+/// Edges in rows of one layer: offset of each edge's row from the first row (SampleSource::strides), and position along
+/// the row.
 struct EdgesInRows {
   const std::ptrdiff_t* rows;
   const std::uint32_t* at;
@@ -53,65 +53,65 @@ class SampleSource {
   SampleSource& operator=(const SampleSource&) = delete;
   virtual ~SampleSource() = default;
 
-  /// From now on, `layers` adjacent layers are needed at a time. Called once, before prepare.
+  /// Sets the number of adjacent layers needed at a time. Called once, before prepare.
   virtual void keep(std::size_t /*layers*/) {}
-  /// Makes the samples of layer k of the last axis ready; called for each layer, in order, by the thread that called
-  /// for the extraction. May throw.
+  /// Prepares the samples of layer k of the last axis. Called for each layer in order, by the thread that started the
+  /// extraction. May throw.
   virtual void prepare(std::size_t /*k*/) {}
 
-  /// Whether all layers are ready from the start, and need no memory.
+  /// Whether all layers are available from the start without additional memory.
   [[nodiscard]] virtual bool is_at_hand() const noexcept { return false; }
 
   [[nodiscard]] virtual std::size_t sample_bytes() const noexcept = 0;
 
-  /// `rows` rows from the one through `start` (start[0] = 0) on along axis 1, as classify_rows.
+  /// Classifies `rows` rows along axis 1, starting with the row of `start` (start[0] = 0); see classify_rows.
   virtual Word classify(const Index& start, std::size_t rows, BitRows high, BitRows missing) const noexcept = 0;
 
-  /// One sample.
+  /// Whether one sample is high.
   [[nodiscard]] virtual bool is_high(const Index& index) const noexcept = 0;
-  /// Its value, which double holds whatever the type; layers before the first may be asked for, modulo 2^64, if there
-  /// are any.
+  /// Value of a sample; double represents all value types exactly. Layers before the first, modulo 2^64, are allowed if
+  /// the image has them.
   [[nodiscard]] virtual double value(const Index& index) const noexcept = 0;
-  /// The values at the corners of the cell along `axes` based at `base`, in the order of the cell's own corners.
+  /// Values at the corners of the cell along `axes` based at `base`, in the order of the cell's own corners.
   virtual void corner_values(const Index& base, unsigned axes, double* out) const noexcept = 0;
-  /// `count` samples of each of the 2^(N-1) rows around the tiles from `base` on, `pitch` apart: bit a - 1 of a row's
-  /// number is its side along axis a.
+  /// Reads `count` samples from each of the 2^(N-1) rows around the tiles that start at `base`. Rows are `pitch` apart
+  /// in `out`; bit a - 1 of a row's number is its side along axis a.
   virtual void corner_rows(const Index& base, std::size_t count, double* out, std::size_t pitch) const noexcept = 0;
   [[nodiscard]] virtual double isovalue() const noexcept = 0;
-  /// The layer of the image that layer 0 is.
+  /// Number of layer 0 in the whole image.
   [[nodiscard]] virtual std::size_t first_layer() const noexcept { return 0; }
-  /// How many layers the image has from there on, if they are more than what is worked on; else 0.
+  /// Number of layers that the image has from layer 0 on, if it has more than are extracted; otherwise 0.
   [[nodiscard]] virtual std::size_t layers_at_hand() const noexcept { return 0; }
 
-  /// From sample to sample within a layer; of the last axis nothing.
+  /// Steps between samples within a layer. The entry of the last axis is undefined.
   [[nodiscard]] virtual std::array<std::ptrdiff_t, N> strides() const noexcept = 0;
-  /// For edges along `axis` from samples of layer k on, all critical: the place on the edge, 0 at its first end and 1
-  /// at its second, kept `epsilon` away from both.
+  /// Interpolation parameters of critical edges along `axis` that start in layer k: 0 at the first end, 1 at the
+  /// second, clamped to [epsilon, 1 - epsilon].
   virtual void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept = 0;
 
-  /// The same for single edges of the cell along `axes` based at `base`: local edge e of the bit mask `edges`, to
-  /// out[e]. What other places of `out`, which has one for each edge of the cell, are given means nothing.
+  /// Interpolation parameters for the edges in the bit mask `edges` of the cell along `axes` based at `base`: local
+  /// edge e to out[e]. `out` has an entry for each edge of the cell; the other entries are undefined.
   virtual void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept = 0;
 
-  /// Whether float holds all values.
+  /// Whether float represents all values exactly.
   [[nodiscard]] virtual bool fits_float() const noexcept = 0;
-  /// Steps along the last axis, for gradients: they may reach beyond layers that are a part of an image.
+  /// Steps along the last axis, for gradients. They may extend beyond the extracted layers of an image.
   [[nodiscard]] virtual AxisSteps last_steps(const Grid<N>& grid) const { return AxisSteps(grid.axes[N - 1]); }
-  /// Values around edges, at most kEdgesAtOnce of them: kEdgeValues x kEdgesAtOnce. Returns, as bits, those with an end
-  /// at an end of its row. Values that float does not hold are asked for as double alone.
+  /// Reads the values around edges, at most kEdgesAtOnce of them, to kEdgeValues x kEdgesAtOnce entries. Returns as
+  /// bits the edges that have an end at an end of its row. The float version requires fits_float().
   virtual std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
                                      float* out) const noexcept = 0;
   virtual std::uint64_t around_edges(const EdgeSurroundings<N>& around, const EdgesInRows& edges,
                                      double* out) const noexcept = 0;
-  /// The gradient at a sample, by differences to its neighbours along the axes.
+  /// Gradient at a sample by differences to its neighbours along the axes.
   [[nodiscard]] virtual std::array<double, N> gradient(const Index& index,
                                                        const std::array<AxisSteps, N>& steps) const noexcept = 0;
-  /// The same by the Sobel kernel.
+  /// Gradient at a sample by the Sobel kernel.
   [[nodiscard]] virtual std::array<double, N> sobel(const Index& index,
                                                     const std::array<AxisSteps, N>& steps) const noexcept = 0;
 };
 
-/// Samples in rows, wherever the layers are.
+/// Source of samples in rows of a layer; subclasses provide the layers.
 template <Value T, int N>
 class RowSource : public SampleSource<N> {
  public:
@@ -145,7 +145,7 @@ class RowSource : public SampleSource<N> {
                                             const std::array<AxisSteps, N>& steps) const noexcept final;
 
  protected:
-  /// `strides`: of the axes but the last; rows have `row_size` samples.
+  /// `strides`: of all axes except the last. Rows have `row_size` samples.
   RowSource(const Strides& strides, std::size_t row_size, double isovalue, double epsilon)
       : strides_(strides),
         row_size_(row_size),
@@ -153,7 +153,7 @@ class RowSource : public SampleSource<N> {
         epsilon_(epsilon),
         threshold_(make_threshold<T>(isovalue)) {}
 
-  /// The first sample of layer k, a number modulo 2^64: layers before the first may be asked for by gradients.
+  /// First sample of layer k modulo 2^64: gradients may read layers before the first.
   [[nodiscard]] virtual const T* layer(std::size_t k) const noexcept = 0;
 
  private:
@@ -162,13 +162,13 @@ class RowSource : public SampleSource<N> {
     for (int a = 1; a < N - 1; ++a) at += static_cast<std::ptrdiff_t>(start[a]) * strides_[a];
     return at;
   }
-  /// The row, one step along `axis` > 0 from that through `start`.
+  /// The row one step along `axis` > 0 from the row of `start`.
   [[nodiscard]] const T* next_row(Index start, int axis, std::size_t step) const noexcept {
     start[axis] += step;
     return row(start);
   }
   using Corners = std::array<T, std::size_t{1} << N>;
-  /// The values at a cell's corners; returns its dimension.
+  /// Reads the values at a cell's corners. Returns the cell's dimension.
   unsigned gather_corners(const Index& base, unsigned axes, Corners& corners) const noexcept;
   template <bool kAlongRow, class Calc>
   std::uint64_t gather(const EdgeSurroundings<N>& around, const EdgesInRows& edges, Calc* out) const noexcept;
@@ -180,11 +180,11 @@ class RowSource : public SampleSource<N> {
   Threshold<T> threshold_;
 };
 
-/// The samples must outlive it; the view need not.
+/// Source for an image in memory. The samples must outlive it; the image view need not.
 template <Value T, int N>
 class ImageSource final : public RowSource<T, N> {
  public:
-  /// `first`: the layers from there on are what is worked on; gradients know of those before, and of those after.
+  /// Extracts the layers from `first` on. Gradients also read the layers before and after.
   ImageSource(const Image<T, N>& image, double isovalue, double epsilon, std::size_t first = 0)
       : RowSource<T, N>(image.strides(), image.size(0), isovalue, epsilon),
         data_(image.data() + static_cast<std::ptrdiff_t>(first) * image.strides()[N - 1]),

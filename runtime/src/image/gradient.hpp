@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Gradients of images at samples: how differences between neighbours are weighted, and which values the gradients along
-// an edge are made of.
+// Gradients of images at samples: weights of the differences between neighbours, and the values from which the
+// gradients along an edge are computed.
 // Based on: M. Liversage, thesis, 1994, section 8.2: differences on non-regular axes (8.4), of which central
-// differences on regular ones (8.3) are the special case; interpolation along the edge. Other than there (5.4.2),
+// differences on regular ones (8.3) are the special case; interpolation along the edge. Unlike there (5.4.2),
 // differences are one-sided at the border.
 #pragma once
 
@@ -19,8 +19,8 @@
 
 namespace tegl::detail {
 
-/// What the differences to both neighbours of a sample are multiplied by: 1 / distance, times the weight of the
-/// quotient in their mean. 0 where there is no neighbour.
+/// Weights of the differences to both neighbours of a sample: 1 / distance, times the weight of the quotient in their
+/// mean. 0 if there is no neighbour.
 struct StepWeights {
   double backward = 0.0;
   double forward = 0.0;
@@ -29,7 +29,7 @@ struct StepWeights {
 /// The weights along one axis.
 class AxisSteps {
  public:
-  /// Of the samples from `first` on, which are a part of the axis.
+  /// For the samples from `first` on, which are a part of the axis.
   explicit AxisSteps(const Axis& axis, std::size_t first = 0)
       : first_(first), size_(axis.size()), is_uniform_(axis.is_uniform()) {
     if (is_uniform_) {
@@ -48,7 +48,7 @@ class AxisSteps {
     const double share = back && ahead ? 0.5 : 1.0;
     return {back ? share * inverse(first_ + i - 1) : 0.0, ahead ? share * inverse(first_ + i) : 0.0};
   }
-  /// The weights of a sample with two neighbours on a uniform axis.
+  /// Weights of a sample with two neighbours on a uniform axis.
   [[nodiscard]] StepWeights inside() const noexcept { return {0.5 * inverse_, 0.5 * inverse_}; }
 
  private:
@@ -58,12 +58,12 @@ class AxisSteps {
   std::size_t size_;
   bool is_uniform_;
   double inverse_ = 0.0;
-  std::vector<double> inverses_;  ///< of the distance between i and i + 1, unless uniform
+  std::vector<double> inverses_;  ///< 1 / distance between i and i + 1; empty if uniform
 };
 
-/// The derivative along an axis, by axis coordinates (before the map to the world): the mean of the difference
-/// quotients to both sides. Where one of them is not finite (a missing sample, an infinite one), the other; 0 if
-/// neither is. Always a number: sums of derivatives are no NaN.
+/// The derivative along an axis in axis coordinates (before the map to the world): the mean of the difference quotients
+/// to both sides. If one of them is not finite (a missing or infinite sample), the other one; 0 if neither is finite.
+/// The result is always finite and bounded, so that sums of derivatives are not NaN.
 inline double derivative(double backward, double value, double forward, const StepWeights& weights) noexcept {
   const double ahead = (forward - value) * weights.forward;
   const double back = (value - backward) * weights.backward;
@@ -71,25 +71,25 @@ inline double derivative(double backward, double value, double forward, const St
   constexpr double kHalf = std::numeric_limits<double>::max() / 2;
   if (std::isfinite(ahead) && !std::isfinite(back)) return 2.0 * std::clamp(ahead, -kHalf, kHalf);
   if (std::isfinite(back) && !std::isfinite(ahead)) return 2.0 * std::clamp(back, -kHalf, kHalf);
-  return 0.0;  // where both are finite but not their sum, the field is too steep to say more
+  return 0.0;  // both finite, their sum is not: too steep for a derivative
 }
 
-/// Values that the gradients at both ends of an edge are made of, by place: 4 a + 0 ... 3 are those behind and ahead of
-/// the first end along axis a, and behind and ahead of the second; where there is no neighbour, the end itself. So
-/// along the edge's own axis, ahead of the first end is the second, and behind the second the first.
+/// Number of values from which the gradients at both ends of an edge are computed. Place 4 a + (0 ... 3): backward and
+/// forward neighbour of the first end along axis a, then of the second end; an end without a neighbour is used itself.
+/// Along the edge's own axis, the forward neighbour of the first end is the second end, and vice versa.
 template <int N>
 inline constexpr unsigned kEdgeValues = 4 * N;
 
-/// What edges along `axis` have in common that start in rows of one layer: where the neighbours of their ends are.
-/// (Along the row each sample has its own.)
+/// Common properties of edges along `axis` that start in rows of one layer: which neighbours of their ends exist.
+/// (Along the row this differs between samples.)
 template <int N>
 struct EdgeSurroundings {
   std::size_t layer;
   int axis;
-  std::array<std::array<bool, 4>, N> exists;  ///< by axis from 1 on: the neighbours 0 ... 3
+  std::array<std::array<bool, 4>, N> exists;  ///< by axis from 1 on: neighbours 0 ... 3
 };
 
-/// How many edges are worked on at a time.
+/// Number of edges processed at a time.
 inline constexpr std::size_t kEdgesAtOnce = 64;
 
 }  // namespace tegl::detail

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Axes of a grid: construction with validation, and parts.
 #include "tegl/grid.hpp"
 
 #include <cmath>
@@ -48,7 +50,7 @@ Axis Axis::part(std::size_t first, std::size_t count) const {
   if (count == 0 || first >= size_ || count > size_ - first)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("samples [{}, {} + {}) of an axis of {}", first, first, count, size_));
-  // Materialised, so that the part's coordinates have the same bits as the whole's.
+  // Stored explicitly, so that the part's coordinates equal the whole's bit by bit.
   std::vector<double> coordinates(count);
   for (std::size_t i = 0; i < count; ++i) coordinates[i] = (*this)[first + i];
   if (count == 1 && is_uniform()) {

@@ -22,7 +22,7 @@ std::array<std::ptrdiff_t, N> dense_strides(const Grid<N>& grid) {
   return strides;
 }
 
-/// A map to the world must keep the two sides of a contour apart: finite, and not singular.
+/// The map to the world must be finite and invertible, so that the two sides of a contour remain distinct.
 template <int N>
 void check_grid(const Grid<N>& grid) {
   for (int a = 0; a < N; ++a)

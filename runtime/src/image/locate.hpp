@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From the world back into the grid: the cell that a point lies in, and its place there.
+// Maps points from the world to the grid: the cell that contains a point, and its position in the cell.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,12 @@
 
 namespace tegl::detail {
 
-/// How far outside of the grid, in steps of the axis, a point still counts as on its border; and how much of an
-/// interpolation's weight may belong to missing samples: what vertices of single precision are off by.
+/// Tolerance for the rounding of single-precision vertices: the distance from the grid, in steps of the axis, up to
+/// which a point counts as on its border; and the share of an interpolation's weight that may belong to missing
+/// samples.
 inline constexpr double kSlack = 1e-3;
 
-/// A cell by its first sample, and a place in it: the share of the way to the next sample, by axis, in [0, 1].
+/// A cell by its first sample, and a position in it: by axis the fraction of the way to the next sample, in [0, 1].
 template <int N>
 struct CellPlace {
   std::array<std::size_t, N> base;
@@ -37,13 +38,13 @@ class GridLocator {
         keys_[a].push_back(axes_[a].is_descending() ? -axes_[a][i] : axes_[a][i]);
   }
 
-  /// False for points outside of the grid (by more than kSlack), or that are not finite. Axes of one sample have share
-  /// 0, and a step of that sample's axis as their extent on either side.
+  /// Returns false for points outside the grid (by more than kSlack) and for points that are not finite. On axes with
+  /// one sample the share is 0, and the tolerance is relative to the axis's step.
   bool find(const std::array<double, N>& world, CellPlace<N>& place) const noexcept {
     return find(world, place, kSlack);
   }
-  /// The place in the grid that is nearest along each axis, for points however far outside, too. False for points that
-  /// are not finite.
+  /// Finds the nearest position along each axis, also for points outside the grid. Returns false for points that are
+  /// not finite.
   bool find_nearest(const std::array<double, N>& world, CellPlace<N>& place) const noexcept {
     return find(world, place, std::numeric_limits<double>::infinity());
   }
@@ -80,7 +81,7 @@ class GridLocator {
     const double index = (x - axis.origin()) / axis.step();
     if (!(index > 0.0)) return 0;
     auto base = index >= static_cast<double>(last) ? last - 1 : static_cast<std::size_t>(index);
-    // The quotient may be off by a rounding: the sample itself decides.
+    // The quotient may have a rounding error, so the samples themselves are compared.
     const bool descending = axis.is_descending();
     if (base > 0 && (descending ? x > axis[base] : x < axis[base])) --base;
     if (base + 1 < last && (descending ? x <= axis[base + 1] : x >= axis[base + 1])) ++base;
@@ -95,7 +96,7 @@ class GridLocator {
   }
 
   std::array<Axis, N> axes_;
-  std::array<std::vector<double>, N> keys_;  ///< ascending, of uneven axes
+  std::array<std::vector<double>, N> keys_;  ///< ascending; only for non-uniform axes
   bool mapped_;
   Eigen::Matrix<double, N, N> inverse_;
   Eigen::Matrix<double, N, 1> offset_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images whose rows lie across memory, such as arrays of Fortran order whose first axis is the time: read along axis 0,
-// every sample would be in a cache line of its own, and all lines would be read again for every layer. So layers are
-// turned around into rows before they are worked on, as many at a time as have samples in the same lines.
+// Images whose rows are not contiguous in memory, such as arrays in Fortran order whose first axis is the time. Reading
+// along axis 0 would use a separate cache line for each sample, and read all lines again for every layer. Layers are
+// therefore transposed into rows before processing, as many at a time as share cache lines.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace tegl::detail {
 
-/// The axis along which an image's samples are nearest to each other.
+/// The axis with the smallest stride.
 template <Value T, int N>
 int nearest_axis(const Image<T, N>& image) {
   int nearest = 0;
@@ -26,7 +26,8 @@ int nearest_axis(const Image<T, N>& image) {
   return nearest;
 }
 
-/// Whether that is not axis 0, by so much that turning pays, and the image is larger than what caches hold anyway.
+/// Whether transposing pays: the nearest axis is not axis 0, by a sufficient factor, and the image does not fit in
+/// caches.
 template <Value T, int N>
 bool is_better_turned(const Image<T, N>& image) {
   constexpr std::ptrdiff_t kLine = 64 / static_cast<std::ptrdiff_t>(sizeof(T));
@@ -38,7 +39,7 @@ bool is_better_turned(const Image<T, N>& image) {
          samples * sizeof(T) > kInCache;
 }
 
-/// The layers of an image, each in rows. Memory: as many layers as there are samples in a cache line.
+/// The layers of an image, transposed into rows. Memory: as many layers as there are samples in a cache line.
 template <Value T, int N>
 class TurnedLayers final : public LayerReader<T, N> {
  public:
@@ -64,26 +65,27 @@ class TurnedLayers final : public LayerReader<T, N> {
  private:
   struct Nothing {};
   static constexpr std::ptrdiff_t kLine = 64 / static_cast<std::ptrdiff_t>(sizeof(T));
-  static constexpr std::size_t kTile = 32;  ///< samples along each of two axes: what stays in the first cache
+  static constexpr std::size_t kTile = 32;  ///< samples along each of two axes; fits in the first-level cache
 
   [[nodiscard]] std::ptrdiff_t step(int axis) const {
     return std::max<std::ptrdiff_t>(1, std::abs(image_.strides()[axis]));
   }
 
-  /// Layers first ... first + count - 1, one after the other: in tiles of axis 0 and the nearest axis, of which the
-  /// lines are read once.
+  /// Transposes layers first ... first + count - 1, which become contiguous. Works in tiles of axis 0 and the nearest
+  /// axis, so that each cache line is read once.
   void turn(std::size_t first, std::size_t count, T* to) {
-    std::array<std::size_t, N> size{};      // of what is turned
-    std::array<std::ptrdiff_t, N> pitch{};  // in `to`
+    std::array<std::size_t, N> size{};      // of the transposed layers
+    std::array<std::ptrdiff_t, N> pitch{};  // of `to`
     std::ptrdiff_t next = 1;
     for (int a = 0; a < N; ++a) {
       size[a] = a == N - 1 ? count : image_.size(a);
       pitch[a] = next;
       next *= static_cast<std::ptrdiff_t>(size[a]);
     }
-    std::size_t planes = 1;  // of axis 0 and the nearest one
+    std::size_t planes = 1;  // planes of axis 0 and the nearest axis
     for (int a = 1; a < N; ++a)
       if (a != nearest_) planes *= size[a];
+    // planes in parallel
     const T* const from = image_.data() + static_cast<std::ptrdiff_t>(first) * image_.strides()[N - 1];
     workers_.for_range(planes, 16, [&](std::size_t begin, std::size_t end, Nothing&) {
       for (std::size_t plane = begin; plane < end; ++plane) {

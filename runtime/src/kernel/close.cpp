@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Caps of a contour at the image's border; see close.hpp. A border face of an N-dimensional image is an
-// image of dimension N - 1, and the cap its high set, tile by tile from the region tables.
+// Caps of a contour at the image border (see close.hpp). A border face of an N-dimensional image is an image of
+// dimension N - 1. Its cap is the high set, built tile by tile from the region tables.
 #include "kernel/close.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace tegl::detail {
 namespace {
 
-/// Place in CapPlanes::squares of the pair of axes in `axes`.
+/// Index in CapPlanes::squares of the squares along the two axes of `axes`.
 constexpr std::size_t square_plane(unsigned axes) noexcept {
   switch (axes) {
     case 3:
@@ -29,7 +29,7 @@ constexpr std::size_t square_plane(unsigned axes) noexcept {
   }
 }
 
-/// The mean of the corners and edge points in a region's mask, in the frame of the cell.
+/// Mean of the corners and edge points in a region's mask, in the frame of the cell.
 template <int N, unsigned Axes>
 TilePoint<std::popcount(Axes)> region_place(const EdgePlaces<N, Axes>& places, std::uint32_t mask) noexcept {
   constexpr int kDim = std::popcount(Axes);
@@ -57,10 +57,10 @@ bool lies_in_square(std::uint32_t mask) noexcept {
   return false;
 }
 
-/// A vertex that a region of a cube adds, in the barycentric triangulation: the mean by unequal weights, as mask_place
-/// has them, so that it hardly ever lies in a plane with three others. Those of a region along a tunnel (`is_collar`)
-/// may have all of their points in one square, where the cube on its other side may have one as well, and are moved
-/// out.
+/// Position of a vertex that a region of a cube adds in the barycentric triangulation. The weights are unequal, as in
+/// mask_place, so that the vertex is hardly ever coplanar with three others. All points of a region along a tunnel
+/// (`is_collar`) may lie in one square, and the cube on the other side may add a vertex there as well. Such vertices
+/// are moved towards the cube's centre.
 template <unsigned Axes>
 TilePoint<3> centre_place(const EdgePlaces<4, Axes>& places, std::uint32_t mask, bool is_collar) noexcept {
   Weighted<3> sum;
@@ -239,7 +239,8 @@ void Caps<N, Real>::add_face_row(const SlabView<N>& face, const Slab<N>& slab, s
   constexpr unsigned kCorners = 1u << (N - 1);
   CellBits<N, kAxes> cells(face, row);
   CellEdges<N, kAxes> edges(face, row);
-  // A contour's positive side looks inwards here; this is the sign of (frame of the face, inwards) in N-space.
+  // The contour's positive side faces inwards here. This is the sign of (frame of the face, inward direction) in
+  // N-space.
   const bool flip = flip_ != (((N - 1 - Omitted) % 2 != 0) != (side != 0));
   auto index = shape_.index_of(row);
   index[N - 1] = layer;
@@ -313,7 +314,7 @@ void Caps<N, Real>::add_own(const tables::RegionTable& table, unsigned signature
 template <int N, class Real>
 void Caps<N, Real>::add_simplices(const tables::RegionTable& table, unsigned signature, const Ids& ids, bool flip) {
   const tables::RegionList& list = table.lists[signature];
-  constexpr unsigned kFirst = 1u << (N - 1);  // of the local vertices that are on the contour
+  constexpr unsigned kFirst = 1u << (N - 1);  // first local vertex on the contour
   constexpr unsigned kEnd = kFirst + tables::edge_count(N - 1) + (N == 4 ? tables::kFaceSlots : 0);
   const auto number = [&](unsigned v) {
     if (v < kFirst || v >= kEnd) return kCapVertex | ids[v];
@@ -328,13 +329,14 @@ void Caps<N, Real>::add_simplices(const tables::RegionTable& table, unsigned sig
   }
 }
 
-/// By the regions of the cube with every ambiguity resolved freely: all cubes of the border, so that they fit together.
+/// Fills a cube with freely resolved ambiguities. Used for all cubes of the border, so that adjacent ones match.
 template <int N, class Real>
 template <int Omitted>
 void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::size_t layer,
                                  const typename RowShape<N>::Index& index, unsigned signature, Ids& ids, bool flip) {
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
   using Regions = CubeRegions;
+  // numbers of shared vertices
   const unsigned key = cube_key<N>(*estimator_, index, kAxes, signature);
   corner_ids<Omitted>(row, layer, index[0], signature, ids.data());
   const unsigned own = cube_vertices(estimator_->triangulation(), key);
@@ -349,11 +351,12 @@ void Caps<N, Real>::add_resolved(const SlabView<N>& face, std::size_t row, std::
     if (v < Regions::kFirstEdge || v >= Regions::kFirstCentre) return kCapVertex | ids[v];
     return least_ + static_cast<Index>(ids[v] - static_cast<Index>(least_));
   };
+  // new vertices and tetrahedra of each region
   const EdgePlaces<N, kAxes> places(source_, index, signature);
   const bool barycentric = estimator_->triangulation() == kBarycentric;
   const Regions& regions = Regions::of_caps(estimator_->triangulation());
   for (const Regions::Region& region : regions.regions(list_of_key(key), true)) {
-    // A caller that changes its mind may see a square otherwise than when its barycentre was found.
+    // A caller's estimator may change its answer: then a square has no barycentre although one is needed now.
     if (estimator_->is_callers() && has_squares())
       for (const Regions::Tetrahedron& tetrahedron : regions.tetrahedra(region))
         for (const unsigned v : tetrahedron)
@@ -381,7 +384,7 @@ void Caps<N, Real>::add_face(const SlabView<N>& view, std::size_t k, unsigned si
   constexpr unsigned kAxes = kAll ^ 1u << Omitted;
   if (!closes(Omitted)) return;
   if (Omitted == N - 1 && k != (side == 0 ? 0 : shape_.layers() - 2)) return;
-  // A face across the last axis lies in one layer, which then is its lower one.
+  // A face across the last axis lies in one layer; `in_layer` has it as the lower one.
   const SlabView<N> in_layer{&shape_, {view.layers[side], nullptr}, view.slab};
   const SlabView<N>& face = Omitted == N - 1 ? in_layer : view;
   const std::size_t layer = Omitted == N - 1 ? k + side : k;

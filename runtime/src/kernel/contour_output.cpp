@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Checks of what an extraction is asked for and of how much it makes.
+// Checks of an extraction's arguments and of its number of vertices.
 #include "kernel/contour_output.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where an extraction puts its contour, part after part, and how it goes about its work.
+// Interface of an extraction's output, which takes the contour part by part, and the plan of an extraction.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace tegl::detail {
 
-/// Vertices that an extraction may have: one less than numbers, so that no number is the largest.
+/// Maximum number of vertices of a contour in memory. The largest Index is never used as a number.
 inline constexpr std::uint64_t kMaxVertices = std::numeric_limits<Index>::max();
 
 /// Throws TooLarge if `count` vertices are more than `limit`.
@@ -24,7 +24,8 @@ void check_vertex_count(std::uint64_t count, std::uint64_t limit);
 /// Throws InvalidIsovalue or InvalidArgument.
 void check_arguments(double isovalue, const ExtractOptions& options);
 
-/// Where an output has to move, it gets room for what the share of the image that is `done` lets expect, within bounds.
+/// Resizes an output. If it has to be reallocated, its capacity is estimated from the share `done` of the image, within
+/// bounds.
 template <class T>
 void resize_output(Buffer<T>& output, std::uint64_t size, double done) {
   if (size > output.capacity()) {
@@ -34,8 +35,8 @@ void resize_output(Buffer<T>& output, std::uint64_t size, double done) {
   output.resize(size);
 }
 
-/// Whether the orientation of tiles, "positive side faces the high corners", is to be reversed, so that normals point
-/// as asked for in the world.
+/// Whether to reverse the orientation of tiles ("positive side faces the high corners") so that normals have the
+/// requested direction in the world.
 template <int N>
 bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
   bool flip = options.direction == GradientDirection::descent;
@@ -44,19 +45,19 @@ bool against_tables(const Grid<N>& grid, const ExtractOptions& options) {
 }
 
 class TileSelection;
-/// A run of an extraction's vertices and simplices, by number.
+/// Ranges of vertex and simplex numbers of one part of an extraction.
 struct ContourPart {
   std::uint64_t first_vertex, end_vertex;
   std::uint64_t first_simplex, end_simplex;
-  double done;  ///< share of the image whose contour is counted
+  double done;  ///< share of the image whose contour has been counted
 };
 
 template <int N, class Real>
 class Caps;
 class PinchList;
 
-/// Where an extraction puts its contour: part after part, each in two steps. Vertices' numbers in simplices count
-/// modulo 2^32; those in a part's simplices belong to it or to the part before.
+/// Output of an extraction. It receives the parts in order, each by open and close. Vertex numbers in simplices count
+/// modulo 2^32; those in a part's simplices belong to this part or to the previous one.
 template <int N, class Real>
 class ContourOutput {
  public:
@@ -65,39 +66,39 @@ class ContourOutput {
   struct Room {
     Vertex* vertices;
     Simplex* simplices;
-    Vertex* normals = nullptr;  ///< null: none are wanted
+    Vertex* normals = nullptr;  ///< null: no normals requested
   };
   ContourOutput() = default;
   ContourOutput(const ContourOutput&) = delete;
   ContourOutput& operator=(const ContourOutput&) = delete;
   virtual ~ContourOutput() = default;
 
-  /// The most that can come.
+  /// Maximum numbers of vertices and simplices. Called once, before the first part.
   virtual void expect(double /*vertices*/, double /*simplices*/) {}
-  /// Room for a part, which is then written; two null pointers: it is not.
+  /// Returns storage for a part, which the extraction then writes. If both pointers are null, nothing is written.
   virtual Room open(const ContourPart& part) = 0;
-  /// What the next part is likely to be written to, in pieces that may be touched side by side until it is opened: the
-  /// system then hands them out one by one, and not the same one to several threads.
+  /// Number of memory pieces that the next part will probably use. Until it is opened, threads may touch the pieces in
+  /// parallel, so that the system allocates them one by one and no two threads wait for the same one.
   [[nodiscard]] virtual std::size_t pieces_ahead() const noexcept { return 0; }
   virtual void touch_ahead(std::size_t /*piece*/) noexcept {}
-  /// A part is written. `pinches`: the vertices of this part and all before that may have to be doubled.
+  /// Called after a part is written. `pinches`: vertices of this and all previous parts that may have to be duplicated.
   virtual void close(const ContourPart& /*part*/, const PinchList& /*pinches*/) {}
-  /// All parts are written; `caps` may be null.
+  /// Called after all parts are written. `caps` may be null.
   virtual void finish(const ContourPart& all, const Caps<N, Real>* caps, const PinchList& pinches) = 0;
 };
 
-/// How an extraction goes about its work.
+/// Parameters of an extraction other than the user's options.
 struct ExtractPlan {
   std::uint64_t max_vertices = kMaxVertices;
   unsigned closed_axes = ~0u;  ///< bit a: whether options.close closes the borders across axis a
-  std::size_t batch = 0;       ///< slabs at a time; 0: as many as suit the image
-  /// Of two batches, one after the other: numbers in simplices are told apart modulo 2^32.
+  std::size_t batch = 0;       ///< slabs per batch; 0: chosen from the image
+  /// Maximum vertices of two consecutive batches: numbers in simplices are distinguished modulo 2^32.
   std::uint64_t max_vertices_at_once = std::uint64_t{1} << 32;
-  const TileSelection* selection = nullptr;  ///< what to look at; null: all
-  PartOfImage part{};                        ///< for estimators: what the grid is a part of
-  /// N = 3: whether points between layers of the last axis are kept off the layers, as they always are in 4D.
+  const TileSelection* selection = nullptr;  ///< rows or tiles to process; null: all
+  PartOfImage part{};                        ///< for estimators: the image that the grid is a part of
+  /// N = 3: whether vertices between layers of the last axis are kept off the layers, as always in 4D.
   bool keeps_off_layers = false;
-  bool keeps_tiles = true;  ///< false: lists of active tiles are made twice, whatever memory there is for them
+  bool keeps_tiles = true;  ///< false: lists of active tiles are computed twice, however much memory there is
 };
 
 }  // namespace tegl::detail

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Normals on the critical edges of a row; see edge_normals.hpp. This file is compiled once per instruction set
-// (Highway's foreach_target). Additions and multiplications stay apart, and roots and quotients are rounded correctly
-// by all of them, so that they give the same bytes.
+// Normals on the critical edges of a row (see edge_normals.hpp). Highway's foreach_target compiles this file once per
+// instruction set. Multiplications and additions are not fused, and roots and quotients are correctly rounded, so that
+// all instruction sets give identical bytes.
 #include "kernel/edge_normals.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel/edge_normals.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,7 +40,7 @@ HWY_INLINE auto to_real(D /*d*/, hn::Vec<D> value) {
     return hn::DemoteTo(hn::Rebind<Real, D>(), value);
 }
 
-/// The gradients of as many edges as D has lanes, from edge `i` on, by axis coordinates.
+/// Gradients in axis coordinates of as many edges as D has lanes, starting at edge `i`.
 template <class D, int N, class Real>
 HWY_INLINE std::array<hn::Vec<D>, N> gradients(D d, const NormalRow<N, Real, hn::TFromD<D>>& row, std::size_t i) {
   const auto value = [&](unsigned place) { return hn::LoadU(d, row.values + place * kEdgesAtOnce + i); };
@@ -64,18 +64,19 @@ HWY_INLINE std::array<hn::Vec<D>, N> gradients(D d, const NormalRow<N, Real, hn:
   return result;
 }
 
-/// As many normals as D has lanes; returns the lanes where they mean nothing.
+/// Writes as many normals as D has lanes. Returns the lanes whose normals are undefined.
 template <class D, int N, class Real>
 HWY_INLINE Word write_some(D d, const NormalRow<N, Real, hn::TFromD<D>>& row, std::size_t i, Real* out) {
   using Calc = hn::TFromD<D>;
   constexpr bool kFloat = std::is_same_v<Calc, float>;
-  // Squares in between are exact to the last bits, and so is the reciprocal of their root.
+  // Within these bounds, squares and the reciprocals of their roots are accurate to the last bits.
   const auto least = hn::Set(d, static_cast<Calc>(kFloat ? 1e-30 : 1e-280));
   const auto most = hn::Set(d, static_cast<Calc>(kFloat ? 1e30 : 1e280));
   const auto gradient = gradients(d, row, i);
   std::array<hn::Vec<D>, N> normal;
   auto square = hn::Zero(d);
   for (unsigned a = 0; a < N; ++a) {
+    // gradient in the world and its squared length
     if (row.to_world == nullptr) {
       normal[a] = hn::Mul(hn::Set(d, row.sign), gradient[a]);
     } else {
@@ -85,11 +86,13 @@ HWY_INLINE Word write_some(D d, const NormalRow<N, Real, hn::TFromD<D>>& row, st
     }
     square = hn::Add(square, hn::Mul(normal[a], normal[a]));
   }
+  // normals
   const auto inverse = hn::Div(hn::Set(d, Calc{1}), hn::Sqrt(square));
   const hn::Rebind<Real, D> real;
   std::array<hn::Vec<decltype(real)>, N> result;
   for (unsigned a = 0; a < N; ++a) result[a] = to_real<Real>(d, hn::Mul(normal[a], inverse));
   store_normals(real, result, out);
+  // lanes out of bounds
   const auto good = hn::And(hn::Gt(square, least), hn::Lt(square, most));
   if (HWY_LIKELY(hn::AllTrue(d, good))) return 0;
   alignas(8) std::uint8_t bits[8] = {};
@@ -114,7 +117,7 @@ HWY_INLINE Word normals(const NormalRow<N, Real, Calc>& row) {
   return left & ((Word{1} << row.count) - 1);
 }
 
-// Highway's tables of functions hold no templates.
+// Highway's dispatch tables cannot hold templates.
 Word normals2f(const NormalRow<2, float, float>& row) { return normals(row); }
 Word normals3f(const NormalRow<3, float, float>& row) { return normals(row); }
 Word normals4f(const NormalRow<4, float, float>& row) { return normals(row); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From the values around critical edges to unit normals, a row at a time; compiled for several instruction sets, which
-// all give the same bytes.
+// Unit normals from the values around critical edges, one row at a time. Compiled for several instruction sets; all
+// give identical bytes.
 #pragma once
 
 #include <array>
@@ -13,27 +13,27 @@
 
 namespace tegl::detail {
 
-/// Up to kEdgesAtOnce edges of a row along one axis. Calc: the type of the arithmetic.
+/// Up to kEdgesAtOnce edges of a row along one axis. Calc: type of the arithmetic.
 template <int N, class Real, class Calc>
 struct NormalRow {
   using Vertex = std::array<Real, N>;
-  /// Values per edge: those around it, and its point's place.
+  /// Values per edge: the samples around it and its vertex's position on it.
   static constexpr unsigned kValues = kEdgeValues<N> + 1;
 
-  const Calc* values;  ///< kValues x kEdgesAtOnce; beyond `count` anything
+  const Calc* values;  ///< kValues x kEdgesAtOnce; undefined from `count` on
   std::size_t count;
   int axis;
-  /// By axis: what the differences at the first end backward and forward, then at the second, are multiplied by.
+  /// By axis: weights of the backward and forward difference at the first end, then at the second.
   std::array<std::array<Calc, 4>, N> weights;
-  /// Where the distances along the row differ, weights [0] by edge: 4 x kEdgesAtOnce. Else null.
+  /// 4 x kEdgesAtOnce: weights[0] by edge, if samples along the row are not equidistant; otherwise null.
   const Calc* row_weights;
-  const Calc* to_world;  ///< N x N, row by row, carries gradients along; null: only `sign` does
+  const Calc* to_world;  ///< N x N, row-major, transforms gradients; null: only `sign` applies
   Calc sign;
   Vertex* out;
 };
 
-/// Writes normals of length 1. Returns, as bits, the edges whose gradient is too small, too large or not finite: what
-/// is written for those means nothing.
+/// Writes normals of length 1. Returns as bits the edges whose gradient is too small, too large or not finite; their
+/// normals are undefined.
 template <int N, class Real, class Calc>
 Word write_normals(const NormalRow<N, Real, Calc>& row) noexcept;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sweeps along a row of cells: tiles, or (for the barycentres of a 4D contour) the cubes of tiles.
-// Compiled for each set of axes that a cell may span, so all loops over corners and edges unroll.
+// Iteration along a row of cells: tiles, or (for the barycentres of a 4D contour) cubes of tiles. Compiled for each set
+// of axes that a cell may span, so all loops over corners and edges unroll.
 #pragma once
 
 #include <array>
@@ -14,7 +14,8 @@
 
 namespace tegl::detail {
 
-/// The frame of a cell along the axes of the bit mask `Axes` of N-space: local axis j is the j-th of them.
+/// Local frame of a cell that spans the axes of the bit mask `Axes` of N-space. Local axis j is the j-th axis of the
+/// mask.
 template <int N, unsigned Axes>
 struct CellFrame {
   static constexpr int kDim = std::popcount(Axes);
@@ -22,7 +23,7 @@ struct CellFrame {
   static constexpr unsigned kRows = 1u << (kDim - (kAlongRow ? 1 : 0));
   static constexpr unsigned kEdges = tables::edge_count(kDim);
 
-  /// Axis of N-space of each local axis.
+  /// Axis of N-space for each local axis.
   static constexpr std::array<int, kDim> axes() noexcept {
     std::array<int, kDim> result{};
     std::size_t j = 0;
@@ -30,7 +31,7 @@ struct CellFrame {
       if ((Axes >> a & 1u) != 0) result[j++] = a;
     return result;
   }
-  /// Local corner number to the set of axes of N-space along which it is displaced.
+  /// Maps a local corner number to the mask of axes of N-space along which it is displaced.
   static constexpr unsigned spread(unsigned corner) noexcept {
     constexpr auto kAxes = axes();
     unsigned mask = 0;
@@ -41,14 +42,15 @@ struct CellFrame {
   static constexpr unsigned row_corner(unsigned r) noexcept { return kAlongRow ? 2 * r : r; }
 };
 
-/// The number of bits of a word that mostly has none or one: counting is slow where it is no instruction.
+/// Population count of a word that usually has at most one set bit. Faster than std::popcount if the processor has no
+/// such instruction.
 [[gnu::always_inline]] inline Index few_bits(Word word) noexcept {
   Index count = 0;
   for (; word != 0; word &= word - 1) ++count;
   return count;
 }
 
-/// The corners' bits of 64 cells of a row at a time.
+/// Corner bits of 64 cells of a row at a time.
 template <int N, unsigned Axes>
 class CellBits {
  public:
@@ -70,7 +72,7 @@ class CellBits {
       if constexpr (Frame::kAlongRow) high_[r] = rows_[r][w] >> 1 | rows_[r][w + 1] << (kWordBits - 1);
     }
   }
-  /// The cells with both high and low corners.
+  /// Cells with both high and low corners.
   [[nodiscard]] Word mixed() const noexcept {
     Word any = 0;
     Word all = ~Word{0};
@@ -103,7 +105,7 @@ class CellBits {
   std::array<Word, Frame::kRows> high_;
 };
 
-/// The vertex numbers of the edges of 64 cells of a row at a time.
+/// Vertex numbers on the edges of 64 cells of a row at a time.
 template <int N, unsigned Axes>
 class CellEdges {
  public:
@@ -128,12 +130,12 @@ class CellEdges {
       word_[s] = bits_[s][w];
     }
   }
-  /// By local edge: the first vertex of its stream.
+  /// For each local edge: first vertex of its stream in this row.
   static void firsts(const SlabView<N>& view, std::size_t row, Index* out) noexcept {
     constexpr auto kStreams = streams();
     constexpr auto kPlaces = places();
     std::array<Index, kStreamCount> first;
-    // Unrolled by force: then where the streams' rows are takes an addition or two each.
+    // Forced unrolling: each stream's row is then computed with one or two additions.
     [&]<std::size_t... S>(std::index_sequence<S...>) {
       ((first[S] = view.edges(kStreams[S].axis, kStreams[S].mask >> (N - 1) & 1u)
                        .first(view.shape->shifted(row, kStreams[S].mask))),
@@ -142,7 +144,8 @@ class CellEdges {
     (std::make_index_sequence<kStreamCount>{});
     for (unsigned e = 0; e < Frame::kEdges; ++e) out[e] = first[kPlaces[e].stream];
   }
-  /// Numbers of all edges of cell `bit`, of ascending ones; those of edges that are not critical mean nothing.
+  /// Vertex numbers of all edges of cell `bit`. Successive calls need ascending bits. Entries of non-critical edges are
+  /// undefined.
   void ids(unsigned bit, Index* out) noexcept {
     constexpr auto kPlaces = places();
     const Word below = (Word{1} << bit) - 1;
@@ -156,12 +159,12 @@ class CellEdges {
 
  private:
   struct Stream {
-    int axis = 0;       ///< of N-space
+    int axis = 0;       ///< axis of N-space
     unsigned mask = 0;  ///< displacement of its row
   };
   struct Place {
     unsigned stream = 0;
-    bool next = false;  ///< at the next sample of the row
+    bool next = false;  ///< the edge is at the next sample of the row
   };
   static constexpr bool is_stream(unsigned e) noexcept {
     const unsigned axis = e >> (Frame::kDim - 1);
@@ -196,12 +199,12 @@ class CellEdges {
   std::array<Index, kStreamCount> base_;
   std::array<const std::uint32_t*, kStreamCount> prefix_;
   std::array<const Word*, kStreamCount> bits_;
-  std::array<Index, kStreamCount> rank_;  ///< the vertices of the row before those not passed
+  std::array<Index, kStreamCount> rank_;  ///< vertices of the row before the first cell not passed
   std::array<Word, kStreamCount> word_;
   Word passed_ = 0;
 };
 
-/// The first vertex of each of the cubes around 64 tiles (N = 4) of a row at a time.
+/// First vertex of each of the eight cubes of a tile (N = 4), for 64 tiles of a row at a time.
 class TileCubes {
  public:
   static constexpr unsigned kCubes = 8;
@@ -224,7 +227,8 @@ class TileCubes {
       for (unsigned slot = 0; slot < tables::kFaceSlots; ++slot) word_[s][slot] = bits_[s][slot][w];
     }
   }
-  /// The first vertex of each cube of tile `bit`, of ascending ones; of cubes that have none, any number.
+  /// First vertex of each cube of tile `bit`. Successive calls need ascending bits. Entries of cubes without vertices
+  /// are undefined.
   void ids(unsigned bit, std::array<Index, kCubes>& out) noexcept {
     const Word below = (Word{1} << bit) - 1;
     for (unsigned s = 0; s < kStreamCount; ++s)
@@ -237,7 +241,7 @@ class TileCubes {
   }
 
  private:
-  // Those across the row are one stream; of the others, each side is.
+  // Both cubes across axis 0 share one stream; every other cube has its own.
   static constexpr unsigned kStreamCount = kCubes - 1;
   static constexpr int omitted(unsigned stream) noexcept { return static_cast<int>((stream + 1) / 2); }
   static constexpr unsigned side(unsigned stream) noexcept { return stream == 0 ? 0 : (stream + 1) % 2; }

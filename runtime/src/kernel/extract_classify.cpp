@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Passes 1 and 2 of the extraction: samples to bits, and the tiles without a missing corner; see extract_count.hpp.
+// Passes 1 and 2 of the extraction (see extract_count.hpp): classify samples into bits, then find the tiles without a
+// missing corner.
 #include "kernel/extract_count.hpp"
 
 #include <algorithm>
@@ -74,13 +75,13 @@ void Counter<N>::guess_rows(const SampleSource<N>& source, std::size_t k, bool i
   bool high = false;
   for (std::size_t row = first; row < end; ++row) {
     auto index = shape_.index_of(row);
-    if (row == first || index[1] == 0) {  // else the row before is its neighbour, and as it is
+    if (row == first || index[1] == 0) {  // otherwise it is adjacent to the row before and has the same state
       index[N - 1] = k;
       high = source.is_high(index) != invert;
     }
     layer.state[row] = high ? RowState::high : RowState::low;
     if (!ranks_ && !has_cubes_) continue;
-    // Borders are closed, and cubes counted, by bits.
+    // Closing at the border and counting cubes read bits.
     for (std::size_t w = 0; w < shape_.words(); ++w)
       layer.high[row * shape_.pitch() + w] = high ? shape_.mask(w, false) : 0;
   }
@@ -122,6 +123,7 @@ void Counter<N>::find_valid_row(const Layer<N>& lower, const Layer<N>& upper, st
   Word* const valid = slab.valid.data() + row * shape_.words();
   std::fill(valid, valid + shape_.words(), Word{0});
   if (!shape_.has_cells(shape_.index_of(row), kMiddle)) return;
+  // corners that are missing
   for (const Layer<N>* layer : {&lower, &upper})
     for (unsigned corner = 0; corner <= kMiddle; corner += 2) {
       const std::size_t at = shape_.shifted(row, corner);
@@ -130,6 +132,7 @@ void Counter<N>::find_valid_row(const Layer<N>& lower, const Layer<N>& upper, st
       for (std::size_t w = 0; w < shape_.words(); ++w)
         valid[w] |= missing[w] | missing[w] >> 1 | missing[w + 1] << (kWordBits - 1);
     }
+  // tiles without any of them
   for (std::size_t w = 0; w < shape_.words(); ++w) valid[w] = ~valid[w] & shape_.mask(w, true);
 }
 
@@ -139,7 +142,7 @@ bool Counter<N>::cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab
   if ((below != nullptr && below->all_valid) || (above != nullptr && above->all_valid)) return false;
   const auto index = shape_.index_of(row);
   std::fill(out, out + shape_.words(), Word{0});
-  // The tiles around a cell: displaced backwards along any of the axes that the cell does not span.
+  // A cell belongs to the tiles displaced backwards along any axes that the cell does not span.
   for (unsigned back = 0; back < 1u << (N - 1); back += 2) {
     bool exists = (back & axes) == 0;
     for (int a = 1; a < N - 1; ++a) exists = exists && ((back >> a & 1u) == 0 || index[a] > 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Counting by popcount; see extract_count.hpp.
-// Based on: W. Schroeder, R. Maynard, B. Geveci, Flying Edges, 2015 (count, prefix sum, generate by
-// rows), here on bit planes and in any dimension.
+// Pass 3 of the extraction and its storage: counts by popcount (see extract_count.hpp).
+// Based on: W. Schroeder, R. Maynard, B. Geveci, Flying Edges, 2015 (count, prefix sum, generate by rows); here on bit
+// planes and in any dimension.
 #include "kernel/extract_count.hpp"
 
 #include <algorithm>
@@ -113,7 +113,7 @@ template <unsigned Axes>
 void Counter<N>::count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const {
   const std::size_t words = shape_.words();
   plane.count[row] = 0;
-  if (!shape_.has_cells(shape_.index_of(row), Axes)) return;  // its bits have been 0 from the start
+  if (!shape_.has_cells(shape_.index_of(row), Axes)) return;  // the row's bits have been 0 since allocation
   CellBits<N, Axes> cells(view, row);
   std::uint32_t count = 0;
   for (std::size_t w = 0; w < shape_.words(); ++w) {
@@ -183,7 +183,7 @@ void Counter<N>::count_layer_row(Layer<N>& layer, std::size_t k, const Slab<N>* 
     }
 }
 
-/// Whether all corners of a row's tiles are alike.
+/// Whether all corners of a row's tiles have the same state.
 template <int N>
 static bool is_uniform(const SlabView<N>& view, std::size_t row) {
   const RowState first = view.layers[0]->state[row];
@@ -223,7 +223,7 @@ TileCount Counter<N>::find_tiles(const SlabView<N>& view, std::size_t row, const
   return count;
 }
 
-/// The places in a row's list, from `first` on, of ambiguous tiles; returns how many. No branch depends on the tiles.
+/// Lists the indices of ambiguous tiles in first ... end - 1. Returns their number. Branch-free in the tiles.
 template <int N, std::size_t Count>
 static std::uint32_t list_ambiguous(const TileRoom& room, std::uint32_t first, std::uint32_t end,
                                     std::array<std::uint32_t, Count>& out) {
@@ -237,7 +237,7 @@ static std::uint32_t list_ambiguous(const TileRoom& room, std::uint32_t first, s
   return found;
 }
 
-/// How many of the places from `j` on are of tiles at the same word.
+/// Number of consecutive entries of `places` from `j` on whose tiles lie in the same word.
 static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* places, std::uint32_t j,
                                    std::uint32_t end) {
   const std::uint32_t first = j;
@@ -245,7 +245,7 @@ static std::uint32_t count_at_word(const TileRoom& room, const std::uint32_t* pl
   return j - first;
 }
 
-// Apart from what calls it, which is to have no large frame where no data decide; so below.
+// Not inlined, so that the caller has a small stack frame if nothing is resolved. So is resolve_tesseracts.
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room,
                                                  TileCount& count) const {
@@ -275,12 +275,14 @@ template <int N>
       const bool at_once = is_listed && RowFaces<N>::can_use(*estimator_);
       const auto resolve_word = [&](const std::uint32_t* of_word, std::uint32_t tiles) {
         TilesOfWord of;
+        // the ambiguous tiles of one word
         of.count = tiles;
         for (std::uint32_t j = 0; j < tiles; ++j) {
           of.bits[j] = room.at[of_word[j]] % kWordBits;
           of.signatures[j] = static_cast<std::uint8_t>(room.signatures[of_word[j]]);
         }
         detail::resolve(*estimator_, *rows_, faces.look_at(room.at[of_word[0]] / kWordBits), of);
+        // apply the variants; key 0: not resolved here
         for (std::uint32_t j = 0; j < tiles; ++j) {
           const Variant variant = of.variants[j];
           if (variant.key == 0) {
@@ -297,7 +299,7 @@ template <int N>
         const std::uint32_t found = list_ambiguous<N>(room, first, end, places);
         for (std::uint32_t j = 0; j < found;) {
           const std::uint32_t tiles = at_once ? count_at_word(room, places.data(), j, found) : 1;
-          if (tiles >= 2 * RowFaces<N>::kMany)  // a single cube takes less than a single tesseract
+          if (tiles >= 2 * RowFaces<N>::kMany)  // resolving one cube costs less than one tesseract
             resolve_word(places.data() + j, tiles);
           else
             for (std::uint32_t k = j; k < j + tiles; ++k) resolve(places.data()[k]);
@@ -324,10 +326,12 @@ template <int N>
       if (!is_put_together(*estimator_, signature)) continue;
       base[0] = is_listed ? room.at[i] : walk.place_of(i);
       const ResolvedTile tile = tiles.resolve(base, i, signature);
+      // replace the table's size by the filling's
       const ResolvedSize filling = tesseract.size(tile.key, tile.lists);
       count.simplices += filling.simplices;
       count.simplices -= rows_->entries()[signature] & RowTable::kCountMask;
       count.own_vertices += filling.own_vertices - rows_->own_vertices(signature);
+      // record its cubes that own vertices, each by one tile only
       if (found == nullptr || tile.with_vertices == 0) continue;
       const auto take = [&](CubePlane& plane, unsigned cube, std::size_t at) {
         if (const unsigned own = cubes.own_vertices(tile.lists[cube]); own != 0)
@@ -366,7 +370,8 @@ TileRoom Counter<N>::tile_room(Slab<N>& slab, std::size_t row, CountScratch& scr
 template <int N>
 RowTiles Counter<N>::tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const {
   const Slab<N>& slab = *view.slab;
-  // Signatures are of use in rows of any length, places along the row only where it goes by tiles.
+  // Signatures are usable in rows of any length, positions along the row only if it goes by tiles (they count modulo
+  // 2^16).
   if (slab.active_count[row] == 0 || rows_ == nullptr || (has_cubes_ && !lists_cubes_) || !slab.all_valid) return {};
   if (keeps_tiles()) {
     const std::size_t first = slab.first_tile[row];
@@ -386,6 +391,7 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
   slab.active_count[row] = 0;
   if (!shape_.has_cells(shape_.index_of(row), kAll)) return;
   if (is_uniform(view, row)) return;
+  // by the flat table
   if (rows_ != nullptr) {
     const TileRoom room = tile_room(slab, row, scratch);
     TileCount count = find_tiles(view, row, room);
@@ -393,6 +399,7 @@ void Counter<N>::count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t
     keep_count(count, slab, row);
     return;
   }
+  // word by word
   CellBits<N, kAll> cells(view, row);
   for (std::size_t w = 0; w < shape_.words(); ++w) {
     cells.load(w);
@@ -494,7 +501,7 @@ namespace {
 
 template <class Plane>
 void offset(Plane& plane, std::size_t row, std::uint64_t& next) {
-  plane.offset.data()[row] = static_cast<Index>(next);  // not by calls, which compilers leave in checked builds
+  plane.offset.data()[row] = static_cast<Index>(next);  // data(): checked builds do not inline operator[]
   next += plane.count.data()[row];
 }
 
@@ -539,7 +546,7 @@ template <int N>
 void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above,
                             std::size_t chunk, CountScratch& scratch) const {
   if (is_uniform_chunk(view, chunk)) return clear_chunk(upper, slab, chunk);
-  // Tiles next to missing values ask for the ranks of their edges.
+  // Tiles adjacent to missing values use the ranks of their edges.
   const bool ranks = !quick_ || ranks_ || !slab.all_valid || (above != nullptr && !above->all_valid);
   SlabChunk sums;
   std::uint64_t in_layer = 0;

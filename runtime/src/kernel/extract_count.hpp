@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Passes 1 to 3 of the extraction: which cells are critical, how many vertices and simplices each row
-// has, and where they go. Works on bits alone: independent of the value type and of coordinates.
+// Passes 1 to 3 of the extraction: find critical cells, count vertices and simplices by row, and number them. Works on
+// bits only, independent of value type and coordinates.
 #pragma once
 
 #include <array>
@@ -20,20 +20,20 @@
 
 namespace tegl::detail {
 
-/// What a caller's estimator said of the tiles of a row that data decide on, in their order. Kept so that what is
-/// written is what was compared with the counts, whatever it would answer next.
+/// Answers of a caller's estimator for the tiles of a row that it resolves, in row order. They are stored so that
+/// generation uses the answers that were compared with the counts, even if the estimator changes them later.
 struct RowAnswers {
   std::vector<ResolvedTile> tesseracts;  ///< N = 4
-  std::vector<std::uint16_t> keys;       ///< N < 4: of all active tiles
-  std::size_t taken = 0;                 ///< how many of them are written
+  std::vector<std::uint16_t> keys;       ///< N < 4: keys of all active tiles
+  std::size_t taken = 0;                 ///< number of answers already written
 };
 
-/// What a thread keeps while it counts and lists tiles.
+/// Working storage of one thread for counting and listing tiles.
 struct CountScratch {
-  std::vector<Word> words;                       ///< of a row
-  TileLists tiles;                               ///< of a row, where slabs do not keep them
-  std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, where data decide
-  RowAnswers answers;                            ///< where a caller decides
+  std::vector<Word> words;                       ///< one row
+  TileLists tiles;                               ///< one row, if slabs do not keep lists
+  std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, if ambiguities are resolved from the data
+  RowAnswers answers;                            ///< if a caller's estimator resolves ambiguities
 };
 
 class TileSelection;
@@ -41,93 +41,96 @@ class TileSelection;
 template <int N>
 class Counter {
  public:
-  /// `rows`: the table for the quick way, or null. `ranks`: whether others ask for the ranks of vertices on edges.
-  /// `estimator`: what decides on ambiguous tiles, or null: the table does.
+  /// `rows`: flat table for the fast path, or null. `ranks`: whether vertex numbers on edges are read by other code.
+  /// `estimator`: resolves ambiguous tiles; null: the table does.
   Counter(const RowShape<N>& shape, const TableSet<N>& tables, const RowTable* rows, bool ranks,
           const FaceEstimator<N>* estimator = nullptr);
 
-  /// Whether slabs keep the lists of their active tiles, four bytes for each sample. Otherwise each list is made twice:
-  /// for large slabs (4D) they are most of what is kept.
+  /// Whether slabs keep the lists of their active tiles (4 bytes per sample). Otherwise each list is computed twice. In
+  /// 4D, where slabs are large, the lists would be most of the working storage.
   void keep_tiles(bool keep) noexcept { keeps_tiles_ = keep; }
 
-  /// Storage for a layer's bits; for what is counted of a layer or a slab; and for missing values, where they turn up.
+  /// Allocate a layer's bits, the counts of a layer or slab, and the bits of missing values (only if any is missing).
   void allocate(Layer<N>& layer) const;
   void allocate(LayerPlanes<N>& planes) const;
   void allocate(SlabPlanes<N>& planes) const;
   void allocate_missing(Layer<N>& layer) const;
   void allocate_valid(Slab<N>& slab) const;
-  /// Bytes of each of the first three.
+  /// Bytes that the first three `allocate` functions take.
   [[nodiscard]] std::size_t layer_bytes() const noexcept;
   [[nodiscard]] std::size_t layer_planes_bytes() const noexcept;
   [[nodiscard]] std::size_t slab_planes_bytes() const noexcept;
   [[nodiscard]] std::size_t cube_row_bytes() const noexcept;
 
-  // By chunks of rows, which may be done in any order and side by side. A pass needs the passes before it on all rows
-  // of what it looks at.
+  // The passes work on chunks of rows. Chunks may be processed in any order and in parallel. Each pass requires the
+  // previous passes on all rows that it reads.
 
-  /// 1. Classifies layer `k`; `invert` for the high-connected alternative. `buffer`: pitch words. `selection`: what is
-  /// looked at; null: all.
+  /// Pass 1: classifies the samples of layer `k`. `invert`: for the high-connected alternative. `buffer`: pitch words.
+  /// `selection`: rows or tiles to process; null: all.
   void classify(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
                 Word* buffer, const TileSelection* selection) const;
-  /// After all chunks of a layer are classified. If samples are missing, and there is no storage for them so far, then
-  /// the layer is to be classified once more when there is.
+  /// Call after all chunks of a layer are classified. If samples are missing and the layer has no storage for them, it
+  /// must be classified again after allocate_missing.
   static void find_missing(Layer<N>& layer);
-  /// 2. Tiles without a missing corner, between two layers; slab.all_valid is known.
+  /// Pass 2: finds tiles without a missing corner between two layers. Requires slab.all_valid.
   void find_valid(const Layer<N>& lower, const Layer<N>& upper, std::size_t chunk, Slab<N>& slab) const;
-  /// 3. Critical edges (and cubes) in layer 0, below `above`. `buffer`: pitch words.
+  /// Pass 3 for layer 0: finds critical edges (and cubes) of the layer, which lies below slab `above`. `buffer`: pitch
+  /// words.
   void count_first_layer(Layer<N>& layer, const Slab<N>& above, std::size_t chunk, Word* buffer) const;
-  /// 3. Critical edges (and cubes) along the last axis, active tiles and what they own; and what is critical in the
-  /// upper layer, above which there is `above` (or null). `upper` and `slab` are those of `view`.
+  /// Pass 3: finds critical edges (and cubes) along the last axis, active tiles and their own vertices, and critical
+  /// cells of the upper layer, which lies below slab `above` (or null). `upper` and `slab` belong to `view`.
   void count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, const Slab<N>* above, std::size_t chunk,
                   CountScratch& scratch) const;
   [[nodiscard]] CountScratch make_scratch() const;
 
-  /// The active tiles of a row that is counted, where the quick way can be taken with them; else none. They stay as
-  /// long as the scratch is left alone.
+  /// Active tiles of a counted row if the fast path can be used, otherwise none. Valid until the scratch is used again.
   [[nodiscard]] RowTiles tiles(const SlabView<N>& view, std::size_t row, CountScratch& scratch) const;
 
-  /// Turn counts into places, starting with vertex `first` (and simplex `first_simplex`); return the end.
+  /// Number vertices from `first` on (and simplices from `first_simplex` on). Return one past the last vertex.
   std::uint64_t place_layer(Layer<N>& layer, std::uint64_t first) const;
   std::uint64_t place_slab(Slab<N>& slab, std::uint64_t first, std::uint64_t& first_simplex) const;
 
-  /// Whether the edges of a row of the slab, and those of the layer above it there, are to be known from the row's
-  /// active tiles: else from bits.
+  /// Whether the critical edges of this row of the slab and of the layer above are derived from the row's active tiles
+  /// instead of from bits.
   [[nodiscard]] bool goes_by_tiles(const Slab<N>& slab, std::size_t row) const noexcept {
     return quick_ && slab.all_valid && shape_.has_cells(shape_.index_of(row), (1u << N) - 1);
   }
 
-  /// Whether any cube has vertices of its own.
+  /// Whether any cube owns vertices.
   [[nodiscard]] bool has_cubes() const noexcept { return has_cubes_; }
-  /// Whether data decide on cubes, N = 4: those with vertices of their own are listed, in place of bits.
+  /// Whether cubes are resolved from the data (N = 4). Cubes that own vertices are then listed instead of marked by
+  /// bits.
   [[nodiscard]] bool lists_cubes() const noexcept { return lists_cubes_; }
 
-  /// In `out` (words): the cells along `axes` based in this row that belong to a valid tile of one of
-  /// the slabs (null: none). Returns false, and writes nothing, if that is all of them.
+  /// Writes to `out` the cells along `axes` based in this row that belong to a valid tile of one of the slabs (null: no
+  /// slab). If all cells do, returns false and writes nothing.
   bool cells_of_valid_tiles(unsigned axes, std::size_t row, const Slab<N>* below, const Slab<N>* above,
                             Word* out) const;
 
  private:
   void classify_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
                      Layer<N>& layer, Word* buffer) const;
-  /// The selected rows of a chunk; of the others, which are uniform, what they have in common.
+  /// Classifies the selected rows of a chunk. The other rows are uniform; only their common state is determined.
   void classify_selected(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t chunk, Layer<N>& layer,
                          Word* buffer, const TileSelection& selection) const;
-  /// Rows first ... end - 1 without an active tile, by one sample of each that may differ from the one before.
+  /// Determines the state of rows first ... end - 1, which no active tile touches. Reads one sample of each row that
+  /// may differ from the row before.
   void guess_rows(const SampleSource<N>& source, std::size_t k, bool invert, std::size_t first, std::size_t end,
                   Layer<N>& layer) const;
-  /// Brings a classified row's bits into their last form, and says what they have in common.
+  /// Converts a classified row to its final form (inverted, padded). Returns its common state.
   RowState finish_row(Word* high, bool invert, bool any_missing) const;
   void find_valid_row(const Layer<N>& lower, const Layer<N>& upper, std::size_t row, Slab<N>& slab) const;
   void count_layer_row(Layer<N>& layer, std::size_t k, const Slab<N>* below, const Slab<N>* above, std::size_t row,
                        Word* buffer) const;
   void count_slab_row(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
-  /// All of the slab's row and of the upper layer's at once, if the row goes by tiles.
+  /// Counts a row of the slab and of the upper layer together. Requires goes_by_tiles(row).
   void count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
                      CountScratch& scratch) const;
-  /// Whether all samples that a chunk's tiles and edges touch are alike.
+  /// Whether all samples touched by a chunk's tiles and edges have the same state.
   [[nodiscard]] bool is_uniform_chunk(const SlabView<N>& view, std::size_t chunk) const;
   void clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) const;
-  /// Offsets of a row's vertices in its chunk, from `first` (or the sums so far) on; returns how many there are.
+  /// Turns a row's vertex counts into offsets within its chunk, from `first` (or from `sums`) on. Returns the row's
+  /// number of vertices.
   std::uint64_t offset_layer_row(Layer<N>& layer, std::size_t row, std::uint64_t first) const;
   std::uint64_t offset_slab_row(Slab<N>& slab, std::size_t row, SlabChunk& sums) const;
   void count_edges(EdgePlane& plane, std::size_t row, const Word* a, const Word* b, bool along_row,
@@ -135,10 +138,10 @@ class Counter {
   template <unsigned Axes>
   void count_cubes(CubePlane& plane, const SlabView<N>& view, std::size_t row, const Word* valid) const;
   void count_tiles(const SlabView<N>& view, Slab<N>& slab, std::size_t row, CountScratch& scratch) const;
-  /// Finds the active tiles of a row, ambiguous ones by their keys (N < 4).
+  /// Finds the active tiles of a row. Ambiguous tiles are replaced by their keys (N < 4).
   [[nodiscard]] TileCount find_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room) const;
   void resolve_tiles(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count) const;
-  /// Of the tiles that are found, N = 4, what data decide on. `found`: takes the cubes, or null.
+  /// Destination of cubes that resolve_tesseracts finds.
   struct FoundCubes {
     CubePlane& in_layer;
     std::array<CubePlane, N - 1>& in_slab;

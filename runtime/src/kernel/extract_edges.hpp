@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points on critical edges. A row has a few edges of each axis, or many; so edges are gathered from row after row, by
-// axis, until there are enough for the loops that work on many at a time, and their points then go where they belong.
+// Vertices on critical edges. Rows may have few edges of each axis, so edges of several rows are collected by axis
+// until there are enough for vector loops. Their vertices are then copied to their places in the output.
 #pragma once
 
 #include <algorithm>
@@ -18,47 +18,49 @@
 
 namespace tegl::detail {
 
-/// Room for vertices by number. Numbers count modulo 2^32, so that a contour may have more, if no part of it has.
+/// Output range for vertices, indexed by number. Numbers count modulo 2^32, so a contour may have more vertices than
+/// that, but a part of it may not.
 template <class Vertex>
 struct VertexRun {
   Vertex* data;
   Index first;
-  Vertex* normals = nullptr;  ///< null: none are wanted
+  Vertex* normals = nullptr;  ///< null: no normals requested
   Vertex& operator[](Index id) const noexcept { return data[static_cast<Index>(id - first)]; }
   Vertex& normal(Index id) const noexcept { return normals[static_cast<Index>(id - first)]; }
 };
 
-/// Where the edges come from and their points go, for a chunk of rows: those of a layer, and those along the last axis
-/// of the slab below it.
+/// Source and destination of edges for a chunk of rows: edges in a layer, and edges along the last axis in the slab
+/// below it.
 template <class Vertex>
 struct EdgeTarget {
   struct Run {
-    std::size_t layer = 0;  ///< that the edges start in
-    Vertex* end = nullptr;  ///< of what may be written when others have yet to come
+    std::size_t layer = 0;  ///< layer in which the edges start
+    Vertex* end = nullptr;  ///< limit for stores that are later overwritten
   };
   Run in_layer, in_slab;
   VertexRun<Vertex> vertices;
 };
 
-/// One per thread. O(samples of a row) memory: of long rows, where the edges are; all else by pieces of them.
+/// Writes vertices (and normals) on edges. One per thread. Memory is O(samples per row) for edge positions; other
+/// arrays have bounded size.
 template <int N, class Real>
 class EdgeWriter {
  public:
   using Vertex = std::array<Real, N>;
-  /// By axis.
+  /// Arrays by axis.
   using Counts = std::array<std::uint32_t, N>;
   using Firsts = std::array<Index, N>;
 
   EdgeWriter(const SampleSource<N>& source, const Placement<N, Real>& placement, const RowShape<N>& shape)
       : source_(source), placement_(placement), shape_(shape), strides_(source.strides()), full_(full(shape.size(0))) {
     for (int a = 0; a < N; ++a) lists_[a].allocate(shape.size(0), a > 0 && a + 1 < N);
-    segments_.reserve(most_segments(shape.size(0)));  // later on, nothing may be thrown
+    segments_.reserve(most_segments(shape.size(0)));  // nothing may throw after construction
     if (placement.normals() == nullptr) return;
     normals_ = std::make_unique<NormalScratch>();
     for (List& list : lists_) list.normals.resize(room_together(shape.size(0)));
   }
 
-  /// Of one for rows of so many samples.
+  /// Bytes of an EdgeWriter for rows of `samples` samples.
   static constexpr std::size_t bytes(std::size_t samples, bool normals) noexcept {
     constexpr std::size_t kEach = sizeof(std::ptrdiff_t) + N * sizeof(double);
     const std::size_t vertices = room_together(samples) * (normals ? 2 : 1);
@@ -66,11 +68,11 @@ class EdgeWriter {
            most_segments(samples) * sizeof(Segment) + (normals ? sizeof(NormalScratch) : 0);
   }
 
-  /// From here on, until finish(), edges are those of `target`.
+  /// Edges added between start() and finish() belong to `target`.
   void start(const EdgeTarget<Vertex>& target) noexcept { target_ = target; }
   void finish() noexcept { flush(); }
 
-  /// The edges of a row of a slab, and of the layer above: by its active tiles.
+  /// Adds the edges of a row of a slab and of the layer above it, derived from its active tiles.
   void add_by_tiles(const SlabView<N>& view, std::size_t row, const RowTiles& tiles) noexcept {
     Counts counts;
     Firsts firsts;
@@ -85,7 +87,7 @@ class EdgeWriter {
     });
   }
 
-  /// The edges of a row of `layer` (axes 0 ... N-2) and of `slab` (axis N-1), by their bits; either may be null.
+  /// Adds the edges of a row of `layer` (axes 0 ... N-2) and of `slab` (axis N-1), from their bits. Either may be null.
   void add_by_bits(const Layer<N>* layer, const Slab<N>* slab, std::size_t row) noexcept {
     std::array<const EdgePlane*, N> planes{};
     if (layer != nullptr)
@@ -105,26 +107,26 @@ class EdgeWriter {
   }
 
  private:
-  static constexpr std::size_t kMargin = 16;   ///< what is written behind lists
-  static constexpr std::uint32_t kMany = 48;   ///< edges of a row that need no others beside them
-  static constexpr std::size_t kAtOnce = 8;    ///< values
-  static constexpr std::size_t kPiece = 4096;  ///< edges of one row that are worked on at a time
+  static constexpr std::size_t kMargin = 16;   ///< entries that vector code writes past the end of lists
+  static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
+  static constexpr std::size_t kAtOnce = 8;    ///< values per store
+  static constexpr std::size_t kPiece = 4096;  ///< maximum edges of one row processed at a time
 
-  /// How many edges make a list full, and what it has room for, where rows have so many samples.
+  /// Number of edges that make a list full, for rows of `samples` samples; then capacities of its arrays.
   static constexpr std::size_t full(std::size_t samples) noexcept {
     return std::clamp<std::size_t>(samples / 2, 32, 512);
   }
   static constexpr std::size_t room(std::size_t samples) noexcept { return full(samples) + samples + kMargin; }
-  /// For edges of several rows.
+  /// Capacity for edges of several rows.
   static constexpr std::size_t room_together(std::size_t samples) noexcept { return full(samples) + kMany + kMargin; }
   static constexpr std::size_t room_at_once(std::size_t samples) noexcept {
     return std::max(room_together(samples), std::min(samples, kPiece) + kMargin);
   }
-  /// Each has an edge at least.
+  /// Every segment has at least one edge.
   static constexpr std::size_t most_segments(std::size_t samples) noexcept { return N * (full(samples) + 1); }
 
-  /// Edges along one axis. Where they are of one row, there is no more than a piece of what is below `at`: alike for
-  /// all of them, or used up before the next piece.
+  /// Edges along one axis. If they are all of one row, the arrays below `at` hold at most one piece (kPiece): their
+  /// values are equal along the row, or are consumed before the next piece.
   struct List {
     std::size_t size = 0;
     std::vector<std::uint32_t> at;
@@ -132,8 +134,8 @@ class EdgeWriter {
     std::array<std::vector<double>, N> start;  ///< as in EdgePoints
     std::vector<double> end;
     std::vector<double> alphas;
-    std::vector<Vertex> points;   ///< of several rows
-    std::vector<Vertex> normals;  ///< likewise, if any are wanted
+    std::vector<Vertex> points;   ///< edges of several rows
+    std::vector<Vertex> normals;  ///< edges of several rows, if normals are requested
 
     void allocate(std::size_t samples, bool has_end) {
       at.resize(room(samples));
@@ -145,7 +147,7 @@ class EdgeWriter {
       if (has_end) end.resize(most);
     }
   };
-  /// Edges of one row in a list.
+  /// Range of one row's edges in a list.
   struct Segment {
     std::size_t row;
     int axis;
@@ -160,17 +162,19 @@ class EdgeWriter {
       for (std::size_t j = 0; j < kAtOnce; ++j) to[i + j] = value;
   }
 
-  /// Lists the edges of a row, axis by axis.
+  /// Appends the edges of a row to the lists of all axes.
   template <class ListEdges>
   void add(std::size_t row, const Counts& counts, const Firsts& firsts, const ListEdges& list_edges) noexcept {
     const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
     if (most == 0) return;
     const auto& index = shape_.index_of(row);
     const bool alone = most >= kMany || (normals_ && !placement_.normals()->is_inside(index));
+    // edge positions
     if (alone) flush();
     std::array<std::uint32_t*, 4> out{};
     for (int a = 0; a < N; ++a) out[a] = lists_[a].at.data() + lists_[a].size;
     list_edges(out);
+    // coordinates of the row
     std::ptrdiff_t offset = 0;
     for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(index[a]) * strides_[a];
     std::size_t longest = 0;
@@ -189,7 +193,7 @@ class EdgeWriter {
     if (alone || longest >= full_) flush();
   }
 
-  /// The edges at a row's last sample, which no tile starts from: each is the last of its list.
+  /// Adds the edges at a row's last sample, where no tile starts. Each is the last of its list.
   void list_last(const SlabView<N>& view, std::size_t row, const Counts& counts,
                  const std::array<std::uint32_t*, 4>& out) const noexcept {
     const std::size_t last = shape_.size(0) - 1;
@@ -202,25 +206,28 @@ class EdgeWriter {
         out[a][counts[a] - 1] = static_cast<std::uint32_t>(last);
   }
 
-  /// Writes the points of all that is listed.
+  /// Writes the vertices of all listed edges and clears the lists.
   void flush() noexcept {
     if (segments_.empty()) return;
-    const bool in_place = segments_.back().row == segments_.front().row;  // one row: one segment in a list
+    const bool in_place = segments_.back().row == segments_.front().row;  // one row: each list has one segment
     std::array<Vertex*, N> points, normals;
     for (int axis = 0; axis < N; ++axis) {
       points[axis] = lists_[axis].points.data();
       normals[axis] = lists_[axis].normals.data();
     }
+    // a single row is written directly to the output
     if (in_place)
       for (const Segment& segment : segments_) {
         points[segment.axis] = &target_.vertices[segment.vertex];
         if (normals_) normals[segment.axis] = &target_.vertices.normal(segment.vertex);
       }
+    // compute
     for (int axis = 0; axis < N; ++axis)
       for (std::size_t first = 0; first < lists_[axis].size; first += kPiece) {
         const EdgesInRows edges = make_points(axis, first, points[axis] + first);
         if (normals_) make_normals(axis, first, edges, normals[axis] + first);
       }
+    // copy
     if (!in_place)
       for (const Segment& segment : segments_) {
         put(segment, lists_[segment.axis].points, target_.vertices.data);
@@ -234,7 +241,7 @@ class EdgeWriter {
     return axis == N - 1 ? target_.in_slab : target_.in_layer;
   }
 
-  /// Of a piece of one list, from edge `first` on, which it returns.
+  /// Computes the vertices of a piece of a list, from edge `first` on. Returns the piece.
   EdgesInRows make_points(int axis, std::size_t first, Vertex* out) noexcept {
     List& list = lists_[axis];
     const std::size_t layer = run(axis).layer;
@@ -252,7 +259,7 @@ class EdgeWriter {
     return edges;
   }
 
-  /// The normals of that piece, whose places on edges are known.
+  /// Computes the normals of a piece after make_points.
   void make_normals(int axis, std::size_t first, const EdgesInRows& edges, Vertex* out) noexcept {
     const auto start_of = [&](std::size_t i) {
       const Segment& segment = *std::find_if(segments_.begin(), segments_.end(), [&](const Segment& s) {
@@ -266,21 +273,21 @@ class EdgeWriter {
                                 *normals_, out, start_of);
   }
 
-  /// The first sample of the row that edges start in.
+  /// First sample of the row in which edges along `axis` start.
   [[nodiscard]] typename RowShape<N>::Index start_in(std::size_t row, int axis) const noexcept {
     auto start = shape_.index_of(row);
     start[N - 1] = run(axis).layer;
     return start;
   }
 
-  /// Copies a segment of its list to where it belongs, `all` being the room for all vertices.
+  /// Copies a segment from its list to the output array `all`.
   void put(const Segment& segment, const std::vector<Vertex>& list, Vertex* all) const noexcept {
     const VertexRun<Vertex>& vertices = target_.vertices;
     Vertex* const to = all + static_cast<Index>(segment.vertex - vertices.first);
     const Vertex* const end = all + (run(segment.axis).end - vertices.data);
     const Vertex* const from = list.data() + segment.first;
-    // As many as there may be, for it is slow to find out how few: what is written too much, later ones take the place
-    // of. (Segments of a run come in the order of their vertices.)
+    // Copying a fixed number is faster than copying the exact one. Later segments overwrite the surplus, as the
+    // segments of a run come in vertex order.
     if (segment.count <= kAtOnce && end - to >= static_cast<std::ptrdiff_t>(kAtOnce))
       std::memcpy(to, from, kAtOnce * sizeof(Vertex));
     else
@@ -292,7 +299,7 @@ class EdgeWriter {
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;
   std::size_t full_;
-  std::unique_ptr<NormalScratch> normals_;  ///< null: none are wanted
+  std::unique_ptr<NormalScratch> normals_;  ///< null: no normals requested
   EdgeTarget<Vertex> target_{};
   std::array<List, N> lists_;
   std::vector<Segment> segments_;

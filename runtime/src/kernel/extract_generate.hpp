@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pass 4 of the extraction: vertices and simplices of one row, written to the row's own places.
+// Pass 4 of the extraction: writes the vertices and simplices of one row to the row's own range of the output.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 
 namespace tegl::detail {
 
-/// Writes the tiles of a row: their own vertices and their simplices.
+/// Writes the vertices that a row's tiles own, and their simplices.
 template <int N, class Real>
 class TileWriter {
  public:
@@ -29,8 +29,8 @@ class TileWriter {
   using Simplex = std::array<Index, N>;
   static constexpr unsigned kAll = (1u << N) - 1;
 
-  /// `flip`: against the orientation of the tables. `rows`: the table for the quick way, or null. `estimator`: as
-  /// Counter's.
+  /// `flip`: reverses the tables' orientation. `rows`: flat table for the fast path, or null. `estimator`: as in
+  /// Counter.
   TileWriter(const SampleSource<N>& source, const TableSet<N>& tables, const RowTable* rows,
              const FaceEstimator<N>* estimator, const Placement<N, Real>& placement, bool flip, bool has_cubes)
       : source_(source),
@@ -43,9 +43,9 @@ class TileWriter {
         flip_(flip),
         has_cubes_(has_cubes) {}
 
-  /// `tiles`: those of the row (Counter::tiles). `simplices`: where simplex `first_simplex` goes. `scratch`: the
-  /// thread's. Writes nothing, and reports it, where a caller's estimator changed its answers since the row was
-  /// counted.
+  /// `tiles`: the row's active tiles (Counter::tiles). `simplices`: destination of simplex `first_simplex`. `scratch`:
+  /// of the calling thread. If a caller's estimator changed its answers after the row was counted, reports this and
+  /// writes nothing.
   void write(const SlabView<N>& view, std::size_t row, std::size_t layer, const RowTiles& tiles,
              VertexRun<Vertex> vertices, Simplex* simplices, std::uint64_t first_simplex,
              CountScratch& scratch) const noexcept {
@@ -62,20 +62,21 @@ class TileWriter {
       write_one_by_one(view, row, index, vertices, out, scratch);
   }
 
-  /// Whether the barycentres of cubes in a slab, and in the layer above it (and layer 0), are written along with its
-  /// tiles, which have their places: of each cube by the tile below it, as all of them are there.
+  /// Whether barycentres of cubes in a slab and in the layer above it (and layer 0) are written together with its
+  /// tiles, which compute their positions anyway. Each cube is written by the tile below it; requires that all tiles
+  /// are valid.
   [[nodiscard]] bool writes_cubes(const Slab<N>& slab) const noexcept { return has_cubes_ && slab.all_valid; }
 
  private:
   using Ids = std::array<Index, 256>;  // by local vertex
 
-  /// Of rows whose tiles are all valid: then every critical edge belongs to an active tile.
+  /// Writes a row whose tiles are all valid. Then every critical edge belongs to an active tile.
   void write_quickly(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& start,
                      const RowTiles& tiles, VertexRun<Vertex> vertices, Simplex* out,
                      CountScratch& scratch) const noexcept {
     TileOutput<N> output{tiles.signatures, tiles.count, {}, flip_, out};
     CellEdges<N, kAll>::firsts(view, row, output.first.data());
-    // The tiles with vertices of their own come in order: their places are found by walking along.
+    // Tiles with own vertices come in ascending order, so their positions are found by iterating over the active bits.
     struct Own {
       const TileWriter& writer;
       const SlabView<N>& view;
@@ -85,7 +86,7 @@ class TileWriter {
       VertexRun<Vertex> vertices;
       BitWalk active;
       Index next;
-      RowOfTesseracts* tesseracts;  ///< N = 4, where data decide, but not a caller
+      RowOfTesseracts* tesseracts;  ///< N = 4, if resolved from the data without a caller's estimator
 
       static Simplex* write(void* self, unsigned key, std::size_t ordinal, const Index* edge_ids,
                             Simplex* out) noexcept {
@@ -115,12 +116,13 @@ class TileWriter {
             BitWalk(view.slab->active.data() + row * view.shape->words()),
             view.slab->first_own(row),
             nullptr};
+    // 4D tiles resolved by mean or saddle
     if constexpr (N == 4)
       if (estimator_ != nullptr && !estimator_->is_callers()) return write_tesseracts(output, start, tiles, own);
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
-  /// Where data decide. Apart, for its frame is large.
+  /// write_tile_row for tiles resolved from the data. Not inlined, because its stack frame is large.
   template <class Own>
   [[gnu::noinline]] void write_tesseracts(const TileOutput<N>& output, const typename RowShape<N>::Index& start,
                                           const RowTiles& tiles, Own& own) const noexcept {
@@ -129,6 +131,7 @@ class TileWriter {
     write_tile_row<N>(output, *rows_, {&Own::write, &own});
   }
 
+  /// Writes a row tile by tile from bits.
   void write_one_by_one(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
                         VertexRun<Vertex> vertices, Simplex* out, CountScratch& scratch) const noexcept {
     const RowShape<N>& shape = *view.shape;
@@ -140,6 +143,7 @@ class TileWriter {
       if (has_cubes_) cubes.emplace(view, row);
     Ids ids;
     Index own = view.slab->first_own(row);
+    // active tiles, 64 positions at a time
     for (std::size_t w = 0; w < shape.words(); ++w) {
       Word rest = active[w];
       if (rest == 0) continue;
@@ -158,6 +162,7 @@ class TileWriter {
             continue;
           }
         const SimplexList<N> list(table_, key_of(index, signature, scratch.answers));
+        // shared and own vertices
         if constexpr (N == 4)
           if (cubes) cube_ids(*cubes, bit, ids);
         if (has_cubes_ || list.own_vertices() != 0) {
@@ -166,20 +171,21 @@ class TileWriter {
           if constexpr (N == 4)
             if (writes_cubes(*view.slab)) write_cubes(places, ids, index, vertices);
         }
+        // simplices
         out = write_simplices(list, ids, own, out);
         own += list.own_vertices();
       }
     }
   }
 
-  /// The key of a tile, in an image whose ambiguous tiles have one.
+  /// Key of a tile: for an ambiguous one from the estimator if there is one, otherwise the signature.
   [[nodiscard]] unsigned key_of(const typename RowShape<N>::Index& index, unsigned signature) const noexcept {
     if constexpr (N < 4)
       if (estimator_ != nullptr && ambiguous_signatures<N>()[signature])
         return resolved_key<N>(*estimator_, index, signature);
     return signature;
   }
-  /// The same when it is written.
+  /// Key of a tile during writing; a caller's estimator answered before (ask_again).
   [[nodiscard]] unsigned key_of(const typename RowShape<N>::Index& index, unsigned signature,
                                 RowAnswers& answers) const noexcept {
     if constexpr (N < 4)
@@ -187,8 +193,8 @@ class TileWriter {
     return key_of(index, signature);
   }
 
-  /// Asks a caller's estimator for what is to be written of a row, and keeps it; whether it comes to what was counted:
-  /// as many vertices and simplices, and the same fillings of the cubes with vertices of their own.
+  /// Queries a caller's estimator for all tiles of a row and keeps the answers. Returns whether they match the counts:
+  /// equal numbers of vertices and simplices, and equal fillings of the cubes that own vertices.
   [[nodiscard]] bool ask_again(const SlabView<N>& view, std::size_t row, typename RowShape<N>::Index index,
                                const RowTiles& tiles, CountScratch& scratch) const noexcept {
     RowAnswers& answers = scratch.answers;
@@ -198,6 +204,7 @@ class TileWriter {
     std::uint64_t simplices = 0, own_vertices = 0;
     CellBits<N, kAll> cells(view, row);
     const Word* const active = view.slab->active.data() + row * view.shape->words();
+    // resolve each active tile and sum the sizes
     for (std::size_t w = 0, ordinal = 0; w < view.shape->words(); ++w) {
       if (active[w] != 0) cells.load(w);
       for (Word rest = active[w]; rest != 0; rest &= rest - 1, ++ordinal) {
@@ -220,10 +227,11 @@ class TileWriter {
         own_vertices += list.own_vertices();
       }
     }
+    // compare with the counts
     return simplices == view.slab->simplices(row) && own_vertices == view.slab->own_vertices(row);
   }
 
-  /// Whether the cubes of a tile are those that were counted.
+  /// Whether a tile's cubes have the keys that were counted.
   [[nodiscard]] bool has_listed_cubes(const SlabView<N>& view, std::size_t row, std::size_t at,
                                       const ResolvedTile& tile) const noexcept {
     for (unsigned cube = 0; cube < ResolvedCubes::kCubes; ++cube) {
@@ -241,25 +249,27 @@ class TileWriter {
     return false;
   }
 
-  /// A tile of four dimensions that data decide on, by what a caller answered or by itself.
+  /// Resolves a 4D tile: from a caller's stored answers or by the estimator.
   [[nodiscard]] ResolvedTile tile_of(RowAnswers& answers, const typename RowShape<N>::Index& index,
                                      unsigned signature) const noexcept {
     return estimator_->is_callers() ? answers.tesseracts[answers.taken++]
                                     : resolved_tile(*estimator_, index, signature);
   }
-  /// The same of number `ordinal` of a row's active tiles.
+  /// Resolves tile number `ordinal` of a row's active tiles.
   template <class Own>
   [[nodiscard]] ResolvedTile tile_of(Own& own, std::uint32_t ordinal, unsigned signature) const noexcept {
     if (own.tesseracts != nullptr) return own.tesseracts->resolve(own.index, ordinal, signature);
     return tile_of(own.scratch.answers, own.index, signature);
   }
 
-  /// Its own vertices are numbered from `own` on, which moves on. `ids`: those of its edges.
+  /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `ids`: numbers of its
+  /// edges' vertices.
   Simplex* write_resolved(const SlabView<N>& view, std::size_t row, const typename RowShape<N>::Index& index,
                           unsigned signature, const ResolvedTile& tile, Ids& ids, Index& own,
                           VertexRun<Vertex> vertices, ResolvedTesseract& tesseract, Simplex* out) const noexcept {
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     const ResolvedView& filling = tesseract.find(tile.key, tile.lists);
+    // numbers of the cubes' vertices
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
       const auto cube = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned count = cubes.own_vertices(tile.lists[cube]);
@@ -268,6 +278,7 @@ class TileWriter {
       const Index first = plane.listed_id(view.shape->shifted(row, side << axis), index[0] + (axis == 0 ? side : 0));
       for (unsigned j = 0; j < count; ++j) ids[ResolvedCubes::kEdges + ResolvedCubes::kMostOwn * cube + j] = first + j;
     }
+    // own vertices
     if constexpr (N == 4)
       if (filling.own_vertices != 0) {
         const EdgePlaces<N, kAll> alphas(source_, index, signature);
@@ -283,6 +294,7 @@ class TileWriter {
             vertices.normal(own) = placement_.normals()->template in_cell<CellFrame<N, kAll>>(index, place);
         }
       }
+    // simplices
     if constexpr (N == 4)
       write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, ids.data(),
                                    ResolvedTesseract::kFirstOwn + filling.own_vertices, flip_},
@@ -290,7 +302,7 @@ class TileWriter {
     return out + filling.simplex_count;
   }
 
-  /// The place of an own vertex of a filling that is no barycentre.
+  /// Position of an own vertex that is not a barycentre.
   template <class Places>
   static TilePoint<N> own_place(std::uint64_t mask, const Places& places) noexcept {
     constexpr unsigned kRepeat = ResolvedTesseract::kRepeat;
@@ -300,8 +312,8 @@ class TileWriter {
     return place;
   }
 
-  /// In the class layout the vertex numbers are brought into the order of the stored list once per tile, not once per
-  /// use: then it is as fast as the flat one.
+  /// Writes a tile's simplices. In the class layout, vertex numbers are permuted once per tile instead of once per use,
+  /// which makes it as fast as the flat layout.
   Simplex* write_simplices(const SimplexList<N>& list, Ids& ids, Index own, Simplex* out) const noexcept {
     Ids permuted;
     Ids& of_stored = list.is_permuted() ? permuted : ids;
@@ -327,7 +339,7 @@ class TileWriter {
         ids[tables::edge_count(N) + tables::kFaceSlots * cube + slot] = first[cube] + slot;
   }
 
-  /// The barycentres of the tile's cubes, as writes_cubes says.
+  /// Writes the barycentres of the tile's cubes (see writes_cubes).
   void write_cubes(SharedPlaces<N>& places, const Ids& ids, const typename RowShape<N>::Index& index,
                    VertexRun<Vertex> vertices) const noexcept {
     const auto write = [&]<unsigned Omitted>(std::integral_constant<unsigned, Omitted>) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The driver of the extraction: a batch of slabs at a time along the last axis, the rows of a batch side by side.
+// Driver of the extraction: processes one batch of slabs at a time along the last axis, with the batch's rows in
+// parallel.
 #include "kernel/extract_kernel.hpp"
 
 #include <algorithm>
@@ -24,29 +25,32 @@ namespace tegl::detail {
 
 namespace {
 
-/// How many slabs are worked on at a time: as much as stays in the caches of so many threads from one pass over it to
-/// the next, and needs little memory beside the image. Decides whether the counter keeps lists of tiles.
+/// Number of slabs per batch: as many as stay in the caches of all threads from one pass to the next and need little
+/// memory compared with the image. Also decides whether the counter keeps lists of active tiles.
 template <int N>
 std::size_t choose_batch(const RowShape<N>& shape, Counter<N>& counter, std::size_t sample_bytes, std::size_t threads,
                          std::size_t thread_bytes, bool ahead) {
-  // Several threads meet after every pass, which takes longer than the way from one cache to the next.
+  // Threads synchronise after every pass. This costs more than fetching from the next cache level, so several threads
+  // get larger batches.
   const std::size_t samples_per_thread = std::size_t{1} << (threads > 1 ? 20 : 18);
-  // Of the image: the rest of a sixteenth is for what is not by slabs. (4D has few slabs, and needs two at a time.)
+  // Share of the image's bytes. The rest of 1/16 is for storage that does not grow with slabs. 4D has few slabs and
+  // needs two per batch, so it keeps the larger share.
   const double share = ahead && N < 4 ? 0.05 : 0.057;
-  constexpr double kLittle = 1u << 17;  // bytes, however small the image
-  // Slabs that must fit in with their lists of tiles in 4D, or these are made twice.
+  constexpr double kLittle = 1u << 17;  // bytes; allowed for any image size
+  // Minimum slabs that must fit together with their tile lists in 4D. If fewer fit, lists are not kept but computed
+  // twice.
   const std::size_t few = threads > 1 ? 2 : 1;
   const std::size_t layer = shape.rows() * shape.size(0);
   const auto image = static_cast<double>(layer * shape.layers() * sample_bytes);
   const std::size_t wanted =
       std::clamp<std::size_t>(threads * samples_per_thread / layer, 1, std::max<std::size_t>(1, shape.layers() - 1));
-  // Of layers, one more than slabs is counted, and another one is classified; or the next batch's are classified too.
+  // n slabs need n + 1 counted and n + 2 classified layers. With `ahead`, the next batch's layers are classified too.
   const std::size_t bits = (ahead ? 2 : 1) * counter.layer_bytes();
   constexpr std::size_t kBookkeeping = sizeof(Layer<N>) + sizeof(Slab<N>) + 512;
   const auto fit = [&] {
     const auto fixed =
         static_cast<double>(2 * counter.layer_bytes() + counter.layer_planes_bytes() + threads * thread_bytes);
-    // In 2D planes are not passed on.
+    // 2D does not reuse planes (take_planes), so each of two batches needs its own.
     const std::size_t planes = (ahead && N == 2 ? 2 : 1) * (counter.layer_planes_bytes() + counter.slab_planes_bytes());
     const auto each = static_cast<double>(bits + planes + (ahead ? 2 : 1) * kBookkeeping);
     const double most = (std::max(kLittle, share * image) - fixed) / each;
@@ -100,7 +104,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     for (std::size_t k = 0; k < counted; ++k) counter_.allocate(static_cast<LayerPlanes<N>&>(layers_[k]));
     for (std::size_t k = 0; k + 1 < counted; ++k) counter_.allocate(static_cast<SlabPlanes<N>&>(slabs_[k]));
     if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
-    // Gradients look back to the layer before; estimators as far as they say.
+    // Gradients read one layer before the current ones; custom estimators read as many as their reach.
     source.keep(layers_.size() + std::max<std::size_t>(options.normals ? 1 : 0, 2 * reach_));
   }
 
@@ -126,12 +130,14 @@ class Extraction final : public SteppedExtraction<N, Real> {
     const std::size_t slabs = shape_.layers() - 1;
     const std::size_t first = first_, end = next_;
     Stopwatch watch;
+    // classify, count
     if (!is_classified()) {
       classify(first, end);
       watch.add_to(stats_.classify_seconds);
     }
     stats_.active_tiles += count(first, end);
     watch.add_to(stats_.find_seconds);
+    // generate; if possible, classify the next batch in parallel
     part_.done = static_cast<double>(end) / static_cast<double>(slabs);
     const auto room = output_.open(part_);
     if (ahead_ && end < slabs) {
@@ -141,11 +147,13 @@ class Extraction final : public SteppedExtraction<N, Real> {
       generate(first, end, room);
       watch.add_to(stats_.generate_seconds);
     }
+    // close at the border
     gather_border(first, end);
     watch.add_to(stats_.close_seconds);
     if (estimator_) estimator_->rethrow();
     output_.close(part_, pinches_);
     watch.add_to(stats_.generate_seconds);
+    // after the last batch
     if (end < slabs) return;
     output_.finish({0, part_.end_vertex, 0, part_.end_simplex, 1.0}, caps_ ? &*caps_ : nullptr, pinches_);
     watch.add_to(stats_.close_seconds);
@@ -155,13 +163,13 @@ class Extraction final : public SteppedExtraction<N, Real> {
   using Vertex = typename Contour<N, Real>::Vertex;
   using SteppedExtraction<N, Real>::stats_;
 
-  /// What a thread keeps.
+  /// Working storage of one thread.
   struct Scratch {
     CountScratch counting;
     EdgeWriter<N, Real> edges;
   };
 
-  /// Whether the batch at hand was classified with the one before.
+  /// Whether the current batch was classified together with the previous one.
   [[nodiscard]] bool is_classified() const noexcept { return ahead_ && first_ != 0; }
 
   Layer<N>& layer(std::size_t k) noexcept { return layers_[k % layers_.size()]; }
@@ -175,8 +183,8 @@ class Extraction final : public SteppedExtraction<N, Real> {
     return std::make_unique<FaceEstimator<N>>(source, grid.sizes(), options, plan.part);
   }
 
-  /// Calls work(k, chunk, scratch) for all chunks of the layers (or slabs) first ... end - 1, side by side. Asks now
-  /// and then whether to go on.
+  /// Calls work(k, chunk, scratch) in parallel for all chunks of the layers (or slabs) first ... end - 1. Checks for
+  /// cancellation after at most kMostWork samples.
   template <class Work>
   void for_chunks(std::size_t first, std::size_t end, const Work& work) {
     const std::size_t chunks = shape_.chunks();
@@ -193,14 +201,14 @@ class Extraction final : public SteppedExtraction<N, Real> {
                        });
   }
 
-  /// The same as one of the passes whose progress is told.
+  /// Runs for_chunks as a pass whose progress is reported.
   template <class Work>
   void pass_over_chunks(std::size_t first, std::size_t end, const Work& work) {
     reporter_.begin_pass((end - first) * shape_.chunks());
     for_chunks(first, end, work);
   }
 
-  /// The samples for classify(.., end).
+  /// Prepares the samples that classify(.., end) reads.
   void prepare(std::size_t end) {
     wanted_ = std::min(end + 2, shape_.layers());
     for (; prepared_ < std::min(end + 2 + reach_, shape_.layers()); ++prepared_) {
@@ -209,7 +217,8 @@ class Extraction final : public SteppedExtraction<N, Real> {
     }
   }
 
-  /// Layers that the slabs first ... end - 1 need, and the one after, which says what of the last layer is valid.
+  /// Classifies the layers that slabs first ... end - 1 need and the layer after them, which determines the valid tiles
+  /// of the slab between.
   void classify(std::size_t first, std::size_t end) {
     pass_over_chunks(classified_, wanted_,
                      [&](std::size_t k, std::size_t chunk, Scratch& scratch) { classify_chunk(k, chunk, scratch); });
@@ -219,7 +228,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     counter_.classify(source_, k, inverted_, chunk, layer(k), scratch.counting.words.data(), selection_);
   }
 
-  /// What is missing in the layers that the slabs first ... end - 1 need, whose samples are classified.
+  /// Finds missing samples and valid tiles for slabs first ... end - 1, after their layers have been classified.
   void finish_classification(std::size_t first, std::size_t end) {
     const std::size_t from = classified_;
     classified_ = wanted_;
@@ -241,7 +250,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     });
   }
 
-  /// The tiles that count, where it is not the samples that tell.
+  /// Takes the valid tiles from `selection_` instead of from missing samples.
   void select_tiles(std::size_t first, std::size_t end) {
     for (std::size_t k = first; k < end; ++k) {
       slab(k).all_valid = false;
@@ -252,7 +261,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     });
   }
 
-  /// Missing samples of layers that had no storage for any so far.
+  /// Classifies layers again if they have missing samples but had no storage for them yet.
   void write_missing(std::size_t first, std::size_t end) {
     for (std::size_t k = first; k < end; ++k) {
       Layer<N>& here = layer(k);
@@ -264,7 +273,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     }
   }
 
-  /// Gives the layers first_layer ... end, and the slabs first ... end - 1, the planes of those that are done with.
+  /// Moves the planes of finished layers and slabs to the layers up to `end` and to the slabs first ... end - 1.
   void take_planes(std::size_t first, std::size_t end) {
     if (!kPassesPlanesOn) return;
     for (std::size_t k = std::max(first + 1, batch_ + 1); k <= end; ++k)
@@ -272,7 +281,8 @@ class Extraction final : public SteppedExtraction<N, Real> {
     for (std::size_t k = std::max(first, batch_); k < end; ++k) std::swap<SlabPlanes<N>>(slab(k), slab(k - batch_));
   }
 
-  /// Counts and places the slabs first ... end - 1 and the layers above them (and layer 0). Returns the active tiles.
+  /// Counts slabs first ... end - 1 with the layers above them (and layer 0) and numbers their vertices and simplices.
+  /// Returns the number of active tiles.
   std::uint64_t count(std::size_t first, std::size_t end) {
     take_planes(first, end);
     pass_over_chunks(first, end, [&](std::size_t k, std::size_t chunk, Scratch& scratch) {
@@ -325,9 +335,9 @@ class Extraction final : public SteppedExtraction<N, Real> {
     generate_slab(k, chunk, scratch, vertices, room.simplices);
   }
 
-  /// Generates the slabs first ... end - 1 and classifies what those up to `next_end` need, side by side: the one waits
-  /// for memory where the other computes, and threads meet once. What is likely to be written to next is touched by one
-  /// chunk in so many. Returns the classification's share of the time.
+  /// Generates slabs first ... end - 1 and, in parallel, classifies the layers needed up to `next_end`: one waits for
+  /// memory while the other computes, and threads synchronise once. Chunks at regular intervals touch the memory of the
+  /// next output part. Returns the share of time spent on classification.
   double generate_ahead(std::size_t first, std::size_t end, std::size_t next_end,
                         const typename ContourOutput<N, Real>::Room& room) {
     prepare(next_end);
@@ -351,7 +361,8 @@ class Extraction final : public SteppedExtraction<N, Real> {
     return both > 0.0 ? static_cast<double>(classifying) / both : 0.0;
   }
 
-  /// Where the points on edges of a chunk go, of a layer or along the last axis. Other vertices may come between them.
+  /// Destination of the edge vertices of a chunk, in a layer or along the last axis. Its end is unknown if cubes or
+  /// tiles have vertices of their own in between.
   typename EdgeTarget<Vertex>::Run run_in_layer(std::size_t k, std::size_t chunk, VertexRun<Vertex> vertices) {
     const Layer<N>& here = layer(k);
     Vertex* const first = &vertices[here.edges[0].chunk_first[chunk]];
@@ -364,7 +375,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     return {k, others ? first : first + here.chunks[chunk].vertices};
   }
 
-  /// The vertices of a chunk of layer 0.
+  /// Writes the vertices of a chunk of layer 0.
   void generate_first_layer(std::size_t chunk, EdgeWriter<N, Real>& edges, VertexRun<Vertex> vertices) {
     edges.start({run_in_layer(0, chunk, vertices), {}, vertices});
     for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
@@ -374,7 +385,7 @@ class Extraction final : public SteppedExtraction<N, Real> {
     edges.finish();
   }
 
-  /// The vertices and simplices of a chunk of slab k, and the vertices of the layer above it there.
+  /// Writes the vertices and simplices of a chunk of slab k, and the vertices of the layer above it.
   void generate_slab(std::size_t k, std::size_t chunk, Scratch& scratch, VertexRun<Vertex> vertices,
                      typename Contour<N, Real>::Simplex* simplices) {
     const SlabView<N> around = view(k);
@@ -431,9 +442,9 @@ class Extraction final : public SteppedExtraction<N, Real> {
       }
   }
 
-  /// What closes the contour, and what may have to be taken apart, of the slabs first ... end - 1.
+  /// Gathers caps and candidates for non-manifold vertices from slabs first ... end - 1.
   void gather_border(std::size_t first, std::size_t end) {
-    // Numbers count modulo 2^32: those met here are of this part or the one before.
+    // Vertex numbers count modulo 2^32. Numbers in this batch belong to this part or the previous one.
     pinches_.set_least(before_part_);
     if (caps_) caps_->set_least(before_part_);
     before_part_ = part_.first_vertex;
@@ -455,11 +466,11 @@ class Extraction final : public SteppedExtraction<N, Real> {
     }
   }
 
-  static constexpr std::size_t kLeastWork = 4096;                 ///< samples in a task
-  static constexpr std::size_t kMostWork = std::size_t{1} << 20;  ///< samples between two questions whether to go on
-  static constexpr unsigned kPasses = 4;  ///< over a batch: classify, count, generate, gather borders
-  /// The last layer is only classified, and the last slab only looked at for missing values: neither needs planes. (In
-  /// 2D a layer is a row, and to pass its planes on takes longer than it saves.)
+  static constexpr std::size_t kLeastWork = 4096;                 ///< minimum samples per task
+  static constexpr std::size_t kMostWork = std::size_t{1} << 20;  ///< maximum samples between checks for cancellation
+  static constexpr unsigned kPasses = 4;  ///< passes over a batch: classify, count, generate, gather borders
+  /// Whether finished planes are reused. The last layer is only classified, and the last slab only has its missing
+  /// values found: neither needs planes. (In 2D a layer is one row, and reuse takes longer than it saves.)
   static constexpr bool kPassesPlanesOn = N > 2;
 
   SampleSource<N>& source_;
@@ -474,27 +485,27 @@ class Extraction final : public SteppedExtraction<N, Real> {
   std::optional<RowTable> rows_;
   const RowTable* row_table_;
   Placement<N, Real> placement_;
-  std::unique_ptr<FaceEstimator<N>> estimator_;  ///< null: tables decide
+  std::unique_ptr<FaceEstimator<N>> estimator_;  ///< null: the tables decide
   Counter<N> counter_;
   TileWriter<N, Real> tiles_;
   std::optional<Caps<N, Real>> caps_;
   PinchCandidates<N> pinches_;
   Workers<Scratch> workers_;
   bool ahead_;                    ///< whether the next batch is classified while one is generated
-  std::size_t batch_;             ///< slabs at a time
-  std::vector<Layer<N>> layers_;  ///< by k modulo their number
+  std::size_t batch_;             ///< slabs per batch
+  std::vector<Layer<N>> layers_;  ///< layer k at index k modulo size
   std::vector<Slab<N>> slabs_;
-  std::size_t first_ = 0;          ///< slab of the batch at hand
-  std::size_t next_ = 0;           ///< first slab behind it
-  std::size_t classified_ = 0;     ///< layers
-  std::size_t wanted_ = 0;         ///< layers, to be classified next
-  std::size_t prepared_ = 0;       ///< layers
-  std::size_t reach_ = 0;          ///< layers beyond those at work that an estimator looks at
-  ContourPart part_{};             ///< the last batch
-  std::uint64_t before_part_ = 0;  ///< first vertex of the batch before
+  std::size_t first_ = 0;          ///< first slab of the current batch
+  std::size_t next_ = 0;           ///< one past the last slab of the current batch
+  std::size_t classified_ = 0;     ///< number of layers classified
+  std::size_t wanted_ = 0;         ///< number of layers after the next classification
+  std::size_t prepared_ = 0;       ///< number of layers prepared
+  std::size_t reach_ = 0;          ///< additional layers that a custom estimator reads
+  ContourPart part_{};             ///< most recent batch
+  std::uint64_t before_part_ = 0;  ///< first vertex of the batch before it
 };
 
-/// A contour in memory.
+/// Output to a contour in memory.
 template <int N, class Real>
 class MemoryOutput final : public ContourOutput<N, Real> {
  public:
@@ -504,8 +515,8 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   MemoryOutput(Contour<N, Real>& contour, bool normals, std::uint64_t max_vertices)
       : contour_(contour), normals_(normals), max_vertices_(max_vertices) {}
 
-  /// Address space for the largest contour that can be: memory is taken where it is written to. Where the system
-  /// has too little of it for all outputs and what else is needed, outputs grow.
+  /// Reserves address space for the largest possible contour; memory is taken when it is written to. If address space
+  /// does not suffice for all outputs and for other needs (kElse), outputs grow by reallocation instead.
   void expect(double vertices, double simplices) override {
     constexpr double kMostBytes = 0x1p40;
     constexpr std::size_t kElse = std::size_t{1} << 26;
@@ -566,14 +577,14 @@ class MemoryOutput final : public ContourOutput<N, Real> {
     look_ahead(output, last, part.done);
   }
 
-  /// Notes the huge pages that come next, for as much as the last part was, within what all is expected to be.
+  /// Records the huge pages after the current end: as much as the last part took, within the estimated total size.
   template <class Items>
   void look_ahead(Items& output, std::uint64_t last, double done) {
     constexpr std::size_t kItem = sizeof(output[0]);
     if (output.capacity() * kItem < kLargeBlock) return;
     const auto rest = static_cast<std::uint64_t>(static_cast<double>(output.size()) * (1.0 - done) / done);
     const std::size_t more = std::min<std::uint64_t>({last, rest, output.capacity() - output.size()});
-    // Large blocks begin with a page.
+    // Large blocks start on a page boundary.
     auto* const block = reinterpret_cast<unsigned char*>(output.data());
     const std::size_t first = (output.size() * kItem + kLargeBlock - 1) / kLargeBlock * kLargeBlock;
     for (std::size_t at = first; at < (output.size() + more) * kItem; at += kLargeBlock) ahead_.push_back(block + at);

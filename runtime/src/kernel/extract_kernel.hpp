@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The extraction, from a source of samples to a contour. Private: tests and benchmarks use it to pass
-// their own tables or limits.
+// Entry points of the contour extraction from a sample source. Private: tests and benchmarks use them to pass their own
+// tables or limits.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace tegl::detail {
 
-/// An extraction that goes on batch by batch, when it is told to: so several go through the same layers side by side.
+/// An extraction in explicit steps, one batch of slabs per step. Several extractions can advance together over the same
+/// layers.
 template <int N, class Real>
 class SteppedExtraction {
  public:
@@ -23,13 +24,13 @@ class SteppedExtraction {
   SteppedExtraction(const SteppedExtraction&) = delete;
   SteppedExtraction& operator=(const SteppedExtraction&) = delete;
 
-  /// Makes the samples of the next batch ready, and tells the progress; false: all batches are done. By the thread that
-  /// made the extraction.
+  /// Prepares the samples of the next batch and reports progress. Returns false if all batches are done. Must be called
+  /// by the thread that constructed the extraction.
   [[nodiscard]] virtual bool prepare_batch() = 0;
-  /// Puts the contour of this batch into the output; with the last one, all that comes in the end. By any thread.
+  /// Writes this batch's contour to the output; the last batch also finishes the output. May be called by any thread.
   virtual void extract_batch() = 0;
 
-  /// One batch after the other.
+  /// Extracts all batches in order.
   void run() {
     while (prepare_batch()) extract_batch();
   }
@@ -45,19 +46,19 @@ class SteppedExtraction {
   ExtractStats stats_;
 };
 
-/// The extraction of `source` over `grid` into `output`, to be run; null for an image without tiles. All arguments must
-/// outlive it.
+/// Creates the extraction of `source` over `grid` into `output` without running it. Returns null if the image has no
+/// tiles. All arguments must outlive the extraction.
 template <int N, class Real>
 std::unique_ptr<SteppedExtraction<N, Real>> make_extraction(SampleSource<N>& source, const Grid<N>& grid,
                                                             const TableSet<N>& tables, const ExtractOptions& options,
                                                             const ExtractPlan& plan, ContourOutput<N, Real>& output);
 
-/// The contour of `source` over `grid`, put into `output`. An image without tiles leaves it alone.
+/// Extracts the contour of `source` over `grid` into `output`. If the image has no tiles, `output` is not touched.
 template <int N, class Real>
 ExtractStats extract_to(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
                         const ExtractOptions& options, const ExtractPlan& plan, ContourOutput<N, Real>& output);
 
-/// The contour of `source` over `grid`. `stats` may be null.
+/// Extracts the contour of `source` over `grid` into memory. `stats` may be null.
 template <int N, class Real>
 Contour<N, Real> extract_source(SampleSource<N>& source, const Grid<N>& grid, const TableSet<N>& tables,
                                 const ExtractOptions& options, ExtractStats* stats, const ExtractPlan& plan = {});

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The working storage of the extraction: bit planes of the layers along the last axis, with the ranks
-// that turn "bit i of row r" into a vertex number.
+// Working storage of the extraction: bit planes of the layers along the last axis, with prefix sums that map "bit i of
+// row r" to a vertex number.
 //
-// Words used here: a *row* is a line of samples along axis 0; a *layer* is all rows with the same index
-// on the last axis; a *slab* is what lies between two layers. A layer owns the edges and cubes that lie
-// in it; a slab owns the edges and cubes along the last axis, and the tiles. Vertices are numbered
-// layer 0, slab 0, layer 1, slab 1, ...; within a layer or slab row by row; within a row category by
-// category; within a category by bits. So every number is base[row] + prefix[word] + popcount: rows are
-// independent of each other, and no two passes can disagree.
+// Terms: a *row* is a line of samples along axis 0. A *layer* is the set of rows with the same index on the last axis.
+// A *slab* lies between two adjacent layers. A layer owns the edges and cubes inside it; a slab owns the tiles, and the
+// edges and cubes along the last axis. Vertices are numbered layer 0, slab 0, layer 1, slab 1, ...; within a layer or
+// slab by row, within a row by category, within a category by bit. Every number is therefore base[row] + prefix[word] +
+// popcount, so rows are independent and all passes get the same numbers.
 #pragma once
 
 #include <algorithm>
@@ -26,12 +25,12 @@
 
 namespace tegl::detail {
 
-/// Rows that are counted, placed and written together: a *chunk* of a layer or slab. Places are sums over chunks, and
-/// sums over rows within each.
+/// Rows per *chunk* of a layer or slab: a chunk's rows are counted, numbered and written together. First numbers are
+/// prefix sums over chunks and, within each chunk, over rows.
 inline constexpr std::size_t kChunkRows = 32;
 constexpr std::size_t chunk_of(std::size_t row) noexcept { return row / kChunkRows; }
 
-/// Sizes of an image in rows and words.
+/// Size of an image in rows and in words.
 template <int N>
 class RowShape {
  public:
@@ -50,17 +49,18 @@ class RowShape {
   [[nodiscard]] std::size_t layers() const noexcept { return size_[N - 1]; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
   [[nodiscard]] std::size_t chunks() const noexcept { return chunk_of(rows_ - 1) + 1; }
-  /// The end of the rows of a chunk.
+  /// One past the last row of a chunk.
   [[nodiscard]] std::size_t chunk_end(std::size_t chunk) const noexcept {
     return std::min(rows_, (chunk + 1) * kChunkRows);
   }
   [[nodiscard]] std::size_t words() const noexcept { return words_; }
-  /// Words from row to row of samples: one more, always 0, so that a row may be read shifted.
+  /// Words between the starts of adjacent rows of samples. The additional word is always 0, so a row can be read
+  /// shifted by one sample.
   [[nodiscard]] std::size_t pitch() const noexcept { return words_ + 1; }
 
-  /// The row's index on the axes 1 ... N-2; 0 elsewhere.
+  /// Index of the row on axes 1 ... N-2; 0 on the others.
   [[nodiscard]] const Index& index_of(std::size_t row) const noexcept { return indices_[row]; }
-  /// Row of the sample that lies one step further along the axes in `mask` (axes 0 and N-1 don't count).
+  /// Row of the sample one step further along the axes in `mask` (axes 0 and N-1 are ignored).
   [[nodiscard]] std::size_t shifted(std::size_t row, unsigned mask) const noexcept {
     for (int a = 1; a < N - 1; ++a) row += (mask >> a & 1u) * stride_[a];
     return row;
@@ -69,7 +69,7 @@ class RowShape {
     for (int a = 1; a < N - 1; ++a) row -= (mask >> a & 1u) * stride_[a];
     return row;
   }
-  /// Whether cells along the axes in `mask` start in a row with this index (axes 0 and N-1 don't count).
+  /// Whether cells along the axes in `mask` start in a row with this index (axes 0 and N-1 are ignored).
   [[nodiscard]] bool has_cells(const Index& index, unsigned mask) const noexcept {
     for (int a = 1; a < N - 1; ++a)
       if ((mask >> a & 1u) != 0 && index[a] + 1 >= size_[a]) return false;
@@ -87,17 +87,17 @@ class RowShape {
   std::array<std::size_t, N> stride_{};
   std::size_t rows_ = 1;
   std::size_t words_;
-  std::vector<Index> indices_;  ///< by row: divisions are slow
+  std::vector<Index> indices_;  ///< by row; cached because divisions are slow
 };
 
-/// Cells of one kind that own up to `Slots` vertices each: bit i of plane j in a row says that cell i
-/// has more than j vertices.
+/// Cells of one kind that own up to `Slots` vertices each. Bit i of plane j in a row is set if cell i has more than j
+/// vertices.
 template <unsigned Slots>
 struct RankPlane {
   std::array<std::vector<Word>, Slots> bits;
-  std::vector<std::uint32_t> prefix;  ///< vertices of the row before this word
-  std::vector<Index> offset;          ///< first vertex of the row, from the chunk's first on
-  std::vector<std::uint32_t> count;   ///< vertices of the row; where there are none, its bits mean nothing
+  std::vector<std::uint32_t> prefix;  ///< vertices of the row before each word
+  std::vector<Index> offset;          ///< by row: its first vertex relative to the chunk's first
+  std::vector<std::uint32_t> count;   ///< vertices of each row; if 0, the row's bits are undefined
   std::vector<Index> chunk_first;     ///< first vertex of each chunk
 
   void allocate(std::size_t rows, std::size_t words) {
@@ -111,9 +111,9 @@ struct RankPlane {
   static constexpr std::size_t row_bytes(std::size_t words) noexcept {
     return words * (Slots * sizeof(Word) + sizeof(std::uint32_t)) + sizeof(Index) + sizeof(std::uint32_t);
   }
-  /// The first vertex of a row.
+  /// First vertex of a row.
   [[nodiscard]] Index first(std::size_t row) const noexcept { return chunk_first[chunk_of(row)] + offset[row]; }
-  /// The first vertex of cell i of a row (of the next cell that has one, if it has none).
+  /// First vertex of cell i of a row. If the cell has none: first vertex of the next cell that has one.
   [[nodiscard]] Index id(std::size_t row, std::size_t words, std::size_t i) const noexcept {
     const std::size_t w = row * words + i / kWordBits;
     const Word below = (Word{1} << (i % kWordBits)) - 1;
@@ -124,15 +124,15 @@ struct RankPlane {
 };
 using EdgePlane = RankPlane<1>;
 
-/// A cube with vertices of its own.
+/// A cube that owns vertices.
 struct ListedCube {
-  std::uint32_t at;      ///< along the row
+  std::uint32_t at;      ///< position along the row
   std::uint32_t before;  ///< vertices of the row before it
-  std::uint16_t key;     ///< of its filling (tile_variants.hpp)
+  std::uint16_t key;     ///< key of its filling (cube_key.hpp)
 };
 
-/// Cubes of one kind that own vertices, where data decide: they are few, and found along with their tiles. Lists of
-/// rows, in order; a chunk's rows have theirs one behind the other.
+/// Cubes of one kind that own vertices, if ambiguities are resolved from the data. These cubes are few and are found
+/// together with their tiles. Each row has an ordered list; the lists of a chunk's rows are contiguous.
 class CubeLists {
  public:
   void allocate(std::size_t rows) {
@@ -140,7 +140,7 @@ class CubeLists {
     first_.assign(rows, 0);
     size_.assign(rows, 0);
   }
-  /// Rows of a chunk come in order.
+  /// Rows of a chunk must come in ascending order.
   void begin_row(std::size_t row) noexcept {
     std::vector<ListedCube>& chunk = chunks_[chunk_of(row)];
     if (row % kChunkRows == 0) chunk.clear();
@@ -161,9 +161,9 @@ class CubeLists {
 };
 
 struct CubePlane : RankPlane<tables::kFaceSlots> {
-  CubeLists lists;  ///< in place of the bits, where data decide
+  CubeLists lists;  ///< replaces the bits if ambiguities are resolved from the data
 
-  /// Without bits.
+  /// Allocates lists instead of bits.
   void allocate_lists(std::size_t rows) {
     allocate(rows, 0);
     lists.allocate(rows);
@@ -177,11 +177,11 @@ struct CubePlane : RankPlane<tables::kFaceSlots> {
     lists.add(row, {static_cast<std::uint32_t>(at), count[row], static_cast<std::uint16_t>(key)});
     count[row] += vertices;
   }
-  /// The first vertex of a cube that is listed.
+  /// First vertex of a listed cube.
   [[nodiscard]] Index listed_id(std::size_t row, std::size_t at) const noexcept {
     return first(row) + find(row, at)->before;
   }
-  /// Whether a cube is listed with this key and so many vertices; with none: not listed.
+  /// Whether a cube is listed with this key and number of vertices. With 0 vertices: whether it is not listed.
   [[nodiscard]] bool has_listed(std::size_t row, std::size_t at, unsigned key, unsigned vertices) const noexcept {
     const auto of_row = count[row] == 0 ? std::span<const ListedCube>() : lists.row(row);
     const auto found = count[row] == 0 ? of_row.begin() : find(row, at);
@@ -190,7 +190,7 @@ struct CubePlane : RankPlane<tables::kFaceSlots> {
   }
 
  private:
-  /// The first listed cube of a row that is not before `at`.
+  /// First listed cube of a row at position `at` or after.
   [[nodiscard]] std::span<const ListedCube>::iterator find(std::size_t row, std::size_t at) const noexcept {
     const auto of_row = lists.row(row);
     return std::lower_bound(of_row.begin(), of_row.end(), at,
@@ -198,42 +198,43 @@ struct CubePlane : RankPlane<tables::kFaceSlots> {
   }
 };
 
-/// What all samples of a row have in common.
+/// Common state of all samples of a row.
 enum class RowState : std::uint8_t { low, high, mixed };
 
-/// What is counted of a layer.
+/// Counts of a layer.
 template <int N>
 struct LayerPlanes {
   std::array<EdgePlane, N - 1> edges;         ///< by axis
   CubePlane cubes;                            ///< N = 4: the cubes in the layer
-  std::vector<std::uint64_t> chunk_vertices;  ///< by chunk: how many there are
+  std::vector<std::uint64_t> chunk_vertices;  ///< vertices of each chunk
 };
 
-/// What a chunk of a slab comes to.
+/// Counts of a chunk of a slab.
 struct SlabChunk {
   std::uint64_t vertices = 0;
   std::uint64_t simplices = 0;
-  std::uint64_t active = 0;  ///< tiles
+  std::uint64_t active = 0;  ///< number of active tiles
   std::uint64_t first_simplex = 0;
-  std::uint32_t busy = 0;  ///< bit i: row i of the chunk has tiles or vertices, or the layer above has there
+  std::uint32_t busy = 0;  ///< bit i: row i of the chunk has tiles or vertices, or the layer above has vertices there
   static_assert(kChunkRows <= 32);
 };
 
 template <int N>
 struct Layer : LayerPlanes<N> {
-  std::vector<RowState> state;            ///< by row, of `high`; with missing samples: mixed
-  std::vector<RowState> chunk_state;      ///< by chunk: that of all its rows, or mixed
+  std::vector<RowState> state;            ///< by row, from `high`; mixed if any sample is missing
+  std::vector<RowState> chunk_state;      ///< by chunk: common state of its rows, or mixed
   std::vector<Word> high;                 ///< rows x pitch; inverted for the high-connected alternative
-  std::vector<Word> missing;              ///< rows x pitch, or none as long as no sample is missing
+  std::vector<Word> missing;              ///< rows x pitch; empty while no sample is missing
   std::vector<std::uint8_t> row_missing;  ///< by row: whether any sample is missing
   bool any_missing = false;
 };
 
-/// The bits set in a row of words, one after the other.
+/// Iterates over the set bits of a row of words.
 class BitWalk {
  public:
   explicit BitWalk(const Word* words) noexcept : words_(words), rest_(words[0]) {}
-  /// Where bit number `ordinal` of those that are set is; numbers that do not fall, of bits that there are.
+  /// Position of set bit number `ordinal`. Ordinals must not decrease between calls and must be less than the number of
+  /// set bits.
   std::size_t place_of(std::size_t ordinal) noexcept {
     while (passed_ < ordinal || rest_ == 0) {
       if (rest_ == 0) {
@@ -253,30 +254,30 @@ class BitWalk {
   Word rest_;
 };
 
-/// Room for active tiles.
+/// Storage for active tiles.
 struct TileLists {
   Buffer<std::uint16_t> signatures;
   Buffer<std::uint16_t> at;
 
   void allocate(std::size_t tiles) {
-    constexpr std::size_t kMargin = 64;  // is read and written in vain
+    constexpr std::size_t kMargin = 64;  // vector code reads and writes past the end
     signatures.resize(tiles + kMargin);
     at.resize(tiles + kMargin);
   }
   static constexpr std::size_t bytes(std::size_t tiles) noexcept { return tiles * 2 * sizeof(std::uint16_t); }
 };
 
-/// What is counted of a slab.
+/// Counts of a slab.
 template <int N>
 struct SlabPlanes {
-  std::vector<Word> active;                   ///< rows x words: valid tiles with high and low corners
-  TileLists tiles;                            ///< kept or not (Counter): of chunks apart, of their rows in turn
-  std::vector<std::size_t> first_tile;        ///< by row
-  std::vector<std::uint32_t> active_count;    ///< by row
-  EdgePlane edges;                            ///< along the last axis
-  std::array<CubePlane, N - 1> cubes;         ///< N = 4: by the axis that they leave out
-  std::vector<Index> own_offset;              ///< first vertex of each row's tiles, from the chunk's first on
-  std::vector<std::uint64_t> simplex_offset;  ///< first simplex of each row, likewise
+  std::vector<Word> active;  ///< rows x words: valid tiles with high and low corners
+  TileLists tiles;           ///< may be omitted (Counter); chunks have separate ranges, their rows are contiguous
+  std::vector<std::size_t> first_tile;      ///< by row
+  std::vector<std::uint32_t> active_count;  ///< by row
+  EdgePlane edges;                          ///< along the last axis
+  std::array<CubePlane, N - 1> cubes;       ///< N = 4: by the axis that they leave out
+  std::vector<Index> own_offset;            ///< by row: first vertex owned by its tiles, relative to the chunk's first
+  std::vector<std::uint64_t> simplex_offset;  ///< by row: first simplex, relative to the chunk's first
   std::vector<SlabChunk> chunks;
 
   [[nodiscard]] Index first_own(std::size_t row) const noexcept {
@@ -285,7 +286,8 @@ struct SlabPlanes {
   [[nodiscard]] std::uint64_t first_simplex(std::size_t row) const noexcept {
     return chunks[chunk_of(row)].first_simplex + simplex_offset[row];
   }
-  /// How many vertices the tiles of a row own, and how many simplices they have; what offsets know once they are made.
+  /// Vertices owned by the tiles of a row, and its simplices. Derived from the offsets, so valid only once these are
+  /// computed.
   [[nodiscard]] std::uint64_t own_vertices(std::size_t row) const noexcept {
     return (is_last_of_chunk(row) ? chunks[chunk_of(row)].vertices : edges.offset[row + 1]) - own_offset[row];
   }
@@ -301,17 +303,17 @@ struct SlabPlanes {
 
 template <int N>
 struct Slab : SlabPlanes<N> {
-  std::vector<Word> valid;  ///< rows x words: tiles without a missing corner; meaningful unless all_valid
+  std::vector<Word> valid;  ///< rows x words: tiles without a missing corner; undefined if all_valid
   bool all_valid = true;
 };
 
-/// A slab with the two layers around it: where cells find the numbers of what they share.
+/// A slab with its two adjacent layers: access to the vertex numbers that cells share.
 template <int N>
 struct SlabView {
   const RowShape<N>* shape;
   std::array<const Layer<N>*, 2> layers;
   const Slab<N>* slab;
-  std::size_t k = 0;  ///< the slab's number
+  std::size_t k = 0;  ///< index of the slab
 
   [[nodiscard]] const EdgePlane& edges(int axis, unsigned up) const noexcept {
     return axis == N - 1 ? slab->edges : layers[up]->edges[static_cast<std::size_t>(axis)];

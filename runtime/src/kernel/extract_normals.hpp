@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Normals of vertices: the image's gradient there, in the world, of length 1.
-// Based on: M. Liversage, thesis, 1994, section 8.2. Vertices that are not on edges of the grid (barycentres, corners
-// of caps) have the gradient at the corners of their cell, interpolated multilinearly: on edges that is the same.
+// Vertex normals: the image's gradient at the vertex, in world coordinates, with length 1.
+// Based on: M. Liversage, thesis, 1994, section 8.2. Vertices that are not on grid edges (barycentres, cap corners)
+// have the multilinear interpolation of the gradients at the corners of their cell. On edges the two definitions agree.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +20,14 @@
 
 namespace tegl::detail {
 
-/// Room for the values around edges. They are read by whole registers: what is behind the last is zero, or from before.
+/// Values around edges. Vector code reads whole registers; entries past the last are zero or left over.
 template <class Calc>
 struct EdgeValues {
   std::array<Calc, (kEdgeValues<4> + 1) * kEdgesAtOnce> values{};
   std::array<Calc, 4 * kEdgesAtOnce> row_weights{};
 };
 
-/// What a thread keeps between rows: an extraction calculates in one of the types.
+/// Working storage of one thread. An extraction calculates in only one of the two types.
 class NormalScratch {
  public:
   template <class Calc>
@@ -46,7 +46,7 @@ class NormalWriter {
   using Index = std::array<std::size_t, N>;
   using Vertex = std::array<Real, N>;
 
-  /// The source must outlive it.
+  /// `source` must outlive the writer.
   NormalWriter(const SampleSource<N>& source, const Grid<N>& grid, GradientDirection direction, GradientKind kind)
       : source_(source),
         kind_(kind),
@@ -54,21 +54,21 @@ class NormalWriter {
         sizes_(grid.sizes()),
         mapped_(grid.has_world_map()),
         sign_(direction == GradientDirection::descent ? -1.0 : 1.0),
-        // A map may make much of small differences, for which float has too few digits.
+        // A world map may amplify small differences, for which float is not precise enough.
         in_float_(std::is_same_v<Real, float> && source.fits_float() && !mapped_) {
-    // Gradients are covectors: the inverse transpose carries them along.
+    // Gradients are covectors, so the inverse transpose transforms them.
     if (mapped_) to_world_ = sign_ * grid.linear.inverse().transpose();
   }
 
-  /// Whether rows may be worked on together: what is around their edges is weighted alike.
+  /// Whether a row can be processed together with other rows, because its differences have the same weights.
   [[nodiscard]] bool is_inside(const Index& index) const noexcept {
     for (int a = 1; a + 1 < N; ++a)
       if (!steps_[a].is_uniform() || index[a] == 0 || index[a] + 2 >= sizes_[a]) return false;
     return true;
   }
 
-  /// The normals on edges along `axis`, from samples of the row `start` on, or of rows that are inside of which it is
-  /// one (start[0] means nothing). `start_of(i)` is the index of edge i's first sample.
+  /// Writes the normals on edges along `axis`. They start in the row of `start`, or in several rows that are inside,
+  /// one of which is the row of `start` (start[0] is ignored). `start_of(i)`: index of edge i's first sample.
   template <class StartOf>
   void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
              Vertex* out, const StartOf& start_of) const noexcept {
@@ -81,7 +81,7 @@ class NormalWriter {
     edges_by(start, axis, edges, alphas, scratch.of<double>(), out, start_of);
   }
 
-  /// As Placement::in_cell.
+  /// Normal at a position in a cell; parameters as in Placement::in_cell.
   template <class Frame>
   [[nodiscard]] Vertex in_cell(const Index& base, const std::array<double, Frame::kDim>& place) const noexcept {
     std::array<double, N> sum{};
@@ -115,14 +115,16 @@ class NormalWriter {
       if (mapped_) row.to_world = to_world_.data();
     if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
     for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
+      // values, positions and weights
       row.count = std::min(kEdgesAtOnce, edges.count - i);
       const Word at_ends =
           source_.around_edges(around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
       Calc* const places = scratch.values.data() + kEdgeValues<N> * kEdgesAtOnce;
       for (std::size_t j = 0; j < row.count; ++j) places[j] = static_cast<Calc>(alphas[i + j]);
       if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
+      // normals
       Word left = write_normals(row);
-      // There the weights are not those inside.
+      // These edges are at the ends of the row, where weights differ.
       if (row.row_weights == nullptr) left |= at_ends;
       for (; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
@@ -131,7 +133,7 @@ class NormalWriter {
     }
   }
 
-  /// What the edges have in common.
+  /// Sets what all edges have in common: weights, and which neighbours exist.
   template <class Calc>
   void describe(const Index& start, EdgeSurroundings<N>& around, NormalRow<N, Real, Calc>& row) const noexcept {
     const auto set = [&](int a, const StepWeights& first, const StepWeights& second) {
@@ -164,17 +166,17 @@ class NormalWriter {
     return kind_ == GradientKind::sobel ? source_.sobel(index, steps_) : source_.gradient(index, steps_);
   }
 
-  /// One normal, whatever the values.
+  /// One normal on an edge, for any values.
   [[nodiscard]] Vertex on_edge(Index index, int axis, double alpha) const noexcept {
     std::array<double, N> gradient = gradient_at(index);
     ++index[axis];
     const std::array<double, N> there = gradient_at(index);
-    // Not by their difference, which may be too large for a number.
+    // Not a + alpha * (b - a), as the difference may overflow.
     for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * gradient[a] + alpha * there[a];
     return normal(gradient);
   }
 
-  /// 0 where the gradient vanishes.
+  /// Unit normal of a gradient; 0 if the gradient is zero.
   [[nodiscard]] Vertex normal(std::array<double, N> gradient) const noexcept {
     std::array<double, N> v = in_world(gradient);
     double square = square_of(v);
@@ -205,7 +207,8 @@ class NormalWriter {
     return square;
   }
 
-  /// Brings the largest component to 1, if there is one; of infinite ones, all of them, and the others to 0.
+  /// Scales the largest component to magnitude 1, unless all are 0. If components are infinite, these become 1 or -1
+  /// and the others 0.
   static void scale(std::array<double, N>& v) noexcept {
     double largest = 0.0;
     for (const double x : v) largest = std::max(largest, std::abs(x));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From counts to vertex numbers: prefix sums over the chunks of a layer or slab; see extract_count.hpp.
+// From counts to vertex numbers (see extract_count.hpp): prefix sums over the chunks of a layer or slab.
 #include "kernel/extract_count.hpp"
 
 namespace tegl::detail {

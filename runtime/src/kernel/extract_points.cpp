@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points on critical edges; see extract_points.hpp. This file is compiled once per instruction set
-// (Highway's foreach_target). Additions and multiplications stay apart, and comparisons choose as std::clamp does, so
-// that all sets give the same bytes.
+// Vertices on critical edges (see extract_points.hpp). Highway's foreach_target compiles this file once per instruction
+// set. Multiplications and additions are not fused, and comparisons select as std::clamp does, so that all instruction
+// sets give identical bytes.
 #include "kernel/extract_points.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel/extract_points.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -25,8 +25,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using AllLanes = hn::ScalableTag<double>;
 using OneLane = hn::CappedTag<double, 1>;
 
-/// Four at a time, whatever is left of a word: how many bits it has is hard to foresee, and a wrong guess costs more
-/// than what is written for nothing.
+/// Writes four positions at a time, even if fewer bits are left in a word: the number of bits is hard to predict, and a
+/// mispredicted branch costs more than the superfluous stores.
 std::size_t bits_to_list(const Word* bits, std::size_t words, std::uint32_t* at) {
   const std::uint32_t* const first = at;
   for (std::size_t w = 0; w < words; ++w) {
@@ -47,7 +47,7 @@ HWY_INLINE V clamped(D, V value, V low, V high) {
   return hn::IfThenElse(hn::Lt(value, low), low, hn::IfThenElse(hn::Lt(high, value), high, value));
 }
 
-/// As Placement::between.
+/// Same arithmetic as Placement::between.
 template <class D, class V>
 HWY_INLINE V between(D d, V a, V b, V x) {
   const auto point = hn::Add(a, hn::Mul(x, hn::Sub(b, a)));
@@ -75,7 +75,7 @@ HWY_INLINE void store_vertices(D d, const std::array<V, 4>& x, hn::TFromD<D>* ou
   hn::StoreInterleaved4(x[0], x[1], x[2], x[3], d, out);
 }
 
-/// Coordinates along the row of the samples `at` + `ahead`.
+/// Coordinates along the row of samples `at` + `ahead`.
 template <class D, int N, class Real>
 HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std::uint32_t* at, unsigned ahead) {
   if (edges.along == nullptr) {
@@ -90,10 +90,11 @@ HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std
   return hn::Load(d, coordinates);
 }
 
-/// As many points as D has lanes, from edge `i` on.
+/// Writes as many vertices as D has lanes, starting at edge `i`.
 template <class D, int N, class Real>
 HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i) {
   const hn::Rebind<Real, D> real;
+  // axis coordinates
   const std::uint32_t* const at = edges.at + i;
   std::array<hn::Vec<D>, N> point;
   point[0] = along_row(d, edges, at, 0);
@@ -103,6 +104,7 @@ HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i)
                    : edges.axis == N - 1 ? hn::Set(d, edges.next_layer)
                                          : hn::LoadU(d, edges.end + i);
   point[edges.axis] = between(d, point[edges.axis], end, hn::LoadU(d, edges.alphas + i));
+  // world coordinates
   std::array<hn::Vec<decltype(real)>, N> vertex;
   for (int a = 0; a < N; ++a) {
     if (edges.linear == nullptr) {
@@ -126,7 +128,7 @@ HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
   for (; i < edges.count; ++i) write_some(OneLane(), edges, i);
 }
 
-// Highway's tables of functions hold no templates.
+// Highway's dispatch tables cannot hold templates.
 void points2f(const EdgePoints<2, float>& edges) { points(edges); }
 void points3f(const EdgePoints<3, float>& edges) { points(edges); }
 void points4f(const EdgePoints<4, float>& edges) { points(edges); }

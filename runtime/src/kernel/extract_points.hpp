@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From critical edges to points, a row at a time; compiled for several instruction sets, which all give the same bytes.
+// Vertices on critical edges, one row at a time. Compiled for several instruction sets; all give identical bytes.
 #pragma once
 
 #include <array>
@@ -11,32 +11,32 @@
 
 namespace tegl::detail {
 
-/// Writes the places of the bits set in `words` words, ascending; returns how many there are. `at` needs room for three
-/// more.
+/// Writes the positions of the bits set in `words` words to `at`, ascending. Returns their number. `at` needs capacity
+/// for three additional entries.
 std::size_t list_bits(const Word* bits, std::size_t words, std::uint32_t* at) noexcept;
 
-/// Critical edges along one axis in rows of one layer, and where their points go.
+/// Critical edges along one axis in rows of one layer, and the destination of their vertices.
 template <int N, class Real>
 struct EdgePoints {
   using Vertex = std::array<Real, N>;
 
   const std::uint32_t* at;  ///< by edge: its first sample along the row
-  const double* alphas;     ///< by edge: the point's place on it
+  const double* alphas;     ///< by edge: interpolation parameter of its vertex
   std::size_t count;
   int axis;
-  std::array<const double*, N> start;  ///< for axes 1 ... N - 2, by edge: the coordinate of its row
-  const double* end;                   ///< for those axes, by edge: the coordinate at the other end
-  double layer, next_layer;            ///< coordinates of the layer and of the next
+  std::array<const double*, N> start;  ///< for axes 1 ... N - 2, by edge: coordinate of its row
+  const double* end;                   ///< for those axes, by edge: coordinate at its other end
+  double layer, next_layer;            ///< coordinates of the layer and of the next one
   const double* along;                 ///< coordinates along the row; null: uniform
   double origin, step;                 ///< of uniform coordinates along the row
-  const double* linear;                ///< N x N, row by row; null: points stay where they are
+  const double* linear;                ///< N x N, row-major; null: no world map
   const double* offset;
-  /// Where the last coordinate has to stay; not a number: anywhere.
+  /// Range for the last coordinate; NaN: no restriction.
   std::array<Real, 2> inside;
   Vertex* out;
 };
 
-/// The points, by the arithmetic of Placement (extract_place.hpp).
+/// Writes the vertices, with the same arithmetic as Placement (placement.hpp).
 template <int N, class Real>
 void write_points(const EdgePoints<N, Real>& edges) noexcept;
 

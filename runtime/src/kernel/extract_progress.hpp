@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far an extraction is: asked of every slab, told by the thread that called for it, whoever does the work.
+// Progress of an extraction: updated by all threads, reported by the calling thread.
 #pragma once
 
 #include <algorithm>
@@ -16,36 +16,37 @@
 
 namespace tegl::detail {
 
-/// Calls for progress, with fractions that do not fall. All but `add` and `stopped` are for the thread that made it.
+/// Reports progress by non-decreasing fractions. All functions except `add` and `stopped` must be called by the thread
+/// that constructed the reporter.
 class ProgressReporter {
  public:
-  /// `progress` may hold nothing, and must outlive this.
-  /// `unit`: what slabs are, where they are something else.
+  /// `progress` may be empty and must outlive the reporter. `unit`: noun for the slabs in messages.
   ProgressReporter(const Progress& progress, std::size_t slabs, const char* unit = "slabs")
       : progress_(progress), slabs_(slabs), unit_(unit), caller_(std::this_thread::get_id()) {}
 
-  /// A batch of slabs is next, of which `passes` passes are the work.
+  /// Begins a batch of slabs, whose work consists of `passes` passes.
   void begin_batch(std::size_t first, std::size_t end, unsigned passes) noexcept {
     first_ = static_cast<double>(first);
     share_ = static_cast<double>(end - first) / passes;
     pass_ = -1;
     items_ = 0;
   }
-  /// The next pass is next, over `items` items.
+  /// Begins the next pass, over `items` items.
   void begin_pass(std::size_t items) noexcept {
     ++pass_;
     items_ = items;
     done_.store(0, std::memory_order_relaxed);
   }
 
-  /// By any thread: so many items of the pass are done. On the caller's, tells so; throws Cancelled.
+  /// Adds finished items of the current pass; any thread. On the constructing thread also reports; then throws
+  /// Cancelled if requested.
   void add(std::size_t items) {
     if (!progress_) return;
     const std::size_t done = done_.fetch_add(items, std::memory_order_relaxed) + items;
     if (std::this_thread::get_id() != caller_) return;
     tell(first_ + share_ * (pass_ + std::min(1.0, static_cast<double>(done) / static_cast<double>(items_))));
   }
-  /// So many slabs are done with. Throws Cancelled.
+  /// Reports that `slabs` slabs are finished. Throws Cancelled if requested.
   void tell(double slabs) {
     if (!progress_) return;
     last_ = std::max(last_, std::min(1.0, slabs / static_cast<double>(slabs_)));
@@ -61,7 +62,7 @@ class ProgressReporter {
     throw Error(ErrorCode::Cancelled, fmt::format("extraction cancelled after {:.0f} of {} {}",
                                                   std::floor(last_ * static_cast<double>(slabs_)), slabs_, unit_));
   }
-  /// Whether threads may as well leave the rest of their work.
+  /// Whether threads should skip the rest of their work.
   [[nodiscard]] bool stopped() const noexcept { return stopped_.load(std::memory_order_relaxed); }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The innermost loops; see extract_rows.hpp. This file is compiled once per instruction set (Highway's foreach_target).
+// The innermost loops of the extraction (see extract_rows.hpp). Highway's foreach_target compiles this file once per
+// instruction set.
 #include "tile/extract_rows.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel/extract_rows.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,7 +21,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A mask's lanes as bits, lane 0 lowest.
+/// The lanes of a mask as bits, lane 0 lowest.
 template <class D, class M>
 HWY_INLINE Word bits_of(D d, M mask) {
   static_assert(hn::MaxLanes(D()) <= 8);
@@ -29,7 +30,7 @@ HWY_INLINE Word bits_of(D d, M mask) {
   return bytes[0];
 }
 
-/// The tiles with high and low corners among the 64 that start at word w of `rows` (no word is looked at beyond w + 1).
+/// Active tiles among the 64 that start at word w of `rows`. Reads words w and w + 1 only.
 template <std::size_t Rows>
 HWY_INLINE Word mixed_word(const std::array<const Word*, Rows>& rows, std::size_t used, std::size_t w) {
   Word any = 0, all = ~Word{0}, next_any = 0, next_all = 1;
@@ -42,7 +43,7 @@ HWY_INLINE Word mixed_word(const std::array<const Word*, Rows>& rows, std::size_
   return (any | any >> 1 | next_any << (kWordBits - 1)) & ~(all & (all >> 1 | next_all << (kWordBits - 1)));
 }
 
-/// The critical edges that a row of tiles counts (TileCount::edges) among the 64 at word w, by axis.
+/// Critical edges that a row of tiles counts (TileCount::edges) in the 64 positions of word w, by axis.
 template <int N, std::size_t Rows>
 HWY_INLINE std::array<Word, N> edge_words(const std::array<const Word*, Rows>& rows, std::size_t w) {
   constexpr unsigned kUpper = 1u << (N - 2);
@@ -54,8 +55,9 @@ HWY_INLINE std::array<Word, N> edge_words(const std::array<const Word*, Rows>& r
   return edges;
 }
 
-/// mixed_word for `words` words of a row (at most 64) from word `first` on; returns which of them are not 0. Adds up
-/// critical edges: behind the last sample there is one along the row if it is high.
+/// Computes mixed_word for `words` words of a row (at most 64) from word `first` on. Bit i of the result is set if word
+/// first + i is not 0. Adds the critical edges to `edges`. If the row's last sample is high, this counts one edge along
+/// the row too many.
 template <int N, std::size_t Rows>
 HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size_t first, std::size_t words,
                             Word* mixed, std::array<std::uint32_t, 4>& edges) {
@@ -67,9 +69,11 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
   std::array<hn::Vec<decltype(d)>, N> sums;
   for (auto& sum : sums) sum = hn::Zero(d);
   std::size_t i = 0;
+  // whole registers
   for (; i + kLanes <= words; i += kLanes) {
     const std::size_t w = first + i;
     std::array<hn::Vec<decltype(d)>, kRows> here;
+    // any and all corners of each tile
     auto any = hn::Zero(d), next_any = any;
     auto all = hn::Not(any), next_all = all;
     for (unsigned r = 0; r < kRows; ++r) {
@@ -80,12 +84,14 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
       next_any = hn::Or(next_any, next);
       next_all = hn::And(next_all, next);
     }
+    // critical edges
     const auto next = hn::LoadU(d, rows[kUpper] + w + 1);
     const auto shifted = hn::Or(hn::ShiftRight<1>(here[kUpper]), hn::ShiftLeft<kWordBits - 1>(next));
     sums[0] = hn::Add(sums[0], hn::PopulationCount(hn::Xor(here[kUpper], shifted)));
     for (unsigned a = 1; a + 1 < N; ++a)
       sums[a] = hn::Add(sums[a], hn::PopulationCount(hn::Xor(here[kUpper], here[kUpper | 1u << (a - 1)])));
     sums[N - 1] = hn::Add(sums[N - 1], hn::PopulationCount(hn::Xor(here[kUpper], here[0])));
+    // active tiles
     any = hn::Or(hn::Or(any, hn::ShiftRight<1>(any)), hn::ShiftLeft<kWordBits - 1>(next_any));
     all = hn::And(all, hn::Or(hn::ShiftRight<1>(all), hn::ShiftLeft<kWordBits - 1>(next_all)));
     const auto found = hn::AndNot(all, any);
@@ -93,6 +99,7 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
     present |= bits_of(d, hn::Ne(found, hn::Zero(d))) << i;
   }
   for (unsigned a = 0; a < N; ++a) edges[a] += static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(d, sums[a])));
+  // remaining words
   for (; i < words; ++i) {
     mixed[first + i] = mixed_word(rows, kRows, first + i);
     present |= Word{mixed[first + i] != 0} << i;
@@ -102,7 +109,7 @@ HWY_INLINE Word mixed_words(const std::array<const Word*, Rows>& rows, std::size
   return present;
 }
 
-/// Eight corners of 64 tiles, a word each, to a byte for each tile.
+/// Transposes `count` (at most 8) words, each with one corner of 64 tiles, to one byte per tile.
 HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8_t* bytes) {
   const hn::CappedTag<std::uint8_t, kWordBits> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -127,7 +134,7 @@ HWY_INLINE void corners_to_bytes(const Word* corners, unsigned count, std::uint8
 
 #if HWY_TARGET <= HWY_AVX3_DL
 
-/// Eight words, each a corner of 64 tiles, to a byte for each tile.
+/// Transposes eight words, each with one corner of 64 tiles, to one byte per tile.
 HWY_INLINE __m512i corner_bytes(__m512i words) {
   alignas(64) static constexpr auto kByWord = [] {
     std::array<std::uint8_t, 64> order{};
@@ -135,7 +142,7 @@ HWY_INLINE __m512i corner_bytes(__m512i words) {
     return order;
   }();
   __m512i x = _mm512_permutexvar_epi8(_mm512_load_si512(kByWord.data()), words);
-  // Squares of 8 x 8 bits are mirrored: their quarters, the quarters of these, and those of these.
+  // Transpose each 8 x 8 block of bits by swapping quarters at three sizes.
   const auto swap = [&x](int distance, long long chosen) HWY_ATTR {
     const __m512i mask = _mm512_set1_epi64(chosen);
     const __m128i by = _mm_cvtsi32_si128(distance);
@@ -148,7 +155,7 @@ HWY_INLINE __m512i corner_bytes(__m512i words) {
   return x;
 }
 
-/// The signatures of the 64 tiles from word w on, by byte; `half` of their corners.
+/// Signatures of the 64 tiles from word w on, one byte each. N = 4: lower (`half` = 0) or upper eight corners.
 template <int N>
 HWY_INLINE __m512i signature_bytes(const TileRow& row, std::size_t w, unsigned half) {
   const auto two = [&](unsigned r) HWY_ATTR {
@@ -160,7 +167,7 @@ HWY_INLINE __m512i signature_bytes(const TileRow& row, std::size_t w, unsigned h
   return corner_bytes(_mm512_mask_shrdi_epi64(here, 0xAA, here, _mm512_unpackhi_epi64(words, words), 1));
 }
 
-/// The sum of the entries of `signatures` in a table of 256.
+/// Sum over `signatures` of their entries in a table of 256.
 HWY_INLINE std::uint32_t sum_of_entries(__m512i signatures, const std::uint8_t* table) {
   const __m512i low = _mm512_permutex2var_epi8(_mm512_loadu_si512(table), signatures, _mm512_loadu_si512(table + 64));
   const __m512i high =
@@ -169,8 +176,8 @@ HWY_INLINE std::uint32_t sum_of_entries(__m512i signatures, const std::uint8_t* 
   return static_cast<std::uint32_t>(_mm512_reduce_add_epi64(_mm512_sad_epu8(entries, _mm512_setzero_si512())));
 }
 
-/// Writes the signatures and places of the tiles `mixed` of word w, from entry `at` on. Returns how many simplices they
-/// have. No branch depends on how many tiles there are, but beyond 32.
+/// Writes signatures and positions of the tiles `mixed` of word w, starting at entry `at`. Returns the number of their
+/// simplices. In 2D and 3D the only branch on the number of tiles is whether there are more than 32.
 template <int N>
 HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
                                     const TileRoom& room, std::size_t at) {
@@ -188,8 +195,10 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     _mm512_storeu_si512(to, words_of(0));
     if (count > 32) _mm512_storeu_si512(to + 32, words_of(1));
   };
+  // positions of the tiles
   const __m512i along = _mm512_maskz_compress_epi8(mixed, _mm512_load_si512(kCountUp.data()));
   store(room.at + at, [&](int half) HWY_ATTR { return _mm512_add_epi16(first, half_of(along, half)); });
+  // signatures and number of simplices
   const __m512i low = _mm512_maskz_compress_epi8(mixed, signature_bytes<N>(row, w, 0));
   std::uint16_t* const out = room.signatures + at;
   if constexpr (N == 4) {
@@ -201,14 +210,14 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
     return simplices;
   } else {
     store(out, [&](int half) HWY_ATTR { return half_of(low, half); });
-    return sum_of_entries(low, table.counts());  // tiles without corners of both kinds have no simplices
+    return sum_of_entries(low, table.counts());  // unused lanes have signature 0, which has no simplices
   }
 }
 
 #else
 
-/// Writes the signatures and places of the tiles `mixed` of word w, from entry `at` on. Returns how many simplices they
-/// have.
+/// Writes signatures and positions of the tiles `mixed` of word w, starting at entry `at`. Returns the number of their
+/// simplices.
 template <int N>
 HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, std::size_t w, Word mixed,
                                     const TileRoom& room, std::size_t at) {
@@ -224,6 +233,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
   std::uint32_t simplices = 0;
   const auto take = [&](unsigned bit, unsigned signature) HWY_ATTR {
     room.signatures[at] = static_cast<std::uint16_t>(signature);
+    // few tiles: gather the corners of each
     room.at[at++] = static_cast<std::uint16_t>(first + bit);
     simplices += table.entries()[signature] & RowTable::kCountMask;
   };
@@ -234,6 +244,7 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
       for (unsigned c = 0; c < kCorners; ++c) signature |= static_cast<unsigned>(corners[c] >> bit & 1u) << c;
       take(bit, signature);
     }
+    // many tiles: transpose all 64
     return simplices;
   }
   alignas(64) std::uint8_t bytes[kCorners > 8 ? 2 : 1][kWordBits];
@@ -252,8 +263,9 @@ HWY_INLINE std::uint32_t take_tiles(const TileRow& row, const RowTable& table, s
 
 template <int N>
 HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, const TileRoom& room) {
-  const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // of the samples
+  const std::size_t words = (row.tiles + 1 + kWordBits - 1) / kWordBits;  // words of samples
   TileCount count;
+  // find active words of up to 64, then the signatures of their tiles
   for (std::size_t block = 0; block < words; block += kWordBits) {
     Word present = mixed_words<N>(row.corners, block, std::min(kWordBits, words - block), room.active, count.edges);
     if (block + kWordBits >= words) room.active[words - 1] &= (Word{1} << (row.tiles % kWordBits)) - 1;
@@ -267,6 +279,7 @@ HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, cons
   }
   if (table.has_own_vertices())
     for (std::uint32_t i = 0; i < count.active; ++i) count.own_vertices += table.own_vertices(room.signatures[i]);
+  // sums over the row
   const Word* const upper = row.corners[1u << (N - 2)];
   count.edges[0] -= static_cast<std::uint32_t>(upper[row.tiles / kWordBits] >> (row.tiles % kWordBits) & 1u);
   return count;
@@ -274,12 +287,13 @@ HWY_INLINE TileCount count_tiles(const TileRow& row, const RowTable& table, cons
 
 #if HWY_TARGET <= HWY_AVX3
 
-/// Lists the edges between the corners Base and Base + Step that are critical, of some tiles; returns how many.
+/// Appends to `out` the positions of those tiles whose edge between corners Base and Base + Step is critical. Returns
+/// their number.
 template <unsigned Base, unsigned Step, class D>
 HWY_INLINE std::size_t list_edges(D d, hn::Vec<D> signatures, hn::Vec<D> at, hn::Mask<D> used, std::uint32_t* out) {
   const auto differ = hn::Xor(signatures, hn::ShiftRight<Step>(signatures));
   const auto critical = hn::And(hn::TestBit(differ, hn::Set(d, 1u << Base)), used);
-  // In registers: to store chosen lanes alone is slow on some processors.
+  // Compressed in registers: compressing stores are slow on some processors.
   hn::StoreU(hn::Compress(at, critical), d, out);
   return hn::CountTrue(d, critical);
 }
@@ -310,7 +324,7 @@ HWY_INLINE void tile_edges(const TileEdges& row) {
   std::array<std::uint32_t*, 4> out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
-    // Where an edge is not critical, the next one takes its place.
+    // A non-critical edge does not advance `out`, so the next edge overwrites it.
     for (unsigned a = 0; a + 1 < N; ++a) {
       *out[a] = row.at[i];
       out[a] += (signature >> kUpper ^ signature >> (kUpper + (1u << a))) & 1u;
@@ -322,11 +336,11 @@ HWY_INLINE void tile_edges(const TileEdges& row) {
 
 #endif
 
-/// As critical_edges, by table for 3D, and from two cubes in 4D.
+/// Equals critical_edges. 2D and 3D: table lookup; 4D: combined from two cubes.
 template <int N>
 HWY_INLINE std::uint32_t edges_of(unsigned signature) {
   if constexpr (N == 4) {
-    // Edges along the first three axes at nibbles 0, 2, 4, to leave room for those of the other cube.
+    // Move edges along the first three axes to nibbles 0, 2 and 4. Nibbles 1, 3 and 5 are for the upper cube.
     static constexpr auto kSpread = [] {
       std::array<std::uint32_t, 256> spread{};
       for (unsigned s = 0; s < 256; ++s) {
@@ -347,7 +361,7 @@ HWY_INLINE std::uint32_t edges_of(unsigned signature) {
   }
 }
 
-/// One tile's simplices from its vertex numbers, in plain code: for all instruction sets and the last tiles of a row.
+/// Writes one tile's simplices from its vertex numbers, without vector instructions.
 template <int N>
 HWY_INLINE typename TileOutput<N>::Simplex* write_plain(const std::uint8_t* local, unsigned count, bool flip,
                                                         const Index* ids, typename TileOutput<N>::Simplex* out) {
@@ -361,7 +375,7 @@ HWY_INLINE typename TileOutput<N>::Simplex* write_plain(const std::uint8_t* loca
   return out;
 }
 
-/// Where the entry of a key is.
+/// Index of a key's entry in RowTable::entries().
 template <int N, bool Variants>
 HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
   if constexpr (N == 3 && Variants) return table.variant_places()[CubeKey(key).signature()] + CubeKey(key).variant();
@@ -370,7 +384,7 @@ HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
 
 #if HWY_TARGET <= HWY_AVX3
 
-/// The vertex numbers of a tile's edges in one or two registers.
+/// First vertex numbers of a tile's edge streams, in one or two registers.
 template <int N>
 struct Lanes {
   static constexpr unsigned kCount = N == 4 ? 2 : 1;
@@ -381,13 +395,13 @@ struct Lanes {
     std::copy(start.begin(), start.end(), padded);
     for (unsigned i = 0; i < kCount; ++i) first[i] = _mm512_load_si512(padded + 16 * i);
   }
-  /// Adds 1 where a bit is set.
+  /// Adds 1 to the lanes whose bit is set; lanes of register i.
   HWY_INLINE static __m512i plus(__m512i lanes, std::uint32_t bits, unsigned i) {
     return _mm512_mask_add_epi32(lanes, static_cast<__mmask16>(bits >> (16 * i)), lanes, _mm512_set1_epi32(1));
   }
 };
 
-/// Vertex numbers for up to 16 local vertices, N to a simplex.
+/// Maps up to 16 local vertices, N per simplex, to vertex numbers.
 template <int N, bool Flip>
 HWY_INLINE __m512i looked_up(__m128i local, const __m512i* ids) {
   if constexpr (N == 4) {
@@ -416,8 +430,10 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
     const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
     const unsigned count = entry & RowTable::kCountMask;
     const std::uint8_t* local = simplices + std::size_t{entry >> RowTable::kFirstShift} * N;
+    // vertex numbers of this tile's edges
     __m512i ids[Lanes<N>::kCount];
     for (unsigned k = 0; k < Lanes<N>::kCount; ++k) ids[k] = Lanes<N>::plus(lanes.first[k], moved, k);
+    // its simplices
     if ((entry & RowTable::kOwnFlag) != 0) {
       alignas(64) Index stored[16 * Lanes<N>::kCount];
       for (unsigned k = 0; k < Lanes<N>::kCount; ++k) _mm512_store_si512(stored + 16 * k, ids[k]);
@@ -431,6 +447,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
       }
       out -= (kAtOnce - count % kAtOnce) % kAtOnce;
     }
+    // advance the streams
     const std::uint32_t advance = (edges & ~kNext) | moved;
     for (unsigned k = 0; k < Lanes<N>::kCount; ++k) lanes.first[k] = Lanes<N>::plus(lanes.first[k], advance, k);
   }
@@ -438,7 +455,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
 
 #endif
 
-/// Adds 1 to the numbers where a bit is set, into `to`.
+/// Writes numbers[e] + (bit e of `bits`) to to[e].
 template <std::size_t Count>
 HWY_INLINE void add_bits(const Index* numbers, std::uint32_t bits, Index* to) {
 #if HWY_TARGET == HWY_SCALAR
@@ -450,7 +467,7 @@ HWY_INLINE void add_bits(const Index* numbers, std::uint32_t bits, Index* to) {
   const auto bit = hn::Load(d, kBits);
   for (std::size_t e = 0; e < Count; e += kLanes) {
     const auto chosen = hn::Eq(hn::And(hn::Set(d, bits >> e), bit), bit);
-    // A mask as a number is -1.
+    // A true mask lane is -1 as a number.
     const auto minus = hn::VecFromMask(d, chosen);
     hn::Store(hn::Sub(hn::Load(d, numbers + e), minus), d, to + e);
   }
@@ -460,7 +477,7 @@ HWY_INLINE void add_bits(const Index* numbers, std::uint32_t bits, Index* to) {
 template <int N, bool Variants>
 HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, const OwnTiles<N>& own) {
   constexpr std::uint32_t kNext = next_edges<N>();
-  constexpr unsigned kEdges = (TileOutput<N>::kEdges + 7) / 8 * 8;  // whole registers
+  constexpr unsigned kEdges = (TileOutput<N>::kEdges + 7) / 8 * 8;  // rounded up to whole registers
   const std::uint32_t* const entries = table.entries();
   const std::uint8_t* const simplices = table.simplices();
   alignas(64) Index first[kEdges] = {};
@@ -484,7 +501,8 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// The four numbers of a 2D tile, and how they move on, in a register each.
+/// Writes the segments of a row of 2D tiles. The four vertex numbers of a tile are in one register, their increments in
+/// another.
 void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTiles<2>& own) {
   struct Moves {
     alignas(16) std::array<std::array<Index, 4>, 32> moved{}, advance{};  // by key
@@ -507,7 +525,8 @@ void write_segments(const TileOutput<2>& row, const RowTable& table, const OwnTi
   const std::uint32_t* const entries = table.entries();
   auto first = hn::LoadU(d, row.first.data());
   TileOutput<2> last = row;
-  // A segment too many takes the place of the next tile's, which comes later: so not for the last tile.
+  // Each store writes two segments; the next tile overwrites a superfluous second one. The last tile is written
+  // exactly.
   for (std::size_t i = 0; i + 1 < row.active; ++i) {
     const unsigned signature = row.signatures[i];
     const auto ids = hn::Add(first, hn::Load(d, kMoves.moved[signature].data()));
@@ -545,7 +564,7 @@ HWY_INLINE void write_tiles(const TileOutput<N>& row, const RowTable& table, con
   return write_by<N, false>(row, table, own);
 }
 
-// Highway's tables of functions hold no templates.
+// Highway's dispatch tables cannot hold templates.
 TileCount count2(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<2>(r, t, m); }
 TileCount count3(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<3>(r, t, m); }
 TileCount count4(const TileRow& r, const RowTable& t, const TileRoom& m) { return count_tiles<4>(r, t, m); }
@@ -604,7 +623,7 @@ static std::uint32_t make_entry(const tables::List& list) {
 
 RowTable::RowTable(const tables::TileTable& table, std::size_t keys)
     : table_(&table), entries_(keys), simplices_(table.simplices) {
-  // Of four dimensions there are 65 536, made for each contour.
+  // 4D has 65 536 entries and computes them for each contour.
   std::uint32_t* const entries = entries_.data();
   for (std::size_t s = 0; s < keys; ++s) entries[s] = make_entry(table.lists[table.list_of[s]]);
   count_simplices();
@@ -614,7 +633,7 @@ RowTable::RowTable(const tables::TileTable& table, std::size_t keys)
 RowTable::RowTable(const tables::TileTable& table, const std::array<unsigned, 256>& counts,
                    std::vector<Variant> variants)
     : table_(&table), simplices_(table.simplices), variants_(std::move(variants)) {
-  // The plain ones first: then signatures find theirs as in other tables.
+  // Unresolved signatures come first, so that a signature is its own index as in other tables.
   for (unsigned s = 0; s < 256; ++s) entries_.push_back(entry_of_list(s));
   for (unsigned s = 0; s < 256; ++s) {
     variant_places_[s] = static_cast<std::uint16_t>(counts[s] == 1 ? s : entries_.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Vertex numbers of the faces of a grid, of many kinds, some with vertices of the contour and most without: one bit per
-// face, ranks over the bits, and by rank the number of the face's first vertex.
+// Vertex numbers of a grid's faces of many kinds, of which few have contour vertices: one bit per face, prefix sums
+// over the bits, and by rank the number of the face's first vertex.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 
 namespace tegl::detail {
 
-/// Of one layer, or of one slab. Filled in three steps: `mark` all faces with vertices, `rank`, `tell` the count of
-/// each, `number`. Cells may mark and tell side by side, and the same face many times: what they say of it is the same,
-/// and of the cells that tell, the least one owns the face.
+/// Faces of one layer or slab. Filled in four steps: `mark` all faces with vertices, `rank`, `tell` the vertex count of
+/// each, `number`. Cells may call mark and tell concurrently, and several times for one face with the same count. The
+/// cell with the lowest number owns the face.
 class FaceRanks {
  public:
   void reset(std::size_t words) {
@@ -52,7 +52,7 @@ class FaceRanks {
     }
   }
 
-  /// From counts to numbers, the first of which is `first`; returns what comes after the last.
+  /// Replaces counts by numbers, starting at `first`. Returns one past the last number.
   std::uint64_t number(std::uint64_t first) noexcept {
     for (Index& next : first_) {
       const Index count = next;
@@ -63,9 +63,9 @@ class FaceRanks {
     return first;
   }
 
-  /// The first vertex of a face that is marked.
+  /// First vertex of a marked face.
   [[nodiscard]] Index first(std::size_t word, unsigned bit) const noexcept { return first_[ordinal(word, bit)]; }
-  /// How many vertices it has numbers for.
+  /// Number of vertices of a marked face.
   [[nodiscard]] Index count(std::size_t word, unsigned bit) const noexcept {
     const std::size_t at = ordinal(word, bit);
     return (at + 1 < first_.size() ? first_[at + 1] : end_) - first_[at];
@@ -80,10 +80,10 @@ class FaceRanks {
   }
 
   std::vector<Word> bits_;
-  std::vector<std::uint32_t> before_;  ///< faces marked before this word
-  std::vector<Index> first_;           ///< by rank; until they are numbered: how many vertices
+  std::vector<std::uint32_t> before_;  ///< marked faces before each word
+  std::vector<Index> first_;           ///< by rank; before `number`: vertex counts
   std::vector<std::uint32_t> owners_;  ///< by rank
-  Index end_ = 0;                      ///< the number after the last
+  Index end_ = 0;                      ///< one past the last number
 };
 
 }  // namespace tegl::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pass 4 of the extraction, N = 4: the barycentres of a row's cubes.
+// Pass 4 of the extraction in 4D: writes the barycentres of a row's cubes.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// Writes the barycentres of a row's cubes along `Axes` (N = 4), where tiles do not (TileWriter::writes_cubes). `view`:
-/// the layers around them.
+/// Writes the barycentres of a row's cubes along `Axes`, unless tiles write them (TileWriter::writes_cubes). `view`:
+/// the layers that contain the cubes.
 template <unsigned Axes, class Real>
 void generate_cubes(const SampleSource<4>& source, const tables::TileTable& table, const Placement<4, Real>& placement,
                     const SlabView<4>& view, const CubePlane& plane, std::size_t row, std::size_t layer,
@@ -27,6 +27,7 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
   CellBits<4, Axes> cells(view, row);
   std::array<TilePoint<3>, tables::kFaceSlots> points;
   Index next = plane.first(row);
+  // cubes with vertices, 64 positions at a time
   for (std::size_t w = 0; w < shape.words(); ++w) {
     Word rest = first[w];
     if (rest == 0) continue;
@@ -48,7 +49,7 @@ void generate_cubes(const SampleSource<4>& source, const tables::TileTable& tabl
   }
 }
 
-/// The same of cubes that are listed; `table`: by key.
+/// Writes the vertices of a row's listed cubes. `table`: by key.
 template <unsigned Axes, class Real>
 void generate_listed_cubes(const SampleSource<4>& source, const tables::TileTable& table,
                            const Placement<4, Real>& placement, const SlabView<4>& view, const CubePlane& plane,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From places in the grid to the world: axis coordinates, then the affine map, then the output's type.
+// Maps grid positions to the world: axis coordinates, then the affine map, then conversion to the output's type.
 #pragma once
 
 #include <algorithm>
@@ -19,18 +19,18 @@
 
 namespace tegl::detail {
 
-/// Writes vertices. The same arithmetic in the same order for every vertex, whichever pass it comes
-/// from and in whichever dimension: see the build's -ffp-contract=off.
+/// Writes vertices. All passes and dimensions use the same arithmetic in the same order (requires -ffp-contract=off,
+/// which the build sets).
 template <int N, class Real>
 class Placement {
  public:
   using Index = std::array<std::size_t, N>;
   using Vertex = std::array<Real, N>;
 
-  /// `keeps_off_layers`, N = 3 or 4: see inside_slab.
+  /// `keeps_off_layers`: see inside_slab; N = 3 or 4.
   explicit Placement(const Grid<N>& grid, bool keeps_off_layers = N == 4)
       : linear_(grid.linear), offset_(grid.offset), mapped_(grid.has_world_map()) {
-    // The arithmetic along a row takes the numbers of samples for 32-bit integers.
+    // The arithmetic along a row uses 32-bit sample indices.
     is_uniform_ = grid.axes[0].is_uniform() && grid.axes[0].size() < std::numeric_limits<std::int32_t>::max();
     if (is_uniform_) {
       origin_ = grid.axes[0].origin();
@@ -43,7 +43,7 @@ class Placement {
     if (keeps_off_layers) find_insides();
   }
 
-  /// Null: none are wanted.
+  /// Null if no normals were requested.
   [[nodiscard]] const NormalWriter<N, Real>* normals() const noexcept { return normals_ ? &*normals_ : nullptr; }
   void want_normals(const SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
     normals_.emplace(source, grid, options.direction, options.gradient);
@@ -51,7 +51,7 @@ class Placement {
 
   [[nodiscard]] double sample(int axis, std::size_t i) const noexcept { return coordinates_[axis][i]; }
 
-  /// The coordinate at the share x of the way from sample i to i + 1; exact at both ends, never outside.
+  /// Coordinate at the fraction x of the way from sample i to i + 1. Exact at both ends, never outside.
   [[nodiscard]] double between(int axis, std::size_t i, double x) const noexcept {
     const double a = coordinates_[axis][i];
     const double b = coordinates_[axis][i + 1];
@@ -59,7 +59,7 @@ class Placement {
     return x >= 1.0 ? b : std::clamp(p, std::min(a, b), std::max(a, b));
   }
 
-  /// A point given by its axis coordinates.
+  /// World position of a point given by axis coordinates.
   [[nodiscard]] Vertex world(const std::array<double, N>& point) const noexcept {
     Vertex vertex;
     if (!mapped_) {
@@ -74,7 +74,7 @@ class Placement {
     return vertex;
   }
 
-  /// A point of a cell along the axes of `frame`'s mask, based at `base`, from its place in the cell.
+  /// Position of a point in the cell at `base` along the axes of `Frame`; `place`: coordinates within the cell.
   template <class Frame>
   [[nodiscard]] Vertex in_cell(const Index& base, const std::array<double, Frame::kDim>& place) const noexcept {
     std::array<double, N> point;
@@ -83,7 +83,7 @@ class Placement {
                                                                   : inside_slab(world(point), base[N - 1]);
   }
 
-  /// Completes what is known of edges in layer k, and writes their points.
+  /// Completes the description of edges in layer k and writes their vertices.
   void edges(std::size_t k, EdgePoints<N, Real>& edges) const noexcept {
     edges.layer = sample(N - 1, k);
     edges.next_layer = edges.axis == N - 1 ? sample(N - 1, k + 1) : 0.0;
@@ -98,16 +98,17 @@ class Placement {
   }
 
  private:
-  /// A point between layers k and k + 1, kept off both by the least that shows in its type: in 4D, and in 3D for cuts
-  /// at a layer straight from the image. Where samples equal the isovalue (or almost), points between layers would fall
-  /// into a layer, and a cut there could not tell them from the layer's own points (`slice`).
+  /// Keeps a point between layers k and k + 1 off both layers by the smallest difference that its type represents. Used
+  /// in 4D, and in 3D for slices at a layer directly from the image. If samples (almost) equal the isovalue, points
+  /// between layers would coincide with a layer, and `slice` could not distinguish them from the layer's own points.
   Vertex inside_slab(Vertex vertex, std::size_t k) const noexcept {
     if constexpr (N == 3 || N == 4)
       if (!insides_.empty()) vertex[N - 1] = std::clamp(vertex[N - 1], insides_[k][0], insides_[k][1]);
     return vertex;
   }
 
-  /// The last coordinates that points in each slab may have: of grids whose last axis is apart, and slabs with room.
+  /// Determines the range of the last coordinate for each slab. Only for grids whose last axis is not mixed with others
+  /// by the world map; slabs too thin for it keep their full range.
   void find_insides() {
     for (int a = 0; a < N - 1; ++a)
       if (linear_(N - 1, a) != 0) return;
@@ -137,10 +138,10 @@ class Placement {
   std::array<std::vector<double>, N> coordinates_;
   Eigen::Matrix<double, N, N, Eigen::RowMajor> linear_;
   Eigen::Matrix<double, N, 1> offset_;
-  bool is_uniform_;  ///< axis 0
+  bool is_uniform_;  ///< coordinates on axis 0 are equidistant
   double origin_ = 0.0, step_ = 0.0;
   bool mapped_;
-  std::vector<std::array<Real, 2>> insides_;  ///< by slab; none: points may be anywhere
+  std::vector<std::array<Real, 2>> insides_;  ///< by slab; empty: no restriction
   std::optional<NormalWriter<N, Real>> normals_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The places of what a cell shares with its neighbours, found anew from the samples for the cells that ask for them:
-// few tiles have vertices of their own, and to keep the places of all points for them takes more memory than an image.
+// Positions of vertices that a cell shares with others, recomputed from the samples on request. Few tiles have vertices
+// of their own, and storing all positions for them would take more memory than an image.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace tegl::detail {
 
-/// The places of the points on the critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
+/// Positions of the vertices on critical edges of the cell along `Axes` based at `base`, in the frame of the cell.
 template <int N, unsigned Axes>
 class EdgePlaces {
  public:
@@ -31,10 +31,10 @@ class EdgePlaces {
   [[nodiscard]] double alpha(unsigned edge) const noexcept { return alphas_[edge]; }
 
  private:
-  std::array<double, tables::edge_count(kDim)> alphas_;  ///< of edges that are not critical: nothing
+  std::array<double, tables::edge_count(kDim)> alphas_;  ///< undefined for non-critical edges
 };
 
-/// The places of all vertices that a tile shares, by local vertex.
+/// Positions of all vertices that a tile shares, by local vertex.
 template <int N>
 class SharedPlaces {
  public:
@@ -47,7 +47,7 @@ class SharedPlaces {
   EdgePlaces<N, (1u << N) - 1> edges_;
 };
 
-/// In 4D, barycentres of cubes too: each by the arithmetic of the cube's own vertices, as it is asked for.
+/// In 4D also barycentres of cubes, computed on request with the arithmetic of the cube's own vertices.
 template <>
 class SharedPlaces<4> {
  public:
@@ -60,7 +60,7 @@ class SharedPlaces<4> {
     return places_[v];
   }
 
-  /// How many barycentres a cube of the tile has.
+  /// Number of barycentres of a cube of the tile.
   [[nodiscard]] unsigned cube_vertices(unsigned cube) const noexcept {
     return SimplexList<3>(*cube_, cube_signature(cube)).own_vertices();
   }
@@ -78,7 +78,7 @@ class SharedPlaces<4> {
   static constexpr unsigned kShared = tables::first_tile_vertex(4);
   static_assert(kShared <= 64);
 
-  /// By cube and edge of the cube: the edge of the tile.
+  /// By cube and edge of the cube: number of that edge in the tile.
   static constexpr auto kEdgesOfCubes = [] {
     std::array<std::array<std::uint8_t, tables::edge_count(3)>, 8> result{};
     for (unsigned cube = 0; cube < 8; ++cube)
@@ -122,11 +122,11 @@ class SharedPlaces<4> {
   unsigned signature_;
   const tables::TileTable* cube_;
   std::uint64_t known_ = 0;
-  std::array<TilePoint<4>, kShared> places_;  ///< those known: each is asked for by many simplices
+  std::array<TilePoint<4>, kShared> places_;  ///< cache: many simplices request each position
 };
 
-/// The places of the vertices that a tile of four dimensions shares, where it is put together from its cubes
-/// (ResolvedTesseract), barycentrically; those of cubes by the arithmetic of the cubes of 3D images.
+/// Positions of the vertices that a 4D tile shares, for tiles combined from their cubes (ResolvedTesseract),
+/// barycentric triangulation. Cubes use the arithmetic of the cubes of 3D images.
 class ResolvedPlaces {
  public:
   ResolvedPlaces(const EdgePlaces<4, 15>& edges, const ResolvedCubes& cubes, const ResolvedCubes::Lists& lists) noexcept
@@ -137,9 +137,9 @@ class ResolvedPlaces {
     return places_[v];
   }
 
-  /// That of own vertex `apex` of a filling: the mean of the triangles that it is joined with, weighted by their areas.
+  /// Position of own vertex `apex` of a filling: area-weighted mean of the triangles that it is joined with.
   [[nodiscard]] TilePoint<4> barycentre(const ResolvedView& filling, unsigned apex) noexcept {
-    Weighted<4> sum, plain;  // plain: for a sphere that has shrunk to a point
+    Weighted<4> sum, plain;  // `plain`: for a sphere shrunk to a point
     for (std::uint32_t q = 0; q < filling.simplex_count; ++q) {
       const std::uint8_t* const simplex = filling.simplices + 4 * std::size_t{q};
       if (simplex[0] != apex) continue;
@@ -182,7 +182,7 @@ class ResolvedPlaces {
   const ResolvedCubes& cubes_;
   const ResolvedCubes::Lists& lists_;
   std::uint64_t known_ = 0;
-  std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< those known
+  std::array<TilePoint<4>, ResolvedCubes::kVertices> places_;  ///< valid if known_ has the bit
 };
 
 }  // namespace tegl::detail

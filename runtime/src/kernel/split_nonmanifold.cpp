@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where a contour touches itself next to missing values; see pinches.hpp.
+// Splits contours that touch themselves beside missing values (see split_nonmanifold.hpp).
 // Based on: A. Guéziec, G. Taubin, F. Lazarus, W. Horn, "Converting sets of polygons to manifold surfaces by cutting
 // and stitching", IEEE Visualization 1998 (cutting at singular vertices); here also for tetrahedra.
 #include "kernel/split_nonmanifold.hpp"
@@ -22,7 +22,7 @@ namespace tegl::detail {
 template <int N>
 PinchCandidates<N>::PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter)
     : shape_(shape), counter_(counter), buffer_(shape.pitch()) {
-  for (Slab<N>& slab : invalid_) slab.all_valid = false;  // of the tiles that are not valid, none may be left out
+  for (Slab<N>& slab : invalid_) slab.all_valid = false;  // makes cells_of_valid_tiles read the bits of invalid tiles
 }
 
 template <int N>
@@ -97,7 +97,8 @@ class Separation {
   using Simplex = typename Contour<N, Real>::Simplex;
   static constexpr Index kNone = std::numeric_limits<Index>::max();
 
-  /// A face of a star's simplex that has the star's vertex: its other vertices, and the simplex by place in the star.
+  /// A face of a simplex of a star that contains the star's vertex: its other vertices, and the simplex by its index in
+  /// the star.
   struct Face {
     std::array<Index, N - 2> others;
     std::size_t place;
@@ -109,7 +110,7 @@ class Separation {
     Index simplex;
     auto operator<=>(const Around&) const = default;
   };
-  /// A face of a star's simplex that no other simplex shares, and the hole that it borders on.
+  /// A face of a simplex of a star that no other simplex shares (a boundary face), and its hole.
   struct Rim {
     std::size_t hole;
     std::array<Index, N - 2> others;
@@ -129,7 +130,7 @@ class Separation {
   void gather_stars() {
     std::vector<Index> place(contour_.vertices.size(), kNone);
     for (std::size_t c = 0; c < candidates_.size(); ++c) place[candidates_[c]] = static_cast<Index>(c);
-    first_.assign(candidates_.size() + 2, 0);  // counted two places up, so that filling leaves it right
+    first_.assign(candidates_.size() + 2, 0);  // counted two entries ahead: filling then leaves the right offsets
     for (const Simplex& simplex : contour_.simplices)
       for (const Index v : simplex)
         if (place[v] != kNone) ++first_[place[v] + std::size_t{2}];
@@ -141,7 +142,7 @@ class Separation {
     first_.pop_back();
   }
 
-  /// The faces around `v`, equal ones next to each other.
+  /// Gathers the faces around `v`; equal ones become adjacent.
   void gather_faces(Index v, std::span<const Index> star) {
     faces_.clear();
     for (std::size_t i = 0; i < star.size(); ++i)
@@ -157,14 +158,14 @@ class Separation {
     std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) { return a.others < b.others; });
   }
 
-  /// Calls join(a, b) for the faces that two simplices share.
+  /// Calls join(a, b) for each face that two simplices share.
   template <class Join>
   void for_shared_faces(Join join) const {
     for (std::size_t i = 1; i < faces_.size(); ++i)
       if (faces_[i].others == faces_[i - 1].others) join(faces_[i - 1], faces_[i]);
   }
 
-  /// A vertex half-way between two, or at both.
+  /// Adds the midpoint of two vertices; a copy if v == w.
   Index add_vertex(Index v, Index w) {
     check_vertex_count(contour_.vertices.size() + 1, max_vertices_);
     const auto add_middle = [&](auto& points) {
@@ -186,8 +187,8 @@ class Separation {
     for (Real& x : normal) x = square > 0 ? static_cast<Real>(static_cast<double>(x) / std::sqrt(square)) : Real{0};
   }
 
-  /// Joins the triangles around `v` that share an edge there. There are few, so that all pairs are compared: that is
-  /// quicker than sorting their edges.
+  /// Joins the triangles around `v` that share an edge at `v`. Stars are small, so comparing all pairs is faster than
+  /// sorting the edges.
   void join_triangles(Index v, std::span<const Index> star) {
     ends_.clear();
     for (const Index s : star)
@@ -200,8 +201,8 @@ class Separation {
           sets_.join(j, i);
   }
 
-  /// Gives every part of the star but the first a vertex of its own. Parts hang together by faces. As simplices with a
-  /// common face at `v` are in one part, faces stay shared by the same simplices.
+  /// Gives every component of the star except the first its own copy of `v`. Components are connected by faces.
+  /// Simplices with a common face at `v` are in the same component, so that face remains shared.
   void split_vertex(Index v, std::span<const Index> star) {
     if (star.size() < 2) return;
     sets_.reset(star.size());
@@ -215,13 +216,13 @@ class Separation {
     for (std::size_t i = 0; i < star.size(); ++i) {
       const std::size_t leader = sets_.find(i);
       if (leader == 0) continue;
-      if (leader == i) own_[i] = add_vertex(v, v);  // comes before its followers
+      if (leader == i) own_[i] = add_vertex(v, v);  // a leader precedes its followers
       Simplex& simplex = contour_.simplices[star[i]];
       *std::find(simplex.begin(), simplex.end(), v) = own_[leader];
     }
   }
 
-  /// Appends the fans around the edges from `v` to larger vertices, without the first of each edge.
+  /// Appends the fans around edges from `v` to larger vertices, except the first fan of each edge.
   void gather_fans(Index v, std::span<const Index> star, std::vector<Fan>& fans) {
     const auto corner = [&](std::size_t place, Index w) {
       const Simplex& simplex = contour_.simplices[star[place]];
@@ -232,23 +233,25 @@ class Separation {
     for_shared_faces([&](const Face& a, const Face& b) {
       for (const Index w : a.others) sets_.join(corner(a.place, w), corner(b.place, w));
     });
+    // fan of each simplex at each edge
     around_.clear();
     for (std::size_t i = 0; i < star.size(); ++i)
       for (std::size_t j = 0; j < N; ++j)
         if (const Index w = contour_.simplices[star[i]][j]; w > v)
           around_.push_back({w, sets_.find(N * i + j), star[i]});
     std::sort(around_.begin(), around_.end());
+    // all fans except the first of each edge
     for (std::size_t i = 1; i < around_.size(); ++i) {
       const Around& here = around_[i];
-      if (here.to != around_[i - 1].to) continue;  // the first fan of the next edge
+      if (here.to != around_[i - 1].to) continue;  // first fan of the next edge
       if (here.fan != around_[i - 1].fan) fans.push_back({v, here.to, {}});
       if (!fans.empty() && fans.back().from == v && fans.back().to == here.to)
         fans.back().simplices.push_back(here.simplex);
     }
   }
 
-  /// Gives the edges with several fans a midpoint in all fans but the first. Fans that have a simplex in common wait
-  /// for the next round. False if there was nothing left to do.
+  /// Inserts a midpoint into all fans except the first of edges with several fans. Fans that share a simplex with a
+  /// changed fan wait for the next round. Returns false if no fan was left.
   bool split_edges() {
     std::vector<Fan> fans;
     for (std::size_t c = 0; c < candidates_.size(); ++c) gather_fans(candidates_[c], star(c), fans);
@@ -275,9 +278,9 @@ class Separation {
     }
   }
 
-  /// Where two holes in the data meet in an edge of the grid, the contour's holes meet in a vertex, and its link is a
-  /// sphere with several holes. All but the first of them get a vertex of their own in the same place, and the gap of
-  /// no width between the two vertices is filled with tetrahedra. False if there was nothing left to do.
+  /// If two holes in the data meet in an edge of the grid, holes of the contour meet in a vertex whose link is a sphere
+  /// with several holes. Each hole except the first gets its own copy of the vertex. Tetrahedra fill the zero-width gap
+  /// between the two copies. Returns false if no such vertex was left.
   bool part_holes() {
     std::vector<bool> changed(contour_.vertices.size(), false);
     bool any = false;
@@ -294,15 +297,17 @@ class Separation {
     return any;
   }
 
-  /// The link's boundary edges, ordered by the hole that they surround.
+  /// Gathers the boundary edges of the link of `v`, ordered by hole.
   void gather_rim(Index v, std::span<const Index> star) {
     gather_faces(v, star);
     rim_.clear();
+    // faces with a single simplex
     for (std::size_t i = 0, end = 0; i < faces_.size(); i = end) {
       for (end = i + 1; end < faces_.size() && faces_[end].others == faces_[i].others;) ++end;
       if (end - i == 1) rim_.push_back({0, faces_[i].others, star[faces_[i].place]});
     }
-    std::vector<std::pair<Index, std::size_t>> corners;  // vertex, number in the rim
+    // holes: connected components of the rim
+    std::vector<std::pair<Index, std::size_t>> corners;  // vertex, index in rim_
     for (std::size_t i = 0; i < rim_.size(); ++i)
       for (const Index w : rim_[i].others) corners.emplace_back(w, i);
     std::sort(corners.begin(), corners.end());
@@ -319,7 +324,7 @@ class Separation {
       const Rim& rim = rim_[i];
       if (rim.hole == rim_.front().hole) continue;
       if (rim.hole != rim_[i - 1].hole) own = add_vertex(v, v);
-      // The neighbour's mirror image in their common face: its fourth vertex replaced, and two exchanged.
+      // Mirror image of the adjacent simplex in their common face: replace the fourth vertex and exchange two others.
       Simplex filling = contour_.simplices[rim.simplex];
       for (Index& w : filling)
         if (w != v && w != rim.others[0] && w != rim.others[1]) w = own;
@@ -333,10 +338,10 @@ class Separation {
   Contour<N, Real>& contour_;
   std::vector<Index> candidates_;
   std::uint64_t max_vertices_;
-  std::vector<std::size_t> first_;  ///< star of candidate c: members_[first_[c]] to members_[first_[c + 1]]
+  std::vector<std::size_t> first_;  ///< star of candidate c: members_[first_[c]] ... members_[first_[c + 1] - 1]
   std::vector<Index> members_;
   std::vector<Face> faces_;
-  std::vector<Index> ends_;  ///< of the triangles of a star, the two vertices of each that are not its own
+  std::vector<Index> ends_;  ///< two for each triangle of a star: its vertices except the star's
   std::vector<Around> around_;
   std::vector<Rim> rim_;
   std::vector<Index> own_;
@@ -347,7 +352,7 @@ class Separation {
 
 template <int N, class Real>
 void separate_pinches(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices) {
-  // In the plane an edge of the grid has two tiles, and no room for a pinch.
+  // In 2D an edge of the grid has only two tiles, so contours cannot touch themselves.
   if constexpr (N > 2)
     if (!candidates.empty()) Separation<N, Real>(contour, candidates, max_vertices).run();
 }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours next to missing values. Tiles without missing corners may meet in an edge or a square of the grid alone, as
-// the fields of a chessboard do in a corner, and so may the holes that the others leave. A contour that passes there
-// touches itself, or its border does, and is no manifold:
-// - in a point, with several fans of simplices around it: the vertex is doubled, one for each fan;
-// - along an edge (4D) whose ends have one fan each: it gets a midpoint in all of the fans around it but one;
-// - in a point where holes meet (4D), so that the link is a sphere with several holes: each hole but one gets a vertex
-// of
-//   its own in the same place, with tetrahedra of no size between the two.
-// The set of points stays as it is, and what held together by a face still does.
+// Splits non-manifold vertices and edges of contours beside missing values. Tiles without missing corners may meet in
+// only an edge or a square of the grid, as equal fields of a chessboard meet in a corner; so may tiles with missing
+// corners. A contour that passes there, or its boundary, touches itself and is not a manifold:
+// - Vertex with several fans of simplices: one copy of the vertex per fan.
+// - Edge (4D) with several fans, whose ends have one fan each: a midpoint is inserted in all fans except one.
+// - Vertex where holes meet (4D), with a sphere with several holes as its link: each hole except one gets a copy of the
+// vertex, and zero-size tetrahedra connect the two.
+// The point set does not change, and simplices that shared a face still share it.
 #pragma once
 
 #include <array>
@@ -20,10 +19,10 @@
 
 namespace tegl::detail {
 
-/// The vertices that may need it, as far as an extraction has come.
+/// Candidates for non-manifold vertices, as far as the extraction has come.
 class PinchList {
  public:
-  /// Ascending, each once.
+  /// Ascending, without duplicates.
   [[nodiscard]] const std::vector<std::uint64_t>& vertices() const noexcept { return vertices_; }
   [[nodiscard]] bool any_missing() const noexcept { return any_missing_; }
 
@@ -32,20 +31,20 @@ class PinchList {
   std::vector<std::uint64_t> vertices_;
 };
 
-/// Gathers, while an extraction goes through the layers, the vertices that may need it: those on edges of the grid
-/// that a valid tile shares with a tile with missing corners.
+/// Gathers candidates during an extraction: vertices on grid edges that belong to both a valid tile and a tile with
+/// missing corners.
 template <int N>
 class PinchCandidates : public PinchList {
  public:
   PinchCandidates(const RowShape<N>& shape, const Counter<N>& counter);
 
-  /// To be called for each slab in turn, when its valid tiles are known, before the edges at either side of it.
+  /// Call for each slab in order, after its valid tiles are known and before adding edges in or beside it.
   void open_slab(std::size_t k, const Slab<N>& slab);
-  /// The edges in layer k, between slabs k - 1 and k, whose numbers are known.
+  /// Adds the edges in layer k, between slabs k - 1 and k. Requires their vertex numbers.
   void add_layer(std::size_t k, const Layer<N>& layer);
-  /// The edges along the last axis in slab k.
+  /// Adds the edges along the last axis in slab k.
   void add_slab(std::size_t k, const Slab<N>& slab);
-  /// The least number that a vertex met from now on can have; the largest is below that plus 2^32.
+  /// Sets the smallest number that vertices met from now on can have; all are below `least` + 2^32.
   void set_least(std::uint64_t least) noexcept { least_ = least; }
 
  private:
@@ -53,14 +52,15 @@ class PinchCandidates : public PinchList {
 
   const RowShape<N>& shape_;
   const Counter<N>& counter_;
-  std::array<Slab<N>, 2> invalid_;  ///< of the last two slabs: "valid" has the tiles that are not
-  std::size_t slabs_ = 0;           ///< opened so far
+  std::array<Slab<N>, 2> invalid_;  ///< last two slabs; their "valid" bits mark tiles that are not valid
+  std::size_t slabs_ = 0;           ///< number of slabs opened
   std::vector<Word> buffer_;
   std::uint64_t least_ = 0;
 };
 
-/// Makes the contour a manifold around the candidates. New vertices and simplices come last, in an order that depends
-/// on the contour alone. Throws TooLarge beyond `max_vertices`. O(S + c log c), c the simplices around candidates.
+/// Makes the contour a manifold around the candidates. New vertices and simplices are appended in an order that depends
+/// on the contour only. Throws TooLarge beyond `max_vertices`. O(S + c log c), with S simplices in all and c simplices
+/// around candidates.
 template <int N, class Real>
 void separate_pinches(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The two ends of a streamed extraction: samples that come by layers, and a contour that goes out by parts. Private:
+// Input and output of a streamed extraction: samples read layer by layer, and a contour written part by part. Private:
 // tests use it to choose the parts.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace tegl::detail {
 
-/// Few slabs at a time: small layers together, large ones one by one.
+/// Batches of few slabs: small layers are grouped, large ones are processed one by one.
 template <int N>
 ExtractPlan streaming_plan(const Grid<N>& grid) {
   constexpr std::size_t kLeastSamples = std::size_t{1} << 16;
@@ -25,7 +25,7 @@ ExtractPlan streaming_plan(const Grid<N>& grid) {
           .batch = std::max<std::size_t>(1, kLeastSamples / std::max<std::size_t>(1, layer))};
 }
 
-/// The layers of a reader that are worked on, in a ring: by one extraction, or by several alike, all at the same batch.
+/// Ring buffer of a reader's current layers, for one extraction or several that advance by the same batches.
 template <Value T, int N>
 class LayerRing {
  public:
@@ -34,9 +34,9 @@ class LayerRing {
   }
 
   [[nodiscard]] const Grid<N>& grid() const noexcept { return reader_.grid(); }
-  /// Before the first layer comes.
+  /// Call before the first layer is read.
   void keep(std::size_t layers) { ring_.resize(std::max(ring_.size(), layers)); }
-  /// Reads layer k, the next one, if no other extraction had it read.
+  /// Reads layer k, the next one, unless another extraction already did.
   void prepare(std::size_t k) {
     if (k < read_) return;
     Buffer<T>& layer = ring_[k % ring_.size()];
@@ -49,11 +49,11 @@ class LayerRing {
  private:
   LayerReader<T, N>& reader_;
   std::size_t layer_size_ = 1;
-  std::size_t read_ = 0;  ///< layers
+  std::size_t read_ = 0;  ///< number of layers read
   std::vector<Buffer<T>> ring_;
 };
 
-/// These layers with an isovalue.
+/// Sample source for the layers of a ring, with an isovalue.
 template <Value T, int N>
 class LayerSource final : public RowSource<T, N> {
  public:
@@ -78,7 +78,7 @@ class LayerSource final : public RowSource<T, N> {
   LayerRing<T, N>& ring_;
 };
 
-/// Hands parts on to a sink, and keeps what may have to be taken apart in the end.
+/// Passes parts to a sink. Keeps the simplices around candidates for splitting at the end.
 template <int N, class Real>
 class StreamOutput final : public ContourOutput<N, Real> {
  public:
@@ -121,7 +121,7 @@ class StreamOutput final : public ContourOutput<N, Real> {
  private:
   using WideSimplex = typename ContourSink<N, Real>::Simplex;
 
-  /// A vertex and its normal, if there are any.
+  /// A vertex with its normal, if normals are requested.
   struct Place {
     Vertex vertex{};
     Vertex normal{};
@@ -172,14 +172,14 @@ class StreamOutput final : public ContourOutput<N, Real> {
     for (std::size_t s = 0; s < wide_.size(); ++s) remember(all.end_simplex + s, wide_[s]);
   }
 
-  /// What is kept, with its vertices numbered anew in the same order, is taken apart as if it were the contour.
+  /// Splits the kept simplices as if they were the contour, after renumbering their vertices in the same order.
   void separate(const std::vector<std::uint64_t>& candidates);
 
   ContourSink<N, Real>& sink_;
   bool with_normals_;
   StreamedSize size_;
   std::uint64_t first_ = 0, before_first_ = 0;
-  Buffer<Vertex> vertices_, before_;  ///< of the last part, and of the one before
+  Buffer<Vertex> vertices_, before_;  ///< of the current part and of the previous one
   Buffer<Vertex> normals_, before_normals_;
   Buffer<Simplex> simplices_;
   std::vector<WideSimplex> wide_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Choice of the generated tables.
+// Selects the generated tables for an extraction's options.
 #include "kernel/table_set.hpp"
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// Made once, as it takes a quarter of a megabyte in 4D; null where the quick way cannot use the table.
+/// Flat table, built once, as it takes 256 KiB in 4D. Null if the fast path cannot use the table.
 template <int N, int Triangulation>
 const RowTable* row_table() {
   static const auto table = [] {

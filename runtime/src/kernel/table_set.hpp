@@ -9,20 +9,20 @@
 
 namespace tegl::detail {
 
-/// Tables that one extraction uses. All of one triangulation.
+/// Tables of one extraction, all of one triangulation.
 template <int N>
 struct TableSet {
-  const tables::TileTable* tile = nullptr;      ///< of N
-  const RowTable* rows = nullptr;               ///< `tile` for the quick way, if it is at hand
-  bool compact = false;                         ///< the compact triangulation
-  const tables::TileTable* cube = nullptr;      ///< of 3; N = 4 only
-  const tables::RegionTable* face = nullptr;    ///< of N - 1; for closed borders
-  const tables::RegionTable* square = nullptr;  ///< of 2; N = 4, for closed borders
-  /// `face` (N = 4: `square`) of the high-connected alternative, where data decide.
+  const tables::TileTable* tile = nullptr;      ///< dimension N
+  const RowTable* rows = nullptr;               ///< flat form of `tile` for the fast path, if available
+  bool compact = false;                         ///< whether `tile` is of the compact triangulation
+  const tables::TileTable* cube = nullptr;      ///< dimension 3; N = 4 only
+  const tables::RegionTable* face = nullptr;    ///< dimension N - 1; for closed borders
+  const tables::RegionTable* square = nullptr;  ///< dimension 2; N = 4, for closed borders
+  /// High-connected alternative of `face` (N = 4: of `square`), if ambiguities are resolved from the data.
   const tables::RegionTable* high_face = nullptr;
 };
 
-/// The generated tables that the options ask for.
+/// Returns the generated tables for the given options.
 template <int N>
 TableSet<N> generated_tables(const ExtractOptions& options);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The extraction without tables, slab by slab along the last axis. What a slab takes: find its cells (tiles that are
-// active, and caps), build the tiles whose signatures are new, number the vertices face by face, write. A part of the
-// contour is a slab with the layer above it. See extract_layers.hpp for the words.
+// The extraction without tables, slab by slab along the last axis. Steps for a slab: find its cells (active tiles and
+// caps), build tiles for new signatures, number the vertices face by face, write. A part of the contour is one slab
+// with the layer above it. See extract_layers.hpp for the terms.
 #include "kernel/tableless.hpp"
 
 #include <algorithm>
@@ -30,17 +30,17 @@
 namespace tegl::detail {
 namespace {
 
-/// The samples against the isovalue, and the faces with vertices among those within the layer.
+/// Bits of one layer's samples, and its faces that have vertices.
 struct TileLayer {
   std::vector<Word> high;
   FaceRanks faces;
 };
 
-/// Between two layers.
+/// Cells between two layers, and the faces with vertices that lie in neither layer.
 struct TileSlab {
   std::vector<Cell> cells;
   std::vector<SeenTile> tiles;
-  std::vector<std::uint64_t> simplices;  ///< by cell: the first one's number
+  std::vector<std::uint64_t> simplices;  ///< by cell: number of its first simplex
   FaceRanks faces;
 };
 
@@ -69,7 +69,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
       estimator_.emplace(source, grid.sizes(), options, plan.part);
       choices_.emplace(cube_, *estimator_);
     }
-    // Of two slabs and what is around them: gradients look one layer further, an estimator as far as it says.
+    // Two slabs are in memory. Gradients read one layer more, a custom estimator as many as its reach.
     if (options.ambiguity == Ambiguity::custom) reach_ = std::min(options.estimator.reach, shape_.layers());
     source.keep(2 + reach_ + std::max<std::size_t>(2, reach_));
   }
@@ -89,7 +89,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     return true;
   }
 
-  /// Looks at layer k and slab k, and writes the slab before.
+  /// Classifies layer k + 1, finds the cells of slab k, numbers its vertices, and writes slab k - 1.
   void extract_batch() override {
     const std::size_t slabs = shape_.layers() - 1;
     const std::size_t k = next_ - 1;
@@ -108,23 +108,23 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
  private:
   using Vertex = typename Contour<N, Real>::Vertex;
   using SteppedExtraction<N, Real>::stats_;
-  struct Nothing {};                             ///< that threads keep
-  static constexpr std::size_t kMostWork = 256;  ///< cells or tiles between two questions whether to go on
-  /// Over a slab: build the next one's tiles, perhaps twice, and twice those whose own choice turns out to matter;
-  /// write.
+  struct Nothing {};                             ///< threads need no working storage
+  static constexpr std::size_t kMostWork = 256;  ///< maximum cells or tiles between checks for cancellation
+  /// Progress passes per slab: building the next slab's tiles (up to two), building tiles whose own choice matters (up
+  /// to two, only with choices), writing.
   [[nodiscard]] unsigned passes() const noexcept { return choices_ ? 5 : 3; }
   static constexpr std::size_t kNoCell = ~std::size_t{0};
   static constexpr std::uint32_t kSlabAbove = std::uint32_t{1} << 31;  ///< for cells of the slab above a layer
 
   TileLayer& layer(std::size_t k) { return layers_[k % layers_.size()]; }
   TileSlab& slab(std::size_t k) { return slabs_[k % slabs_.size()]; }
-  /// Calls work(from, to) for parts of 0 ... count - 1.
+  /// Calls work(from, to) in parallel for parts of 0 ... count - 1.
   template <class Work>
   void for_range(std::size_t count, std::size_t grain, const Work& work) {
     workers_.for_range(count, grain, [&](std::size_t from, std::size_t to, Nothing&) { work(from, to); });
   }
 
-  /// The same as one of the passes whose progress is told.
+  /// Runs for_range as a pass whose progress is reported.
   template <class Work>
   void pass_over(std::size_t count, std::size_t grain, const Work& work) {
     reporter_.begin_pass(count);
@@ -163,6 +163,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   void find_cells(std::size_t k, ExtractStats& stats) {
     TileSlab& here = slab(k);
     here.faces.reset(shape_.rows() * grid_cells_.slots(true) * shape_.words());
+    // find cells, by row in parallel
     const std::array<const Word*, 2> layers = {layer(k).high.data(), layer(k + 1).high.data()};
     by_row_.resize(shape_.rows());
     for_range(shape_.rows(), 16, [&](std::size_t from, std::size_t to) {
@@ -171,12 +172,14 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         finder_.find(k, layers, row, by_row_[row]);
       }
     });
+    // gather them in order
     here.cells.clear();
     for (const std::vector<Cell>& cells : by_row_) here.cells.insert(here.cells.end(), cells.begin(), cells.end());
     if (here.cells.size() >= kSlabAbove)
       throw Error(ErrorCode::TooLarge, fmt::format("{} active tiles between two layers; expected less than {}",
                                                    here.cells.size(), kSlabAbove));
     build_tiles(k);
+    // count active tiles and mark faces with vertices
     for (const Cell& cell : here.cells)
       if (!CellKind<N>(cell.kind).is_cap()) ++stats.active_tiles;
     for_faces(k, [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices&, std::size_t,
@@ -193,6 +196,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     } else {
       assign_tiles(here, all_cells(here), [&](std::size_t c) { return TileKey{here.cells[c].signature, {}}; });
     }
+    // number the simplices
     here.simplices.resize(here.cells.size() + 1);
     for_range(here.cells.size(), 256, [&](std::size_t from, std::size_t to) {
       for (std::size_t c = from; c < to; ++c)
@@ -207,9 +211,10 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     return [&slab](std::size_t i) { return i < slab.cells.size() ? i : kNoCell; };
   }
 
-  /// The tiles of some cells, by the keys that these have. `cell(i)`: the i-th of them; kNoCell behind the last.
+  /// Assigns built tiles to some cells, by the cells' keys. `cell(i)`: number of the i-th cell; kNoCell after the last.
   template <class Cells, class KeyOf>
   void assign_tiles(TileSlab& here, const Cells& cell, const KeyOf& key_of) {
+    // distinct keys, ascending
     std::vector<TileKey> keys;
     std::size_t count = 0;
     for (; cell(count) != kNoCell; ++count) {
@@ -217,9 +222,11 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
       if (keys.size() == keys.capacity()) make_unique(keys);
     }
     make_unique(keys);
+    // build their tiles
     const std::size_t before = here.tiles.size();
     auto tiles = built_.get(keys, [this](std::size_t n, const auto& work) { this->pass_over(n, 16, work); });
     here.tiles.insert(here.tiles.end(), tiles.begin(), tiles.end());
+    // look up the tile of each cell
     for_range(count, 256, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i)
         here.cells[cell(i)].tile = static_cast<std::uint32_t>(
@@ -233,7 +240,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     keys.reserve(2 * keys.size() + 1024);
   }
 
-  /// What the data say of the cells' faces, and of tiles with ambiguous faces.
+  /// Determines from the data the choices for the cells' faces, and for tiles with ambiguous faces.
   void find_choices(std::size_t k) {
     const TileSlab& here = slab(k);
     keys_.resize(here.cells.size());
@@ -248,7 +255,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     estimator_->rethrow();
   }
 
-  /// The same of tiles that turn out to have something to choose though none of their faces has.
+  /// Determines the choice of tiles that have one although none of their faces has; known only after they are built.
   void choose_own(std::size_t k) {
     TileSlab& here = slab(k);
     std::vector<std::size_t> open;
@@ -266,7 +273,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         [&](std::size_t c) { return keys_[c]; });
   }
 
-  /// The sample that a cell of slab k starts from.
+  /// Lowest sample of a cell of slab k.
   typename RowShape<N>::Index base_of(const Cell& cell, std::size_t k) const noexcept {
     const CellKind<N> kind(cell.kind);
     auto base = shape_.index_of(cell.row);
@@ -275,7 +282,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     return base;
   }
 
-  /// Calls visit(faces, word, bit, vertices, cell number, face) for the faces of a cell with vertices.
+  /// Calls visit(faces, word, bit, vertices, cell number, face) for each face of a cell that has vertices.
   template <class Visit>
   void for_faces_of(std::size_t k, std::size_t c, const Visit& visit) {
     const Cell& cell = slab(k).cells[c];
@@ -291,7 +298,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
       visit(faces, word, static_cast<unsigned>(i % kWordBits), vertices, c, face);
     }
   }
-  /// The number of a built tile's face in the cell.
+  /// Number in the cell of a built tile's face.
   [[nodiscard]] std::uint16_t seen_face(const SeenTile& seen, std::size_t face) const noexcept {
     const CubeFaces::Cell& built = cube_.cells()[face];
     const unsigned axes = built_.symmetries().axes(seen.symmetry, built.axes);
@@ -304,12 +311,12 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     });
   }
 
-  /// How a face knows cell c of the slab at hand.
+  /// Owner number of cell c of the current slab, as stored in FaceRanks.
   static std::uint32_t owner_name(const FaceRanks& faces, const TileLayer& lower, std::size_t c) {
     return static_cast<std::uint32_t>(c) | (&faces == &lower.faces ? kSlabAbove : 0);
   }
 
-  /// Of layer k and slab k, whose faces are known once the cells of slabs k - 1 and k are.
+  /// Numbers the vertices of layer k and slab k. Requires the cells of slabs k - 1 and k.
   void number_vertices(std::size_t k) {
     const bool has_slab = k + 1 < shape_.layers();
     layer(k).faces.rank();
@@ -323,12 +330,13 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     };
     if (k > 0) tell(k - 1);
     if (has_slab) tell(k);
+    // layer before slab: the part of slab k - 1 ends with layer k
     vertices_ = layer(k).faces.number(vertices_);
     part_end_ = vertices_;
     if (has_slab) vertices_ = slab(k).faces.number(vertices_);
   }
 
-  /// The part that slab k is.
+  /// Writes the part of slab k: the slab and the layer above it.
   void write(std::size_t k) {
     const double done = static_cast<double>(k + 1) / static_cast<double>(shape_.layers() - 1);
     const ContourPart part{part_first_, part_end_, slab(k).simplices.front(), slab(k).simplices.back(), done};
@@ -349,7 +357,8 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     part_first_ = part_end_;
   }
 
-  /// Numbers all vertices of a cell, and writes those of the faces that it owns: of the layer below, in slab 0 only.
+  /// Looks up the numbers of all vertices of a cell. Writes the vertices of the faces that it owns; faces in the lower
+  /// layer only for slab 0.
   void write_vertices(std::size_t k, std::size_t c, TilePlaces<N>& places, std::vector<Index>& ids) {
     const Cell& cell = slab(k).cells[c];
     const SeenTile& seen = slab(k).tiles[cell.tile];
@@ -361,7 +370,8 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
                      std::size_t, std::uint16_t face) {
                    const bool is_below = &faces == &layer(k).faces;
-                   // Cells around a face agree on it, unless a caller's estimator does not.
+                   // All cells at a face give it the same number of vertices, unless a caller's estimator is
+                   // inconsistent.
                    if (estimator_ && vertices.count != faces.count(word, bit)) return estimator_->report_change(base);
                    number_face(seen, vertices, faces.first(word, bit), ids);
                    if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
@@ -377,7 +387,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
                  });
   }
 
-  /// The numbers of a face's vertices, the same for all cells around it.
+  /// Numbers a face's vertices in the same order for all cells that share the face.
   void number_face(const SeenTile& seen, const BuiltTile::FaceVertices& vertices, Index first,
                    std::vector<Index>& ids) const {
     const std::size_t end = std::size_t{vertices.first} + vertices.count;
@@ -398,7 +408,8 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     }
   }
 
-  /// The place of the point on an edge of a cell. That of a cap is at the sample that the edge starts from.
+  /// Interpolation parameter of the vertex on an edge of a cell. Edges of a cap across the border have 0: the vertex is
+  /// at the sample itself.
   double alpha(CellKind<N> kind, const typename RowShape<N>::Index& base, std::size_t edge) {
     const CubeFaces::Cell& face = cube_.cells()[edge];
     const int axis = std::countr_zero(face.axes);
@@ -415,7 +426,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     return result;
   }
 
-  /// From the axes of a cell to those of the grid.
+  /// Maps a position from the axes of a cell to those of the grid.
   static TilePoint<N> in_grid(CellKind<N> kind, const TilePoint<N>& place) noexcept {
     if (!kind.is_cap()) return place;
     TilePoint<N> result;
@@ -456,23 +467,23 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   CellFinder<N> finder_;
   Workers<Nothing> workers_;
   BuiltTiles built_;
-  std::array<TileLayer, 3> layers_;  ///< by k modulo their number
+  std::array<TileLayer, 3> layers_;  ///< layer k at index k modulo size
   std::array<TileSlab, 2> slabs_;
-  std::size_t next_ = 0;      ///< layer behind the one at hand
-  std::size_t prepared_ = 0;  ///< layers
-  std::size_t reach_ = 0;     ///< layers beyond those at work that an estimator looks at
+  std::size_t next_ = 0;      ///< next layer to process
+  std::size_t prepared_ = 0;  ///< number of layers prepared
+  std::size_t reach_ = 0;     ///< additional layers that a custom estimator reads
   std::vector<std::vector<Cell>> by_row_;
-  std::optional<FaceEstimator<N>> estimator_;  ///< where the data decide
+  std::optional<FaceEstimator<N>> estimator_;  ///< if ambiguities are resolved from the data
   std::optional<TileChoices<N>> choices_;
-  std::vector<TileKey> keys_;  ///< of the cells of the slab at hand, where the data decide
+  std::vector<TileKey> keys_;  ///< by cell of the current slab, if ambiguities are resolved from the data
   std::uint64_t vertices_ = 0;
   std::uint64_t simplices_ = 0;
-  std::uint64_t part_first_ = 0, part_end_ = 0;  ///< vertices of the part at hand
+  std::uint64_t part_first_ = 0, part_end_ = 0;  ///< vertices of the current part
   typename ContourOutput<N, Real>::Room room_{};
   PinchList no_pinches_;
 };
 
-/// A contour in memory, or its size alone.
+/// A contour in memory, or only its size.
 template <int N, class Real>
 class BuiltContour final : public ContourOutput<N, Real> {
  public:

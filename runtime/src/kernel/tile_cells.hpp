@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the extraction without tables has something to build: the tiles of a slab that are active, and the caps.
+// Finds the cells that the extraction without tables builds: active tiles of a slab, and caps.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace tegl::detail {
 /// A tile or cap with a contour.
 struct Cell {
   std::uint64_t signature;
-  std::uint32_t row, i;    ///< its first sample
+  std::uint32_t row, i;    ///< first sample
   std::uint32_t tile = 0;  ///< number of the built tile
   std::uint8_t kind;
 };
@@ -27,10 +27,11 @@ struct Cell {
 template <int N>
 class CellFinder {
  public:
-  /// `closed`: the axes across which borders have caps.
+  /// `closed`: bit mask of axes across which borders have caps.
   CellFinder(const RowShape<N>& shape, unsigned closed) : shape_(shape), closed_(closed) {}
 
-  /// The cells that start in a row of slab k, between `layers`, kind by kind; caps along with their tiles.
+  /// Appends the cells that start in a row of slab k, which lies between `layers`, ordered by kind; caps with their
+  /// tiles.
   void find(std::size_t k, const std::array<const Word*, 2>& layers, std::size_t row, std::vector<Cell>& out) const {
     const auto index = shape_.index_of(row);
     if (shape_.has_cells(index, kAll)) sweep(CellKind<N>(0), layers, row, kRowOfCells, out);
@@ -53,18 +54,21 @@ class CellFinder {
   static constexpr unsigned kAll = (1u << N) - 1;
   static constexpr std::size_t kRowOfCells = ~std::size_t{0};
 
-  /// `only`: the one sample that a cell may start at; kRowOfCells: cells along the row.
+  /// Appends the cells of one kind in a row. `only`: the only sample where a cell may start; kRowOfCells: no
+  /// restriction.
   void sweep(CellKind<N> kind, const std::array<const Word*, 2>& layers, std::size_t row, std::size_t only,
              std::vector<Cell>& out) const {
     struct Corner {
       const Word* row;
       unsigned ahead;
     };
+    // the rows of the corners
     std::array<Corner, kAll + 1> corners;
     for (unsigned c = 0; c < kind.corners(); ++c) {
       const unsigned shift = kind.spread(c);
       corners[c] = {layers[shift >> (N - 1)] + shape_.shifted(row, shift) * shape_.pitch(), shift & 1u};
     }
+    // cells with contour, 64 at a time
     for (std::size_t w = 0; w < shape_.words(); ++w) {
       Word any = 0, all = ~Word{0};
       for (unsigned c = 0; c < kind.corners(); ++c) {

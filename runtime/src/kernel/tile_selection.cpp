@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From active tiles to the rows that an extraction looks at; see tile_selection.hpp.
+// Derives the rows that an extraction processes from the active tiles of an index (see tile_selection.hpp).
 #include "kernel/tile_selection.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ static_assert(kChunkRows == 32, "a chunk's rows are the bits of a word");
 
 namespace {
 
-/// Rows of samples in a layer, by axes 1 ... N - 2.
+/// Number of a sample's row in its layer, from its index on axes 1 ... N - 2.
 template <int N>
 std::size_t row_of(const typename TileGrid<N>::Index& index, const std::array<std::size_t, N>& samples) noexcept {
   std::size_t row = 0;
@@ -69,7 +69,7 @@ void TileSelection::place_tiles(const tegl::ActiveTiles<N>& active, const std::v
   only_these_ = true;
   first_.assign(chunks_ * active.grid().size(N - 1) + 1, 0);
   places_.reserve(tiles.size());
-  for (const TileNumber tile : tiles) {  // ascending, by slab, row, and along the row
+  for (const TileNumber tile : tiles) {  // ascending: by slab, then by row, then along the row
     const auto index = active.grid().index(tile);
     const std::size_t row = row_of<N>(index, samples);
     ++first_[index[N - 1] * chunks_ + chunk_of(row) + 1];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From the contour of a tile as it is built to the form that extractions go through; see built_tile.hpp.
+// Converts a tile's contour from the builder's form to the form that extractions read (see built_tile.hpp).
 #include "tile/built_tile.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ bool is_of_contour(VertexKind kind) {
   return kind == VertexKind::edge || kind == VertexKind::barycentre || kind == VertexKind::side;
 }
 
-/// Numbers the vertices that are needed: the contour's own first, in the builder's order, then what they depend on.
+/// Numbers the vertices that are needed: first the contour's own in the builder's order, then those they depend on.
 class Numbering {
  public:
   explicit Numbering(const facets::TileFacets& tile) : number_(tile.vertices.size(), kUnused) {
@@ -62,8 +62,8 @@ class Numbering {
   std::vector<VertexId> order_;
 };
 
-/// Simplices below a barycentre. Their order, here and in `append_mean`, depends on the face alone: so do sums over
-/// them.
+/// Appends the simplices below a barycentre. Their order, here and in `append_mean`, depends on the face only, so
+/// floating-point sums over them do as well.
 void append_simplices(const CubeFaces& cube, const facets::TileFacets& tile, const facets::Vertex& vertex,
                       const Numbering& number, std::vector<std::uint16_t>& of) {
   for (const facets::Simplex& simplex : vertex.of) {
@@ -80,7 +80,7 @@ void append_simplices(const CubeFaces& cube, const facets::TileFacets& tile, con
   }
 }
 
-/// The vertices around a centre.
+/// Appends the vertices around a centre.
 void append_mean(const facets::Vertex& vertex, const Numbering& number, std::vector<std::uint16_t>& of) {
   std::vector<VertexId> around;
   for (const facets::Simplex& simplex : vertex.of)
@@ -94,6 +94,7 @@ void append_mean(const facets::Vertex& vertex, const Numbering& number, std::vec
 
 BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
   const Numbering number(tile);
+  // vertices, by face
   for (const VertexId v : number.order()) {
     const facets::Vertex& vertex = tile.vertices[v];
     const auto n = static_cast<std::uint16_t>(vertices.size());
@@ -110,10 +111,12 @@ BuiltTile::BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile) {
     const std::uint16_t copied = vertex.copied == facets::kNoVertex ? kUnused : number[vertex.copied];
     vertices.push_back({vertex.kind, face, copied, first, static_cast<std::uint32_t>(of.size()), 0, 0});
   }
+  // simplices
   is_settled = tile.facets.size() == 1 && tile.facets[0].filling != facets::Filling::side;
   for (const facets::Facet& facet : tile.facets)
     for (const facets::Simplex& s : facet.simplices)
       for (int j = 0; j < facets::size(s); ++j) simplices.push_back(number[s[j]]);
+  // edges of faces with several barycentres
   for (FaceVertices& face : faces) {
     if (face.count == 1 || face.face == cube.tile()) face.by_edges = false;
     for (std::size_t v = face.first; face.by_edges && v < std::size_t{face.first} + face.count; ++v) list_edges(v);
@@ -140,7 +143,7 @@ std::size_t BuiltTile::bytes() const noexcept {
 BuiltTiles::BuilderLoan::BuilderLoan(BuiltTiles& from) : from_(from) {
   const std::lock_guard lock(from_.mutex_);
   if (from_.builders_.empty()) {
-    from_.builders_.reserve(from_.made_ + 1);  // so that none is lost when it comes back
+    from_.builders_.reserve(from_.made_ + 1);  // so that returning a builder cannot throw
     builder_ = std::make_unique<facets::FacetBuilder>(from_.cube_.lattice(), from_.max_builder_bytes_);
     ++from_.made_;
   } else {
@@ -178,7 +181,7 @@ std::size_t BuiltTiles::kept_bytes() {
 void BuiltTiles::keep(const TileKey& key, const Pointer& tile) {
   const std::size_t bytes = tile->bytes();
   if (bytes_ + bytes > max_bytes_) {
-    known_.clear();  // the most frequent ones are soon back
+    known_.clear();  // frequent ones are soon built again
     bytes_ = 0;
   }
   if (bytes > max_bytes_) return;

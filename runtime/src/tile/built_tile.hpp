@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles built at run time, kept in the form that an extraction goes through: which vertices the contour of a tile has
-// in each face, how their places follow from each other, and its simplices.
+// Tiles built at run time, in the form that an extraction reads: the vertices of a tile's contour by face, the
+// dependencies of their positions, and the simplices.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,12 @@
 
 namespace tegl::detail {
 
-/// The faces of an n-cube as the extraction names them.
+/// The faces of an n-cube, with the extraction's names for them.
 class CubeFaces {
  public:
   struct Cell {
-    std::uint8_t base;  ///< its least corner
-    std::uint8_t axes;  ///< bit a: whether it spans axis a
+    std::uint8_t base;  ///< lowest corner
+    std::uint8_t axes;  ///< bit a: spans axis a
     std::uint8_t dim;
   };
   explicit CubeFaces(int n);
@@ -35,12 +35,12 @@ class CubeFaces {
   [[nodiscard]] int dim() const noexcept { return lattice_.dim(); }
   /// By number in the lattice.
   [[nodiscard]] const std::vector<Cell>& cells() const noexcept { return cells_; }
-  /// The number of the face with this base and axes.
+  /// Number of the face with this base and axes.
   [[nodiscard]] std::uint16_t number(unsigned base, unsigned axes) const noexcept {
     return numbers_[base << lattice_.dim() | axes];
   }
   [[nodiscard]] std::size_t tile() const noexcept { return cells_.size() - 1; }
-  /// The number of the first face of two dimensions: it and those after it are what there are choices for.
+  /// Number of the first face of dimension 2. Choices exist for it and all later faces.
   [[nodiscard]] std::size_t first_choice() const noexcept { return first_choice_; }
 
  private:
@@ -50,8 +50,7 @@ class CubeFaces {
   std::size_t first_choice_ = 0;
 };
 
-/// What `build` returns; where it throws std::length_error, as builders do for tiles of too many vertices, throws
-/// Error{TooLarge}.
+/// Returns build(). Builders throw std::length_error for tiles with too many vertices; this becomes Error{TooLarge}.
 template <class Build>
 decltype(auto) too_large_as_error(const Build& build) {
   try {
@@ -61,34 +60,34 @@ decltype(auto) too_large_as_error(const Build& build) {
   }
 }
 
-/// The contour of a tile, every vertex by its number in here. The contour's own vertices come first, face by face and
-/// within a face by the number that all tiles around it know; then those that places depend on.
+/// The contour of a tile, with its own vertex numbers. The contour's vertices come first: by face, and within a face by
+/// the number that all tiles at the face agree on. Vertices follow that only positions depend on.
 struct BuiltTile {
   struct Vertex {
     facets::VertexKind kind;
     std::uint16_t face;                          ///< number in the lattice
-    std::uint16_t copied;                        ///< side: the vertex that it is a copy of
-    std::uint32_t first, end;                    ///< barycentre, centre: its part of `of`
-    std::uint32_t first_edge = 0, end_edge = 0;  ///< barycentre beside others in its face: its part of `edges`
+    std::uint16_t copied;                        ///< side: the vertex that it copies
+    std::uint32_t first, end;                    ///< barycentre, centre: its range in `of`
+    std::uint32_t first_edge = 0, end_edge = 0;  ///< barycentre with others in its face: its range in `edges`
   };
-  /// A face with vertices [first, first + count) of the contour.
+  /// A face that has the vertices [first, first + count) of the contour.
   struct FaceVertices {
     std::uint16_t face, first, count;
-    bool by_edges;  ///< several barycentres and nothing else: numbered by the least edge that each is connected with
+    bool by_edges;  ///< only barycentres, and several: numbered by the lowest edge connected to each
   };
-  /// Set in the first vertex of a simplex below a barycentre: that vertex is the middle of the facet that the simplex
-  /// belongs to.
+  /// Flag of the first vertex of a simplex below a barycentre: that vertex is the barycentre of the facet to which the
+  /// simplex belongs.
   static constexpr std::uint16_t kIsMiddle = 0x8000;
 
-  std::vector<FaceVertices> faces;  ///< in the lattice's order
+  std::vector<FaceVertices> faces;  ///< in lattice order
   std::vector<Vertex> vertices;
   std::vector<std::uint16_t> of;         ///< barycentre: simplices of dim - 1 vertices; centre: vertices
-  std::vector<std::uint16_t> edges;      ///< points on edges below a barycentre
-  std::vector<std::uint16_t> simplices;  ///< of n vertices each; positive side towards high
-  bool has_sides = false;                ///< whether it depends on the order of the axes
-  bool is_settled = true;                ///< what it has on its boundary is one sphere: its own choice does not matter
+  std::vector<std::uint16_t> edges;      ///< vertices on edges below a barycentre
+  std::vector<std::uint16_t> simplices;  ///< n vertices each; the positive side faces high corners
+  bool has_sides = false;                ///< has side fillings, so it depends on the order of the axes
+  bool is_settled = true;                ///< its boundary's contour is one sphere: its own choice does not matter
 
-  /// Throws Error{TooLarge} for a tile of 32768 vertices or more.
+  /// Throws Error{TooLarge} for a tile with more than 32768 vertices.
   BuiltTile(const CubeFaces& cube, const facets::TileFacets& tile);
   [[nodiscard]] std::size_t bytes() const noexcept;
 
@@ -96,10 +95,10 @@ struct BuiltTile {
   void list_edges(std::size_t barycentre);
 };
 
-/// What fixes the contour in a tile: which corners are high, and what is chosen for its faces.
+/// Determines the contour in a tile: its high corners and the choices for its faces.
 struct TileKey {
   std::uint64_t signature = 0;
-  /// Two bits (facets::Choice) for each face of two or more dimensions, in the lattice's order.
+  /// Two bits (facets::Choice) for each face of dimension 2 or more, in lattice order.
   std::array<std::uint64_t, 5> choices{};
 
   friend bool operator==(const TileKey&, const TileKey&) = default;
@@ -121,16 +120,16 @@ struct TileKeyHash {
   }
 };
 
-/// A tile as it is found: a built one, seen from another side.
+/// A tile of an image: a built tile and the symmetry that maps it there.
 struct SeenTile {
   std::shared_ptr<const BuiltTile> tile;
-  CubeSymmetry symmetry;  ///< from the built tile's frame
+  CubeSymmetry symmetry;  ///< maps from the built tile's frame
 };
 
-/// Built tiles by key; without choices, up to symmetry where symmetries leave a tile's contour as it is: where all of
-/// it is coned (side fillings depend on the order of the axes). What is asked for stays alive as long as someone holds
-/// it; beside that, at most `max_bytes` are kept: half of it for tiles, the other half, in equal shares, for what each
-/// of `builders` builders keeps of tiles' faces.
+/// Cache of built tiles by key. Keys without choices are stored up to symmetry if the contour is invariant, which holds
+/// if it is coned (side fillings depend on the order of the axes). Returned tiles live as long as someone holds them.
+/// In addition at most `max_bytes` are kept: half for tiles, half in equal shares for the faces that each of `builders`
+/// builders keeps.
 class BuiltTiles {
  public:
   using Pointer = std::shared_ptr<const BuiltTile>;
@@ -142,15 +141,16 @@ class BuiltTiles {
         max_builder_bytes_(max_bytes / 2 / builders) {}
 
   [[nodiscard]] const CubeSymmetries& symmetries() const noexcept { return symmetries_; }
-  /// What is kept at the moment, in tiles and by builders that are not at work.
+  /// Bytes kept in tiles and in builders that are not in use.
   [[nodiscard]] std::size_t kept_bytes();
 
-  /// The tiles of these keys. `for_range(count, work)` calls work(from, to) for parts of 0 ... count - 1, up to
-  /// `builders` of them side by side; if it leaves any out, it throws. Throws Error{TooLarge} for a tile of too many
-  /// vertices.
+  /// Returns the tiles of these keys. `for_range(count, work)` must call work(from, to) for parts of 0 ... count - 1,
+  /// at most `builders` of them concurrently, and throw if it omits any. Throws Error{TooLarge} for a tile with too
+  /// many vertices.
   template <class ForRange>
   std::vector<SeenTile> get(std::span<const TileKey> keys, const ForRange& for_range) {
     std::vector<SeenTile> result(keys.size());
+    // keys without choices: to a common frame
     std::vector<TileKey> wanted(keys.begin(), keys.end());
     for (std::size_t i = 0; i < keys.size(); ++i) {
       if (keys[i].has_choices()) continue;
@@ -158,6 +158,7 @@ class BuiltTiles {
       wanted[i].signature = symmetries_.before(result[i].symmetry, keys[i].signature);
     }
     assign(result, wanted, for_range);
+    // tiles with side fillings: again, in their own frame
     std::vector<std::size_t> again;
     for (std::size_t i = 0; i < keys.size(); ++i)
       if (result[i].tile->has_sides && !keys[i].has_choices()) again.push_back(i);
@@ -171,7 +172,7 @@ class BuiltTiles {
   }
 
  private:
-  /// Finds the tiles or builds them, each once.
+  /// Finds or builds the tiles, each once.
   template <class ForRange>
   void assign(std::vector<SeenTile>& seen, const std::vector<TileKey>& keys, const ForRange& for_range) {
     std::vector<TileKey> sorted(keys);
@@ -201,8 +202,8 @@ class BuiltTiles {
     return result;
   }
 
-  /// A builder that no one else has meanwhile. What builders keep makes them fast, so there are no more of them than
-  /// threads.
+  /// A builder for exclusive use. Builders are reused, because the faces that they keep make them fast; there are no
+  /// more of them than threads.
   class BuilderLoan {
    public:
     explicit BuilderLoan(BuiltTiles& from);
@@ -220,12 +221,12 @@ class BuiltTiles {
   const CubeFaces& cube_;
   CubeSymmetries symmetries_;
   facets::Alternative alternative_;
-  std::size_t max_bytes_;          ///< of tiles
-  std::size_t max_builder_bytes_;  ///< of each builder
+  std::size_t max_bytes_;          ///< for tiles
+  std::size_t max_builder_bytes_;  ///< for each builder
   std::size_t bytes_ = 0;
   std::unordered_map<TileKey, Pointer, TileKeyHash> known_;
-  std::mutex mutex_;      ///< of what follows
-  std::size_t made_ = 0;  ///< builders, lent ones included
+  std::mutex mutex_;      ///< guards the members below
+  std::size_t made_ = 0;  ///< builders created, including lent ones
   std::vector<std::unique_ptr<facets::FacetBuilder>> builders_;
 };
 

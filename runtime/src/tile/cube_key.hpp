@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Keys of cubes: which of its fillings a cube has.
+// Keys of cubes: a signature together with one of its fillings.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace tegl::detail {
 
-/// `signature | variant << 8`. Variant 0 is the plain table's cube. Variant 1 + 3 r + choice has resolution r of its
-/// ambiguous squares (tables::ResolvedTable) and its own choice.
+/// `signature | variant << 8`. Variant 0: the unresolved cube of the plain table. Variant 1 + 3 r + choice: resolution
+/// r of the ambiguous squares (tables::ResolvedTable) and the cube's own choice.
 class CubeKey {
  public:
   static constexpr unsigned kSignatures = 256;
@@ -26,7 +26,7 @@ class CubeKey {
   [[nodiscard]] constexpr unsigned signature() const noexcept { return bits_ & 255u; }
   [[nodiscard]] constexpr unsigned variant() const noexcept { return bits_ >> 8; }
   [[nodiscard]] constexpr bool is_plain() const noexcept { return variant() == 0; }
-  /// Of a plain cube: the first resolution, and no choice.
+  /// For a plain cube: the first resolution, and Choice::separate.
   [[nodiscard]] constexpr unsigned resolution() const noexcept { return is_plain() ? 0 : (variant() - 1) / 3; }
   [[nodiscard]] constexpr facets::Choice choice() const noexcept {
     return is_plain() ? facets::Choice::separate : static_cast<facets::Choice>((variant() - 1) % 3);
@@ -36,8 +36,7 @@ class CubeKey {
   std::uint16_t bits_;
 };
 
-/// The bits of a set of a cube's squares at those of another one, `ambiguous`, pushed together: the number of a
-/// resolution.
+/// Compresses the bits of `squares` at the positions of `ambiguous` into adjacent bits: the number of a resolution.
 inline constexpr auto kPackedSquares = [] {
   std::array<std::array<std::uint8_t, 64>, 64> packed{};  // by `ambiguous`
   for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
@@ -54,7 +53,7 @@ inline constexpr auto kPackedSquares = [] {
   return kPackedSquares[ambiguous][squares & 63u];
 }
 
-/// The keys of squares and cubes, N = 2 or 3. A square's key is `signature | 16` where its centre is high.
+/// Number of keys of squares and cubes, N = 2 or 3. A square's key is `signature | 16` if its centre is high.
 template <int N>
 inline constexpr std::size_t kKeys = N == 2 ? 32 : std::size_t{CubeKey::kSignatures} * CubeKey::kVariants;
 template <int N>

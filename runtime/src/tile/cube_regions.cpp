@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Regions of a cube are bounded by parts of its squares and of the contour. A region that a sphere bounds is a ball: it
-// is coned, from one of its corners if nothing but the square's own then lies in a square, else from an added vertex.
-// A region along a tunnel is a thickened sphere with holes, one for each polygon: it is cut across, from each polygon
-// to the next one in a ring, into two balls.
+// A region of a cube is bounded by parts of its squares and of the contour. A region bounded by a sphere is a ball. It
+// is coned: from one of its corners if the cone adds no simplex in a square, otherwise from a new vertex. A region
+// along a tunnel is a thickened sphere with holes, one hole per polygon. Cuts from each polygon to the next around a
+// ring divide it into two balls.
 //
-// Theory: side filling; regions that hold the cube's centre are star-shaped, the others are collars.
+// Theory: side filling; regions that contain the cube's centre are star-shaped, the others are collars.
 #include "tile/cube_regions.hpp"
 
 #include <algorithm>
@@ -22,16 +22,16 @@ namespace {
 
 using Triangle = std::array<std::uint8_t, 3>;
 using Tetrahedron = CubeRegions::Tetrahedron;
-using Set = std::uint64_t;  ///< of local vertices
+using Set = std::uint64_t;  ///< bit set of local vertices
 
 constexpr unsigned kFirstEdge = CubeRegions::kFirstEdge, kFirstOwn = CubeRegions::kFirstOwn,
                    kFirstSquare = CubeRegions::kFirstSquare;
-constexpr unsigned kEnd = kFirstSquare + 6;  ///< of local vertices
+constexpr unsigned kEnd = kFirstSquare + 6;  ///< one past the last local vertex
 
 constexpr Set bit(unsigned v) { return Set{1} << v; }
 constexpr Set set_of(const Triangle& t) { return bit(t[0]) | bit(t[1]) | bit(t[2]); }
 
-/// The local vertices in each square.
+/// Local vertices in each square.
 const std::array<Set, 6> kSquares = [] {
   std::array<Set, 6> result{};
   for (unsigned q = 0; q < 6; ++q) {
@@ -54,17 +54,17 @@ std::uint8_t edge_between(unsigned a, unsigned b) {
   return static_cast<std::uint8_t>(kFirstEdge + (axis << 2 | squeeze(std::min(a, b), axis)));
 }
 
-/// A cube with its contour, seen from one side.
+/// One side of a cube with its contour.
 struct Side {
   unsigned signature, high_squares;
   bool high;
-  bool has_square_centres;  ///< polygons of more than a triangle are coned from their barycentre
+  bool has_square_centres;  ///< polygons with more than three vertices are coned from their barycentre
 
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == high; }
 
-  /// The side's part of a square, each polygon as a fan from its lowest corner, or coned: neighbours have the same.
-  /// Turned to the outside of the low side, to the inside of the high one: then it goes on where the contour, which is
-  /// turned towards high, ends.
+  /// Appends the side's part of a square: each polygon as a fan from its lowest corner, or coned. Adjacent cubes get
+  /// the same triangles. Oriented outwards for the low side, inwards for the high side: this continues the contour,
+  /// which is oriented towards high.
   void add_square(unsigned q, std::vector<Triangle>& to) const {
     const unsigned axis = q / 2, b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2, at = (q % 2) << axis;
     std::array<unsigned, 4> ring = {at, at | 1u << b, at | 1u << b | 1u << c, at | 1u << c};
@@ -103,7 +103,7 @@ int euler_characteristic(const std::vector<Triangle>& closed) {
   return std::popcount(vertices) - static_cast<int>(closed.size()) / 2;
 }
 
-/// Parts of triangles, connected across edges for which `through` holds.
+/// Connected components of triangles; `through(edge)`: whether an edge connects.
 template <class Through>
 std::vector<std::vector<Triangle>> parts_of(const std::vector<Triangle>& triangles, const Through& through) {
   std::map<DirectedEdge, std::size_t> at;
@@ -130,7 +130,7 @@ std::vector<std::vector<Triangle>> parts_of(const std::vector<Triangle>& triangl
   return result;
 }
 
-/// Whether the cone from a corner of a sphere has nothing in a square but what the square's own triangulation has.
+/// Whether the cone of a sphere from `apex` adds no simplex in a square beyond the square's own triangulation.
 bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
   std::array<Set, kEnd> around{};
   std::set<Set> triangles;
@@ -150,7 +150,7 @@ bool may_be_apex(const std::vector<Triangle>& sphere, std::uint8_t apex) {
   return true;
 }
 
-/// Makes the regions of one side of a cube.
+/// Divides the regions of one side of a cube into tetrahedra.
 class RegionMaker {
  public:
   explicit RegionMaker(bool is_barycentric) : is_barycentric_(is_barycentric) {}
@@ -158,7 +158,7 @@ class RegionMaker {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<std::uint32_t> centres;
 
-  /// `surface`: all that bounds the region; `contour`: its part that is the list's.
+  /// `surface`: the whole boundary of the region. `contour`: triangles of the list.
   void fill(const std::vector<Triangle>& surface, const std::vector<Triangle>& contour) {
     const int euler = euler_characteristic(surface);
     if (euler == 2) return fill_ball(surface);
@@ -194,7 +194,8 @@ class RegionMaker {
     return static_cast<std::uint8_t>(CubeRegions::kFirstCentre + centres.size() - 1);
   }
 
-  /// A closed curve across: from one polygon to another along the cube's boundary, and back along the contour.
+  /// A closed curve across the collar: from one polygon to another along the cube's boundary, and back along the
+  /// contour.
   struct Curve {
     std::vector<std::uint8_t> vertices;
     Set set = 0;
@@ -210,7 +211,7 @@ class RegionMaker {
     throw std::logic_error("a collar in a cube that is not cut into balls");
   }
 
-  /// `count` curves without common vertices that cut the collar into balls.
+  /// Searches for `count` disjoint curves that cut the collar into balls, and fills it with them.
   bool choose(const std::vector<Triangle>& surface, unsigned polygons, unsigned count, std::size_t next, Set used,
               std::vector<const Curve*>& chosen) {
     if (chosen.size() == count) return meet_all_twice(polygons, chosen) && cut(surface, polygons, chosen);
@@ -229,8 +230,8 @@ class RegionMaker {
     return std::all_of(ends.begin(), ends.begin() + polygons, [](unsigned n) { return n >= 2; });
   }
 
-  /// Fills the parts that the curves cut the surface into, if with the discs in the curves they are spheres, each with
-  /// a disc of the cube's boundary.
+  /// Cuts the surface along the curves. If each part, closed by the curves' discs, is a sphere whose part on the cube's
+  /// boundary is a disc, fills all parts and returns true.
   bool cut(const std::vector<Triangle>& surface, unsigned polygons, const std::vector<const Curve*>& curves) {
     std::map<DirectedEdge, std::size_t> curve_of;
     for (std::size_t c = 0; c < curves.size(); ++c)
@@ -239,7 +240,8 @@ class RegionMaker {
         curve_of[e] = curve_of[reversed(e)] = c;
       }
     auto parts = parts_of(surface, [&](DirectedEdge e) { return !curve_of.contains(e); });
-    if (parts.size() + polygons != curves.size() + 2) return false;  // Euler's formula, if all are discs
+    if (parts.size() + polygons != curves.size() + 2) return false;  // Euler's formula, if all parts are discs
+    // close the parts by discs
     const std::size_t before = centres.size();
     std::vector<std::uint8_t> middle;
     for (const Curve* curve : curves) middle.push_back(add_centre(curve->set));
@@ -254,11 +256,12 @@ class RegionMaker {
       centres.resize(before);
       return false;
     }
+    // fill
     for (const auto& part : parts) cone(part, add_centre(part));
     return true;
   }
 
-  /// Then the collar is the product of what lies in squares with an interval.
+  /// Whether the part on the cube's boundary is a disc. The collar is then its product with an interval.
   [[nodiscard]] bool is_outer_part_a_disc(const std::vector<Triangle>& part) const {
     std::vector<Triangle> outer;
     std::set<Set> edges;
@@ -282,7 +285,7 @@ class RegionMaker {
            parts_of(triangles, [](DirectedEdge) { return true; }).size() == 1;
   }
 
-  /// All short ones, the shortest first.
+  /// Finds all short curves, sorted by length.
   void find_curves(const std::vector<Triangle>& surface) {
     outside_ = {}, inside_ = {}, polygon_of_.fill(kNoPolygon);
     std::set<Set> contour;
@@ -300,7 +303,7 @@ class RegionMaker {
                      [](const Curve& a, const Curve& b) { return a.vertices.size() < b.vertices.size(); });
   }
 
-  /// Points that segments connect: edges both of the contour and of what lies in squares.
+  /// Numbers the polygons: vertices connected by edges that belong both to the contour and to a square.
   void number_polygons() {
     unsigned count = 0;
     for (unsigned p = kFirstEdge; p < kFirstOwn; ++p) {
@@ -318,7 +321,7 @@ class RegionMaker {
     }
   }
 
-  /// Along the cube's boundary, over corners and barycentres of squares, to another polygon.
+  /// Extends the path along the cube's boundary, over corners and barycentres of squares, to another polygon.
   void go_outside() {
     constexpr std::size_t kMostCorners = 3;
     const std::uint8_t here = path_.back();
@@ -334,7 +337,7 @@ class RegionMaker {
     }
   }
 
-  /// Back along the contour, with one more point on the way if need be.
+  /// Closes the path along the contour, over at most kMostBetween vertices in between.
   void go_inside() {
     const std::size_t outer = path_.size();
     go_inside(outer, polygon_of_[path_.back()]);
@@ -359,7 +362,7 @@ class RegionMaker {
   static constexpr unsigned kNoPolygon = ~0u, kMoreCurves = 3;
   std::vector<Triangle> contour_;
   bool is_barycentric_;
-  std::array<Set, kEnd> outside_{}, inside_{};  ///< neighbours in squares, and along the contour
+  std::array<Set, kEnd> outside_{}, inside_{};  ///< neighbours in squares and on the contour
   std::array<unsigned, kEnd> polygon_of_{};
   std::vector<std::uint8_t> path_;
   std::vector<Curve> curves_;
@@ -390,6 +393,7 @@ CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
     for (const bool high : {false, true}) {
       first_region_.push_back(static_cast<std::uint32_t>(regions_.size()));
       const bool is_whole = number == whole_;
+      // boundary of the side
       const Side side{is_whole ? (high ? 255u : 0u) : lists[number].signature,
                       is_whole ? 0u : lists[number].high_squares, high, has_square_centres};
       std::vector<Triangle> surface, contour;
@@ -402,6 +406,7 @@ CubeRegions::CubeRegions(int triangulation, bool has_square_centres) {
                              static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
         surface.insert(surface.end(), contour.begin(), contour.end());
       }
+      // regions
       for (const auto& part : parts_of(surface, [](DirectedEdge) { return true; })) {
         RegionMaker maker(triangulation == kBarycentric);
         maker.fill(part, contour);

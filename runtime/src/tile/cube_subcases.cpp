@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The table's lists, numbered, and their parts in the frame of the tile.
+// Numbers the table's lists and converts their connected components to the frame of the tile.
 #include "tile/cube_subcases.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr unsigned kCubeEdges = 12;
 
 using Triangles = std::span<const std::uint8_t>;  ///< three vertices each
 
-/// Sets of a list's vertices that are joined by an edge, by vertex, itself among them.
+/// By vertex of a list: set of vertices connected to it by an edge, including itself.
 using Neighbours = std::array<std::uint32_t, kCubeEdges + ResolvedCubes::kMostOwn>;
 
 Neighbours neighbours_of(Triangles triangles) {
@@ -30,7 +30,7 @@ Neighbours neighbours_of(Triangles triangles) {
   return result;
 }
 
-/// The set of vertices connected with `vertex`.
+/// Set of vertices connected to `vertex`.
 std::uint32_t connected(const Neighbours& neighbours, unsigned vertex) {
   std::uint32_t reached = 1u << vertex, before = 0;
   while (reached != before) {
@@ -40,8 +40,8 @@ std::uint32_t connected(const Neighbours& neighbours, unsigned vertex) {
   return reached;
 }
 
-/// Whether a cone from this vertex has no simplex in the cube that is not the list's: it is joined with all vertices of
-/// its part, and any three that are joined one with another, it among them, are a triangle.
+/// Whether the cone from this vertex has no simplex in the cube that is not in the list: it is adjacent to all other
+/// vertices of its part, and any two adjacent ones of these form a triangle with it.
 bool may_be_apex(Triangles triangles, const Neighbours& neighbours, unsigned vertex, std::uint32_t part) {
   if ((part & ~neighbours[vertex]) != 0) return false;
   unsigned around = 0, edges = 0;
@@ -90,6 +90,7 @@ const ResolvedCubes& ResolvedCubes::instance(int triangulation) {
 }
 
 ResolvedCubes::ResolvedCubes(int triangulation) {
+  // signatures of cubes
   for (unsigned tile = 0; tile < 256; ++tile)
     for (unsigned f = 0; f < kCubes; ++f) {
       for (unsigned half = 0; half < 2; ++half) {
@@ -97,10 +98,11 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
         signatures_[half][tile] |= std::uint64_t{squeezed_corners<4>(corners >> (f % 2 << f / 2), f / 2)} << (8 * f);
       }
     }
+  // squares of cubes
   for (unsigned pair = 0, c = 0; c < 4; ++c)
     for (unsigned d = c + 1; d < 4; ++d, ++pair)
       for (unsigned sides = 0; sides < 4; ++sides) {
-        // In the cube that leaves out one of the axes the other one's number is less by one if it is higher.
+        // In the cube that omits one of the two axes, the other axis's number is one less if it is the higher one.
         const unsigned f_of_c = 2 * c + (sides & 1u), q_of_c = 2 * (d - 1) + (sides >> 1);
         const unsigned f_of_d = 2 * d + (sides >> 1), q_of_d = 2 * c + (sides & 1u);
         const std::uint64_t bits = std::uint64_t{1} << (8 * f_of_c + q_of_c) | std::uint64_t{1}
@@ -108,6 +110,7 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
         for (unsigned set = 0; set < 16; ++set)
           if ((set >> sides & 1u) != 0) squares_[pair][set] |= bits;
       }
+  // resolution numbers
   for (unsigned ambiguous = 0; ambiguous < 64; ++ambiguous)
     for (unsigned high = 0; high < 64; ++high) {
       unsigned result = 0, at = 0;
@@ -115,20 +118,21 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
         if ((ambiguous >> q & 1u) != 0) result |= (high >> q & 1u) << at++;
       compressed_[ambiguous << 6 | high] = static_cast<std::uint8_t>(result);
     }
+  // lists, frames and parts
   number_lists(triangulation);
   make_frames();
   for (unsigned f = 0; f < kCubes; ++f) {
     for (unsigned i = 0; i < lists_.size(); ++i) {
       const auto first = static_cast<std::uint32_t>(parts_.size());
       make_parts(f, i);
-      // Points of one part are not joined with those of another one in the cube.
+      // In this cube, vertices of one part are not adjacent to those of another part.
       apexes_.push_back(parts_[first].apexes & (parts_.size() - first > 1 ? ~edges_of_[f] : ~std::uint32_t{0}));
       if (f != 0) continue;
       summaries_[i].first_part = first;
       summaries_[i].part_count = static_cast<std::uint8_t>(parts_.size() - first);
       summaries_[i].triangle_count = static_cast<std::uint8_t>(triangles_of(i).size() / 3);
     }
-    apexes_.push_back(~std::uint32_t{0});  // of kNone
+    apexes_.push_back(~std::uint32_t{0});  // for kNone
     if (f == 0) parts_of_cube_ = static_cast<std::uint32_t>(parts_.size());
   }
   summaries_.push_back({});
@@ -138,11 +142,13 @@ ResolvedCubes::ResolvedCubes(int triangulation) {
 }
 
 void ResolvedCubes::number_lists(int triangulation) {
+  // properties of entries and signatures
   list_of_.assign(3 * std::size_t{kTile3Resolved.entry_count}, kNone);
   for (unsigned entry = 0; entry < kTile3Resolved.entry_count; ++entry)
     has_choice_.push_back(kTile3Resolved.entries[entry].components > 1 ? 1 : 0);
   for (unsigned s = 0; s < 256; ++s)
     of_signatures_[s] = {kTile3Resolved.first_entry[s], kTile3Resolved.ambiguous_squares[s]};
+  // number distinct lists; `high`: each subset of the ambiguous squares
   for (unsigned s = 1; s < 255; ++s) {
     const unsigned ambiguous = kTile3Resolved.ambiguous_squares[s];
     for (unsigned high = 0, entry = kTile3Resolved.first_entry[s];; ++entry) {
@@ -172,7 +178,7 @@ void ResolvedCubes::number_lists(int triangulation) {
   }
 }
 
-/// Triangles, masks and summary of the list that is numbered last.
+/// Copies triangles, masks and summary of the list numbered last from the compact table.
 void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
   const std::uint8_t* const first = kTile3Resolved.triangles + 3 * std::size_t{list.first_triangle};
   of_cube_.insert(of_cube_.end(), first, first + 3 * std::size_t{list.triangle_count});
@@ -182,7 +188,7 @@ void ResolvedCubes::take_compact(const tables::ResolvedList& list) {
   summaries_.back().own_vertices = list.own_vertices;
 }
 
-/// The same from the table that contours of 3D images are made of.
+/// Takes triangles, masks and summary of the list numbered last from the table of 3D contours.
 void ResolvedCubes::take_barycentric() {
   const tables::TileTable& table = variant_table<3>(kBarycentric).tile();
   const tables::List& list = table.lists[table.list_of[key_of_.back()]];
@@ -196,7 +202,7 @@ void ResolvedCubes::take_barycentric() {
   for (unsigned j = 0; j < own; ++j)
     if (j >= list.cone_vertices)
       masks[j] = static_cast<std::uint32_t>(table.side_masks[list.first_side + j - list.cone_vertices]);
-  for (std::size_t t = 0; t < triangles.size(); t += 3)  // a barycentre stands first
+  for (std::size_t t = 0; t < triangles.size(); t += 3)  // a barycentre is the first vertex of its triangles
     if (triangles[t] >= kCubeEdges && triangles[t] < kCubeEdges + list.cone_vertices)
       masks[triangles[t] - kCubeEdges] |= 1u << (8 + triangles[t + 1]) | 1u << (8 + triangles[t + 2]);
   summaries_.back().own_vertices = static_cast<std::uint8_t>(own);
@@ -213,8 +219,8 @@ void ResolvedCubes::make_frames() {
     }
     for (unsigned j = 0; j < kMostOwn; ++j)
       lifted_[f][kCubeEdges + j] = static_cast<std::uint8_t>(kEdges + kMostOwn * f + j);
-    // The corner that axis f / 2 leaves at f % 2: over all cubes alike, (point on the edge out of the cube, triangle)
-    // is the tetrahedron that cuts it off.
+    // Sign from a tile with one high corner, in the cube: its tetrahedron is (vertex on the edge that leaves the cube,
+    // triangle of the cube), and all cubes must orient it equally.
     reversed_[f] = (f / 2 + f % 2) % 2 == 0;
   }
   for (unsigned f = 0; f < kCubes; ++f)

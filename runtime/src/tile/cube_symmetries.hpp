@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles that are the same up to the order and the direction of their axes.
+// Symmetries of the n-cube: permutations and reversals of its axes.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace tegl::detail {
 
-/// From the frame of one tile to that of another: axis i goes to the i-th entry of a permutation, and then the axes in
+/// Maps the frame of one tile to that of another: axis i becomes the i-th entry of a permutation, then the axes in
 /// `flip` are reversed. All 0: the identity.
 struct CubeSymmetry {
   std::uint16_t permutation = 0;
   std::uint8_t flip = 0;
 };
 
-/// The symmetries of the n-cube, n = 2 ... 6.
+/// All symmetries of the n-cube, n = 2 ... 6.
 class CubeSymmetries {
  public:
   explicit CubeSymmetries(int n) : n_(static_cast<unsigned>(n)) {
@@ -35,11 +35,12 @@ class CubeSymmetries {
     } while (std::next_permutation(axes.begin(), axes.begin() + n));
   }
 
-  /// A set of axes of the first frame, in the second.
+  /// Maps a set of axes from the first frame to the second.
   [[nodiscard]] unsigned axes(CubeSymmetry symmetry, unsigned axes) const noexcept {
     return permutations_[symmetry.permutation].spread[axes];
   }
-  /// The least corner of the face along `axes` (of the second frame) whose least corner in the first is `base`.
+  /// Lowest corner of a face in the second frame. `axes`: its axes in the second frame; `base`: its lowest corner in
+  /// the first.
   [[nodiscard]] unsigned base(CubeSymmetry symmetry, unsigned base, unsigned axes) const noexcept {
     return permutations_[symmetry.permutation].spread[base] ^ (symmetry.flip & ~axes);
   }
@@ -47,9 +48,10 @@ class CubeSymmetries {
     return permutations_[symmetry.permutation].odd != (std::popcount(symmetry.flip) % 2 != 0);
   }
 
-  /// A symmetry to the frame of `signature` from one in which upper halves have at least as many high corners as lower
-  /// ones, and more so by earlier axes than by later ones. Signatures of half-spaces that are the same up to symmetry
-  /// are equal there (R. O. Winder, Chow parameters in threshold logic, 1971); others mostly.
+  /// A symmetry to the frame of `signature` from a canonical one, in which upper halves have at least as many high
+  /// corners as lower halves, with differences that do not increase from axis to axis. Equivalent signatures of
+  /// half-spaces become equal there (R. O. Winder, Chow parameters in threshold logic, 1971); other equivalent
+  /// signatures usually do.
   [[nodiscard]] CubeSymmetry to_frame_of(std::uint64_t signature) const noexcept {
     struct Weight {
       int more;
@@ -64,7 +66,7 @@ class CubeSymmetries {
     }
     std::stable_sort(weights.begin(), weights.begin() + n_,
                      [](const Weight& x, const Weight& y) { return x.more > y.more; });
-    // The permutation's number in lexicographic order.
+    // Number of the permutation in lexicographic order.
     unsigned number = 0;
     for (unsigned i = 0; i < n_; ++i) {
       unsigned smaller_later = 0;
@@ -75,7 +77,7 @@ class CubeSymmetries {
     return result;
   }
 
-  /// The signature of the first frame that is `signature` in the second.
+  /// Signature in the first frame that becomes `signature` in the second.
   [[nodiscard]] std::uint64_t before(CubeSymmetry symmetry, std::uint64_t signature) const noexcept {
     std::uint64_t result = 0;
     for (unsigned v = 0; v < 1u << n_; ++v) result |= (signature >> base(symmetry, v, 0) & 1u) << v;
@@ -88,7 +90,7 @@ class CubeSymmetries {
     std::array<std::uint8_t, 64> spread{};
     bool odd = false;
   };
-  /// The corners v with v >> axis & 1.
+  /// Corners v with (v >> axis & 1) set.
   static std::uint64_t upper_half(unsigned axis) noexcept {
     constexpr std::array<std::uint64_t, 6> kHalves = {0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
                                                       0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};

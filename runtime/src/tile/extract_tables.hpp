@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reading of the generated tables: simplices of a signature in either layout, and the places of the
-// vertices that a cell owns (table contract: "Positions").
+// Access to the generated tables: simplices of a signature in either layout, and positions of the vertices that a cell
+// owns (table contract: "Positions").
 #pragma once
 
 #include <algorithm>
@@ -33,12 +33,12 @@ class SimplexList {
   [[nodiscard]] unsigned size() const noexcept { return list_->simplex_count; }
   [[nodiscard]] unsigned own_vertices() const noexcept { return list_->cone_vertices + unsigned{list_->side_vertices}; }
   [[nodiscard]] bool reversed() const noexcept { return reversed_; }
-  /// True in the class layout: stored vertices are those of the representative.
+  /// Whether the table has the class layout, in which stored vertices are those of the representative.
   [[nodiscard]] bool is_permuted() const noexcept { return permutation_ != nullptr; }
 
-  /// Vertex j of simplex q, as stored: ids from first_tile_vertex(K) on are as they are.
+  /// Vertex j of simplex q, as stored. Vertices from first_tile_vertex(K) on need no mapping.
   [[nodiscard]] unsigned stored(unsigned q, unsigned j) const noexcept { return simplices_[q * K + j]; }
-  /// A stored vertex in the frame of the signature.
+  /// Maps a stored vertex to the frame of the signature.
   [[nodiscard]] unsigned mapped(unsigned v) const noexcept {
     if (permutation_ == nullptr || v >= tables::first_tile_vertex(K)) return v;
     v = permutation_[(1u << K) + v];
@@ -48,11 +48,11 @@ class SimplexList {
     }
     return v;
   }
-  /// A stored corner in the frame of the signature.
+  /// Maps a stored corner to the frame of the signature.
   [[nodiscard]] unsigned mapped_corner(unsigned v) const noexcept {
     return permutation_ == nullptr ? v : permutation_[v];
   }
-  /// The mask of side vertex j: bit v a corner, bit 2^K + e an edge point, as stored.
+  /// Mask of side vertex j, as stored: bit v for a corner, bit 2^K + e for an edge.
   [[nodiscard]] std::uint64_t side_mask(unsigned j) const noexcept { return side_masks_[j]; }
 
  private:
@@ -75,7 +75,7 @@ constexpr TilePoint<K> corner_point(unsigned corner) noexcept {
   return point;
 }
 
-/// The base corners of a k-tile's edges.
+/// Base corners of a k-tile's edges.
 template <int K>
 inline constexpr auto kEdgeBases = [] {
   std::array<TilePoint<K>, tables::edge_count(K)> result{};
@@ -90,7 +90,7 @@ template <int K>
   return point;
 }
 
-/// The same without a store at a place that is not known, for which loads of the whole point would have to wait.
+/// Same result as edge_point, without a store to a variable index, which would delay loading the whole point.
 template <int K>
 [[gnu::always_inline]] inline TilePoint<K> edge_point_at_once(unsigned edge, double alpha) noexcept {
   static constexpr auto kUnits = [] {
@@ -103,14 +103,15 @@ template <int K>
   return point;
 }
 
-/// A point of the 3-face `cube` in the frame of its 4-tile.
+/// Maps a point of the 3-face `cube` to the frame of its 4-tile.
 inline TilePoint<4> cube_point(unsigned cube, const TilePoint<3>& inside) noexcept {
   TilePoint<4> point;
   for (unsigned a = 0, j = 0; a < 4; ++a) point[a] = a == cube / 2 ? static_cast<double>(cube % 2) : inside[j++];
   return point;
 }
 
-// Inlined by force, like what calls them: compilers otherwise leave calls in the innermost loops, at half the speed.
+// The functions below are forced inline, like their callers: compilers otherwise leave calls in the innermost loops,
+// which halves the speed.
 
 template <std::size_t K>
 [[gnu::always_inline]] inline double distance(const std::array<double, K>& p, const std::array<double, K>& q) noexcept {
@@ -119,7 +120,7 @@ template <std::size_t K>
   return std::sqrt(sum);
 }
 
-/// A point with a weight: measure and barycentre of a piece of a facet.
+/// A point with a weight: barycentre and measure of a part of a facet.
 template <int K>
 struct Weighted {
   TilePoint<K> point{};
@@ -131,7 +132,7 @@ struct Weighted {
   }
 };
 
-/// Area of a triangle by the Gram determinant.
+/// Area of a triangle from the Gram determinant.
 template <std::size_t K>
 [[gnu::always_inline]] inline double triangle_area(const std::array<double, K>& p, const std::array<double, K>& q,
                                                    const std::array<double, K>& r) noexcept {
@@ -153,8 +154,8 @@ template <int K>
   return point;
 }
 
-/// Measure and barycentre of the face of a cone that lies opposite of the apex (table contract:
-/// "Positions"). `barycentred`: its first vertex is a cube's barycentre.
+/// Measure and barycentre of a cone's face opposite to the apex (table contract: "Positions"). `barycentred`: its first
+/// vertex is a cube's barycentre.
 template <int K>
 [[gnu::always_inline]] inline Weighted<K> opposite_face(const std::array<TilePoint<K>, K - 1>& face,
                                                         bool barycentred) noexcept {
@@ -175,7 +176,7 @@ template <int K>
   }
 }
 
-/// The mean of the faces that lie opposite of `apex` in its cone, each weighted by its measure or (`plain`) all alike.
+/// Sum of the faces opposite to `apex` in its cone, weighted by their measure or, if `plain`, equally.
 template <int K, class Place>
 [[gnu::always_inline]] inline Weighted<K> cone_sum(const SimplexList<K>& list, unsigned apex, bool plain,
                                                    const Place& place) noexcept {
@@ -190,16 +191,16 @@ template <int K, class Place>
   return sum;
 }
 
-/// The barycentre of the facet that is the cone from `apex`.
+/// Barycentre of the facet that is the cone from `apex`.
 template <int K, class Place>
 TilePoint<K> cone_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
   Weighted<K> sum = cone_sum(list, apex, false, place);
-  if (!(sum.weight > 0)) sum = cone_sum(list, apex, true, place);  // a facet that has shrunk to a point
+  if (!(sum.weight > 0)) sum = cone_sum(list, apex, true, place);  // a facet shrunk to a point
   for (double& x : sum.point) x /= sum.weight;
   return sum.point;
 }
 
-/// The mean of the points that the cone from `apex` is over: what the compact triangulation puts there.
+/// Mean of the vertices that `apex` is coned to, used by the compact triangulation.
 template <int K, class Place>
 TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& place) noexcept {
   static_assert(tables::edge_count(K) <= 64);
@@ -213,12 +214,13 @@ TilePoint<K> mean_place(const SimplexList<K>& list, unsigned apex, const Place& 
   return sum.point;
 }
 
-/// The place of an own vertex by its mask (bit v: corner v, bit 2^K + e: edge e): of edges alone their mean, with
-/// corners half way from the tile's centre to the mean of all. `corner(v)`: that corner in the frame at hand.
+/// Position of an own vertex from its mask (bit v: corner v, bit 2^K + e: edge e). With edges only, it is their mean;
+/// with corners, half way from the tile's centre to the mean of all. `corner(v)`: maps a corner to the current frame.
 ///
-/// `uneven`: all a little aside, by unequal weights. Samples of few values, such as masks, put edges' points at few
-/// places, so that the mean itself may lie on the line through two of them, and a triangle of the three has no size.
-/// And nearer to the centre: the edges may be all in one face of the tile, where nothing but the face's own is to be.
+/// `uneven`: slightly unequal weights. If samples have few different values, as masks have, vertices on edges take few
+/// positions. The mean could then lie on the line through two of them, and a triangle would have zero area. The vertex
+/// is also moved towards the centre, as all edges may lie in one face of the tile, which must contain only the face's
+/// own vertices.
 template <int K, class Corner, class Place>
 TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& place, bool uneven) noexcept {
   Weighted<K> sum;
@@ -237,12 +239,12 @@ TilePoint<K> mask_place(std::uint64_t mask, const Corner& corner, const Place& p
   return point;
 }
 
-/// The places of a tile's cone vertices and side vertices, in the unit tile: so they don't depend on the
-/// units of the axes. `place(v)` is the place of the stored vertex v < first_tile_vertex(K), in the frame
-/// of the signature. out: list.own_vertices() points.
+/// Positions of a tile's cone vertices and side vertices in the unit tile, so that they do not depend on the units of
+/// the axes. `place(v)`: position of the stored vertex v < first_tile_vertex(K), in the frame of the signature. `out`:
+/// list.own_vertices() points.
 ///
-/// One function for the tiles of a 3D image and the cubes of a 4D image: their barycentres agree bit by
-/// bit, so that a 4D contour contains the 3D contours of its steps.
+/// Tiles of a 3D image and cubes of a 4D image use the same function. Their barycentres agree bit by bit, so a 4D
+/// contour contains the 3D contours of its time steps.
 template <int K, class Place>
 void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const Place& place,
                 TilePoint<K>* out) noexcept {
@@ -252,12 +254,13 @@ void own_places(const SimplexList<K>& list, [[maybe_unused]] bool compact, const
     if constexpr (K == 4) {
       out[j] = compact ? mean_place(list, apex, place) : cone_place(list, apex, place);
     } else {
-      out[j] = cone_place(list, apex, place);  // compact polygons have none
+      out[j] = cone_place(list, apex, place);  // compact polygons have no barycentres
     }
   }
   const auto corner = [&](unsigned v) { return list.mapped_corner(v); };
+  // Cubes (K = 3) have side vertices only if they are resolved from the data.
   for (unsigned j = 0; j < list.list().side_vertices; ++j)
-    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, K == 3);  // cubes have them by data alone
+    out[cones + j] = mask_place<K>(list.side_mask(j), corner, place, K == 3);
 }
 
 }  // namespace tegl::detail

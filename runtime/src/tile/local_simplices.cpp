@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Local vertices are looked up in registers, where these are large enough for all numbers of a tile; see
-// local_simplices.hpp. This file is compiled once per instruction set (Highway's foreach_target).
+// Looks up local vertices in registers if these are large enough for all numbers of a tile (see local_simplices.hpp).
+// Highway's foreach_target compiles this file once per instruction set.
 #include "tile/local_simplices.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tile/local_simplices.cpp"
 #include "base/dispatch.hpp"
-// Highway's own headers come after this one.
+// This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Simplex = std::array<Index, 4>;
 
-/// In plain code.
+/// Without vector instructions.
 HWY_INLINE void write_plain(const LocalSimplices& simplices, Simplex* out) {
   const Index* const ids = simplices.ids;
   const std::uint8_t* local = simplices.local;
@@ -33,7 +33,7 @@ HWY_INLINE void write_plain(const LocalSimplices& simplices, Simplex* out) {
 
 #if HWY_TARGET <= HWY_AVX3
 
-/// Of at most 64 * kBlocks vertices.
+/// For at most 64 * kBlocks vertices.
 template <unsigned kBlocks>
 HWY_INLINE void write_by_registers(const LocalSimplices& simplices, Simplex* out) {
   __m512i ids[4 * kBlocks];

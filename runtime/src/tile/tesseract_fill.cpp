@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A tile from its eight cubes: which lists, which components, how each is filled.
+// Builds a 4D tile from its eight cubes: their lists, the components of Sigma, and the filling of each.
 #include "tile/tesseract_fill.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr unsigned kMaskEdge = 16;  ///< bit of edge 0 in masks
 
 constexpr std::uint32_t word(std::array<std::uint8_t, 4> vertices) { return std::bit_cast<std::uint32_t>(vertices); }
 
-/// Corners of squares, as sets.
+/// Corners of each square and cube, as bit sets.
 constexpr std::array<std::uint32_t, 24> kCornersOfSquares = [] {
   std::array<std::uint32_t, 24> result{};
   for (unsigned q = 0; q < 24; ++q)
@@ -38,7 +38,7 @@ constexpr std::array<std::uint32_t, 8> kCornersOfCubes = [] {
   return result;
 }();
 
-/// The corners of a set and those that an edge joins with it.
+/// The corners of a set and their neighbours along edges.
 constexpr std::uint32_t grown(std::uint32_t corners) {
   constexpr std::array<std::uint32_t, 4> kLower{0x5555, 0x3333, 0x0f0f, 0x00ff};
   std::uint32_t result = corners;
@@ -46,8 +46,8 @@ constexpr std::uint32_t grown(std::uint32_t corners) {
   return result;
 }
 
-/// The pairs of axes that squares span: bit i of `base` is set where a square's lowest corner is corner i, and `square`
-/// is then its number.
+/// A pair of axes that squares span. Bit i of `base` is set if corner i is the lowest corner of such a square;
+/// square[i] is then its number.
 struct SquarePlane {
   unsigned a, b;
   std::uint32_t base;
@@ -69,9 +69,9 @@ constexpr std::array<SquarePlane, 6> kSquarePlanes = [] {
   return result;
 }();
 
-/// The ambiguous ones of the 24 squares.
+/// Ambiguous squares among the 24.
 std::uint32_t ambiguous_squares(std::uint32_t signature) {
-  std::array<std::uint32_t, 4> changes;  // bit v: corner v and the next one along the axis are different
+  std::array<std::uint32_t, 4> changes;  // bit v: corner v and the next one along axis a differ
   for (unsigned a = 0; a < 4; ++a) changes[a] = signature ^ signature >> (1u << a);
   std::uint32_t result = 0;
   for (const SquarePlane& plane : kSquarePlanes) {
@@ -175,7 +175,7 @@ void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
     apexes_ &= cubes_.apexes(f, lists[f]);
     others |= summary.is_not_low;
     triangle_count_ += summary.triangle_count;
-    // As many as a cube can have, without a branch for how many it has: those behind are written over.
+    // Copies as many parts as a cube can have, without a branch on their number; the next cube overwrites the surplus.
     const std::uint32_t first = cubes_.first_part(f) + summary.first_part;
     for (unsigned i = 0; i < ResolvedCubes::kMostParts; ++i) parts_.data()[count + i] = first + i;
     std::memcpy(&part_vertices_.data()[count], cubes_.part_vertices() + first,
@@ -185,8 +185,8 @@ void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
   }
   part_count_ = count;
   as_low_ = others == 0;
-  // What hangs together with the first part, as far as it is seen in one go. Cubes 0 and 1 have nothing in common, so
-  // the parts of 1 come last.
+  // Find parts connected to the first one in a single sweep. Cubes 0 and 1 share no vertices, so the parts of cube 1
+  // come last.
   std::uint64_t vertices = count == 0 ? 0 : part_vertices_[0];
   std::uint32_t connected = 0;
   const auto look_at = [&](unsigned from, unsigned to) {
@@ -204,12 +204,13 @@ void ResolvedTesseract::find_cubes(const ResolvedCubes::Lists& lists) {
   find_components(vertices, connected);
 }
 
-/// `vertices`, `connected`: of parts that hang together with the first one.
+/// `vertices`, `connected`: vertices and set of parts known to be connected to the first part.
 void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t connected) {
   component_count_ = 0;
   auto left = static_cast<std::uint32_t>((std::uint64_t{1} << part_count_) - 1) & ~connected;
   while (connected != 0) {
     std::uint32_t triangles = triangle_count_;
+    // add parts until none is connected
     for (bool grown = left != 0; grown;) {
       grown = false;
       for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
@@ -221,6 +222,7 @@ void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t co
       }
       left &= ~connected;
     }
+    // triangles of the component, unless it has all
     if (left != 0 || component_count_ != 0) {
       triangles = 0;
       for (std::uint32_t rest = connected; rest != 0; rest &= rest - 1)
@@ -234,7 +236,7 @@ void ResolvedTesseract::find_components(std::uint64_t vertices, std::uint32_t co
   }
 }
 
-/// The table holds the low-connected contour, its spheres coned and what is none filled as by a low centre.
+/// The table has the low-connected contour, with spheres coned and other components filled as with a low centre.
 bool ResolvedTesseract::is_in_table(const ResolvedKey& key) const {
   if (!as_low_ || is_barycentric_) return false;
   if (key.tile == Choice::separate) return true;
@@ -262,27 +264,27 @@ void ResolvedTesseract::take_from_table(const ResolvedKey& key) {
     for (std::uint8_t& v : vertices)
       if (v >= kFirstOfTable) v = static_cast<std::uint8_t>(v - kFirstOfTable + kFirstOwn);
     simplices_[simplex_count_] = word(vertices);
-    // A cone's vertex stands first, and lies at the mean of the points that it is over.
+    // A cone's apex is its simplices' first vertex. It lies at the mean of the vertices that it is coned to.
     if (vertices[0] < kFirstOwn || vertices[0] >= kFirstOwn + list.cone_vertices) continue;
     for (unsigned i = 1; i < 4; ++i) masks_[vertices[0] - kFirstOwn] |= std::uint64_t{1} << (kMaskEdge + vertices[i]);
   }
 }
 
-/// Where several components may be joined by the tile's centre: what is around each. Returns whether that is so.
+/// If the tile's centre may join several components, finds the region beside each. Returns whether this is so.
 bool ResolvedTesseract::find_joined(const ResolvedKey& key) {
   const bool joins = component_count_ > 1 && key.tile != Choice::separate;
   if (joins) find_regions(key, key.tile == Choice::low);
   return joins;
 }
 
-/// Of each component, the corners of a sign that hang together with those beside it, in the tile's boundary.
+/// Finds for each component the corners of one sign that are connected, in the tile's boundary, to those beside it.
 void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
   const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
-  if (component_count_ == 1) {  // it has one region on either side
+  if (component_count_ == 1) {  // one region on either side
     components_[0].region = corners;
     return;
   }
-  // What faces join that edges do not.
+  // Sets of corners that faces connect although no edge does.
   std::array<std::uint32_t, 8 + 24> joined;
   unsigned count = 0;
   const unsigned cubes = high ? key.high_cubes & ~unsigned{key.low_cubes} : key.low_cubes;
@@ -291,6 +293,7 @@ void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
   for (std::uint32_t rest = ambiguous_squares(key.signature) & (high ? key.squares : ~key.squares); rest != 0;
        rest &= rest - 1)
     joined[count++] = corners & kCornersOfSquares[std::countr_zero(rest)];
+  // grow the region of each component
   std::uint32_t seen = 0;
   for (unsigned c = 0; c < component_count_; ++c) {
     const auto edge = static_cast<unsigned>(std::countr_zero(components_[c].vertices));
@@ -312,8 +315,8 @@ void ResolvedTesseract::find_regions(const ResolvedKey& key, bool high) {
   }
 }
 
-/// Of what is a sphere, and alone around its region if the tile's centre may join. Returns which side is copied for the
-/// rest; then regions are known.
+/// Chooses the components to cone: spheres, but if the tile's centre may join, only the sole ones beside their region.
+/// Returns which side is copied to fill the others; their regions are then known.
 bool ResolvedTesseract::choose_cones(const ResolvedKey& key, bool joins) {
   const bool high = key.tile != Choice::high;
   bool all = true;
@@ -325,7 +328,7 @@ bool ResolvedTesseract::choose_cones(const ResolvedKey& key, bool joins) {
   return high;
 }
 
-/// Whether it is the first of those around its region that are not coned.
+/// Whether it is the first component beside its region that is not coned.
 bool ResolvedTesseract::is_first_of_region(unsigned component) const {
   for (unsigned d = 0; d < component; ++d)
     if (!components_[d].is_coned && components_[d].region == components_[component].region) return false;
@@ -348,9 +351,9 @@ bool ResolvedTesseract::is_alone(unsigned component) const {
   return true;
 }
 
-/// The point of most triangles, of those that may be a cone's apex; if there is none, a number of own vertices. All its
-/// neighbours are beside it, and of the component there is nothing else beside it. In the barycentric triangulation
-/// only a tetrahedron has one.
+/// Of the vertices that may be the cone's apex, returns the one with most triangles; kFirstOwn if there is none.
+/// Adjacent vertices are exactly the component's vertices in the apex's cubes. In the barycentric triangulation only a
+/// tetrahedron has such an apex.
 unsigned ResolvedTesseract::apex_of(const Component& component) const {
   if (is_barycentric_)
     return component.triangles == 4 ? static_cast<unsigned>(std::countr_zero(component.vertices)) : kFirstOwn;
@@ -384,7 +387,7 @@ void ResolvedTesseract::cone(const Component& component) {
     const ResolvedCubes::Part& of_part = part(static_cast<unsigned>(std::countr_zero(rest)));
     const std::uint32_t* const triangles = cubes_.triangles(of_part);
     if (is_own) {
-      // By registers, so a few too many, which are written over.
+      // Copied by whole registers; the next part overwrites the surplus.
       for (unsigned t = 0; t < of_part.triangle_count; t += ResolvedCubes::kWordsBehind)
         for (unsigned i = t; i < t + ResolvedCubes::kWordsBehind; ++i) out[i] = triangles[i] | first;
       out += of_part.triangle_count;
@@ -392,7 +395,7 @@ void ResolvedTesseract::cone(const Component& component) {
     }
     for (unsigned t = 0; t < of_part.triangle_count; ++t) {
       const std::uint32_t simplex = triangles[t] | first;
-      // Whether the apex stands once in it: then one byte of the difference is zero. All are less than 128.
+      // If the apex occurs only once in the simplex, one byte of the difference is zero. All bytes are less than 128.
       const std::uint32_t zero_bytes = ~((simplex ^ repeated) + 0x7f7f7f7fu) & 0x80808080u;
       *out = simplex;
       out += (zero_bytes & (zero_bytes - 1)) == 0 ? 1 : 0;
@@ -401,9 +404,9 @@ void ResolvedTesseract::cone(const Component& component) {
   simplex_count_ = static_cast<std::size_t>(out - simplices_.data());
 }
 
-/// A copy of a region of the tile's boundary: it keeps the vertices of Sigma, and has a vertex for each of its corners
-/// and for each that the regions of cubes add. Spheres around it that are coned are cut off from it first: of these it
-/// has a copy too, closed by a cone of its own.
+/// Copies a region of the tile's boundary. The copy keeps the vertices of Sigma and adds a vertex for each corner and
+/// for each vertex that the cubes' regions add. Coned spheres beside the region are first cut off from it: the copy
+/// uses duplicates of their vertices and is closed by another cone.
 void ResolvedTesseract::fill_region(unsigned corners, bool high) {
   std::array<std::uint8_t, 16> copy{};
   for (unsigned rest = corners; rest != 0; rest &= rest - 1) {
@@ -438,7 +441,7 @@ bool ResolvedTesseract::is_in(unsigned cube, const CubeRegions::Region& region, 
   return (corners >> lifted_corner(cube, static_cast<unsigned>(std::countr_zero(unsigned{region.corners}))) & 1u) != 0;
 }
 
-/// Copies the vertices of a component, and closes the copy.
+/// Duplicates the vertices of a component, and closes the copy by a cone.
 void ResolvedTesseract::cap(const Component& component, unsigned corners, std::span<std::uint8_t> sigma) {
   std::uint64_t all = 0;
   for (std::uint64_t rest = component.vertices; rest != 0; rest &= rest - 1) {
@@ -457,7 +460,7 @@ void ResolvedTesseract::cap(const Component& component, unsigned corners, std::s
   }
 }
 
-/// Between a vertex of Sigma and the corners of a region: the corners that its edges have there.
+/// Mask of a vertex between a vertex of Sigma and a region: its edges, and their corners in the region.
 std::uint64_t ResolvedTesseract::mask_of(unsigned vertex, unsigned corners) const {
   std::uint64_t mask = 0;
   const auto add_edge = [&](unsigned e) {
@@ -519,8 +522,8 @@ unsigned ResolvedTesseract::add_own(std::uint64_t mask) {
   return kFirstOwn + static_cast<unsigned>(masks_.size()) - 1;
 }
 
-/// Of the own vertices from number `first` on another one may have the same mask: where regions of two cubes are cut by
-/// the same curve in the square between them.
+/// Adds an own vertex. If own vertices from `first` on have the same mask, it counts them as repetitions. This happens
+/// if the same curve cuts regions of two cubes in the square between them.
 unsigned ResolvedTesseract::add_apart(std::uint64_t mask, std::size_t first) {
   constexpr std::uint64_t kPoints = (std::uint64_t{1} << kRepeat) - 1;
   std::uint64_t repeats = 0;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contour of a tile of four dimensions whose ambiguous faces are resolved one by one: put together from the
-// entries of its eight cubes in the table of the cube with every ambiguity resolved freely (table_contract.hpp).
+// The contour of a 4D tile whose ambiguous faces are resolved one by one. It is combined from its eight cubes, which
+// are entries of the table of cubes with every ambiguity resolved freely (table_contract.hpp).
 //
-// Each component of Sigma that is a sphere is coned, from one of its own points if no simplex then lies in a face
-// without being Sigma's, else from its barycentre. A component of higher genus, and components that the tile's centre
-// joins, are filled with a copy of one side of the tile's boundary, put together from the cubes as well
-// (cube_regions.hpp). Where all faces are resolved as in the low-connected contour, the compact table is taken.
+// A component of Sigma that is a sphere is coned from one of its own vertices, provided that no simplex then lies in a
+// face of the tile without belonging to Sigma; otherwise from its barycentre. A component of higher genus, and
+// components that the tile's centre joins, are filled with a copy of one side of the tile's boundary, which is also
+// combined from the cubes (cube_regions.hpp). If all faces are resolved as in the low-connected contour, the compact
+// table is used.
 //
-// In the barycentric triangulation the lists are those of the cubes that 3D images are contoured by
-// (tile_variants.hpp): so the contour in each face is the 3D contour there. Spheres of more than a tetrahedron's
-// triangles are coned from their barycentres, and no table is taken.
+// In the barycentric triangulation, the lists are those of the cubes of 3D images (variant_table.hpp), so the contour
+// in each face is the 3D contour there. Spheres with more triangles than a tetrahedron are coned from their
+// barycentres, and the compact table is not used.
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ struct TesseractSquare {
   std::uint8_t base, axes;
 };
 
-/// Square q = 4 * pair + side of the lower axis that it does not span + 2 * side of the higher one; pairs of such axes:
-/// 01, 02, 03, 12, 13, 23.
+/// Square q = 4 * pair + (side of the lower axis that it does not span) + 2 * (side of the higher one). Pairs of such
+/// axes in order: 01, 02, 03, 12, 13, 23.
 inline constexpr std::array<TesseractSquare, 24> kTesseractSquares = [] {
   std::array<TesseractSquare, 24> result{};
   unsigned q = 0;
@@ -43,70 +44,70 @@ inline constexpr std::array<TesseractSquare, 24> kTesseractSquares = [] {
   return result;
 }();
 
-/// What fixes the contour in a tile of four dimensions. What is said of faces with nothing to choose is ignored.
+/// Determines the contour in a 4D tile. Bits of faces without a choice are ignored.
 struct ResolvedKey {
-  std::uint32_t squares = 0;  ///< bit q: the centre of square q is high
+  std::uint32_t squares = 0;  ///< bit q: whether the centre of square q is high
   std::uint16_t signature = 0;
-  std::uint8_t low_cubes = 0, high_cubes = 0;  ///< bit f: the centre of cube f is low, high; neither: separate
-  /// separate: spheres are coned; what is none is filled as by a low centre.
+  std::uint8_t low_cubes = 0, high_cubes = 0;  ///< bit f: the centre of cube f is low, or high; neither: separate
+  /// separate: spheres are coned, other components are filled as with a low centre.
   facets::Choice tile = facets::Choice::separate;
 };
 
-/// The contour of a tile. Vertices are local: [0, 32) the points on its edges, 32 + 3 f + j own vertex j of cube f's
-/// list, 56 + j its own vertex j.
+/// The contour of a tile. Local vertices: [0, 32) are on its edges; 32 + 3 f + j is own vertex j of cube f's list; 56 +
+/// j is own vertex j of the tile.
 struct ResolvedView {
-  const std::uint8_t* simplices;  ///< 4 vertices each; positive side towards high
+  const std::uint8_t* simplices;  ///< 4 vertices each; the positive side faces high corners
   std::uint32_t simplex_count;
   std::uint32_t own_vertices;
-  /// Own vertex -> bit v: corner, bit 16 + e: edge. With edges only it lies at the mean of their points; with corners
-  /// among them, half way from the tile's centre to the mean of all. With ResolvedTesseract::kIsBarycentre it is the
-  /// barycentre of the triangles that the simplices have which it comes first in. Bits from ResolvedTesseract::kRepeat
-  /// on: how many vertices before it have the same corners and edges; each lies nearer to the centre than the last.
+  /// By own vertex: bit v for a corner, bit 16 + e for an edge. With edges only, it lies at the mean of their vertices;
+  /// with corners, half way from the tile's centre to the mean of all. With ResolvedTesseract::kIsBarycentre it is the
+  /// barycentre of the triangles of those simplices whose first vertex it is. Bits from ResolvedTesseract::kRepeat on:
+  /// the number of earlier vertices with the same corners and edges; each repetition lies nearer to the centre.
   const std::uint64_t* masks;
 };
 
-/// How much a contour has of each.
+/// Size of a tile's contour.
 struct ResolvedSize {
   std::uint32_t simplices, own_vertices;
 };
 
-/// Looks tiles up, one after the other: an object for each thread. It holds the last tile alone, less than 100 kB; the
-/// tables behind it, 1 MB, are made once, of the generated one, and shared: those of lists in 2 ms, those of regions
-/// (cube_regions.hpp), when the first one is asked for, in 0.1 s. Time on noise resolved by means: 0.25 us a tile, of
-/// 33 tetrahedra and 2 own vertices in the mean. 31 % of these tiles are the compact table's; 55 % are coned otherwise,
-/// with 27 tetrahedra; 14 % are copies of a side, with 100.
+/// Finds the contours of tiles, one at a time; one object per thread. It holds only the last tile (less than 100 kB).
+/// Its tables (1 MB) are derived once from the generated one and shared: those of lists take 2 ms, those of regions
+/// (cube_regions.hpp) 0.1 s at first use. Time on noise resolved by means: 0.25 us per tile, with 33 tetrahedra and 2
+/// own vertices on average. 31 % of these tiles come from the compact table; 55 % are coned otherwise, with 27
+/// tetrahedra; 14 % are copies of a side, with 100.
 class ResolvedTesseract {
  public:
   static constexpr unsigned kFirstOwn = ResolvedCubes::kVertices;
-  static constexpr std::uint64_t kIsBarycentre = std::uint64_t{1} << 63;  ///< in masks
-  static constexpr unsigned kRepeat = 48;                                 ///< first bit of eight, in masks
+  static constexpr std::uint64_t kIsBarycentre = std::uint64_t{1} << 63;  ///< bit of masks
+  static constexpr unsigned kRepeat = 48;                                 ///< first of eight bits of masks
 
   explicit ResolvedTesseract(int triangulation = kCompact);
 
-  /// Valid until the next call.
+  /// The result is valid until the next call.
   const ResolvedView& find(const ResolvedKey& key) { return find(key, lists_of(key)); }
-  /// The same where the lists of the tile's cubes are known.
+  /// Variant for known lists of the tile's cubes.
   const ResolvedView& find(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
 
-  /// The size of what `find` finds, in half the time. What `find` returned is as it was.
+  /// Size of the contour that `find` finds, in half the time. Does not invalidate the result of `find`.
   [[nodiscard]] ResolvedSize size(const ResolvedKey& key) { return size(key, lists_of(key)); }
   [[nodiscard]] ResolvedSize size(const ResolvedKey& key, const ResolvedCubes::Lists& lists);
 
-  /// Whether neither signs nor choices matter: no square is ambiguous, no cube has several polygons, and Sigma is one
-  /// sphere (or there is none). Then the contour is that of the compact table.
+  /// Whether neither signs nor choices matter: no square is ambiguous, no cube has several polygons, and Sigma is empty
+  /// or one sphere. The contour is then the compact table's.
   static bool is_settled(std::uint16_t signature) noexcept;
 
  private:
   using Word = std::uint32_t;  ///< four vertices
   struct Component {
     std::uint64_t vertices = 0;
-    std::uint32_t parts = 0;  ///< set of parts
+    std::uint32_t parts = 0;  ///< bit set of parts
     std::uint32_t triangles = 0;
-    std::uint32_t region = 0;  ///< corners of the side that is copied, beside it
+    std::uint32_t region = 0;  ///< corners of the adjacent region whose copy may fill it
     bool is_sphere = false, is_coned = false;
   };
 
-  /// What is looked at of a signature in the compact table.
+  /// Fields of the compact table that are read, by signature.
   struct InTable {
     std::uint32_t first_simplex;
     std::uint16_t simplex_count, own_vertices;
@@ -142,16 +143,16 @@ class ResolvedTesseract {
 
   bool is_barycentric_;
   const ResolvedCubes& cubes_;
-  const CubeRegions* regions_ = nullptr;  ///< once they are asked for
+  const CubeRegions* regions_ = nullptr;  ///< null until first used
   const InTable* in_table_;               ///< by signature
-  // Of the tile at hand.
+  // The current tile:
   ResolvedCubes::Lists lists_{};
-  std::array<std::uint32_t, 32 + ResolvedCubes::kMostParts> parts_{};          ///< their numbers
-  std::array<std::uint64_t, 32 + ResolvedCubes::kMostParts> part_vertices_{};  ///< of each
+  std::array<std::uint32_t, 32 + ResolvedCubes::kMostParts> parts_{};          ///< numbers of the parts of its cubes
+  std::array<std::uint64_t, 32 + ResolvedCubes::kMostParts> part_vertices_{};  ///< vertices of each part
   std::array<Component, 32> components_{};
   unsigned part_count_ = 0, component_count_ = 0;
-  std::uint32_t triangle_count_ = 0;  ///< of Sigma
-  std::uint32_t apexes_ = 0;          ///< where all parts hang together: edges that may be a cone's apex
+  std::uint32_t triangle_count_ = 0;  ///< triangles of Sigma
+  std::uint32_t apexes_ = 0;          ///< edges that may be the cone's apex, if all parts are connected
   bool as_low_ = false;               ///< whether all cubes are those of the low-connected contour
   std::vector<Word> simplices_;
   std::size_t simplex_count_ = 0;
@@ -159,8 +160,7 @@ class ResolvedTesseract {
   ResolvedView view_{};
 };
 
-/// The compact table of four dimensions; all tiles that are put together are marked as those with vertices of their
-/// own.
+/// The compact table of 4D tiles. Every tile that may be resolved from the data is marked as having own vertices.
 const RowTable& estimated_tesseracts(int triangulation);
 
 }  // namespace tegl::detail

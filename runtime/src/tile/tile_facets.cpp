@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Single tiles of any dimension: arguments, and the hand-over to the builder.
+// Builds single tiles of any dimension: checks the arguments and calls the builder.
 #include "tegl/tile_facets.hpp"
 
 #include <fmt/format.h>

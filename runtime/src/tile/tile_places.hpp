@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The places of the vertices of a built tile, in the unit tile: so they don't depend on the units of the axes.
+// Positions of a built tile's vertices, in the unit tile, so that they do not depend on the units of the axes.
 //
-// Based on: M. Liversage, thesis, 1994, definition 10.1.4: the barycentre of a facet is the mean of those of the facets
-// around it, weighted by their measure. A place depends on the face that the vertex lies in alone: what the frame of a
-// tile adds to it are exact zeros.
+// Based on: M. Liversage, thesis, 1994, definition 10.1.4: the barycentre of a facet is the mean of the barycentres of
+// the facets around it, weighted by their measure. A position depends only on the face that contains the vertex: the
+// frame of a tile adds exact zeros to it.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace tegl::detail {
 
-/// Six times the volume of a tetrahedron, by the Gram determinant.
+/// Six times the volume of a tetrahedron, from the Gram determinant.
 template <std::size_t N>
 double tetrahedron_volume(std::span<const std::array<double, N>> points) noexcept {
   std::array<std::array<double, N>, 3> edges;
@@ -35,7 +35,7 @@ double tetrahedron_volume(std::span<const std::array<double, N>> points) noexcep
   return std::sqrt(std::max(0.0, gram));
 }
 
-/// The measure of a simplex of 1 to 4 points, up to a factor that depends on its dimension alone.
+/// Measure of a simplex of 1 to 4 points, up to a factor that depends on its dimension only.
 template <std::size_t N>
 double simplex_measure(std::span<const std::array<double, N>> points) noexcept {
   static_assert(N <= 5, "larger simplices in more dimensions");
@@ -51,7 +51,7 @@ double simplex_measure(std::span<const std::array<double, N>> points) noexcept {
   }
 }
 
-/// The barycentre of a simplex that is a facet by itself.
+/// Barycentre (as defined above) of a facet that is a single simplex.
 template <std::size_t N>
 std::array<double, N> simplex_barycentre(std::span<const std::array<double, N>> points) noexcept {
   if (points.size() == 1) return points[0];
@@ -69,14 +69,14 @@ std::array<double, N> simplex_barycentre(std::span<const std::array<double, N>> 
   return sum.point;
 }
 
-/// Places on demand, for one tile at a time.
+/// Computes positions on request, for one tile at a time.
 template <int N>
 class TilePlaces {
  public:
   using Point = TilePoint<N>;
 
   TilePlaces(const CubeFaces& cube, const CubeSymmetries& symmetries) : cube_(cube), symmetries_(symmetries) {}
-  /// `flat_axis`: an axis along which all places are 0; -1: none. Of edges, `set_edge` has to tell.
+  /// `flat_axis`: axis along which all positions are 0; -1: none. Positions on edges must be set by `set_edge`.
   void begin(const SeenTile& seen, int flat_axis) {
     tile_ = seen.tile.get();
     symmetry_ = seen.symmetry;
@@ -117,10 +117,11 @@ class TilePlaces {
 
   Point barycentre(const BuiltTile::Vertex& vertex) noexcept {
     const std::size_t width = cube_.cells()[vertex.face].dim - 1u;
-    // Tiles around a face come upon its simplices in different orders; and a 4D tile is to agree with 5D ones that have
-    // it as a face.
+    // Tiles that share a face list its simplices in different orders, so they are sorted. For N <= 4 the tile itself is
+    // sorted as well, to agree with 5D tiles that have it as a face.
     const bool is_shared = N <= 4 || vertex.face != cube_.tile();
-    const auto first_term = static_cast<std::ptrdiff_t>(terms_.size());  // after those of barycentres that wait
+    // Recursion: barycentres still being computed have terms before these.
+    const auto first_term = static_cast<std::ptrdiff_t>(terms_.size());
     std::array<Point, N> corners;
     const std::span<const Point> simplex(corners.data(), width);
     for (std::size_t at = vertex.first; at < vertex.end; at += width) {
@@ -136,7 +137,7 @@ class TilePlaces {
         return a.point != b.point ? a.point < b.point : a.weight < b.weight;
       });
     Weighted<N> sum;
-    Weighted<N> plain;  // for a facet that has shrunk to a point: all weights equal
+    Weighted<N> plain;  // equal weights, for a facet shrunk to a point
     for (auto term = terms_.begin() + first_term; term != terms_.end(); ++term) {
       sum.add(term->point, term->weight);
       plain.add(term->point, 1.0);
@@ -151,12 +152,12 @@ class TilePlaces {
     return divided(sum);
   }
 
-  /// Between a vertex and the contour's copy of it.
+  /// Midpoint of a vertex and the contour's copy of it.
   Point beside(const BuiltTile::Vertex& vertex) noexcept {
     return midpoint<N>((*this)(vertex.copied), pushed_inwards(vertex));
   }
 
-  /// Half of the way to the middle of the face.
+  /// Half way from the copied vertex to the centre of the face.
   Point pushed_inwards(const BuiltTile::Vertex& vertex) noexcept {
     Point point = (*this)(vertex.copied);
     for (int a = 0; a < N; ++a)

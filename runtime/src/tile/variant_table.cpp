@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables of resolved squares and cubes; see variant_table.hpp.
+// Builds the tables of resolved squares and cubes (see variant_table.hpp).
 #include "tile/variant_table.hpp"
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 namespace tegl::detail {
 namespace {
 
-/// Triangles of local vertices, three each, with own vertices by mask (tables::ResolvedList).
+/// Triangles of three local vertices each; own vertices by mask (tables::ResolvedList).
 struct Polygons {
   static constexpr unsigned kFirstOwn = tables::first_tile_vertex(3);
   std::vector<std::uint8_t> triangles;
-  unsigned cones = 0;  ///< of the own vertices, the first so many are barycentres
+  unsigned cones = 0;  ///< number of own vertices that are barycentres; they come first
   std::vector<std::uint64_t> masks;
 
   explicit Polygons(const tables::ResolvedList& list) {
@@ -29,7 +29,7 @@ struct Polygons {
   }
 };
 
-/// The triangles of each connected part.
+/// The triangles of each connected component.
 std::vector<std::vector<std::uint8_t>> parts_of(const std::vector<std::uint8_t>& triangles) {
   std::array<std::uint8_t, 256> part{};
   for (unsigned v = 0; v < part.size(); ++v) part[v] = static_cast<std::uint8_t>(v);
@@ -51,7 +51,7 @@ std::vector<std::vector<std::uint8_t>> parts_of(const std::vector<std::uint8_t>&
   return result;
 }
 
-/// The edges around a connected part, each in its direction; none unless it is a disc.
+/// The directed boundary edges of a connected component; empty unless it is a disc.
 std::vector<std::pair<std::uint8_t, std::uint8_t>> outline(const std::vector<std::uint8_t>& triangles) {
   std::set<std::uint8_t> vertices(triangles.begin(), triangles.end());
   std::set<std::pair<std::uint8_t, std::uint8_t>> directed;
@@ -66,9 +66,10 @@ std::vector<std::pair<std::uint8_t, std::uint8_t>> outline(const std::vector<std
   return around;
 }
 
-/// Cones every disc of more than a triangle from its barycentre. What is no disc stays as it is.
+/// Cones every disc with more than one triangle from its barycentre. Other components are kept.
 void cone_discs(Polygons& polygons) {
   constexpr unsigned kFirstOwn = Polygons::kFirstOwn;
+  // cone discs
   std::vector<std::vector<std::uint8_t>> kept;
   std::vector<std::uint8_t> triangles;
   for (std::vector<std::uint8_t>& part : parts_of(polygons.triangles)) {
@@ -82,6 +83,7 @@ void cone_discs(Polygons& polygons) {
       for (const auto& [from, to] : around) triangles.insert(triangles.end(), {apex, from, to});
     }
   }
+  // renumber the own vertices of the others
   std::vector<std::uint64_t> masks;
   std::map<std::uint8_t, std::uint8_t> number;
   for (const std::vector<std::uint8_t>& part : kept)
@@ -126,7 +128,7 @@ void VariantTable<N>::add_plain(unsigned key, const tables::TileTable& from, uns
   add(key, simplices, list.cone_vertices, {masks, masks + list.side_vertices});
 }
 
-/// The high-connected square is the low-connected one of the complement, turned round (table contract).
+/// The high-connected square is the low-connected one of the complement, reversed (table contract).
 template <>
 void VariantTable<2>::add_variants(int triangulation) {
   for (unsigned s = 0; s < 16; ++s)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Squares and cubes with their ambiguities resolved, as tables that the extraction reads like the others, by key
-// (cube_key.hpp).
+// Tables of squares and cubes with resolved ambiguities, by key (cube_key.hpp), in the form of the other tables.
 #pragma once
 
 #include <array>
@@ -14,7 +13,8 @@
 
 namespace tegl::detail {
 
-/// The table of all keys, N = 2 or 3. In the barycentric triangulation what is no tunnel is coned from its barycentre.
+/// The table of all keys, N = 2 or 3. In the barycentric triangulation, discs of more than
+/// one triangle are coned from their barycentre; tunnels are not.
 template <int N>
 class VariantTable {
  public:
@@ -42,11 +42,12 @@ class VariantTable {
   std::vector<RowTable> rows_;
 };
 
-/// The one of a triangulation (0: barycentric, 1: compact), made when it is first asked for.
+/// The table of a triangulation (0: barycentric, 1: compact), built at first use.
 template <int N>
 const VariantTable<N>& variant_table(int triangulation);
 
-/// Whether the data have a say in a tile: a square of it is ambiguous, or it may have several facets. By signature.
+/// Whether a tile depends on the data beyond its signature: a square is ambiguous, or it may have several facets. By
+/// signature.
 template <int N>
 const std::array<bool, std::size_t{1} << (1u << N)>& ambiguous_signatures() noexcept;
 template <>
@@ -56,7 +57,7 @@ const std::array<bool, 256>& ambiguous_signatures<3>() noexcept;
 template <>
 const std::array<bool, 65536>& ambiguous_signatures<4>() noexcept;  // tesseract_fill.cpp
 
-/// How many vertices of its own a cube has, by key.
+/// Number of vertices that a cube owns, by key.
 inline unsigned cube_vertices(int triangulation, unsigned key) {
   return variant_table<3>(triangulation).rows().own_vertices(key);
 }
