@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a simplification may be told of the image and the axes: hyperplanes of the border, and a scale.
+// Options derived from the input of a simplification: hyperplanes of the image border, and an automatic scale of the
+// axes.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace tegl {
 
 template <int N>
 requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
-  // Points of the border across axis a: origin + what the other columns of the map span.
+  // Border hyperplane of axis a: origin + the span of the other columns of the map.
   const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
   std::vector<Hyperplane<N>> result;
   for (int a = 0; a < N; ++a)
