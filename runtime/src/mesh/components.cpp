@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Components by parallel union-find over the simplices; what each is, by sums in fixed blocks; parts of a contour.
+// Connected components by parallel union-find over the simplices, their measures, and extraction of components.
 //
-// Based on: Zhu Jingwei, Meng Peisheng, Wang Cheng, An Improved Marching Cubes Algorithm, 2008, section 3.2, whose seed
-// fill gives the same labels, counted from 1, in one thread.
+// Based on: Zhu Jingwei, Meng Peisheng, Wang Cheng, An Improved Marching Cubes Algorithm, 2008, section 3.2. Their
+// single-threaded seed fill gives the same labels, counted from 1.
 #include "tegl/components.hpp"
 
 #include <algorithm>
@@ -22,14 +22,14 @@ namespace {
 
 using detail::kBlock;
 
-/// The rows that `part_of_contour` copies: of a contour with so many vertices and simplices.
+/// Number of rows that `part_of_contour` copies for this number of vertices and simplices.
 template <int N, class Real>
 std::uint64_t rows_to_copy(const Contour<N, Real>& contour, std::uint64_t vertices, std::uint64_t simplices) {
   return vertices * (1 + (contour.normals.empty() ? 0 : 1) + contour.vertex_attributes.size()) +
          simplices * (1 + contour.simplex_attributes.size());
 }
 
-/// The part of a contour with these vertices and simplices. `number`: the new number of each of the vertices.
+/// The part of a contour with these vertices and simplices. `number`: by vertex of the contour, its new number.
 template <int N, class Real>
 Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<const Index> vertices,
                                  std::span<const Index> simplices, const Buffer<Index>& number,
@@ -64,8 +64,8 @@ Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<cons
   return part;
 }
 
-/// As many labels as there are vertices and simplices, each below their count and each used; of simplices those of
-/// their vertices, and of vertices in no simplex none.
+/// Throws InvalidArgument unless the labels fit the contour: one per vertex and simplex, each below the count, each
+/// used by a simplex, equal for a simplex and its vertices, and none for vertices in no simplex.
 template <int N, class Real>
 void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels, const Progress& progress = {}) {
   detail::require_vertices(contour);
@@ -105,7 +105,8 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
                      empty - has_simplex.begin(), labels.count));
 }
 
-/// Labels in the order of the sets' leaders, which are their smallest vertices. Vertices without `used` get none.
+/// Numbers the sets in the order of their roots, which are their smallest vertices. Vertices without `used` get
+/// kNoComponent.
 Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& used, unsigned threads,
                   const Progress& progress, Buffer<Index>& labels) {
   labels.resize(used.size());
@@ -113,7 +114,7 @@ Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& 
     for (std::size_t v = from; v < to; ++v) labels[v] = used[v] != 0 ? sets.find(static_cast<Index>(v)) : kNoComponent;
   });
   Index count = 0;
-  for (std::size_t v = 0; v < labels.size(); ++v) {  // a leader comes before all others of its set
+  for (std::size_t v = 0; v < labels.size(); ++v) {  // a root comes before all others of its set
     if (labels[v] == kNoComponent) continue;
     labels[v] = labels[v] == v ? count++ : labels[labels[v]];
   }
