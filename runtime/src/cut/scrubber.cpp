@@ -64,6 +64,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
     nodes_.push_back({0, 0});
     return;
   }
+  // range of heights
   double highest = -std::numeric_limits<double>::infinity();
   lowest_ = -highest;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
@@ -77,6 +78,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   struct Nothing {};
   detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
   constexpr std::size_t kGrain = std::size_t{1} << 14;
+  // range of places of each simplex
   std::vector<Range> ranges(contour.simplices.size());
   workers.for_range(ranges.size(), kGrain, [&](std::size_t from, std::size_t to, Nothing&) {
     for (std::size_t s = from; s < to; ++s) {
@@ -102,6 +104,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
       by_least_, 0.1, [](const Range& range) { return range.least; }, [](const Range& range) { return range.least; });
   gather(
       by_most_, 0.5, [](const Range& range) { return ~range.most; }, [](const Range& range) { return range.most; });
+  // nodes: runs of equal middle
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const std::uint32_t middle = middle_of(ranges[i].least, ranges[i].most);
     if (nodes_.empty() || nodes_.back().middle != middle) nodes_.push_back({middle, i});

@@ -91,6 +91,7 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   detail::require_sound(contour);
   std::vector<double> levels;
   for (const double offset : offsets) levels.push_back(section.template level<Real>(offset));
+  // simplices by distinct level
   std::vector<double> sorted = levels;
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());

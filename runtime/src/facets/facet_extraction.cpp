@@ -368,6 +368,7 @@ class FacetExtraction {
 
   /// Prefix sums of the counts: by layer, row and kind; caps last. Then allocates the levels.
   void number_facets() {
+    // exclusive scan
     std::array<std::uint64_t, N> facets{}, entries{};
     const std::size_t layer_rows = rows_.stride(N - 1);
     for (const bool outward : {false, true})
@@ -386,6 +387,7 @@ class FacetExtraction {
               facets[1] += std::exchange(here.first_segment[row], facets[1]);
               entries[1] += std::exchange(here.first_end[row], entries[1]);
             }
+    // allocate
     for (std::size_t k = 0; k < N; ++k) {
       check_number(facets[k], "facets", k);
       check_number(entries[k], "incidences", k);
@@ -426,6 +428,7 @@ class FacetExtraction {
       const FacetsOfFace facets = facets_of(kind, row, i, signature, scratch);
       const unsigned count = facets.count();
       const bool turn = is_top(kind) && flip_ != is_mirrored(kind, row, i);
+      // each facet and its boundary; turned facets have the reverse order and opposite signs
       for (unsigned number = 0; number < count; ++number, ++facet) {
         level.places[facet] = place(kind, row, i, signature, number);
         if (k == 0) continue;
@@ -561,11 +564,13 @@ class FacetExtraction {
     std::ptrdiff_t offset = 0;
     const auto strides = source_.strides();
     for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(index[a]) * strides[a];
+    // fractions along the edges
     scratch.at.resize(count + kMargin);
     list_bits(bits, rows_.words(), scratch.at.data());
     scratch.rows.assign(count + kMargin, offset);
     scratch.alphas.resize(count + kMargin);
     source_.edge_alphas(index[N - 1], axis, {scratch.rows.data(), scratch.at.data(), count}, scratch.alphas.data());
+    // places
     EdgePoints<N, Real> points{};
     points.at = scratch.at.data();
     points.alphas = scratch.alphas.data();
@@ -580,6 +585,7 @@ class FacetExtraction {
     points.out = facets_.vertices.data() + here.first_facet[row];
     placement_.edges(index[N - 1], points);
     if (!options_.normals) return;
+    // normals
     placement_.normals()->edges(index, axis, {scratch.rows.data(), scratch.at.data(), count}, scratch.alphas.data(),
                                 scratch.normals, facets_.normals.data() + here.first_facet[row], [&](std::size_t edge) {
                                   auto start = index;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Construction of the symbolic facet tables; see facet_tables.hpp.
 #include "facets/facet_tables.hpp"
 
 #include <algorithm>
@@ -162,6 +164,7 @@ void FacetTables::add_triangle(const Triangle& triangle, const std::vector<Part>
   Lists& lists = lists_[3];
   std::array<std::uint8_t, 3> corners{};
   std::uint16_t& points = points_.emplace_back();
+  // number its points; new ones inside are added
   for (std::size_t j = 0; j < 3; ++j) {
     corners[j] = triangle[j];
     if (triangle[j] >= kCubeEdges) {
@@ -172,6 +175,7 @@ void FacetTables::add_triangle(const Triangle& triangle, const std::vector<Part>
     }
     points = static_cast<std::uint16_t>(points | 1u << corners[j]);
   }
+  // its sides
   for (std::size_t j = 0; j < 3; ++j) {
     const std::uint8_t from = corners[j], to = corners[(j + 1) % 3];
     const auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Triangulation of polygons, and of the polygons of 3D facet hierarchies, with forbidden chords; see tegl/polygons.hpp.
 #include "tegl/polygons.hpp"
 
 #include <algorithm>

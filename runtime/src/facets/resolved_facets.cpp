@@ -46,6 +46,7 @@ std::size_t ResolvedFacets::begin(std::uint16_t signature, const std::array<std:
   cubes_ = cubes;
   parts_.clear();
   components_.clear();
+  // list the polygons of all cubes
   for (unsigned f = 0; f < 8; ++f) {
     if (cubes[f] == kNone) continue;
     for (unsigned number = 0; number < tables_->count(3, cubes[f]); ++number) {

@@ -260,6 +260,7 @@ bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
   };
   double longest = 0.0;
   for (int step = 0; step < D; ++step) {
+    // pivot: the longest remainder
     int pivot = step;
     double best = -1.0;
     for (int j = step; j < D; ++j) {
@@ -273,6 +274,7 @@ bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
     std::swap(edges[step], edges[pivot]);
     longest = std::max(longest, best);
     if (best <= kFlat * kFlat * longest) return true;
+    // subtract its direction from the others
     for (int j = step + 1; j < D; ++j) {
       const double along = dot(edges[j], edges[step]) / best;
       for (int a = 0; a < space_dim; ++a) edges[j][a] -= along * edges[step][a];

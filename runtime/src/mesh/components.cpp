@@ -74,11 +74,13 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
     if (found != expected)
       fail(fmt::format("labels for {} {}; expected {}, as many as the contour has", found, what, expected));
   };
+  // counts
   require_count(labels.vertices.size(), contour.vertices.size(), "vertices");
   require_count(labels.simplices.size(), contour.simplices.size(), "simplices");
   if (labels.count > contour.simplices.size())
     fail(fmt::format("{} components of {} simplices; expected the labels of this contour", labels.count,
                      contour.simplices.size()));
+  // simplices and their vertices
   std::vector<bool> is_in_simplex(contour.vertices.size(), false);
   std::vector<bool> has_simplex(labels.count, false);
   const auto look_at = [&](std::size_t s) {
@@ -97,6 +99,7 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
   detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) look_at(s);
   });
+  // vertices in no simplex, components without simplices
   for (std::size_t v = 0; v < is_in_simplex.size(); ++v)
     if (!is_in_simplex[v] && labels.vertices[v] != kNoComponent)
       fail(fmt::format("vertex {} in no simplex has the label {}; expected none", v, labels.vertices[v]));
@@ -128,6 +131,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
   detail::require_vertices(contour);
   const std::size_t vertices = contour.vertices.size();
   const std::size_t simplices = contour.simplices.size();
+  // merge the vertices of each simplex
   detail::SharedDisjointSets sets(vertices);
   Buffer<std::uint8_t> used(vertices);
   std::fill(used.begin(), used.end(), std::uint8_t{0});
@@ -139,6 +143,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
                                std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
                              }
                          });
+  // number the sets, then label the simplices
   ComponentLabels labels;
   labels.count = number_sets(sets, used, options.threads, detail::part_of(options.progress, 0.7, 0.9), labels.vertices);
   labels.simplices.resize(simplices);
@@ -155,6 +160,7 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
                                      const WorkOptions& options) {
   require_labels(contour, labels, detail::part_of(options.progress, 0.0, 0.05));
   detail::require_finite(contour);
+  // count faces by label
   const std::span<const Index> rows = detail::rows_of(contour);
   std::vector<detail::FaceCounts> faces;
   {
@@ -164,6 +170,7 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
                                    detail::part_of(options.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });
   }
+  // sums over simplices by label
   const detail::Groups groups =
       detail::group_by(labels.simplices, labels.count, detail::part_of(options.progress, 0.8, 0.82));
   const std::vector<detail::PieceSums<N>> sums =
@@ -225,6 +232,7 @@ Contour<N, Real> select_components(const Contour<N, Real>& contour, const Compon
     });
     return items;
   };
+  // list the kept vertices and simplices
   const Buffer<Index> vertices = kept(labels.vertices, part_of(progress, 0.2, 0.3));
   const Buffer<Index> simplices = kept(labels.simplices, part_of(progress, 0.3, 0.5));
   const Progress copying = part_of(progress, 0.5, 1.0);

@@ -158,6 +158,7 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
     result.content = 0.0;  // it has no boundary
     return result;
   }
+  // boundary faces
   const std::span<const Index> rows = detail::rows_of(contour);
   detail::FaceCounts faces;
   {
@@ -168,6 +169,7 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
                                [](std::size_t, const auto&) { /* counted */ })
             .front();
   }
+  // sums over simplices
   const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices.size()),
                                                        options.threads, detail::part_of(options.progress, 0.7, 1.0))
                                         .front();

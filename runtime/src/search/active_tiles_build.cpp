@@ -165,6 +165,7 @@ std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, Act
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
                                                   const ActiveTilesOptions& options) {
+  // compare sizes and type first: computing the digest reads all values
   detail::IndexReader reader(from);
   const ActiveTilesHead head = detail::read_head(reader);
   IndexedImage<N> identity = detail::known_of(image);

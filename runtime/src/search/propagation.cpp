@@ -109,6 +109,7 @@ template <Value T, int N>
 std::vector<TileNumber> TileFlood<T, N>::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
                                              unsigned threads, const Progress& progress, bool* stopped) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
+  // the starting tiles are the first layer
   Seen seen(grid_.count());
   Found all;
   for (const TileNumber tile : from)

@@ -496,6 +496,7 @@ class RegionMaker {
   bool is_covered_by_others(Place tile) {
     const Key least = map_.least[tile];
     const Key greatest = map_.greatest[tile];
+    // collect the parts that other roots offer
     offered_.clear();
     Key lowest = greatest, highest = least;
     for (const std::ptrdiff_t distance : neighbours_) {
@@ -512,6 +513,7 @@ class RegionMaker {
       });
     }
     if (lowest > least || highest < greatest) return false;
+    // greedy interval cover
     parts_.clear();
     for (Key level = least; level < greatest;) {
       Key farthest = level;
@@ -578,6 +580,7 @@ class RegionMaker {
     using Parts = std::vector<std::pair<std::uint32_t, Key>>;
     std::vector<std::size_t> end_of;
     Parts kept, parts, finer;
+    // find the owners after all rounds of coarsening
     for (const std::uint32_t i : block.border) {
       const Place tile = block.tiles[i];
       const Key least = map_.least[tile];
@@ -602,6 +605,7 @@ class RegionMaker {
       for (const auto& [tree, end] : parts) kept.emplace_back(roots[tree], end);
       end_of.push_back(kept.size());
     }
+    // replace the parts of the block by those of the border
     owners_.back_to(mark);
     std::size_t from = 0;
     for (std::size_t i = 0; i < block.border.size(); ++i) {

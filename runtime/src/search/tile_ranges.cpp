@@ -23,6 +23,7 @@ void TileRanges<T, N>::load(std::size_t row) noexcept {
     at += static_cast<std::ptrdiff_t>(row % grid_.size(a)) * image_.strides()[a];
     row /= grid_.size(a);
   }
+  // combine the rows of samples
   missing_ = false;
   for (unsigned corner = 0; corner < kRows; ++corner) {
     const T* samples = image_.data() + at;

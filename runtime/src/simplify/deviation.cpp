@@ -255,6 +255,7 @@ class Matcher {
     parts_.clear();
     Part whole;
     whole.corners = whole_;
+    // the whole simplex, with a narrow and a wide reach
     for (const double wider : {1.0, kWider}) {
       gather_near(wider * (kSlack * nearest_ + kReachShare * edge_));
       whole.near.resize(near_.size());
@@ -265,6 +266,7 @@ class Matcher {
     }
     if (!(whole.bound < kInfinity)) measure_by_distances(whole);
     parts_.push_back(std::move(whole));
+    // bisect the part with the largest bound
     while (!is_enough(parts_.front(), enough) && parts_.size() < most) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part worst = std::move(parts_.back());
@@ -294,6 +296,7 @@ class Matcher {
         box.add(frame_.to_space(x));
       }
     };
+    // box in space; of a thin simplex, of its whole box in the frame
     for (const PointN<N>& corner : whole_) add(corner);
     if (prism.thin()) {
       Box<N> whole;
@@ -308,6 +311,7 @@ class Matcher {
     for (const PointN<N>& corner : whole_) around.add(corner);
     around.low[D] -= reach;
     around.high[D] += reach;
+    // box test in the frame
     const double rounding = 10.0 * prism.rounding();
     m_.tree.visit_near(box, rounding, [&](Index t) {
       Near near;
@@ -364,6 +368,7 @@ class Matcher {
     const double limit = part.bound + kBeyond * edge_;
     lowest -= limit;
     highest += limit;
+    // height range of each near simplex
     std::size_t kept = 0;
     for (const std::uint32_t number : part.near) {
       const Near& near = near_[number];

@@ -205,6 +205,7 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
     of_border += (bound_[v] & kBorderBit) != 0;
   }
   if (border_fixed_ && of_border > 1) return std::nullopt;
+  // different constraints: the place of a vertex that has all of them
   if (!equal) {
     for (const Index v : vertices)
       if (bound_[v] == all) return CommonPlace{points_[v], v};
@@ -216,6 +217,7 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
     for (int a = 0; a < N; ++a)
       middle[a] += (points_[v][a] - points_[vertices[0]][a]) / static_cast<double>(vertices.size());
   if (all != 0) return CommonPlace{rounded(middle), std::nullopt};
+  // no constraints: the minimum of the quadric, if it is near
   Quadric<N> sum;
   double size = 0.0;
   const PointN<N> from = to_scaled(middle);

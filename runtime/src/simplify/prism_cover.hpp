@@ -86,6 +86,7 @@ class Prism {
     for (int k = 0; k < D; ++k) cube *= edge;
     std::array<PointN<D>, N> at;
     for (int i = 0; i < N; ++i) at[i] = flat<N>(part[i]);
+    // one side per face; the slope of the simplex from its heights
     bool thin = false;
     for (int omitted = 0; omitted < N; ++omitted) {
       std::array<PointN<D>, D> face;
@@ -102,6 +103,7 @@ class Prism {
       const double height = std::abs(content) / size;
       for (int k = 0; k < D; ++k) slope_[k] += part[omitted][D] * normal[k] / height;
     }
+    // thin: the sides of its bounding box as well
     if (thin) {
       slope_ = {};
       for (int k = 0; k < D; ++k)
@@ -111,6 +113,7 @@ class Prism {
           add_side(normal, at);
         }
     }
+    // range of heights
     level_ = part[0][D] - dot(slope_, at[0]);
     low_ = high_ = 0.0;
     for (const PointN<N>& corner : part) {
@@ -296,6 +299,7 @@ std::pair<double, double> heights_of_plane(const CornersN<N>& simplex, const Cor
 template <int N>
 std::optional<int> covers(const CornersN<N>& simplex, const PointN<N - 1>& x) {
   constexpr int D = N - 1;
+  // outside of the bounding box?
   std::array<PointN<D>, N> way;
   double longest = 0.0;
   for (int k = 0; k < D; ++k) {
@@ -308,6 +312,7 @@ std::optional<int> covers(const CornersN<N>& simplex, const PointN<N - 1>& x) {
     }
     if (!above || !below) return 0;
   }
+  // signs of the barycentric coordinates
   double enough = 1e-13;
   for (int k = 0; k < D; ++k) enough *= longest;
   int positive = 0, negative = 0;

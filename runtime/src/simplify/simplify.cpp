@@ -412,6 +412,7 @@ class Simplifier {
     if constexpr (N == 3) {
       const auto start = std::chrono::steady_clock::now();
       if (progress && !progress(0.0)) throw Error(ErrorCode::Cancelled, "simplification cancelled before it began");
+      // scale
       std::vector<PointN<3>> points;
       points.reserve(contour_.vertices.size());
       for (const auto& vertex : contour_.vertices) {
@@ -426,6 +427,7 @@ class Simplifier {
         const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // for the same errors as other methods
         require_manifold(contour_, "the contour");
       }
+      // simplify with the smallest tolerance; test whether it is the limit
       const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
       remains.simplices = within(tightest);
       limited_ = remains.simplices.size() > count_ && tightest < kInfinity &&
@@ -592,6 +594,7 @@ class Simplifier {
       number[v] = static_cast<Index>(kept_.size());
       kept_.push_back(static_cast<Index>(v));
     }
+    // simplices and vertices
     result.simplices.reserve(remains.simplices.size());
     for (auto simplex : remains.simplices) {
       for (Index& v : simplex) v = number[v];

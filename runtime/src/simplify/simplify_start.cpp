@@ -31,6 +31,7 @@ requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(cons
 
 template <int N, class Real>
 requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
+  // sum of the extents of all simplices
   std::array<double, N> extent{};
   for (const auto& simplex : contour.simplices)
     for (int a = 0; a < N; ++a) {
@@ -41,6 +42,7 @@ requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const C
       }
       extent[a] += static_cast<double>(high) - static_cast<double>(low);
     }
+  // axes with another unit are scaled to the extent of the first
   std::array<double, N> result;
   for (int a = 0; a < N; ++a) {
     const bool same = contour.axis_units[a] == contour.axis_units[0];

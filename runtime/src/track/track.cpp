@@ -285,12 +285,14 @@ TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep)
     keep_segment[s] = keep[segment.track];
     if (keep_segment[s]) keep_event[segment.from] = keep_event[segment.to] = true;
   }
+  // new numbers
   const std::vector<Index> tracks = renumber(keep);
   const std::vector<Index> segments = renumber(keep_segment);
   const std::vector<Index> events = renumber(keep_event);
   keep_only(result.tracks, tracks);
   keep_only(result.segments, segments);
   keep_only(result.events, events);
+  // renumber the references
   for (Track& track : result.tracks) renumber_all(track.segments, segments);
   for (TrackSegment& segment : result.segments) {
     segment.from = events[segment.from];

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Contraction and pruning of the graph of a sweep; see track_graph.hpp.
 #include "track/track_graph.hpp"
 
 #include <algorithm>

@@ -97,11 +97,13 @@ class SweptComplex {
     const auto at = [&](Buffer<Index>& of, std::size_t i) {
       return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
     };
+    // sort each part
     in_parts(
         count, part_of(progress, 0.0, 0.5),
         [&](std::size_t from, std::size_t to) { std::sort(at(order_, from), at(order_, to), comes_first); }, kPart);
     tell(progress, 0.5);
     Buffer<Index>& merged = rank_;  // unused so far: scratch for merging
+    // merge parts in pairs
     for (std::size_t size = kPart; size < count; size *= 2) {
       in_parts(
           count, {},

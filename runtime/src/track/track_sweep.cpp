@@ -217,7 +217,7 @@ class Sweeper {
         result_.simplex_arcs[s] = components_[sets_.find(labels_[s])].arc;
   }
 
-  // separation of the cells above a vertex
+  // ---- separation of the cells above a vertex ----
 
   /// Cells reached from one group, in breadth-first order.
   struct Front {
