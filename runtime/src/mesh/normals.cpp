@@ -111,7 +111,7 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
       const double measure = detail::length_of<N>(normal);
       for (int j = 0; j < N; ++j) shares[i].weights[j] = weight_of<N>(corners, j, measure, weights);
     });
-    // In the order of simplices, whoever works.
+    // Sequential, in the order of simplices: sums do not depend on the threads.
     for (std::size_t i = 0; i < batch; ++i)
       for (int j = 0; j < N; ++j)
         for (int a = 0; a < N; ++a)

@@ -23,7 +23,7 @@ namespace {
 
 /// Nodes are numbered 1 ... C in the order of their values. The children of a node with z trailing zeros are 2^(z-1)
 /// away; if C + 1 is no power of two, some nodes of the implicit tree do not exist. Bin j - 1 is node j; bin C + c is
-/// the leaf after c values.
+/// the leaf above the first c node values.
 template <Value T>
 struct IntervalLists {
   std::vector<T> values;             ///< by node
