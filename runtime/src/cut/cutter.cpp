@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of simplicial contours by hyperplanes. What follows speaks of "last coordinate = constant"; in other hyperplanes
-// the height over them takes the last coordinate's place, and a right-handed frame with the normal that of the axes.
-// None of it depends on more than the order of the vertices' heights, so any function of the vertices would do.
+// Cuts of simplicial contours by hyperplanes. The text below says "last coordinate = constant". For other hyperplanes
+// the height over the hyperplane replaces the last coordinate, and a right-handed frame with the normal replaces the
+// axes. The construction depends only on the order of the vertices' heights, so any function on the vertices may serve
+// as the height.
 //
-// Orientation. Let (v_0 … v_{N-1}) be a contour's simplex, positive towards d: det[v_1 - v_0, …, v_{N-1} - v_0, d] > 0,
-// and g a direction inside the simplex with a positive last component. A simplex of the cut with edges f_1 … f_{N-2}
-// must be positive towards the same d, taken inside the hyperplane: det[f_1, …, f_{N-2}, d, e_{N-1}] > 0. As g is
-// e_{N-1} times a positive number plus a part inside the hyperplane, exchanging two columns gives det[f_1, …, f_{N-2},
-// g, d] < 0: the cut (f_1 … f_{N-2}), followed by the way up, is a negative frame of the simplex. So the orientation
-// follows from which vertices are above and from their order alone, also where coordinates coincide.
+// Orientation. Let (v_0 … v_{N-1}) be a simplex of the contour, positive towards d: det[v_1 - v_0, …, v_{N-1} - v_0, d]
+// > 0, and let g be a direction inside the simplex with a positive last component. A simplex of the cut with edges f_1
+// … f_{N-2} must be positive towards the same d, within the hyperplane: det[f_1, …, f_{N-2}, d, e_{N-1}] > 0. Because g
+// is a positive multiple of e_{N-1} plus a part inside the hyperplane, exchanging two columns gives det[f_1, …,
+// f_{N-2}, g, d] < 0: the cut (f_1 … f_{N-2}), followed by the upward direction, is a negative frame of the simplex. So
+// the orientation follows only from which vertices are above and from their order, even if coordinates coincide.
 //
-// Why the cut is closed where the contour is. Let h be the hyperplane's coordinate, and call a vertex at h "on". If on
-// vertices count as above, simplices have points on the same edges as at h - e, for any e > 0 smaller than the distance
-// to the next vertex below: combinatorially the cut is that at h - e, a manifold. If they count as below, it is the cut
-// at h + e; and as the argument is about one vertex at a time, groups of on vertices without an edge between them may
-// count differently. A group (on vertices connected by edges among themselves) counts as below if no edge of it goes
-// down, else as above: the limit from below where there is one.
-// The points around an on vertex u are then drawn together into u. That keeps the manifold if those points span a disc
-// (of discs drawn to points a surface comes out unchanged: R. L. Moore, Concerning upper semi-continuous collections of
-// continua, 1925), but pinches it where h is a critical value at u. There the points are left apart, each in u's place.
+// Why the cut of a closed contour is closed. Let h be the coordinate of the hyperplane, and call a vertex at h "on". If
+// on vertices count as above, simplices have cut points on the same edges as at h - e, for any e > 0 smaller than the
+// distance to the next vertex below: combinatorially the cut is the one at h - e, a manifold. If they count as below,
+// it is the cut at h + e. The argument concerns one vertex at a time, so groups of on vertices without an edge between
+// them may count differently. A group (on vertices connected by edges among themselves) counts as below if no edge
+// leads down from it, else as above: the cut is the limit from below if that exists.
+// The cut points around an on vertex u are then merged into u. The result is a manifold if these points span a disc
+// (contracting discs to points does not change a surface: R. L. Moore, Concerning upper semi-continuous collections of
+// continua, 1925). It is pinched if h is a critical value at u. Such points are kept separate, each at the place of u.
 //
-// Why the cut at a layer of the image is that layer's contour M: the on vertices are M's vertices (up to samples that
-// equal the isovalue). With tiles below, each face of M is met by one simplex from below; the cut of that simplex is
-// the face, other simplices collapse. Without any (the first layer, or missing values below) M's vertices count as
-// below, and the simplices above cut to its faces in the same way; if the contour is closed at its first layer, the cap
-// lies flat in the hyperplane with nothing below. Where tiles below are missing under a part of M alone, the faces
-// met from above are boundary faces of the contour, and are added as they are.
+// Why the cut at a layer of the image is the contour M of that layer. The on vertices are the vertices of M (except for
+// samples equal to the isovalue). If there are tiles below, each face of M is a face of one simplex from below. The cut
+// of that simplex is the face; other simplices collapse. Without tiles below (first layer, or missing values below),
+// the vertices of M count as below, and the simplices above are cut to its faces in the same way. If the contour is
+// closed at its first layer, the cap lies in the hyperplane with nothing below. If tiles below are missing only under a
+// part of M, the faces with simplices above are boundary faces of the contour and are added unchanged.
 //
-// Boundary faces lie flat in the hyperplane for another reason too where samples equal the isovalue: faces in a side of
-// the image along another axis whose vertices all happen to be on. The cut from below is whole without them. The
-// extraction makes none for layers of the last axis; for others, faces that may be such ones are left out, and so are
-// all in oblique hyperplanes, which are no layers.
+// If samples equal the isovalue, boundary faces may also lie in the hyperplane for another reason: faces in a side of
+// the image along another axis whose vertices are all on. The cut from below is complete without them. The extraction
+// creates no such faces for layers of the last axis. For other axes, faces that may be of this kind are omitted; for
+// oblique hyperplanes, which are no layers, all are omitted.
 #include "cut/cutter.hpp"
 
 #include <algorithm>
@@ -54,7 +55,7 @@
 namespace tegl::detail {
 namespace {
 
-/// The places of a simplex's vertices with those of `high` (bit j: vertex j) first, by an even permutation.
+/// The positions of a simplex's vertices with those in `high` (bit j: vertex j) first, by an even permutation.
 template <int N>
 constexpr std::array<std::uint8_t, N> high_first(unsigned high) {
   std::array<std::uint8_t, N> sorted{};
@@ -66,7 +67,7 @@ constexpr std::array<std::uint8_t, N> high_first(unsigned high) {
       std::swap(sorted[j], sorted[j - 1]);
       odd = !odd;
     }
-  // There are at least three vertices, so two on one side to make the permutation even with.
+  // With at least three vertices, one side has two of them; exchanging them makes the permutation even.
   const int high_count = std::popcount(high);
   if (odd && high_count >= 2) std::swap(sorted[0], sorted[1]);
   if (odd && high_count < 2) std::swap(sorted[N - 2], sorted[N - 1]);
@@ -79,7 +80,7 @@ constexpr auto kHighFirst = [] {
   return all;
 }();
 
-/// The pairs (above, below) of places in the order of `high_first` whose edges the cut's points lie on, in the
+/// The pairs (above, below) of positions, in the order of `high_first`, whose edges carry the cut points, with the
 /// orientation derived at the top of this file.
 using Pairs = std::array<std::pair<int, int>, 4>;
 template <int N>
@@ -131,11 +132,11 @@ class Cutter {
   struct OnFace {
     std::array<Index, N - 1> vertices;  // ascending
     Index simplex;
-    int omitted;  // the place in the simplex of the vertex that is not in the face
+    int omitted;  // position in the simplex of the vertex that is not in the face
   };
   static constexpr unsigned kAll = (1u << N) - 1;
 
-  /// Which vertices of a simplex are below the hyperplane, and which on it: bit j for vertex j.
+  /// The vertices of a simplex below the hyperplane and on it: bit j for vertex j.
   struct Sides {
     std::uint8_t below = 0;
     std::uint8_t on = 0;
@@ -144,10 +145,10 @@ class Cutter {
   [[nodiscard]] double height(Index v) const { return section_.height(contour_.vertices[v]); }
   [[nodiscard]] bool is_on(Index v) const { return height(v) == level_; }
 
-  /// Finds the sides of all vertices, those that are on, and which of these count as below.
+  /// Classifies all vertices, lists the on vertices, and finds those that count as below.
   void classify() {
-    // A number for each on vertex of each simplex: twice the vertex, plus 1 if the simplex reaches down. Most repeat
-    // what one of the simplices before had, which a short memory of these shows.
+    // One entry per on vertex of each simplex: twice the vertex, plus 1 if the simplex has a vertex below. Most entries
+    // are duplicates from neighbouring simplices; a small cache of recent entries removes them.
     std::vector<std::uint64_t> on;
     constexpr std::size_t kRecent = 1 << 12;
     std::vector<std::uint64_t> recent(kRecent, ~std::uint64_t{0});
@@ -187,7 +188,7 @@ class Cutter {
     if (!all_have) group_on_vertices(std::move(has_way_down));
   }
 
-  /// Makes groups of on vertices without a way down count as below.
+  /// Marks the groups of on vertices without an edge leading down: they count as below.
   void group_on_vertices(std::vector<bool> has_way_down) {
     BasicDisjointSets<std::size_t> groups(on_.size());
     for (std::size_t i = 0; i < touching_.size(); ++i) {
@@ -215,7 +216,7 @@ class Cutter {
     return result;
   }
 
-  /// The vertices of the i-th touching simplex that are above or count so.
+  /// The vertices of the i-th touching simplex that are above or count as above.
   [[nodiscard]] unsigned high(std::size_t i) const {
     return (kAll & ~(unsigned{sides_[i].below} | sides_[i].on)) | on_high(i);
   }
@@ -233,8 +234,8 @@ class Cutter {
     return piece;
   }
 
-  /// What is cut out of all simplices, with the points around on vertices drawn together, but for those left `apart`.
-  /// Pieces that collapse are left out.
+  /// The pieces of all simplices. Points around on vertices are merged, except around the vertices in `apart`.
+  /// Collapsed pieces are omitted.
   [[nodiscard]] std::vector<Piece> cut_pieces(const std::vector<bool>& apart) const {
     const bool any_apart = std::find(apart.begin(), apart.end(), true) != apart.end();
     const auto is_drawn = [&](Index v) { return !any_apart || !apart[on_(v)]; };
@@ -252,7 +253,7 @@ class Cutter {
       for (int k = 0; k < piece.count; ++k) {
         const std::optional<Index> on = on_end(piece.points[k]);
         const PointKey key = on && is_drawn(*on) ? vertex_point(*on) : piece.points[k];
-        // Points drawn together are neighbours in the cycle: they share the on vertex.
+        // Merged points are adjacent in the cycle, because they share the on vertex.
         const bool repeats = drawn.count > 0 &&
                              (drawn.points[drawn.count - 1] == key || (k == piece.count - 1 && drawn.points[0] == key));
         if (!repeats) drawn.points[drawn.count++] = key;
@@ -262,7 +263,7 @@ class Cutter {
     return result;
   }
 
-  /// The end of a point's edge that is on; an edge has at most one, as its ends would be in one group.
+  /// The end of a point's edge that is on. At most one end is on: two would be in the same group and on the same side.
   [[nodiscard]] std::optional<Index> on_end(PointKey key) const {
     if (on_.empty()) return std::nullopt;
     if (is_on(upper_end(key))) return upper_end(key);
@@ -270,8 +271,8 @@ class Cutter {
     return std::nullopt;
   }
 
-  /// Draws the points around on vertices together. Where the result is pinched and the points themselves were not, the
-  /// vertices concerned are left apart; each round leaves more of them so, and with all apart nothing is pinched.
+  /// Merges the points around on vertices. If the result is pinched at a vertex where the points themselves were not,
+  /// that vertex is left apart. Each round leaves more vertices apart; with all apart, nothing is pinched.
   void draw_together() {
     std::vector<Piece> faces = faces_met_from_above();
     std::vector<bool> apart(on_.size(), false);
@@ -294,8 +295,8 @@ class Cutter {
     corners_ = corners_by_point(pieces_, most_);
   }
 
-  /// Marks the on vertices among the pinched points (or all on vertices), except those around which the points were
-  /// pinched before, as a contour may be next to missing values. True if that changes anything.
+  /// Marks the on vertices among the pinched points (with `all`, every on vertex) as apart, except those whose points
+  /// were already pinched before merging, as next to missing values. Returns whether anything changed.
   bool leave_apart(const std::vector<PointKey>& pinched, const std::vector<PointKey>& excused, bool all,
                    std::vector<bool>& apart) const {
     std::vector<bool> candidates(apart.size(), all && !pinched.empty());
@@ -312,8 +313,8 @@ class Cutter {
     return changed;
   }
 
-  /// Drops the faces at vertices around which the cut is pinched although they are left apart: there faces alone meet.
-  /// True if there are any.
+  /// Removes faces at vertices that are apart and still pinched: only faces meet there. Returns whether any were
+  /// removed.
   bool drop_faces(const std::vector<PointKey>& pinched, const std::vector<bool>& apart,
                   std::vector<Piece>& faces) const {
     return std::erase_if(faces, [&](const Piece& face) {
@@ -323,7 +324,7 @@ class Cutter {
            }) > 0;
   }
 
-  /// How far the touching simplices reach along each axis.
+  /// Range of the touching simplices along each axis.
   using Reach = std::array<std::pair<Real, Real>, N>;
   [[nodiscard]] Reach reach() const {
     Reach result;
@@ -338,8 +339,8 @@ class Cutter {
     return result;
   }
 
-  /// Whether a boundary face of a simplex may lie in a side of the image along another axis than the cut's: there it
-  /// has one coordinate, and its simplex goes on inwards, or lies in the side as well, beyond which nothing reaches.
+  /// Whether a boundary face may lie in a side of the image along another axis than the cut's. Then all its vertices
+  /// share that coordinate, and its simplex extends inwards or lies in the side as well, at the end of the range.
   [[nodiscard]] bool may_lie_in_another_side(const OnFace& face, const Reach& reach) const {
     const auto& inside = contour_.vertices[contour_.simplices[face.simplex][face.omitted]];
     const auto& first = contour_.vertices[face.vertices[0]];
@@ -354,7 +355,8 @@ class Cutter {
     return false;
   }
 
-  /// The contour's boundary faces among vertices that count as above, whose simplex is above; see the top of this file.
+  /// The boundary faces of the contour among on vertices that count as above, with their simplex above; see the top of
+  /// this file.
   [[nodiscard]] std::vector<Piece> faces_met_from_above() const {
     if (!section_.is_across_axis()) return {};
     std::vector<OnFace> on_faces;
@@ -365,10 +367,12 @@ class Cutter {
     const auto before = [](const OnFace& a, const OnFace& b) {
       return std::tie(a.vertices, a.simplex) < std::tie(b.vertices, b.simplex);
     };
+    // sort by all vertices within runs of equal first vertex
     for (auto from = on_faces.begin(), to = from; from != on_faces.end(); from = to) {
       to = std::find_if(from, on_faces.end(), [&](const OnFace& f) { return f.vertices[0] != from->vertices[0]; });
       std::sort(from, to, before);
     }
+    // keep the boundary faces whose simplex is above
     std::vector<Piece> faces;
     if (on_faces.empty()) return faces;
     const Reach reach = this->reach();
@@ -395,7 +399,7 @@ class Cutter {
     }
   }
 
-  /// Numbers the points in the order of their keys, and puts numbers in the place of keys.
+  /// Numbers the points in the order of their keys and replaces keys by numbers.
   void number_points() {
     for (const Corner& corner : corners_) {
       if (keys_.empty() || keys_.back() != corner.key) keys_.push_back(corner.key);
@@ -406,7 +410,7 @@ class Cutter {
                                                    std::numeric_limits<Index>::max()));
   }
 
-  /// A point's edge, which is both times the same vertex if that is on, and how far up it lies.
+  /// The edge of a point and the fraction at which it lies. If a vertex is on, both ends are that vertex.
   struct Place {
     Index low;
     Index high;
@@ -434,8 +438,8 @@ class Cutter {
     return result;
   }
 
-  /// The contour's normal there, within the hyperplane: what is left there of a gradient is that of the field in the
-  /// hyperplane.
+  /// The normal of the contour at the point, projected into the hyperplane: the projected gradient is the gradient of
+  /// the field in the hyperplane.
   [[nodiscard]] std::array<Real, N - 1> normal(PointKey key) const {
     const auto [low, high, share] = place(key);
     const std::array<double, N - 1> v = section_.within(between(contour_.normals[low], contour_.normals[high], share));
@@ -459,7 +463,7 @@ class Cutter {
   }
 
   void emit(Contour<N - 1, Real>& result) const {
-    std::vector<Index> inherited;  // the simplex that each of the cut's comes from
+    std::vector<Index> inherited;  // source simplex of each simplex of the cut
     const auto add = [&](const Piece& piece, const std::array<int, N - 1>& corners) {
       std::array<Index, N - 1> simplex;
       for (int i = 0; i < N - 1; ++i) simplex[i] = static_cast<Index>(piece.points[corners[i]]);
@@ -480,6 +484,7 @@ class Cutter {
         add(piece, {1, 3, 0});
       }
     }
+    // copy the attributes of the source simplices
     for (const Attribute& attribute : contour_.simplex_attributes) {
       const auto width = static_cast<std::size_t>(attribute.width);
       Attribute& rows = result.simplex_attributes.emplace_back();
@@ -492,8 +497,8 @@ class Cutter {
     }
   }
 
-  /// The shorter diagonal; of two equal ones that with the first end in lexicographic order of the coordinates, so
-  /// that the choice depends on the points' places alone.
+  /// Splits at the shorter diagonal. Of two equal ones, takes the one with the first end in lexicographic order of the
+  /// coordinates, so that the choice depends only on the places of the points.
   static bool splits_from_first(const Contour<N - 1, Real>& result, const Piece& piece) {
     const auto corner = [&](int i) -> const std::array<Real, N - 1>& { return result.vertices[piece.points[i]]; };
     const auto length = [&](int i, int j) {
@@ -510,19 +515,19 @@ class Cutter {
     return std::minmax(corner(0), corner(2)) <= std::minmax(corner(1), corner(3));
   }
 
-  static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart at once, to bound the time
+  static constexpr int kMostRounds = 16;  ///< then all on vertices are left apart, to bound the time
 
   const Contour<N, Real>& contour_;
   const Section<N>& section_;
   const double level_;
-  const std::vector<Index>& touching_;  ///< simplices not wholly on one side
-  IndexMap on_;                         ///< vertices on the hyperplane, of those simplices
-  std::vector<bool> is_low_;            ///< of these
+  const std::vector<Index>& touching_;  ///< simplices not entirely on one side
+  IndexMap on_;                         ///< vertices of these simplices on the hyperplane
+  std::vector<bool> is_low_;            ///< by on vertex: whether it counts as below
   bool any_low_ = false;
-  std::vector<Sides> sides_;  ///< of the touching simplices
-  Index most_ = 0;            ///< the largest number of their vertices
+  std::vector<Sides> sides_;  ///< by touching simplex
+  Index most_ = 0;            ///< maximum number of their vertices
   std::vector<Piece> pieces_;
-  std::vector<Corner> corners_;  ///< of the pieces
+  std::vector<Corner> corners_;  ///< incidences of the pieces, sorted by key
   std::vector<PointKey> keys_;
 };
 

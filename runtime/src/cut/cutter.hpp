@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The cut of some simplices of a contour by a hyperplane: what all ways of cutting have in common.
+// Cut of some simplices of a contour by a hyperplane, shared by all cutting functions.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,8 @@
 
 namespace tegl::detail {
 
-/// The cut at `level` of the simplices `touching`: those that have vertices at or on both sides of it, ascending. No
-/// other simplex of the contour has a part in the cut. O(c) for c of them, and O(c log c) if vertices lie at the level;
-/// as much memory.
+/// The cut at `level`. `touching`: ascending, all simplices with vertices at the level or on both sides of it; no other
+/// simplex contributes to the cut. O(c) time for c of them, or O(c log c) if vertices lie at the level; O(c) memory.
 template <int N, class Real>
 Contour<N - 1, Real> cut_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level,
                                    const std::vector<Index>& touching);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Frames of hyperplanes.
+// Coordinate frames of hyperplanes, and scaling of axes.
 #include "tegl/hyperplane.hpp"
 
 #include <cmath>
@@ -22,22 +22,23 @@ requires DimensionBetween<N, 2, 4> HyperplaneFrame<N> frame_of(const Hyperplane<
   HyperplaneFrame<N> frame;
   for (int a = 0; a < N; ++a)
     if (std::abs(normal[a]) == most) frame.dropped = a;
-  // Divided by the largest component first: the length of what is left neither overflows nor vanishes.
+  // Divide by the largest component first, so that the length neither overflows nor vanishes.
   const Eigen::Matrix<double, N, 1> shrunk = normal / most;
   const double length = shrunk.norm();
   frame.up = shrunk / length;
   frame.origin = frame.up * (hyperplane.offset / most / length);
   const int k = frame.dropped;
   const Eigen::Matrix<double, N, 1> nearer = frame.up[k] < 0.0 ? (-frame.up).eval() : frame.up;
-  // The rotation in the plane of e_k and u that takes one to the other takes e_i to e_i - u_i / (1 + u_k) (e_k + u).
+  // The rotation in the plane of e_k and u that maps one to the other maps e_i to e_i - u_i / (1 + u_k) (e_k + u).
   for (int i = 0, column = 0; i < N; ++i) {
     if (i == k) continue;
     Eigen::Matrix<double, N, 1> axis = -(nearer[i] / (1.0 + nearer[k])) * nearer;
     axis[k] -= nearer[i] / (1.0 + nearer[k]);
     axis[i] += 1.0;
-    frame.axes.col(column++) = axis.array() + 0.0;  // no -0, which reads badly
+    frame.axes.col(column++) = axis.array() + 0.0;  // turns -0 into 0, for output
   }
-  // A rotation keeps the sign of det[e_0 … without e_k … e_{N-1}, e_k], which N - 1 - k exchanges bring to 1.
+  // A rotation preserves the sign of det[e_0 … without e_k … e_{N-1}, e_k]; N - 1 - k exchanges make that determinant
+  // 1.
   frame.is_right_handed = ((N - 1 - k) % 2 == 0) == (frame.up[k] > 0.0);
   return frame;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Parallel hyperplanes, as all ways of cutting understand them: how high a vertex lies, where a hyperplane lies, and
-// what coordinates its points have.
+// A family of parallel hyperplanes, used by all cutting functions: heights of vertices, levels of hyperplanes, and
+// coordinates within them.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 
 namespace tegl::detail {
 
-/// The hyperplanes with a certain normal. Across a coordinate axis heights are that coordinate, or its opposite, and
-/// points have the other coordinates: no bit is changed. Else heights are <normal, x>, summed up in the order of the
-/// axes, divided by the power of two that makes the normal's largest component one from 1 to 2: neither huge normals
-/// nor tiny ones overflow or vanish, and no bit of others' sums changes. What a cut is like as a complex depends on
-/// the order of heights alone, so rounding does it no harm.
+/// The hyperplanes with a given normal. If the normal is parallel to a coordinate axis, heights are that coordinate or
+/// its negative, and points keep the other coordinates exactly. Otherwise heights are <normal, x>, summed in the order
+/// of the axes, with the normal divided by the power of two that brings its largest component between 1 and 2. So
+/// neither large nor small normals overflow or underflow, and the scaling adds no rounding error. The combinatorial cut
+/// depends only on the order of heights, so rounding does no harm.
 template <int N>
 class Section {
  public:
@@ -35,7 +35,7 @@ class Section {
     is_reversed_ = normal[frame_.dropped] < 0.0;
   }
 
-  /// The height of the hyperplane <normal, x> = offset, in the precision of the vertices' heights.
+  /// The height of the hyperplane <normal, x> = offset, rounded as the heights of vertices.
   template <class Real>
   [[nodiscard]] double level(double offset) const {
     constexpr double kMost = std::numeric_limits<double>::max();
@@ -58,7 +58,7 @@ class Section {
   /// The offset of the hyperplane at height 1; heights are offsets divided by it.
   [[nodiscard]] double unit() const noexcept { return unit_; }
 
-  /// What a vector of N-space is within the hyperplanes.
+  /// Components of a vector of N-space within the hyperplanes.
   [[nodiscard]] std::array<double, N - 1> within(const std::array<double, N>& x) const {
     std::array<double, N - 1> result;
     if (is_across_axis_) {
@@ -73,9 +73,9 @@ class Section {
     return result;
   }
 
-  /// Whether the cut's i-th coordinate is one of the contour's: that of the i-th axis of those that are not dropped.
+  /// Whether the i-th coordinate of the cut is a coordinate of the contour: that of the i-th axis that is not dropped.
   [[nodiscard]] bool keeps_axis(int i) const { return normal_[i < dropped_axis() ? i : i + 1] == 0.0; }
-  /// Whether the normal is a multiple of an axis, which is then the one that is dropped.
+  /// Whether the normal is a multiple of an axis, which is the dropped axis.
   [[nodiscard]] bool is_across_axis() const noexcept { return is_across_axis_; }
   /// Whether the normal is a positive multiple of the last axis.
   [[nodiscard]] bool is_along_last_axis() const noexcept {

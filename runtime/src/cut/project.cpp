@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Projections of 4D contours to space, and their outlines.
+// Projections of 4D contours to 3D, and their outlines (silhouettes).
 //
-// The outline is where the line of sight touches the contour: where the contour's normal is at a right angle to it. To
-// tell near tetrahedra from far ones would give the outline of the simplices: jagged, with a fold wherever the
-// diagonals of a crooked quadrilateral change from one time to the next. Instead the normals at the vertices are
-// interpolated, as is usual for silhouettes of surfaces: the outline is the zero set of a linear function on each
-// tetrahedron. That is a cut, with the function in the place of a coordinate; cutter.cpp says why the cut of a manifold
-// is one.
+// The outline is the set where the line of sight is tangent to the contour, that is, orthogonal to its normal.
+// Classifying tetrahedra as near or far would give the outline of the simplices: jagged, with a fold wherever the
+// diagonal of a nonplanar quadrilateral changes from one time to the next. Instead the normals at the vertices are
+// interpolated, as is usual for silhouettes of surfaces. The outline is then the zero set of a function that is linear
+// on each tetrahedron, that is, a cut with the function as a coordinate. cutter.cpp proves that the cut of a manifold
+// is a manifold.
 //
 // Based on: A. Hertzmann and D. Zorin, Illustrating smooth surfaces, 2000 (outlines by interpolated normals);
 // M. Liversage, thesis, 1994, section 10.2.
@@ -39,11 +39,11 @@ void report(const Progress& progress, double fraction) { detail::tell(progress, 
 template <class Real>
 struct View {
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> flat;  ///< points before perspective, if there is any
+  std::vector<Eigen::Vector3d> flat;  ///< points before perspective; empty without it
   std::vector<double> heights;
   bool is_right_handed = true;
-  double least = 0.0;                                ///< height
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the points' bounding box; with perspective
+  double least = 0.0;                                ///< minimum height
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the bounding box of the points; only with perspective
 };
 
 void check_projection(const Projection& projection) {
@@ -52,7 +52,7 @@ void check_projection(const Projection& projection) {
                 fmt::format("eye at the distance {}; expected 0 or more", projection.eye_distance));
 }
 
-/// Draws the points towards the middle of their bounding box, the more the higher they are.
+/// Perspective: moves the points towards the middle of their bounding box, by more at greater height.
 template <class Real>
 void draw_towards_middle(View<Real>& view, double distance) {
   if (distance == 0.0 || view.points.empty()) return;
@@ -70,8 +70,8 @@ void draw_towards_middle(View<Real>& view, double distance) {
         view.middle + (view.points[v] - view.middle) * (distance / (distance + (view.heights[v] - view.least)));
 }
 
-/// Whether a tetrahedron is on the far side: whether its positive side, if that faces low, faces upwards.
-/// Edge-on ones are; what is less than rounding may be counts as that.
+/// Whether a tetrahedron is on the far side: its normal, directed towards low values, has a positive height component.
+/// Tetrahedra that are edge-on, up to rounding, count as far.
 template <class Real>
 bool is_far(const View<Real>& view, const std::array<Index, 4>& simplex, bool flip) {
   Eigen::Matrix3d edges;
@@ -109,7 +109,7 @@ void replace(std::vector<Attribute>& attributes, Attribute attribute) {
   attributes.push_back(std::move(attribute));
 }
 
-/// The height as an attribute of the vertices.
+/// Vertex attribute with the heights.
 template <class Real>
 Attribute height_attribute(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
   const Section<4> section(projection.direction);
@@ -124,7 +124,7 @@ Attribute height_attribute(const Contour<4, Real>& contour, const Projection& pr
   return height;
 }
 
-/// Names and units of the axes that the frame keeps.
+/// Copies the names and units of the axes that the frame keeps.
 template <class Real>
 void name_axes(const Contour<4, Real>& contour, const Projection& projection, std::array<std::string, 3>& names,
                std::array<std::string, 3>& units) {
@@ -139,14 +139,15 @@ void name_axes(const Contour<4, Real>& contour, const Projection& projection, st
 
 using Normals = std::vector<Eigen::Vector4d>;
 
-/// Vertices among tetrahedra of no size, as there are where samples equal the isovalue, get the normals around them.
+/// Vertices whose tetrahedra all have zero volume (this happens if samples equal the isovalue) get the sum of
+/// neighbouring normals.
 template <class Real>
 void fill_from_neighbours(const Contour<4, Real>& contour, Normals& normals) {
   double sum = 0.0;
   for (const Eigen::Vector4d& normal : normals) sum += normal.norm();
   constexpr double kNone = 1e-12;
   const double least = kNone * sum / std::max(1.0, static_cast<double>(normals.size()));
-  constexpr int kMostRounds = 8;  // a vertex further from all that have a size is seen edge-on
+  constexpr int kMostRounds = 8;  // a vertex farther from all nonzero tetrahedra counts as edge-on
   for (int round = 0; round < kMostRounds; ++round) {
     Normals more(normals.size(), Eigen::Vector4d::Zero());
     bool any = false;
@@ -163,9 +164,9 @@ void fill_from_neighbours(const Contour<4, Real>& contour, Normals& normals) {
   }
 }
 
-/// For each vertex, how much its normal, the sum of those of the tetrahedra around it, points along the line of sight:
-/// below 0 on the near side of a contour that faces low, above 0 on the far side. What is less than rounding may be is
-/// far, as for tetrahedra.
+/// By vertex, the cosine between the line of sight and its normal (the sum of the normals of its tetrahedra), directed
+/// towards low values: negative on the near side, positive on the far side. Values within rounding of 0 count as far,
+/// as for tetrahedra.
 template <class Real>
 std::vector<double> along_sight(const Contour<4, Real>& contour, const Projection& projection, const View<Real>& view) {
   const HyperplaneFrame<4> frame = frame_of(Hyperplane<4>{projection.direction, 0.0});
@@ -217,7 +218,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   report(options.progress, 0.3);
   const std::vector<double> sides = along_sight(contour, projection, view);
   report(options.progress, 0.6);
-  // The contour in the space of the result, with what parts the sides for a last coordinate: its cut at 0.
+  // The projected contour with the side function as last coordinate; the outline is its cut at 0.
   Contour<4, double> raised;
   raised.vertices.resize(view.points.size());
   for (std::size_t v = 0; v < view.points.size(); ++v)
@@ -238,7 +239,7 @@ Contour<3, Real> outline(const Contour<4, Real>& contour, const Projection& proj
   result.simplices = std::move(cut.simplices);
   result.vertex_attributes = std::move(cut.vertex_attributes);
   result.simplex_attributes = std::move(cut.simplex_attributes);
-  // The cut faces the side that the contour faces in the raised space, where the far side is up.
+  // The cut has the orientation of the contour in the raised space, where the far side is up.
   if (!view.is_right_handed)
     for (auto& simplex : result.simplices) std::swap(simplex[1], simplex[2]);
   report(options.progress, 1.0);

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The interval tree of a scrubber.
+// Scrubber: an interval tree of the heights of simplices, for many cuts by parallel hyperplanes.
 //
-// Places. Heights above the lowest one are rounded to float, and the bits of a float that is not negative are a whole
-// number in the same order: a place. Rounding keeps order (if not strictly), so a simplex that touches a hyperplane has
-// the hyperplane's place in its range of places; the few others that have it too are found out by their vertices.
+// Places. Heights above the lowest one are rounded to float. The bits of a nonnegative float, read as an integer, have
+// the same order: this integer is the place. Rounding preserves order (not strictly), so a simplex that touches a
+// hyperplane has the place of the hyperplane in its range of places. The few other simplices with that place are
+// excluded by their vertices.
 //
-// Nodes. The tree is the binary one of all 2^32 places, of which only nodes with simplices are stored. A range of
-// places [a, b] belongs to the node that parts a from b: the first d bits from the top that they have in common, then
-// 1, then zeros. This number m is in the range, a < m <= b, and tells the node: its last 1 says how deep that lies. A
-// range of one place a belongs to the node with m = a. So all ranges at a node contain m, and those that contain a
-// place p < m are those with a <= p, the first of the node in the order of a; likewise for b from m on. The ranges that
-// contain p belong to the at most 33 nodes that p's bits lead past.
+// Nodes. The tree is the binary tree over all 2^32 places; only nodes with simplices are stored. A range of places [a,
+// b] belongs to the node that separates a from b: the common leading bits of a and b, then 1, then zeros. This number m
+// satisfies a < m <= b and identifies the node; its lowest 1 bit determines the depth. A range of one place a belongs
+// to the node with m = a. So all ranges at a node contain m, and those that contain a place p < m are those with a <=
+// p: a prefix of the node's list sorted by a. The same holds for b if p >= m. The ranges that contain p belong to the
+// at most 33 nodes on the path of the bits of p.
 #include "tegl/scrubber.hpp"
 
 #include <algorithm>
@@ -63,6 +64,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
     nodes_.push_back({0, 0});
     return;
   }
+  // range of heights
   double highest = -std::numeric_limits<double>::infinity();
   lowest_ = -highest;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
@@ -76,6 +78,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
   struct Nothing {};
   detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
   constexpr std::size_t kGrain = std::size_t{1} << 14;
+  // range of places of each simplex
   std::vector<Range> ranges(contour.simplices.size());
   workers.for_range(ranges.size(), kGrain, [&](std::size_t from, std::size_t to, Nothing&) {
     for (std::size_t s = from; s < to; ++s) {
@@ -89,7 +92,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
       ranges[s] = {least, most, static_cast<Index>(s)};
     }
   });
-  // Stable sorts, least digit first: by one end, then by node.
+  // Stable radix sorts: by one end, then by node.
   const auto gather = [&](std::vector<Entry>& entries, double fraction, const auto& key, const auto& end) {
     report(options.progress, fraction);
     detail::sort_by_bits(ranges, kPlaceBits, key);
@@ -101,6 +104,7 @@ requires DimensionBetween<N, 3, 4> Scrubber<N, Real>::Scrubber(const Contour<N, 
       by_least_, 0.1, [](const Range& range) { return range.least; }, [](const Range& range) { return range.least; });
   gather(
       by_most_, 0.5, [](const Range& range) { return ~range.most; }, [](const Range& range) { return range.most; });
+  // nodes: runs of equal middle
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const std::uint32_t middle = middle_of(ranges[i].least, ranges[i].most);
     if (nodes_.empty() || nodes_.back().middle != middle) nodes_.push_back({middle, i});
@@ -114,7 +118,7 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4> std::uint32_t Scrubber<N, Real>::place(double height)
 const noexcept { return std::bit_cast<std::uint32_t>(static_cast<float>(std::max(0.0, height - lowest_))); }
 
-/// The node's simplices whose ranges contain the place `at`.
+/// Appends the simplices of a node whose ranges contain the place `at`.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 4>
 void Scrubber<N, Real>::visit(std::uint32_t middle, std::uint32_t at, std::vector<Index>& found) const {

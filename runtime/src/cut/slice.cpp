@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of whole contours, one or many of one pass: which simplices touch which hyperplane.
+// Cuts of whole contours, one or many in one pass: finds the simplices that touch each hyperplane.
 #include "tegl/slice.hpp"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ using detail::Section;
 template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
 
-/// Ascending.
+/// The simplices that touch the level, ascending.
 template <int N, class Real>
 std::vector<Index> touching_simplices(const Contour<N, Real>& contour, const Section<N>& section, double level) {
-  enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on counts as both
+  enum Side : unsigned char { kBelow = 1, kOn = 3, kAbove = 2 };  // on: counts as both
   std::vector<unsigned char> sides(contour.vertices.size());
   for (std::size_t v = 0; v < sides.size(); ++v) {
     const double height = section.height(contour.vertices[v]);
@@ -46,7 +46,7 @@ Contour<N - 1, Real> cut(const Contour<N, Real>& contour, const Section<N>& sect
   return detail::cut_simplices(contour, section, level, touching_simplices(contour, section, level));
 }
 
-/// For each of ascending levels the simplices that touch it, ascending: each simplex is looked at once.
+/// By level, the simplices that touch it, ascending; levels ascend. Each simplex is read once.
 template <int N, class Real>
 std::vector<std::vector<Index>> touching_levels(const Contour<N, Real>& contour, const Section<N>& section,
                                                 const std::vector<double>& levels) {
@@ -91,6 +91,7 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   detail::require_sound(contour);
   std::vector<double> levels;
   for (const double offset : offsets) levels.push_back(section.template level<Real>(offset));
+  // simplices by distinct level
   std::vector<double> sorted = levels;
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
@@ -99,7 +100,7 @@ requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack
   std::vector<Contour<N - 1, Real>> cuts(levels.size());
   struct Nothing {};
   detail::Workers<Nothing> workers(options.threads, [] { return Nothing(); });
-  // As many at a time as there are threads: between these the caller's progress is told.
+  // One cut per thread at a time, so that progress can be reported between groups.
   for (std::size_t first = 0; first < cuts.size(); first += workers.count()) {
     report(options.progress, (1.0 + static_cast<double>(first)) / (1.0 + static_cast<double>(cuts.size())));
     const std::size_t count = std::min(workers.count(), cuts.size() - first);

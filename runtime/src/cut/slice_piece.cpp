@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the pieces of a cut do not make a manifold: the links of its points.
+// Finds the points where the pieces of a cut are no manifold, by the links of points.
 #include "cut/slice_piece.hpp"
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 namespace tegl::detail {
 namespace {
 
-/// The links of points, one after the other, in memory that they share.
+/// Tests the links of points one by one, with shared memory.
 class Links {
  public:
   explicit Links(std::span<const Piece> pieces) : pieces_(pieces) {}
 
-  /// Whether the polygons at a point are one fan: their sides across from it (before it and after it, in the cycle)
-  /// make one path or one ring. The ends of those sides are the points that it has edges to.
+  /// Whether the polygons at a point form one fan: their edges in the link (from the previous to the next point of each
+  /// cycle) form one path or one cycle. The link's vertices are the neighbours of the point.
   bool is_fan(std::span<const Corner> corners) {
     ends_.clear();
     for (std::size_t c = 0; c < corners.size(); ++c) {
@@ -33,7 +33,7 @@ class Links {
     std::size_t parts = corners.size();
     for (std::size_t i = 1; i < ends_.size(); ++i) {
       if (ends_[i].first != ends_[i - 1].first) continue;
-      if (i >= 2 && ends_[i].first == ends_[i - 2].first) return false;  // an edge of three polygons
+      if (i >= 2 && ends_[i].first == ends_[i - 2].first) return false;  // an edge in three polygons
       parts -= sets_.join(ends_[i].second, ends_[i - 1].second);
     }
     return parts == 1;
@@ -57,7 +57,7 @@ std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most) 
       corners.push_back({pieces[p].points[i], 4 * p + static_cast<std::size_t>(i)});
   sort_by_bits(corners, static_cast<unsigned>(std::bit_width(most)),
                [](const Corner& corner) { return lower_end(corner.key); });
-  // Few edges begin at one vertex.
+  // Few edges share a lower end, so a comparison sort is fast.
   for (std::size_t i = 0, j = 0; i < corners.size(); i = j) {
     bool sorted = true;
     for (j = i + 1; j < corners.size() && lower_end(corners[j].key) == lower_end(corners[i].key); ++j)

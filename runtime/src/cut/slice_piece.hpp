@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a hyperplane cuts out of one simplex, before points have numbers and places.
+// The cut of one simplex by a hyperplane, before its points have numbers and coordinates.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// A point of a cut: (lower vertex << 32) | upper vertex of the edge that it lies on, or twice a vertex on the
-/// hyperplane.
+/// Key of a point of a cut: (lower vertex << 32) | upper vertex of its edge; for a vertex on the hyperplane both are
+/// that vertex.
 using PointKey = std::uint64_t;
 
 constexpr PointKey edge_point(Index lower, Index upper) { return (PointKey{lower} << 32) | upper; }
@@ -23,26 +23,25 @@ constexpr Index lower_end(PointKey key) { return static_cast<Index>(key >> 32); 
 constexpr Index upper_end(PointKey key) { return static_cast<Index>(key & 0xffffffffu); }
 constexpr bool is_vertex_point(PointKey key) { return lower_end(key) == upper_end(key); }
 
-/// The cut of one simplex: two points (N = 3), or three or four in cyclic order (N = 4).
+/// Cut of one simplex: two points (N = 3), or three or four in cyclic order (N = 4).
 struct Piece {
   std::array<PointKey, 4> points;
   int count = 0;
-  Index simplex = 0;  ///< the simplex
+  Index simplex = 0;  ///< the simplex that was cut
 };
 
-/// A point of a piece, as seen from the point.
+/// An incidence of a point and a piece.
 struct Corner {
   PointKey key;
-  std::size_t at;  ///< 4 times the piece, plus the point's place in it
+  std::size_t at;  ///< 4 * piece + position of the point in it
 };
 
-/// All points of all pieces in the order of their keys, those of one point in the order of the pieces. `most`: no
-/// vertex number is larger. O(c) for c pieces.
+/// All incidences sorted by key, then by piece. `most`: maximum vertex number. O(c) for c pieces.
 std::vector<Corner> corners_by_point(std::span<const Piece> pieces, Index most);
 
-/// The points, ascending, around which the pieces are not one fan (of polygons) or one path (of segments), or from
-/// which an edge goes out that more than two polygons share. `corners`: of these pieces. O(c) for c pieces if few meet
-/// at each point.
+/// The keys, ascending, of the points at which the pieces do not form one fan (polygons) or one path (segments), or
+/// that have an edge in more than two polygons. `corners`: of these pieces. O(c) for c pieces if few meet at each
+/// point.
 std::vector<PointKey> pinched_points(std::span<const Piece> pieces, std::span<const Corner> corners);
 
 }  // namespace tegl::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Extraction where an index knows the active tiles.
+// Extraction with an index of the active tiles.
 #include <string>
 
 #include <fmt/format.h>
@@ -38,7 +38,8 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& i
   const bool finds_all = active.is_complete() && options.close && missing;
   if (active.grid().count() == 0 || finds_all) return extract<Real>(image, isovalue, options, stats);
   detail::Stopwatch watch;
-  // Next to missing values rows that are not looked at tell nothing of each other.
+  // A skipped row provides no state to its neighbours, which extraction next to missing values needs: then select tiles
+  // instead of rows.
   const detail::TileSelection selection = active.is_complete() && !missing
                                               ? detail::TileSelection::rows_of(active, isovalue)
                                               : detail::TileSelection::tiles_of(active, isovalue);
@@ -52,7 +53,7 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> extract(const Image<T, N>& i
   return contour;
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                           \
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                         \
   template Contour<N, Real> extract<Real, T, N>(const Image<T, N>&, double, const ExtractOptions&, \
                                                 const ActiveTiles<N>&, ExtractStats*);
 #include "base/instantiate.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The public function: its arguments, and the hand-over to the kernel, which knows no value type.
-// Included by the sources that instantiate it, a few value types each, so that they compile side by side.
+// The public function `extract`: checks its arguments and calls the kernel, which is independent of the value type.
+// Each source that includes this file instantiates a few value types, so that they compile in parallel.
 #pragma once
 
 #include "image/transposed_layers.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sizes of contours, and contours in memory of the caller's.
+// Sizes of contours, and extraction into memory of the caller.
 #include <algorithm>
 #include <span>
 
@@ -14,7 +14,7 @@ namespace tegl {
 namespace detail {
 namespace {
 
-/// Keeps nothing.
+/// Discards everything.
 template <int N, class Real>
 class NoSink final : public ContourSink<N, Real> {
  public:
@@ -25,7 +25,7 @@ class NoSink final : public ContourSink<N, Real> {
   void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
 };
 
-/// What is missing in too little room.
+/// Names of items in error messages.
 constexpr const char* kVertices = "vertices";
 constexpr const char* kNormals = "normals";
 constexpr const char* kSimplices = "simplices";
@@ -37,7 +37,7 @@ void check_room(std::uint64_t room, std::uint64_t needed, const char* items) {
                 fmt::format("room for {} {}; the contour has {} or more (tegl::count tells)", room, items, needed));
 }
 
-/// Sizes alone. Of borders and missing values it cannot tell.
+/// Counts only. It counts neither caps nor vertices doubled at missing values.
 template <int N, class Real>
 class CountOutput final : public ContourOutput<N, Real> {
  public:
@@ -52,7 +52,7 @@ class CountOutput final : public ContourOutput<N, Real> {
   bool any_missing = false;
 };
 
-/// Writes parts where they belong; next to missing values it leaves vertices undoubled.
+/// Writes parts at their final places. It does not double vertices at missing values.
 template <int N, class Real, class I>
 class MemoryOutput final : public ContourOutput<N, Real> {
  public:
@@ -110,10 +110,10 @@ class MemoryOutput final : public ContourOutput<N, Real> {
   ContourRoom<N, Real, I> room_;
   bool with_normals_;
   Buffer<Simplex> narrow_;
-  std::uint64_t before_ = 0;  ///< first vertex of the part before
+  std::uint64_t before_ = 0;  ///< first vertex of the previous part
 };
 
-/// The way round for images with missing values: parts are copied, and corners replaced in the end.
+/// Output for images with missing values: parts are copied, and corners are replaced at the end.
 template <int N, class Real, class I>
 class MemorySink final : public ContourSink<N, Real> {
  public:
@@ -175,7 +175,7 @@ template <Value T, int N>
 ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& asked, ExtractStats* stats) {
   detail::check_arguments(isovalue, asked);
   ExtractOptions options = asked;
-  options.normals = false;  // as many as vertices
+  options.normals = false;  // not counted: one per vertex
   if constexpr (N > 4) {
     detail::ImageSource<T, N> source(image, isovalue, options.epsilon);
     return detail::extract_tiles<N, float>(source, image.grid(), options, nullptr, stats);

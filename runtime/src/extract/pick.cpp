@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From a point to the nearest active tile, from there through all faces that the contour passes, and from the contour
-// in those tiles to one component. Tiles beside the component are never entered by the contour's neighbours alone: what
-// is reached is made of whole components.
+// Extraction of the contour component nearest to a point: find the nearest active tile, propagate through all faces
+// that the contour crosses, and extract the contour in the tiles reached. Propagation enters a tile only through a face
+// crossed by the contour, so the result consists of whole components.
 #include "tegl/pick.hpp"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace tegl {
 
 namespace {
 
-// How far the progress is after each step.
-constexpr double kNearestShare = 0.1;  ///< the search of the nearest tile
+// Progress after each step.
+constexpr double kNearestShare = 0.1;  ///< search of the nearest tile
 constexpr double kFlooded = 0.35;
 constexpr double kExtracted = 0.5;
 constexpr double kLabelled = 0.6;
@@ -36,7 +36,7 @@ std::array<double, N> in_steps(const detail::CellPlace<N>& place) noexcept {
   return at;
 }
 
-/// Looks around a point, shell by shell.
+/// Searches the nearest active tile in shells around a point.
 template <Value T, int N>
 class NearestTile {
  public:
@@ -45,13 +45,13 @@ class NearestTile {
       centre_[a] = std::min(static_cast<std::ptrdiff_t>(at[a]), static_cast<std::ptrdiff_t>(grid().size(a)) - 1);
   }
 
-  /// Tells the progress; finds nothing if no tile is active.
+  /// Reports progress. Returns false if no tile is active.
   bool find(PickReport<N>& report, const Progress& progress) {
     std::ptrdiff_t most = 0;
     for (int a = 0; a < N; ++a)
       most = std::max({most, centre_[a], static_cast<std::ptrdiff_t>(grid().size(a)) - 1 - centre_[a]});
     for (radius_ = 0; radius_ <= most; ++radius_) {
-      // A tile of this shell is that far away at least.
+      // Lower bound of the distance of the tiles of this shell.
       const double least = static_cast<double>(std::max<std::ptrdiff_t>(0, radius_ - 1));
       if (report.found && least * least > square_) break;
       detail::report_progress(progress, kNearestShare * static_cast<double>(radius_) / static_cast<double>(most + 1));
@@ -65,7 +65,8 @@ class NearestTile {
  private:
   [[nodiscard]] const TileGrid<N>& grid() const noexcept { return flood_.grid(); }
 
-  /// All tiles of the shell with these indices along the axes above `axis`; `on_shell`: those are on it already.
+  /// Visits all tiles of the shell with these indices along the axes above `axis`. `on_shell`: these indices are on the
+  /// shell already.
   void look(int axis, bool on_shell, std::array<std::ptrdiff_t, N>& index, PickReport<N>& report) {
     if (axis < 0) return weigh(index, report);
     const auto step_to = [&](std::ptrdiff_t d) {
@@ -78,12 +79,12 @@ class NearestTile {
       for (std::ptrdiff_t d = first; d <= last; ++d) step_to(d);
       return;
     }
-    // No other axis is left to come to the shell along.
+    // No lower axis can reach the shell.
     if (first == -radius_) step_to(first);
     if (last == radius_ && radius_ > 0) step_to(last);
   }
 
-  /// How far tiles are along the axes below `axis`; -1: there are none.
+  /// Maximum distance of tiles along the axes below `axis`; -1: there are no such axes.
   [[nodiscard]] std::ptrdiff_t reach_below(int axis) const noexcept {
     std::ptrdiff_t reach = -1;
     for (int a = 0; a < axis; ++a)
@@ -116,8 +117,8 @@ class NearestTile {
   double square_ = 0;
 };
 
-/// The label of the component with the vertex nearest to a point, of those that are allowed; none if none is. Vertices
-/// that rounding has put outside of the grid count as on its border.
+/// The label of the allowed component with the vertex nearest to a point; none if no component is allowed. Vertices
+/// that rounding has moved outside of the grid count as on its border.
 template <int N, class Real>
 Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
                         const detail::GridLocator<N>& locator, const std::type_identity_t<std::array<double, N>>& at,
@@ -145,7 +146,7 @@ Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& 
   return nearest;
 }
 
-/// The options for a contour of the same simplices whose vertices are no corners of tiles.
+/// Options for a contour with the same simplices whose vertices lie off the corners of tiles.
 ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progress) {
   ExtractOptions inside = options;
   inside.epsilon = 0.25;
@@ -154,14 +155,14 @@ ExtractOptions inside_edges(const ExtractOptions& options, const Progress& progr
   return inside;
 }
 
-/// The components with a simplex in one of these tiles. `inside`: the same contour, simplex by simplex, on a grid of
-/// steps of 1, its points on edges well inside of them: no simplex lies in a face of its tile, so its middle is inside
-/// of the tile too, whatever samples equal the isovalue and whatever the image's own coordinates are.
+/// By component, whether it has a simplex in one of these tiles. `inside`: the same simplices on a grid with steps of
+/// 1, with vertices away from the ends of edges. So no simplex lies in a face of its tile, and its centroid is inside
+/// the tile, even if samples equal the isovalue, and for any coordinates of the image.
 template <int N>
 std::vector<bool> components_in(const Contour<N, double>& inside, const ComponentLabels& labels,
                                 const TileGrid<N>& grid, const std::vector<TileNumber>& tiles,
                                 const Progress& progress) {
-  // Only an estimator that answers now so, now so gives another contour than before.
+  // Differs only if the caller's estimator is not deterministic.
   if (inside.simplices.size() != labels.simplices.size())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("the same contour has {} simplices, and then {}; expected an estimator whose answers do "
@@ -183,7 +184,7 @@ std::vector<bool> components_in(const Contour<N, double>& inside, const Componen
   return result;
 }
 
-/// Of a contour the component nearest to a point, of those that `choose(labels, progress)` allows. Tells the progress
+/// The component of a contour nearest to a point, among those that `choose(labels, progress)` allows. Reports progress
 /// from kExtracted on.
 template <int N, class Real, class Choose>
 Contour<N, Real> nearest_part(const Contour<N, Real>& contour, const detail::GridLocator<N>& locator,
@@ -237,11 +238,12 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   const detail::TileFlood<T, N> flood(image, isovalue);
   if (flood.grid().count() == 0 || !NearestTile<T, N>(flood, at).find(found, options.progress)) {
     if (!options.close) {
-      auto nothing = extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // names, units, no tiles
+      auto nothing =
+          extract<Real>(Image<T, N>(image).part(N - 1, 0, 1), isovalue, rest);  // empty, with names and units
       detail::tell(options.progress, 1.0);
       return nothing;
     }
-    // All that there is lies in the border: the component of the nearest vertex.
+    // The whole contour consists of caps: take the component of the nearest vertex.
     return nearest_part(extract<Real>(image, isovalue, rest), locator, at, options, found.components, all_of);
   }
   bool at_missing = false;
@@ -251,8 +253,8 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   std::sort(tiles.begin(), tiles.end());
   found.tiles = tiles.size();
   const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
-  // Where missing values part the tiles around an edge, a vertex there is doubled for the components on either side,
-  // and comes first in the one and last in the others (pinches.hpp): so all tiles that have it must be there.
+  // If missing values separate the tiles around an edge, a vertex on it is doubled for the components on either side.
+  // It comes first in one component and last in the others (pinches.hpp), so all tiles around it are needed.
   std::vector<TileNumber> around;
   if (at_missing && in_tiles) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
   std::vector<TileNumber> looked_at = tiles;
@@ -276,8 +278,8 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
 #define TEGL_INSTANTIATE_REAL(T, N, Real)                                                                           \
   template Contour<N, Real> extract_component<Real, T, N>(const Image<T, N>&, double, const std::array<double, N>&, \
                                                           const ExtractOptions&, PickReport<N>*);
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)   \
-  TEGL_INSTANTIATE_REAL(T, N, float) \
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N) \
+  TEGL_INSTANTIATE_REAL(T, N, float)      \
   TEGL_INSTANTIATE_REAL(T, N, double)
 #include "base/instantiate.hpp"
 

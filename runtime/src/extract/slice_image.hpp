@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The cut straight from an image: which layers to read, and why they suffice. Included by the sources that instantiate
-// it.
+// Direct cut of an image without the whole contour: selects the layers to read. Included by the sources that
+// instantiate it.
 //
-// Every simplex of a contour lies between two neighbouring layers, and what `slice` does with a vertex or simplex
-// depends on those alone that touch the hyperplane, through groups of vertices in it. So the slabs that the hyperplane
-// touches give the same cut as the whole contour. Caps across the last axis are left out: at the slabs' own ends they
-// would be wrong, and at the image's ends, where they lie in the hyperplane or beside it, they are never cut.
+// Why these layers suffice: every simplex of a contour lies between two neighbouring layers, and the result of `slice`
+// at a vertex or simplex depends only on the simplices that touch the hyperplane, through groups of vertices in it. So
+// the slabs that the hyperplane touches give the same cut as the whole contour. Caps across the last axis are omitted:
+// at the ends of the slabs they would be wrong, and at the ends of the image they lie in the hyperplane or beside it
+// and are never cut.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,8 @@
 
 namespace tegl::detail {
 
-/// Throws InvalidArgument unless one world coordinate depends on its axis alone, and it alone on that axis.
+/// Throws InvalidArgument unless the world map keeps the axis separate: its row and column are zero except for the
+/// diagonal element.
 template <int N>
 void check_axis_is_apart(const Grid<N>& grid, int axis) {
   bool apart = grid.linear(axis, axis) != 0.0;
@@ -35,14 +37,14 @@ void check_axis_is_apart(const Grid<N>& grid, int axis) {
                             axis, axis, axis));
 }
 
-/// World coordinate of sample i along an axis that is apart, as the extraction computes it.
+/// World coordinate of sample i along a separate axis, computed as in the extraction.
 template <int N, class Real>
 Real world_coordinate(const Grid<N>& grid, int axis, std::size_t i) {
   const double x = grid.axes[axis][i];
   return static_cast<Real>(grid.has_world_map() ? grid.linear(axis, axis) * x + grid.offset(axis) : x);
 }
 
-/// The layers {first, count} of the slabs that meet `at`; of an axis of one sample, that.
+/// The layers {first, count} of the slabs that meet `at`; for an axis with one sample, that layer.
 template <int N, class Real>
 std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis, double at) {
   if (axis < 0 || axis >= N)
@@ -69,8 +71,8 @@ std::pair<std::size_t, std::size_t> layers_around(const Grid<N>& grid, int axis,
   return {first, last - first + 1};
 }
 
-/// Across another axis than the last, gradients in the slab, and estimators that look around, need the layers beside
-/// it: these are contoured too.
+/// Adds the layers beside the slab, which gradients and custom estimators need if the cut is not across the last axis.
+/// These layers are contoured too.
 inline std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t, std::size_t> layers, std::size_t size,
                                                            const ExtractOptions& options) {
   std::size_t beside = options.normals ? 1 : 0;
@@ -79,7 +81,7 @@ inline std::pair<std::size_t, std::size_t> with_neighbours(std::pair<std::size_t
   return {first, std::min(size, layers.first + layers.second + beside) - first};
 }
 
-/// The image with an axis moved to the end, the others in their order.
+/// The image with one axis moved to the end; the others keep their order.
 template <Value T, int N>
 Image<T, N> with_axis_last(const Image<T, N>& image, int axis) {
   const Grid<N>& from = image.grid();
@@ -115,7 +117,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const
   detail::check_arguments(isovalue, options);
   auto layers = detail::layers_around<N, Real>(image.grid(), axis, at);
   const bool is_last = axis == N - 1;
-  // Points between layers are kept out of these on the last axis, and on no other axis.
+  // The extraction keeps points between layers off the layers along the last axis only.
   const bool at_layer = detail::is_at_layer<N, Real>(image.grid(), axis, at, layers);
   if (!is_last && at_layer) {
     ExtractOptions moved = options;
@@ -124,7 +126,7 @@ requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const
   }
   if (!is_last) layers = detail::with_neighbours(layers, image.size(axis), options);
   const Image<T, N> slab = image.part(axis, layers.first, layers.second);
-  // Along the last axis a source can begin in the middle of the image, and sees what lies before and behind.
+  // Along the last axis a source can begin inside the image and reads the layers before and behind.
   detail::ImageSource<T, N> source(is_last ? image : slab, isovalue, options.epsilon, is_last ? layers.first : 0);
   detail::ExtractPlan plan{.closed_axes = ((1u << N) - 1) & ~(1u << axis)};
   plan.keeps_off_layers = at_layer;

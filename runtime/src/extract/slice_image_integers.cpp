@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Direct cuts of images of integers.
+// Direct cuts of images of integers; see slice_image.hpp.
 #include "extract/slice_image.hpp"
 
 TEGL_INSTANTIATE_SLICE_IMAGE(std::uint8_t)

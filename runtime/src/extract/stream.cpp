@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Streamed extraction; see stream.hpp.
+// Streamed extraction: the contour is passed to a sink in parts; see stream.hpp.
 #include "kernel/stream.hpp"
 
 #include "kernel/tableless.hpp"
@@ -11,8 +11,9 @@ namespace detail {
 
 template <int N, class Real>
 void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidates) {
-  // A cap's simplex may have corners on the contour that no kept simplex of the contour has: these are no candidates,
-  // and where they are does not matter.
+  // A cap simplex may have corners on the contour that no kept simplex of the contour has. These are no candidates, so
+  // their places are irrelevant.
+  // a small contour of the kept simplices, with local numbers
   std::vector<std::uint64_t> numbers;
   for (const WideSimplex& simplex : kept_) numbers.insert(numbers.end(), simplex.begin(), simplex.end());
   std::sort(numbers.begin(), numbers.end());
@@ -31,11 +32,13 @@ void StreamOutput<N, Real>::separate(const std::vector<std::uint64_t>& candidate
     Simplex& narrow = around.simplices.emplace_back();
     for (int j = 0; j < N; ++j) narrow[j] = local(simplex[j]);
   }
+  // separate it at the candidates
   std::vector<Index> narrow;
   for (const std::uint64_t v : candidates)
     if (std::binary_search(numbers.begin(), numbers.end(), v)) narrow.push_back(local(v));
   separate_pinches(around, narrow, kMaxVertices);
 
+  // pass the changes to the sink
   const auto number = [&](Index v) { return v < numbers.size() ? numbers[v] : size_.vertices + (v - numbers.size()); };
   for (std::size_t s = 0; s < kept_.size(); ++s)
     for (int j = 0; j < N; ++j)
@@ -69,7 +72,7 @@ requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, 
   return output.size();
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                \
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                              \
   template StreamedSize extract_streamed<Real, T, N>(LayerReader<T, N>&, double, const ExtractOptions&, \
                                                      ContourSink<N, Real>&, ExtractStats*);
 #include "base/instantiate.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several streamed extractions that go through the same layers side by side, a batch of slabs at a time: the caller's
-// thread reads what the next batch needs, once; then each contour's part of it is a task of its own.
+// Several streamed extractions from one pass over the layers, a batch of slabs at a time. The caller's thread reads the
+// layers of the next batch once; then each contour's part of the batch is a separate task.
 #include "tegl/stream_several.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace tegl {
 
 namespace {
 
-/// A sink that is called while nothing else is.
+/// A sink whose calls are serialized by a shared mutex.
 template <int N, class Real>
 class SinkInTurn final : public ContourSink<N, Real> {
  public:
@@ -49,7 +49,7 @@ class SinkInTurn final : public ContourSink<N, Real> {
   std::mutex& calls_;
 };
 
-/// One of the extractions, with what it refers to.
+/// One of the extractions, with the objects that it refers to.
 template <Value T, int N, class Real>
 struct OneOfSeveral {
   OneOfSeveral(detail::LayerRing<T, N>& ring, const StreamedContour<N, Real>& contour, ExtractOptions its_options,
@@ -65,11 +65,11 @@ struct OneOfSeveral {
   detail::LayerSource<T, N> source;
   SinkInTurn<N, Real> sink;
   detail::StreamOutput<N, Real> output;
-  std::unique_ptr<detail::SteppedExtraction<N, Real>> extraction;  ///< null: the image has no tiles
+  std::unique_ptr<detail::SteppedExtraction<N, Real>> extraction;  ///< null if the image has no tiles
   std::exception_ptr error;
 };
 
-/// All of them, at the same batch.
+/// All extractions, processing the same batch in parallel.
 template <Value T, int N, class Real>
 class SideBySide {
  public:
@@ -104,9 +104,9 @@ class SideBySide {
 
  private:
   using One = OneOfSeveral<T, N, Real>;
-  struct Nothing {};  ///< that threads keep
+  struct Nothing {};  ///< per-thread state: none
 
-  /// What the next batch needs; false: there is none.
+  /// Reads the layers of the next batch. Returns false after the last one.
   bool prepare() {
     bool any = false;
     for (const auto& one : all_) any = (one->extraction && one->extraction->prepare_batch()) || any;
@@ -121,7 +121,7 @@ class SideBySide {
     }
   }
 
-  /// Of the caller's thread: how far the one is that is farthest.
+  /// Reports the maximum progress of all extractions. Called in the caller's thread.
   bool tell(double share) {
     told_ = std::max(told_, share);
     const bool goes_on = progress_(told_);
@@ -137,7 +137,7 @@ class SideBySide {
   detail::Workers<Nothing> workers_;
   std::vector<std::unique_ptr<One>> all_;
   double told_ = 0;
-  std::atomic<bool> cancelled_ = false;  ///< what is not begun need not be
+  std::atomic<bool> cancelled_ = false;  ///< tasks that have not begun are skipped
 };
 
 }  // namespace
@@ -159,7 +159,7 @@ void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedConto
   }
 }
 
-#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                      \
+#define TEGL_INSTANTIATE_REALS(T, N, Real)                                                                    \
   template void extract_streamed_several<Real, T, N>(LayerReader<T, N>&, std::span<StreamedContour<N, Real>>, \
                                                      const ExtractOptions&);
 #include "base/instantiate.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From bits to facets: find the faces that the contour passes, count their facets, give them numbers, and look up by
-// number what bounds each. Every facet is found in the face of the grid that it lies in, once; that its boundary lies
-// in that face's own faces is all there is to know about neighbours.
+// Extraction of facets from bits: find the critical faces, count their facets, number them, and look up the boundary of
+// each by number. Every facet belongs to one face of the grid, and its boundary lies in that face's own faces, so
+// neighbours need no other coordination.
 #include "facets/facet_extraction.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@
 namespace tegl::detail {
 namespace {
 
-/// What a thread keeps.
+/// Working memory of a thread.
 struct FacetScratch {
   explicit FacetScratch(const FacetTables& tables) : tesseract(tables) {}
 
@@ -51,9 +51,9 @@ void for_bits(const Word* bits, std::size_t words, const Visit& visit) {
       visit(w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest)));
 }
 
-/// A kind of faces, with what is known of it beforehand.
+/// A kind of faces with precomputed offsets.
 struct KnownKind : FaceKind {
-  /// One of a face's own faces, or of an outward one the face itself.
+  /// One of a face's own faces; for an outward face also the face itself.
   struct Sub {
     const FaceNumbers* numbers = nullptr;
     std::size_t rows = 0, ahead = 0;
@@ -61,9 +61,9 @@ struct KnownKind : FaceKind {
   FaceCorners corners;
   FaceNumbers* numbers = nullptr;
   std::array<Sub, 2 * FacetTables::kMaxDim> subs;  ///< by FacetEntry::face
-  /// Of cubes that the data resolve: their edges.
+  /// Edges of cubes that are resolved from the data.
   std::array<Sub, FacetTables::kCubeEdges> edges;
-  /// Whether facets depend on more than the signature, and the faces have types (FacetTables).
+  /// Whether facets depend on more than the signature, so that faces have types (FacetTables).
   bool has_types = false;
 
   [[nodiscard]] bool is_resolved_cube() const noexcept { return has_types && !outward && grid_dim() == 3; }
@@ -72,7 +72,7 @@ struct KnownKind : FaceKind {
 /// The facets of one face.
 struct FacetsOfFace {
   const FacetTables* tables;
-  const ResolvedFacets* tesseract;  ///< null: they are in the tables
+  const ResolvedFacets* tesseract;  ///< null: the facets are in the tables
   unsigned dim, type;
 
   [[nodiscard]] unsigned count() const noexcept {
@@ -135,7 +135,8 @@ class FacetExtraction {
  private:
   static constexpr unsigned kAll = (1u << N) - 1;
   static constexpr std::size_t kGrain = 16;  ///< rows
-  /// Classify, find, count, points; one for each dimension. Where the data decide, two more.
+  /// Classify, find, count, points, and one pass per dimension. Up to two more if ambiguities are resolved from the
+  /// data.
   static constexpr std::size_t kPasses = N + 4u;
   using Level = typename FacetHierarchy<N, Real>::Level;
   using Vertex = std::array<Real, N>;
@@ -165,10 +166,10 @@ class FacetExtraction {
       list->assign(rows_.rows(), 0);
   }
   FaceNumbers& faces(const FaceKind& kind) noexcept { return faces_[kind.axes | (kind.outward ? kAll + 1 : 0)]; }
-  /// Nobody asks for the numbers of facets that bound no others.
+  /// Facets of the highest dimension bound no others, so their numbers are not stored.
   static bool is_top(const FaceKind& kind) noexcept { return kind.dim() == N; }
 
-  /// work(row, scratch) for all rows: a pass.
+  /// A pass: calls work(row, scratch) for all rows.
   template <class Work>
   void for_rows(const Work& work) {
     reporter_.begin_batch(pass_, pass_ + 1, 1);
@@ -182,7 +183,7 @@ class FacetExtraction {
       }
     });
   }
-  /// The same for rows with facets.
+  /// A pass over the rows with facets.
   template <class Work>
   void for_busy_rows(const Work& work) {
     for_rows([&](std::size_t row, FacetScratch& scratch) {
@@ -203,7 +204,7 @@ class FacetExtraction {
     if (any_missing) rows_.set_missing(std::move(missing));
   }
 
-  /// Bits, and of tesseracts the signatures.
+  /// Finds the bits of critical faces, and the signatures of tesseracts that occur.
   void find_faces() {
     busy_.assign(rows_.rows(), 0);
     if (has_tesseract_tables()) met_.resize(1u << (1u << FacetTables::kMaxDim));
@@ -229,7 +230,8 @@ class FacetExtraction {
   }
   [[nodiscard]] bool has_tesseract_tables() const noexcept { return N == FacetTables::kMaxDim && !estimator_; }
 
-  /// Asks the estimator: first for squares, then for cubes; for tesseracts when their facets are counted.
+  /// Resolves ambiguities by the estimator: first squares, then cubes. Tesseracts are resolved when their facets are
+  /// counted.
   void resolve_faces() {
     for_busy_rows([&](std::size_t row, FacetScratch&) {
       for (const KnownKind& kind : kinds_) {
@@ -268,7 +270,7 @@ class FacetExtraction {
                                     estimator_->is_square_high(base, kind.axes, std::span(values).template first<4>()));
   }
 
-  /// The cube that leads out of the image has low corners there, and no tunnel.
+  /// An outward cube has low corners outside, and no tunnel.
   [[nodiscard]] unsigned outward_square_type(const KnownKind& kind, std::size_t row, std::size_t i) const noexcept {
     const unsigned signature = rows_.signature(kind.corners, row, i);
     const KnownKind::Sub& inner = kind.subs[4];
@@ -294,7 +296,7 @@ class FacetExtraction {
     return 0;
   }
 
-  /// The facets of a face, until the scratch is used for the next one.
+  /// The facets of a face; valid until the next use of the scratch.
   FacetsOfFace facets_of(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
                          FacetScratch& scratch) const {
     FacetsOfFace facets{&tables_, nullptr, kind.dim(), kind.dim() == 1 ? 1 : signature};
@@ -309,7 +311,7 @@ class FacetExtraction {
     return facets;
   }
 
-  /// Of faces of four dimensions. Returns how many components there are.
+  /// For faces of four dimensions. Returns the number of components of Sigma.
   std::size_t begin_tesseract(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
                               ResolvedFacets& tesseract) const {
     std::array<std::uint16_t, 8> cubes;
@@ -323,7 +325,7 @@ class FacetExtraction {
     return tesseract.begin(static_cast<std::uint16_t>(signature), cubes);
   }
 
-  /// Once, when they are counted.
+  /// Resolves a tesseract. Called once, when its facets are counted.
   void choose_tesseract(const KnownKind& kind, std::size_t row, std::size_t i, unsigned signature,
                         FacetScratch& scratch) const {
     auto choice = facets::Choice::separate;
@@ -336,7 +338,7 @@ class FacetExtraction {
     kind.numbers->type(row, i) = static_cast<std::uint16_t>(choice);
   }
 
-  /// By row.
+  /// Counts the facets by row.
   void count_facets() {
     std::vector<std::uint16_t> signatures;
     for (std::size_t s = 0; s < met_.size(); ++s)
@@ -364,8 +366,9 @@ class FacetExtraction {
     });
   }
 
-  /// From counts to numbers: layer by layer, row by row, kind by kind; caps last.
+  /// Prefix sums of the counts: by layer, row and kind; caps last. Then allocates the levels.
   void number_facets() {
+    // exclusive scan
     std::array<std::uint64_t, N> facets{}, entries{};
     const std::size_t layer_rows = rows_.stride(N - 1);
     for (const bool outward : {false, true})
@@ -384,6 +387,7 @@ class FacetExtraction {
               facets[1] += std::exchange(here.first_segment[row], facets[1]);
               entries[1] += std::exchange(here.first_end[row], entries[1]);
             }
+    // allocate
     for (std::size_t k = 0; k < N; ++k) {
       check_number(facets[k], "facets", k);
       check_number(entries[k], "incidences", k);
@@ -402,7 +406,7 @@ class FacetExtraction {
                                                    std::numeric_limits<Index>::max()));
   }
 
-  /// Of all kinds that are faces of this dimension; after those of the dimension before.
+  /// Writes the facets of all kinds of faces of this dimension, after those of the dimension before.
   void write_facets(unsigned dim) {
     for_busy_rows([&](std::size_t row, FacetScratch& scratch) {
       for (const KnownKind& kind : kinds_)
@@ -424,6 +428,7 @@ class FacetExtraction {
       const FacetsOfFace facets = facets_of(kind, row, i, signature, scratch);
       const unsigned count = facets.count();
       const bool turn = is_top(kind) && flip_ != is_mirrored(kind, row, i);
+      // each facet and its boundary; turned facets have the reverse order and opposite signs
       for (unsigned number = 0; number < count; ++number, ++facet) {
         level.places[facet] = place(kind, row, i, signature, number);
         if (k == 0) continue;
@@ -448,7 +453,7 @@ class FacetExtraction {
             static_cast<std::uint8_t>(kind.axes), static_cast<std::uint8_t>(number), kind.outward};
   }
 
-  /// The points and segments inside of cubes.
+  /// Writes the points and segments inside cubes.
   void write_inside(const KnownKind& kind, std::size_t row) {
     const FaceNumbers& here = *kind.numbers;
     auto point = static_cast<Index>(here.first_point[row]);
@@ -474,7 +479,8 @@ class FacetExtraction {
     });
   }
 
-  /// Of outward faces of N - 1 axes: whether these, and one that points outwards, are a mirror image of the grid's.
+  /// For outward faces with N - 1 axes: whether these axes followed by the outward one are a mirror image of the axes
+  /// of the grid.
   bool is_mirrored(const FaceKind& kind, std::size_t row, std::size_t i) const noexcept {
     if (!kind.outward) return false;
     const auto across = static_cast<unsigned>(std::countr_one(kind.axes));
@@ -497,7 +503,7 @@ class FacetExtraction {
     });
   }
 
-  /// The samples of a row that are corners of caps.
+  /// Writes the samples of a row that are corners of caps.
   void write_corners(const KnownKind& kind, std::size_t row) {
     const FaceNumbers& here = *kind.numbers;
     auto index = rows_.index_of(row);
@@ -513,7 +519,7 @@ class FacetExtraction {
     });
   }
 
-  /// Those inside of cubes, where `extract` has them.
+  /// Writes the points inside cubes, at the same places as `extract`.
   void write_inner_points(const KnownKind& kind, std::size_t row) {
     if constexpr (N == 3) write_inner_points_along<7>(kind, row);
     if constexpr (N == 4) {
@@ -545,24 +551,26 @@ class FacetExtraction {
     });
   }
 
-  /// The points on the edges of a row along one axis.
+  /// Writes the points on the edges of a row along one axis.
   void write_edges(const KnownKind& kind, std::size_t row, FacetScratch& scratch) {
     FaceNumbers& here = *kind.numbers;
     const Word* const bits = here.bits.data() + row * rows_.words();
     std::size_t count = 0;
     for (std::size_t w = 0; w < rows_.words(); ++w) count += static_cast<std::size_t>(std::popcount(bits[w]));
     if (count == 0) return;
-    constexpr std::size_t kMargin = 16;  // what is read and written behind the lists
+    constexpr std::size_t kMargin = 16;  // margin that is read and written after the lists
     const auto index = rows_.index_of(row);
     const auto axis = static_cast<int>(kind.axis(0));
     std::ptrdiff_t offset = 0;
     const auto strides = source_.strides();
     for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(index[a]) * strides[a];
+    // fractions along the edges
     scratch.at.resize(count + kMargin);
     list_bits(bits, rows_.words(), scratch.at.data());
     scratch.rows.assign(count + kMargin, offset);
     scratch.alphas.resize(count + kMargin);
     source_.edge_alphas(index[N - 1], axis, {scratch.rows.data(), scratch.at.data(), count}, scratch.alphas.data());
+    // places
     EdgePoints<N, Real> points{};
     points.at = scratch.at.data();
     points.alphas = scratch.alphas.data();
@@ -577,6 +585,7 @@ class FacetExtraction {
     points.out = facets_.vertices.data() + here.first_facet[row];
     placement_.edges(index[N - 1], points);
     if (!options_.normals) return;
+    // normals
     placement_.normals()->edges(index, axis, {scratch.rows.data(), scratch.at.data(), count}, scratch.alphas.data(),
                                 scratch.normals, facets_.normals.data() + here.first_facet[row], [&](std::size_t edge) {
                                   auto start = index;
@@ -593,13 +602,13 @@ class FacetExtraction {
   std::size_t pass_ = 0;
   GridRows<N> rows_;
   FacetTables tables_;
-  std::optional<FaceEstimator<N>> estimator_;  ///< where the data decide
+  std::optional<FaceEstimator<N>> estimator_;  ///< set if ambiguities are resolved from the data
   Placement<N, Real> placement_;
   Workers<FacetScratch> workers_;
   std::vector<KnownKind> kinds_;
-  std::vector<FaceNumbers> faces_;  ///< by axes, those of outward ones after the others
+  std::vector<FaceNumbers> faces_;  ///< by axes; outward kinds after the others
   std::vector<std::uint8_t> busy_;  ///< by row: whether any face in it has facets
-  std::vector<std::uint8_t> met_;   ///< by signature of a tesseract
+  std::vector<std::uint8_t> met_;   ///< by signature of a tesseract: whether it occurs
   FacetHierarchy<N, Real> facets_;
 };
 

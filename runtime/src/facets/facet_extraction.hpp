@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The facets of an image of any value type.
+// Extraction of the facet hierarchy, independent of the value type of the image.
 #pragma once
 
 #include "image/extract_source.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What can be asked of a hierarchy of facets; and the public function that makes one, which knows value types.
+// Queries and checks of a hierarchy of facets, and the public function `extract_facets`, instantiated for all value
+// types.
 #include "tegl/facet_hierarchy.hpp"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ void FacetHierarchy<N, Real>::connect_up() {
         level.up[at] = static_cast<Index>(g);
         level.up_signs[at] = above.down_signs[e];
       }
-    // What was first is now the next one's first.
+    // Filling moved each offset to the next one: shift them back.
     std::copy_backward(level.up_first.begin(), level.up_first.end() - 1, level.up_first.end());
     level.up_first.front() = 0;
   }
@@ -61,7 +62,8 @@ const {
 template <int N, class Real>
 int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f) {
   if (k < 3) return 1;
-  // Half of the boundary's, as of any 3-manifold. In the boundary each segment is in two polygons.
+  // Half of the Euler characteristic of the boundary, as for any compact 3-manifold. Each segment of the boundary is in
+  // two polygons.
   int twice_segments = 0;
   for (const Index polygon : facets.down(k, f)) twice_segments += static_cast<int>(facets.down(2, polygon).size());
   const int points = static_cast<int>(facets.points_of(k, f).size());
@@ -70,7 +72,7 @@ int facet_euler(const FacetHierarchy<N, Real>& facets, int k, std::size_t f) {
 
 namespace {
 
-/// Whether what bounds the facets that bound a facet cancels out.
+/// Whether the boundary of the boundary of a facet is zero.
 template <int N, class Real>
 bool has_closed_boundary(const FacetHierarchy<N, Real>& facets, int k, std::size_t f,
                          std::vector<std::pair<Index, int>>& sum) {
@@ -84,14 +86,15 @@ bool has_closed_boundary(const FacetHierarchy<N, Real>& facets, int k, std::size
     for (std::size_t j = 0; j < bounds.size(); ++j) sum.push_back({bounds[j], signs[i] * bound_signs[j]});
   }
   std::sort(sum.begin(), sum.end());
-  // Of each, twice as many and opposite: a facet's boundary is a manifold, in which two facets meet.
+  // Each face occurs twice with opposite signs, because the boundary of a facet is a manifold, in which two facets
+  // meet.
   if (sum.empty() || sum.size() % 2 != 0) return false;
   for (std::size_t i = 0; i < sum.size(); i += 2)
     if (sum[i].first != sum[i + 1].first || sum[i].second != -1 || sum[i + 1].second != 1) return false;
   return true;
 }
 
-/// Of a polygon.
+/// A point of a polygon.
 template <int N, class Real>
 Index a_point(const FacetHierarchy<N, Real>& facets, Index polygon) noexcept {
   return facets.down(1, facets.down(2, polygon)[0])[0];
@@ -133,8 +136,7 @@ FacetReport check(const FacetHierarchy<N, Real>& facets) {
       if (euler < 0) ++report.below_zero;
       if (euler > 1) ++report.above_one;
       if (k > 0 && !has_closed_boundary(facets, k, f, sum)) ++report.open_boundaries;
-      // A component has one point or more, and its points hang together by segments, or by a polyhedron whose boundary
-      // has several parts.
+      // The points of a component are connected by segments, or by a polyhedron whose boundary has several components.
       if (k == 1 && components.join(facets.down(1, f)[0], facets.down(1, f)[1])) --report.components;
       if (k == 3)
         for (const Index polygon : facets.down(3, f))

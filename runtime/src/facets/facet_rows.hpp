@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The faces of a grid that a contour passes, of all dimensions, as bits by rows along axis 0, over the whole image.
+// The critical faces of a grid (those that the contour crosses), of all dimensions, as bits by rows along axis 0, over
+// the whole image.
 #pragma once
 
 #include <array>
@@ -14,22 +15,22 @@
 
 namespace tegl::detail {
 
-/// A kind of faces: those along the axes in `axes`; `outward`: of the border, each times an interval that leads out of
-/// the image to where all is low, which makes its high part a facet (see grid_cells.hpp). The interval is the last
-/// axis.
+/// A kind of faces: those along the axes in `axes`. `outward`: faces of the border, each times an interval that leads
+/// out of the image to low values, so that its high part becomes a facet (a cap; see grid_cells.hpp). The interval is
+/// the last axis.
 struct FaceKind {
   unsigned axes = 0;
   bool outward = false;
 
   [[nodiscard]] constexpr unsigned grid_dim() const noexcept { return static_cast<unsigned>(std::popcount(axes)); }
   [[nodiscard]] constexpr unsigned dim() const noexcept { return grid_dim() + (outward ? 1 : 0); }
-  /// The grid's axis that is the face's axis j < grid_dim().
+  /// Grid axis of the face's axis j < grid_dim().
   [[nodiscard]] constexpr unsigned axis(unsigned j) const noexcept {
     unsigned rest = axes;
     for (; j > 0; --j) rest &= rest - 1;
     return static_cast<unsigned>(std::countr_zero(rest));
   }
-  /// A set of the face's axes as one of the grid's.
+  /// A set of axes of the face, as a set of axes of the grid.
   [[nodiscard]] constexpr unsigned spread(unsigned set) const noexcept {
     unsigned result = 0;
     for (unsigned j = 0; j < grid_dim(); ++j) result |= (set >> j & 1u) << axis(j);
@@ -37,14 +38,14 @@ struct FaceKind {
   }
 };
 
-/// Where the corners of a kind of faces are, from the face's first sample on, in words and samples.
+/// Offsets of the corners of a kind of faces from its first sample, in words and samples.
 struct FaceCorners {
   unsigned count = 0;
   std::array<std::size_t, 16> words{};
   std::array<std::uint8_t, 16> ahead{};
 };
 
-/// Samples in rows, and how rows lie.
+/// Bits of the samples in rows, and the layout of rows.
 template <int N>
 class GridRows {
  public:
@@ -62,9 +63,9 @@ class GridRows {
   [[nodiscard]] std::size_t size(int axis) const noexcept { return sizes_[axis]; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
   [[nodiscard]] std::size_t words() const noexcept { return words_; }
-  /// One word more than needed, always 0.
+  /// Words per row: one more than needed, always 0.
   [[nodiscard]] std::size_t pitch() const noexcept { return words_ + 1; }
-  /// From row to row along an axis > 0.
+  /// Distance between rows along an axis > 0.
   [[nodiscard]] std::size_t stride(unsigned axis) const noexcept { return strides_[axis]; }
   [[nodiscard]] std::size_t shift(unsigned axes) const noexcept {
     std::size_t result = 0;
@@ -103,8 +104,8 @@ class GridRows {
     }
     return corners;
   }
-  /// The faces of a kind from word w of a row on that have high corners and low ones, and belong to a tile without
-  /// missing corners.
+  /// The faces of a kind in word w of a row that have high and low corners and belong to a tile without missing
+  /// corners.
   [[nodiscard]] Word critical(const FaceKind& kind, const FaceCorners& corners, std::size_t row, const Index& index,
                               std::size_t w) const noexcept {
     Word any = 0, all = ~Word{0};
@@ -120,13 +121,13 @@ class GridRows {
     if (any_missing() && result != 0) result &= in_valid_tiles(kind, index, row, w);
     return result;
   }
-  /// Whether faces along these axes start in a row.
+  /// Whether faces along these axes start in the row.
   [[nodiscard]] bool has_faces(const Index& index, unsigned axes) const noexcept {
     for (int a = 1; a < N; ++a)
       if ((axes >> a & 1u) != 0 && index[a] + 1 >= sizes_[a]) return false;
     return (axes & 1u) == 0 || sizes_[0] > 1;
   }
-  /// The high corners of a face. Of outward ones the low half.
+  /// The high corners of a face; for outward faces, of the end inside the image.
   [[nodiscard]] unsigned signature(const FaceCorners& corners, std::size_t row, std::size_t i) const noexcept {
     unsigned result = 0;
     const Word* const at = high(row);
@@ -136,7 +137,7 @@ class GridRows {
     }
     return result;
   }
-  /// Whether all tiles around a face, of those that the image has, are without missing corners.
+  /// Whether no tile of the image around a face has missing corners.
   [[nodiscard]] bool is_surrounded(unsigned axes, std::size_t row, std::size_t i) const noexcept {
     if (!any_missing() || (near_missing_[row * pitch() + i / kWordBits] >> (i % kWordBits) & 1u) == 0) return true;
     const Index index = index_of(row);
@@ -148,12 +149,12 @@ class GridRows {
   }
 
  private:
-  /// The samples that are corners of tiles with missing corners.
+  /// Marks the samples that are corners of tiles with missing corners.
   void find_near_missing() {
     near_missing_.assign(rows_ * pitch(), 0);
     for (std::size_t row = 0; row < rows_; ++row) {
       if (!has_faces(index_of(row), kAll)) continue;
-      Word before = 0;  // the last tile of the word before
+      Word before = 0;  // carry: the last tile of the previous word
       for (std::size_t w = 0; w <= words_; ++w) {
         const Word bad = w < words_ ? ~tiles_[row * pitch() + w] & mask(w, true) : 0;
         const Word corners = bad | bad << 1 | before;
@@ -171,7 +172,7 @@ class GridRows {
     if (count >= (w + 1) * kWordBits) return ~Word{0};
     return count <= w * kWordBits ? 0 : (Word{1} << (count - w * kWordBits)) - 1;
   }
-  /// Whether there is a tile as many samples back.
+  /// Whether the image has a tile one sample back along the axes in `back`.
   [[nodiscard]] bool is_inside(const Index& index, std::size_t i, unsigned back) const noexcept {
     for (unsigned a = 0; a < N; ++a) {
       const std::size_t at = a == 0 ? i : index[a], step = back >> a & 1u;
@@ -211,11 +212,11 @@ class GridRows {
   std::size_t words_;
   std::vector<Word> high_;
   std::vector<Word> missing_;
-  std::vector<Word> tiles_;         ///< without missing corners; none: all are
+  std::vector<Word> tiles_;         ///< tiles without missing corners; empty: all tiles
   std::vector<Word> near_missing_;  ///< samples that are corners of tiles with missing corners
 };
 
-/// The faces of one kind that have facets, and where those of each begin.
+/// The faces of one kind that have facets, and the number of the first facet of each.
 class FaceNumbers {
  public:
   void reset(std::size_t rows, std::size_t words) {
@@ -225,7 +226,7 @@ class FaceNumbers {
     first_facet.assign(rows, 0);
     first_entry.assign(rows, 0);
   }
-  /// After the bits are set. `has_types`: each of the faces has a type (FacetTables).
+  /// Call it after the bits are set. `has_types`: faces have a type (FacetTables).
   void rank(bool has_types) {
     std::uint32_t count = 0;
     for (std::size_t w = 0; w < bits.size(); ++w) {
@@ -243,9 +244,9 @@ class FaceNumbers {
   [[nodiscard]] std::uint16_t type(std::size_t row, std::size_t i) const noexcept { return types_[ordinal(row, i)]; }
 
   std::vector<Word> bits;                  ///< rows x words
-  std::vector<std::uint64_t> first_facet;  ///< by row: how many facets, and then the first one's number
-  std::vector<std::uint64_t> first_entry;  ///< by row, of what bounds them, likewise
-  /// Of cubes that the data resolve, likewise: points and segments inside, and what bounds the segments.
+  std::vector<std::uint64_t> first_facet;  ///< by row: number of facets; after the prefix sum, the first facet's number
+  std::vector<std::uint64_t> first_entry;  ///< by row: number of boundary entries; after the prefix sum, the first one
+  /// By row, for cubes resolved from the data: the same for points and segments inside, and for ends of segments.
   std::vector<std::uint64_t> first_point, first_segment, first_end;
 
  private:

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Construction of the symbolic facet tables; see facet_tables.hpp.
 #include "facets/facet_tables.hpp"
 
 #include <algorithm>
@@ -15,8 +17,8 @@ namespace {
 
 constexpr Index kNoPart = ~Index{0};
 
-/// What a facet of dimension d - 3 in a d-cube is called: its face, by the axes and sides that it is cut off by, and
-/// its number there. `face` is 2 a + side, `in_face` the same in that face's own axes.
+/// Name of a facet of dimension d - 3 in a d-cube: the two axes and sides of its face, and its number there. `face` is
+/// 2 a + side in the cube, `in_face.face` the same in the axes of that face.
 unsigned name_of(unsigned face, const FacetEntry& in_face) noexcept {
   unsigned a = face / 2, b = in_face.face / 2u;
   if (b >= a) ++b;
@@ -29,7 +31,7 @@ unsigned name_of(unsigned face, const FacetEntry& in_face) noexcept {
 }
 constexpr std::size_t kNames = FacetTables::kMaxDim * FacetTables::kMaxDim * 4 * 8;
 
-/// The edge of a cube that has this name.
+/// The cube edge with this name.
 unsigned edge_named(unsigned name) noexcept {
   name /= 8;
   const unsigned sides = name % 4, a = name / 4 / FacetTables::kMaxDim, b = name / 4 % FacetTables::kMaxDim;
@@ -105,14 +107,15 @@ std::vector<std::size_t> FacetTables::loop(const std::vector<Part>& parts, std::
   return result;
 }
 
-/// A polygon.
+/// Adds a polygon.
 void FacetTables::add_loop(const std::vector<Part>& parts, std::size_t first) {
   Lists& lists = lists_[3];
   for (const std::size_t at : loop(parts, first)) lists.entries.push_back(parts[at].entry);
   lists.first_entry.push_back(static_cast<std::uint32_t>(lists.entries.size()));
 }
 
-/// A connected part of the list with one component of Sigma is a disc, and a polygon; of others the triangles are.
+/// A connected part of the list with one component of Sigma is a disc, and becomes a polygon. Of any other part, each
+/// triangle becomes a facet.
 void FacetTables::add_cube(unsigned number) {
   const ResolvedCubes& cubes = ResolvedCubes::instance();
   const CubeList& of = cubes.lists()[number];
@@ -121,6 +124,7 @@ void FacetTables::add_cube(unsigned number) {
   std::vector<Part> all = parts(3, types);
   join_parts(3, types, all);
 
+  // connected parts of the triangle list
   std::vector<Triangle> triangles(of.list->triangle_count);
   BasicDisjointSets<Index> connected;  // by vertex of the list
   connected.reset(kCubeEdges + ResolvedCubes::kMostOwn);
@@ -130,11 +134,13 @@ void FacetTables::add_cube(unsigned number) {
     connected.join(v[0], v[1]);
     connected.join(v[0], v[2]);
   }
+  // count the components of Sigma of each part
   std::array<unsigned, kCubeEdges + ResolvedCubes::kMostOwn> loops{}, done{};
   const auto part_of = [&](const Part& part) { return connected.find(edge_named(part.ends[0])); };
   for (std::size_t first = 0; first < all.size(); ++first)
     if (all[first].component == first) ++loops[part_of(all[first])];
 
+  // one component: polygon; several: triangles of a tunnel
   Inside& inside = inside_.emplace_back();
   for (std::size_t first = 0; first < all.size(); ++first) {
     if (all[first].component != first || done[part_of(all[first])]++ != 0) continue;
@@ -153,11 +159,12 @@ void FacetTables::add_cube(unsigned number) {
   lists_[3].first_facet.push_back(static_cast<std::uint32_t>(lists_[3].first_entry.size() - 1));
 }
 
-/// A triangle of a tunnel: each of its sides is a part of Sigma, or inside the cube.
+/// Adds a triangle of a tunnel. Each of its sides is a part of Sigma, or a segment inside the cube.
 void FacetTables::add_triangle(const Triangle& triangle, const std::vector<Part>& parts, Inside& inside) {
   Lists& lists = lists_[3];
   std::array<std::uint8_t, 3> corners{};
   std::uint16_t& points = points_.emplace_back();
+  // number its points; new ones inside are added
   for (std::size_t j = 0; j < 3; ++j) {
     corners[j] = triangle[j];
     if (triangle[j] >= kCubeEdges) {
@@ -168,6 +175,7 @@ void FacetTables::add_triangle(const Triangle& triangle, const std::vector<Part>
     }
     points = static_cast<std::uint16_t>(points | 1u << corners[j]);
   }
+  // its sides
   for (std::size_t j = 0; j < 3; ++j) {
     const std::uint8_t from = corners[j], to = corners[(j + 1) % 3];
     const auto part = std::find_if(parts.begin(), parts.end(), [&](const Part& p) {
@@ -204,7 +212,7 @@ void FacetTables::add_square(unsigned signature, bool high) {
   };
   if (count == 2) add(points[0], points[1]);
   if (count != 4) return;
-  // Faces 0 and 1 are at x = 0 and 1, faces 2 and 3 at y = 0 and 1. What is cut off are corners 0 and 3, or 1 and 2.
+  // Faces 0 and 1 are at x = 0 and 1, faces 2 and 3 at y = 0 and 1. The segments cut off corners 0 and 3, or 1 and 2.
   const bool diagonal_is_high = signature == 0b1001;
   if (diagonal_is_high != high) {
     add(points[0], points[2]);
@@ -232,7 +240,7 @@ std::vector<FacetTables::Part> FacetTables::parts(unsigned dim, const FaceTypes&
   return result;
 }
 
-/// Parts that share a facet of the next lower dimension hang together.
+/// Connects the parts that share a facet of the next lower dimension.
 void FacetTables::join_parts(unsigned dim, const FaceTypes& types, std::vector<Part>& parts) const {
   std::vector<Index> first_with(kNames, kNoPart);
   DisjointSets components;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The facets of the faces of a grid as symbols: for each dimension and signature, which facets a face has, and which
-// facets of its own faces each of them is bounded by. No positions and no triangulation.
+// Symbolic facets of the faces of a grid: by dimension and signature, the facets of a face and the facets of its own
+// faces that bound each of them. No positions and no triangulation.
 //
-// Based on: M. Liversage, thesis, 1994, section 7.6 (facets by recursion over dimension). A facet is a component of
-// what the facets in the face's own faces make up. In squares, cubes and tesseracts with every ambiguity resolved the
-// same way, each component bounds a facet of its own. Where the data resolve them, a face's signature does not say all:
-// it has a type. A cube may then have a tunnel, between several components: its triangles, which are in the table of
-// the cube (table_contract.hpp), are the facets there, and have points and segments inside the cube.
+// Based on: M. Liversage, thesis, 1994, section 7.6 (facets by recursion over dimension). A facet is a component of the
+// union of the facets in the face's own faces. In squares, cubes and tesseracts with every ambiguity resolved the same
+// way, each component bounds its own facet. If ambiguities are resolved from the data, the signature does not determine
+// the facets: faces have types instead. A cube may then have a tunnel, between several components. Its triangles, from
+// the table of the cube (table_contract.hpp), are the facets in that case, and have points and segments inside the
+// cube.
 #pragma once
 
 #include <array>
@@ -21,9 +22,9 @@
 
 namespace tegl::detail {
 
-/// One facet of those that bound another: facet `number` of face 2 a + side, which is at the lower (side 0) or upper
-/// end of axis a and has the other axes in ascending order; face 6 of a cube: the segments inside it. `sign`: its
-/// incidence number.
+/// A facet in the boundary of another: facet `number` of face 2 a + side. That face is at the lower (side 0) or upper
+/// end of axis a and has the other axes in ascending order; face 6 of a cube stands for the segments inside it. `sign`:
+/// the incidence number.
 struct FacetEntry {
   std::uint8_t face;
   std::uint8_t number;
@@ -32,9 +33,9 @@ struct FacetEntry {
 
 /// Faces have up to kMaxDim dimensions; corner v has coordinate v >> a & 1 on axis a.
 ///
-/// Orientation: a facet followed by a normal towards the high side is positive in its face's axes. Then the incidence
-/// number of a facet in the boundary of another is that of their faces (outward normal first). Points have none: the
-/// start of a 1-facet has -1, its end +1.
+/// Orientation: a facet followed by a normal towards the high side is positive in its face's axes. So the incidence
+/// number of a facet in the boundary of another is that of their faces (outward normal first). Points have no
+/// orientation: the start of a 1-facet has -1, its end +1.
 ///
 /// Order of the entries: of a segment, its start and its end; of a polygon, head to tail, along its orientation; of a
 /// polyhedron, by face and number.
@@ -42,52 +43,52 @@ class FacetTables {
  public:
   static constexpr unsigned kMaxDim = 4;
   static constexpr unsigned kInside = 6;      ///< FacetEntry::face
-  static constexpr unsigned kCubeEdges = 12;  ///< edge e of a cube: table_contract.hpp
+  static constexpr unsigned kCubeEdges = 12;  ///< number of edges of a cube; numbering: table_contract.hpp
 
-  /// What a cube has inside where the data resolve it.
+  /// Points and segments inside a cube that is resolved from the data.
   struct Inside {
-    std::vector<std::uint8_t> points;  ///< which own vertices of the cube's list
+    std::vector<std::uint8_t> points;  ///< numbers of the own vertices of the cube's list
     std::vector<std::array<std::uint8_t, 2>>
-        segments;  ///< start and end: the point on an edge, or kCubeEdges + a point
-    /// Choice of the cube's centre where there is a tunnel: what has its sign hangs together in the cube.
+        segments;  ///< start and end: an edge of the cube (its point), or kCubeEdges + index in `points`
+    /// Choice of the cube's centre if there is a tunnel: all corners of that sign are connected in the cube.
     facets::Choice joins = facets::Choice::separate;
   };
 
-  /// Makes those of edges, squares and cubes. Types are signatures; where the data decide, of squares square_type, of
-  /// cubes the numbers of ResolvedCubes' lists.
+  /// Builds the tables of edges, squares and cubes. Types are signatures; if ambiguities are resolved from the data:
+  /// square_type for squares, numbers of ResolvedCubes' lists for cubes.
   explicit FacetTables(Ambiguity ambiguity);
   static constexpr unsigned square_type(unsigned signature, bool high) noexcept {
     return signature | (high && (signature == 6 || signature == 9) ? 16u : 0u);
   }
-  /// Makes those of the tesseracts with these signatures, which are asked for alone. Not while others read. (Where the
-  /// data decide, see resolved_facets.hpp.)
+  /// Builds the tables of the tesseracts with these signatures, the only ones that may be queried. Not thread-safe with
+  /// readers. (If ambiguities are resolved from the data, see resolved_facets.hpp.)
   void add_tesseracts(std::span<const std::uint16_t> signatures);
 
-  /// How many facets a face of dimension `dim` has, 1 to kMaxDim.
+  /// Number of facets of a face of dimension `dim`, 1 to kMaxDim.
   [[nodiscard]] unsigned count(unsigned dim, unsigned type) const noexcept {
     const Lists& lists = lists_[dim];
     return lists.first_facet[type + 1] - lists.first_facet[type];
   }
-  /// What bounds facet `number`.
+  /// Boundary of facet `number`.
   [[nodiscard]] std::span<const FacetEntry> entries(unsigned dim, unsigned type, unsigned number) const noexcept {
     const Lists& lists = lists_[dim];
     const std::size_t facet = lists.first_facet[type] + number;
     return {lists.entries.data() + lists.first_entry[facet], lists.first_entry[facet + 1] - lists.first_entry[facet]};
   }
-  /// What bounds all of them together.
+  /// Total number of entries of all facets.
   [[nodiscard]] std::size_t entry_count(unsigned dim, unsigned type) const noexcept {
     const Lists& lists = lists_[dim];
     return lists.first_entry[lists.first_facet[type + 1]] - lists.first_entry[lists.first_facet[type]];
   }
-  /// Of cubes that the data resolve.
+  /// For cubes that are resolved from the data.
   [[nodiscard]] const Inside& inside(unsigned type) const noexcept { return inside_[type]; }
-  /// The points of facet `number` of such a cube: bit e that on edge e, bit kCubeEdges + j point j inside.
+  /// Points of facet `number` of such a cube: bit e is the point on edge e, bit kCubeEdges + j is point j inside.
   [[nodiscard]] std::uint16_t points(unsigned type, unsigned number) const noexcept {
     return points_[lists_[3].first_facet[type] + number];
   }
 
  private:
-  /// Of the faces of a face, in the order of FacetEntry::face.
+  /// Types of the faces of a face, in the order of FacetEntry::face.
   using FaceTypes = std::array<unsigned, std::size_t{2} * kMaxDim>;
   struct Lists {
     std::vector<std::uint32_t> first_facet;  ///< by type, and the end
@@ -98,7 +99,7 @@ class FacetTables {
   struct Part {
     FacetEntry entry;
     std::size_t component;
-    std::array<unsigned, 2> ends{};  ///< of a segment: the names of the edges that it runs from and to
+    std::array<unsigned, 2> ends{};  ///< of a segment: names of the edges of its start and end
   };
 
   using Triangle = std::array<std::uint8_t, 3>;
@@ -111,7 +112,7 @@ class FacetTables {
   static FaceTypes face_types(unsigned dim, unsigned signature) noexcept;
   [[nodiscard]] std::vector<Part> parts(unsigned dim, const FaceTypes& types) const;
   void join_parts(unsigned dim, const FaceTypes& types, std::vector<Part>& parts) const;
-  /// Numbers of the parts from `first` on, head to tail.
+  /// Numbers of the parts of a cycle, head to tail, starting with `first`.
   static std::vector<std::size_t> loop(const std::vector<Part>& parts, std::size_t first);
 
   Ambiguity ambiguity_;
@@ -120,7 +121,7 @@ class FacetTables {
   std::vector<std::uint16_t> points_;     ///< by facet of cubes
 };
 
-/// The signature of the face of a `dim`-cube at the lower (side 0) or upper end of an axis.
+/// Signature of the face of a `dim`-cube at the lower (side 0) or upper end of an axis.
 constexpr unsigned face_signature(unsigned dim, unsigned signature, unsigned axis, unsigned side) noexcept {
   unsigned result = 0;
   for (unsigned v = 0, to = 0; v < 1u << dim; ++v)
@@ -128,7 +129,7 @@ constexpr unsigned face_signature(unsigned dim, unsigned signature, unsigned axi
   return result;
 }
 
-/// The incidence number of that face in the cube: outward normal first, axes ascending.
+/// Incidence number of that face in the cube: outward normal first, axes ascending.
 constexpr int face_sign(unsigned axis, unsigned side) noexcept { return (axis % 2 == 0) == (side == 1) ? 1 : -1; }
 
 }  // namespace tegl::detail

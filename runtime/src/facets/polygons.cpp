@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Triangulation of polygons, and of the polygons of 3D facet hierarchies, with forbidden chords; see tegl/polygons.hpp.
 #include "tegl/polygons.hpp"
 
 #include <algorithm>
@@ -19,7 +21,7 @@ namespace tegl {
 namespace {
 
 using Triangle = std::array<Index, 3>;
-using Part = std::vector<Index>;  ///< points of a polygon in turn
+using Part = std::vector<Index>;  ///< points of a polygon in cyclic order
 
 template <int N>
 std::array<double, N> difference(const std::array<double, N>& a, const std::array<double, N>& b) noexcept {
@@ -33,7 +35,7 @@ double dot(const std::array<double, N>& a, const std::array<double, N>& b) noexc
   for (int i = 0; i < N; ++i) sum += a[i] * b[i];
   return sum;
 }
-/// Without what it has along `direction`.
+/// Component of v orthogonal to `direction`.
 template <int N>
 std::array<double, N> projected(std::array<double, N> v, const std::array<double, N>& direction) noexcept {
   const double square = dot<N>(direction, direction);
@@ -42,7 +44,7 @@ std::array<double, N> projected(std::array<double, N> v, const std::array<double
   return v;
 }
 
-/// One polygon.
+/// Triangulation of one polygon.
 template <int N>
 class Polygon {
  public:
@@ -75,7 +77,7 @@ class Polygon {
   [[nodiscard]] bool allows(Index a, Index b) const noexcept {
     return forbidden_.empty() || !forbidden_[std::size_t{a} * size_ + b];
   }
-  /// Whether no chord is forbidden of triangles that the polygon's edges bound.
+  /// Whether no triangle has a forbidden chord; edges of the polygon are no chords.
   [[nodiscard]] bool accept(const std::vector<Triangle>& triangles) const noexcept {
     return forbidden_.empty() || std::all_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
              for (std::size_t j = 0; j < 3; ++j) {
@@ -108,7 +110,7 @@ class Polygon {
     return triangles_;
   }
 
-  /// The points from place i to place j, around the part.
+  /// The points from position i to position j in cyclic order.
   static Part between(const Part& part, std::size_t i, std::size_t j) {
     Part result;
     for (;; i = (i + 1) % part.size()) {
@@ -144,7 +146,7 @@ class Polygon {
     const auto chord = difference<N>(points_[part[j]], points_[part[i]]);
     return by_kink_ ? 0.5 * (kink(part, i, chord) + kink(part, j, chord)) : std::sqrt(dot<N>(chord, chord));
   }
-  /// How much the part is bent at one end of a chord.
+  /// Bend of the part at one end of a chord: 0 if flat, 1 if folded.
   [[nodiscard]] double kink(const Part& part, std::size_t i, const std::array<double, N>& chord) const noexcept {
     const auto& here = points_[part[i]];
     const auto a = projected<N>(difference<N>(points_[part[(i + 1) % part.size()]], here), chord);
@@ -154,7 +156,8 @@ class Polygon {
     return 1.0 - std::acos(std::clamp(dot<N>(a, b) / lengths, -1.0, 1.0)) / std::numbers::pi;
   }
 
-  /// Whether the part has triangles without forbidden chords: of the points from a to b, by the length of that stretch.
+  /// Whether the part has a triangulation without forbidden chords. Dynamic programming over the stretches from a to b,
+  /// by length: O(m^3) for m points.
   [[nodiscard]] bool has_triangles(const Part& part) const {
     const std::size_t m = part.size();
     if (forbidden_.empty() || m == 3) return true;
@@ -173,7 +176,7 @@ class Polygon {
   std::span<const std::array<double, N>> points_;
   Index size_;
   bool by_kink_;
-  std::vector<bool> forbidden_;  ///< #points x #points, or none
+  std::vector<bool> forbidden_;  ///< #points x #points; empty: none
   std::vector<Triangle> triangles_;
 };
 
@@ -207,11 +210,12 @@ requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
 
 namespace {
 
-/// The triangles of some polygons, one after the other.
+/// The triangles of a run of consecutive polygons.
 struct PolygonRun {
-  std::vector<std::array<Index, 3>> triangles;  ///< barycentres count from the first of the run on, with kBarycentre
+  std::vector<std::array<Index, 3>>
+      triangles;  ///< vertex numbers; barycentres of the run are numbered from points_end() on
   std::vector<std::array<double, 3>> barycentres;
-  std::vector<std::array<double, 3>> normals;  ///< theirs, if wanted
+  std::vector<std::array<double, 3>> normals;  ///< of the barycentres, if wanted
   std::size_t first_triangle = 0, first_barycentre = 0;
 };
 struct PolygonScratch {
@@ -237,7 +241,7 @@ class PolygonTriangulator {
     const auto size = static_cast<Index>(polygon.size());
     const std::span<const std::array<double, 3>> points(scratch.points);
     bool has_barycentre = false;
-    // What `forbidden` says here holds by construction: no need to check it again.
+    // `forbidden` is valid by construction, so it is not checked.
     for (const Triangle& t : Polygon<3>(points, method_, scratch.forbidden).run(method_)) {
       Triangle& out = run.triangles.emplace_back();
       for (std::size_t j = 0; j < 3; ++j) {
@@ -253,7 +257,8 @@ class PolygonTriangulator {
   [[nodiscard]] std::size_t points_end() const noexcept { return facets_.vertices.size(); }
 
  private:
-  /// Chords between points of one square of the grid, that the polygon passes twice: an ambiguous one.
+  /// Lists the chords between points of one square of the grid that has two segments of the polygon (an ambiguous
+  /// square).
   void find_forbidden(std::size_t f, std::vector<Chord>& forbidden) const {
     forbidden.clear();
     const auto segments = facets_.down(2, f);
@@ -286,7 +291,7 @@ std::array<Real, 3> rounded(const std::array<double, 3>& point) {
   return {static_cast<Real>(point[0]), static_cast<Real>(point[1]), static_cast<Real>(point[2])};
 }
 
-/// Gives the runs their places in the contour.
+/// Prefix sums: places the runs in the contour, and allocates it.
 template <class Real>
 void make_room(std::vector<PolygonRun>& runs, const FacetHierarchy<3, Real>& facets, Contour<3, Real>& contour) {
   std::size_t triangles = 0, vertices = facets.vertices.size();
@@ -317,6 +322,7 @@ Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTrian
   const std::size_t count = facets.count(2);
   std::vector<PolygonRun> runs((count + kRun - 1) / kRun);
   const PolygonTriangulator<Real> triangulator(facets, method);
+  // triangulate runs in parallel
   detail::ProgressReporter reporter(options.progress, 1, "passes");
   reporter.begin_batch(0, 1, 1);
   reporter.begin_pass(std::max<std::size_t>(1, runs.size()));
@@ -327,6 +333,7 @@ Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTrian
       reporter.add(1);
     }
   });
+  // copy the runs to their places
   Contour<3, Real> contour;
   make_room(runs, facets, contour);
   workers.for_range(runs.size(), 1, [&](std::size_t from, std::size_t to, PolygonScratch&) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Components of Sigma, and which of them bound a facet together; see resolved_facets.hpp.
+// Components of Sigma, and the components that bound one facet together; see resolved_facets.hpp.
 #include "facets/resolved_facets.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace tegl::detail {
 namespace {
 
-/// The corners of square q of a cube, by corner of the cube.
+/// By square q: bit mask of its corners in the cube.
 constexpr auto kSquareCorners = [] {
   std::array<std::uint8_t, 6> result{};
   for (unsigned q = 0; q < 6; ++q)
@@ -21,7 +21,7 @@ constexpr auto kSquareCorners = [] {
   return result;
 }();
 
-/// Corners of a cube of the tesseract as corners of that.
+/// Corners of a cube of the tesseract, as corners of the tesseract.
 std::uint32_t lifted_corners(unsigned cube, unsigned corners) noexcept {
   std::uint32_t result = 0;
   for (; corners != 0; corners &= corners - 1)
@@ -29,7 +29,7 @@ std::uint32_t lifted_corners(unsigned cube, unsigned corners) noexcept {
   return result;
 }
 
-/// With the corners one step along an edge from them.
+/// The corners and their neighbours along edges.
 std::uint32_t grown(std::uint32_t corners) noexcept {
   std::uint32_t result = corners;
   for (unsigned axis = 0; axis < 4; ++axis)
@@ -46,6 +46,7 @@ std::size_t ResolvedFacets::begin(std::uint16_t signature, const std::array<std:
   cubes_ = cubes;
   parts_.clear();
   components_.clear();
+  // list the polygons of all cubes
   for (unsigned f = 0; f < 8; ++f) {
     if (cubes[f] == kNone) continue;
     for (unsigned number = 0; number < tables_->count(3, cubes[f]); ++number) {
@@ -59,7 +60,7 @@ std::size_t ResolvedFacets::begin(std::uint16_t signature, const std::array<std:
                         0});
     }
   }
-  // Sigma is a surface: around a point all of it hangs together.
+  // Sigma is a surface, so parts that share a point are connected. Merge them into components.
   is_known_.assign(parts_.size(), false);
   for (std::size_t first = 0; first < parts_.size(); ++first) {
     if (is_known_[first]) continue;
@@ -88,7 +89,7 @@ bool ResolvedFacets::is_sphere(std::size_t component) const noexcept {
   return std::popcount(components_[component]) - sides / 2 + polygons == 2;
 }
 
-/// The corners of one sign that hang together with those beside a component, in the boundary.
+/// The corners of one sign that are connected, in the boundary, with those beside a component.
 std::uint32_t ResolvedFacets::region(std::size_t component, bool high) const noexcept {
   const std::uint32_t corners = high ? signature_ : ~std::uint32_t{signature_} & 0xffffu;
   const auto edge = static_cast<unsigned>(std::countr_zero(components_[component]));
@@ -128,6 +129,7 @@ void ResolvedFacets::fill(facets::Choice choice) {
       facet_of_[c] = static_cast<std::size_t>(same - regions.begin());
     }
   }
+  // list the parts of each facet
   entries_.clear();
   first_.assign(1, 0);
   for (std::size_t c = 0; c < count; ++c) {

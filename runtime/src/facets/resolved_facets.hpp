@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The facets of tesseracts whose faces the data resolve, found tile by tile: there are too many kinds of these for
-// tables.
+// The facets of tesseracts whose ambiguous faces are resolved from the data. They are computed for each tile: there are
+// too many cases for tables.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace tegl::detail {
 
-/// One tesseract after the other: an object for each thread.
+/// Processes one tesseract at a time. Use one object per thread.
 class ResolvedFacets {
  public:
   static constexpr std::uint16_t kNone = ResolvedCubes::kNone;  ///< a cube without a contour
@@ -21,18 +21,18 @@ class ResolvedFacets {
   /// The tables must outlive it.
   explicit ResolvedFacets(const FacetTables& tables) : tables_(&tables) {}
 
-  /// A tesseract with these high corners, whose cube 2 a + side has this type. Returns how many components there are of
-  /// what the contour has on its boundary (Sigma).
+  /// Starts a tesseract with these high corners, whose cube 2 a + side has the given type. Returns the number of
+  /// components of the contour on its boundary (Sigma).
   std::size_t begin(std::uint16_t signature, const std::array<std::uint16_t, 8>& cubes);
 
-  /// Makes its facets. `choice`: of its centre. separate: each sphere bounds a facet of its own, and what is none is
-  /// filled as by a low centre; low, high: so does what is around a part of the boundary of the other sign, the high
-  /// parts or the low ones. (A copy of that part, moved inwards, is the facet.)
+  /// Computes its facets. `choice`: sign of its centre. separate: each sphere bounds its own facet, and other
+  /// components are filled as with a low centre. low, high: all components around one boundary region of the other sign
+  /// (high regions for low, low ones for high) bound one facet, which is a copy of that region, moved inwards.
   void fill(facets::Choice choice);
 
   [[nodiscard]] unsigned count() const noexcept { return static_cast<unsigned>(first_.size() - 1); }
   [[nodiscard]] std::size_t entry_count() const noexcept { return entries_.size(); }
-  /// What bounds facet `number`: polygons, by cube and number.
+  /// Boundary of facet `number`: polygons, by cube and number.
   [[nodiscard]] std::span<const FacetEntry> entries(unsigned number) const noexcept {
     return {entries_.data() + first_[number], first_[number + 1] - first_[number]};
   }
@@ -40,7 +40,7 @@ class ResolvedFacets {
  private:
   struct Part {
     FacetEntry entry;
-    std::uint8_t sides;    ///< of the polygon
+    std::uint8_t sides;    ///< number of sides of the polygon
     std::uint64_t points;  ///< as ResolvedCubes::Part::vertices
     std::uint8_t component;
   };
@@ -51,9 +51,9 @@ class ResolvedFacets {
   std::uint16_t signature_ = 0;
   std::array<std::uint16_t, 8> cubes_{};
   std::vector<Part> parts_;
-  std::vector<bool> is_known_;             ///< by part: whether its component is
-  std::vector<std::uint64_t> components_;  ///< their points
-  std::vector<std::size_t> facet_of_;      ///< by component: the first one of its facet
+  std::vector<bool> is_known_;             ///< by part: whether its component is known
+  std::vector<std::uint64_t> components_;  ///< the points of each component
+  std::vector<std::size_t> facet_of_;      ///< by component: the first component of its facet
   std::vector<FacetEntry> entries_;
   std::vector<std::size_t> first_;
 };

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Facets next to missing values. Tiles without missing corners may meet in an edge or a square of the grid alone, and
-// with them the contours in these tiles (pinches.hpp has the same of simplices).
-// Based on: A. Guéziec, G. Taubin, F. Lazarus, W. Horn, "Converting sets of polygons to manifold surfaces by cutting
-// and stitching", IEEE Visualization 1998.
+// Separation of facets next to missing values. Tiles without missing corners may share only an edge or a square of the
+// grid there, and so may the contours in these tiles (pinches.hpp does the same for simplices).
 #pragma once
 
 #include <algorithm>
@@ -23,7 +21,7 @@ class FacetSeparation {
  public:
   explicit FacetSeparation(FacetHierarchy<N, Real>& facets) : facets_(facets) {}
 
-  /// Of one dimension; those above it are done.
+  /// Separates the facets of dimension k. Higher dimensions must be done before.
   template <class MayNeedIt>
   void run(int k, const MayNeedIt& may_need_it) {
     facets_.connect_up();
@@ -95,13 +93,13 @@ class FacetSeparation {
   DisjointSets fans_;
 };
 
-/// Doubles facets whose (N-1)-facets do not hang together around them by (N-2)-facets. `may_need_it(place)` is false
-/// for those that can be left alone. New facets come last, in an order that depends on the facets alone.
+/// Doubles facets whose incident (N-1)-facets are not connected through (N-2)-facets around them. `may_need_it(place)`
+/// is false for facets that need no test. New facets are appended, in an order that depends only on the facets.
 template <int N, class Real, class MayNeedIt>
 void separate_facets(FacetHierarchy<N, Real>& facets, const MayNeedIt& may_need_it) {
   for (int k = N - 3; k >= 0; --k) FacetSeparation<N, Real>(facets).run(k, may_need_it);
   if (N == 2) return;
-  for (auto& level : facets.levels) {  // `up` is made on demand
+  for (auto& level : facets.levels) {  // `up` is computed on demand
     level.up_first = {};
     level.up = {};
     level.up_signs = {};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The invariants of a simplicial complex, vertex by vertex. All that `check` counts can be seen in the star of a
-// vertex (the simplices around it) and is counted at the smallest vertex of the face concerned; so it takes one
-// table, from vertices to their simplices, and small sorts inside each star, never a sort of all faces at once.
+// Invariants of a simplicial complex, vertex by vertex. Everything that `check` counts is visible in the star of a
+// vertex (the simplices around it) and is counted at the smallest vertex of the face. So `check` needs one table, from
+// vertices to simplices, and small sorts in each star, but no sort of all faces.
 //
 // Based on: H. Seifert and W. Threlfall, Lehrbuch der Topologie, 1934, chapters 3, 6 and 7 (a complex is a manifold iff
-// all links are spheres or balls; surfaces are told apart by boundary, orientability and Euler characteristic).
+// all links are spheres or balls; surfaces are classified by boundary, orientability and Euler characteristic).
 #include "tegl/check.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@
 namespace tegl {
 namespace {
 
-/// Links between two calls for progress: where each is a surface of its own, some hundredths of a second.
+/// Links between two progress calls; if each link is a surface, this takes some hundredths of a second.
 constexpr std::size_t kVerticesAtOnce = 1024;
 
 /// A complex of D-simplices, valid vertex numbers only.
@@ -50,12 +50,12 @@ class LinkChecker {
     if constexpr (D == 4) number_.resize(complex.vertex_count);
   }
 
-  /// Adds what the star of `v` says to the report.
+  /// Adds the counts at the star of `v` to the report.
   void visit(Index v, std::span<const Index> star, MeshReport& report) {
     load(v, star);
     const std::uint64_t link_vertices = count_link_vertices(v);
     if constexpr (D == 4) count_link_edges(v);
-    sets_.reset(pieces_.size() * D);  // a set per corner of a piece; joined round the vertex of the link
+    sets_.reset(pieces_.size() * D);  // one set per corner of a piece, joined around the vertices of the link
     scan_ridges(v, report);
     if (!is_sphere_or_ball(link_vertices)) ++report.bad_links;
     if constexpr (D >= 2) edges_ += edges_above_;
@@ -98,7 +98,7 @@ class LinkChecker {
     std::sort(ridges_.begin(), ridges_.end());
   }
 
-  /// D = 4: the key is the three vertices, ascending; D = 3: the two; D = 2: the one vertex; D = 1: the empty face.
+  /// Key: the vertices of the ridge, ascending: three if D = 4, two if D = 3, one if D = 2, none if D = 1.
   static Ridge make_ridge(const Piece& piece, Index number, int omitted, bool odd) {
     bool reversed = odd != ((omitted & 1) != 0);
     Key key{};
@@ -150,7 +150,7 @@ class LinkChecker {
     triangles_ += static_cast<std::uint64_t>(link_edges_.end() - above);
   }
 
-  /// Whether v is the smallest vertex of the face "v and this ridge", which is then counted here.
+  /// Whether v is the smallest vertex of the face spanned by v and this ridge. The face is then counted here.
   static bool is_counted_at(Index v, const Key& key) {
     if constexpr (D == 1) return true;
     if constexpr (D == 2) return key > v;
@@ -184,7 +184,7 @@ class LinkChecker {
     if (cofaces.size() == 2 && cofaces[0].reversed == cofaces[1].reversed) ++report.orientation_conflicts;
   }
 
-  /// Two pieces that share a ridge: connected, and around each of the ridge's vertices they belong to one fan.
+  /// Joins two pieces that share a ridge: they are connected, and in the same fan around each vertex of the ridge.
   void join_across(const Ridge& a, const Ridge& b) {
     if (whole_.join(a.piece, b.piece)) ++connections_;
     for (int i = 0; i < D; ++i) {
@@ -198,7 +198,7 @@ class LinkChecker {
 
   [[nodiscard]] bool is_sphere_or_ball(std::uint64_t link_vertices) {
     if (branching_) return false;                            // a ridge in three pieces
-    if (connections_ + 1 != pieces_.size()) return false;    // several parts
+    if (connections_ + 1 != pieces_.size()) return false;    // several components
     if (D >= 2 && fans_ != link_vertices) return false;      // a vertex of the link with several fans: pinched
     auto euler = static_cast<std::int64_t>(pieces_.size());  // of the link
     if constexpr (D == 2) euler = static_cast<std::int64_t>(link_vertices) - euler;
@@ -222,7 +222,7 @@ class LinkChecker {
   }
 
   const Complex<D>& complex_;
-  std::vector<Index> seen_;  // the last vertex in whose link each vertex was met
+  std::vector<Index> seen_;  // by vertex: the last vertex in whose link it was met
   std::vector<Piece> pieces_;
   std::vector<Ridge> ridges_;
   detail::DisjointSets sets_;
@@ -235,15 +235,15 @@ class LinkChecker {
   std::uint64_t triangles_ = 0;
   std::uint64_t tetrahedra_ = 0;
   // D = 4
-  std::vector<Index> number_;              // in the link at hand
-  std::vector<std::uint64_t> link_edges_;  // the smaller end above, ascending
+  std::vector<Index> number_;              // by vertex: its number in the current link
+  std::vector<std::uint64_t> link_edges_;  // smaller end in the upper 32 bits, ascending
   facets::Simplices link_;
   bool closed_ = true;
   bool branching_ = false;
 };
 
-/// Whether D edge vectors from one corner span less than D dimensions, up to rounding: Gram–Schmidt with the longest
-/// remainder first; its remainders are heights of the simplex, in falling order.
+/// Whether D edge vectors from one corner span less than D dimensions, up to rounding. Gram–Schmidt with pivoting,
+/// longest remainder first; the remainders are heights of the simplex in decreasing order.
 template <int D, class Real>
 bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
   constexpr int kMaxSpace = 8;
@@ -260,6 +260,7 @@ bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
   };
   double longest = 0.0;
   for (int step = 0; step < D; ++step) {
+    // pivot: the longest remainder
     int pivot = step;
     double best = -1.0;
     for (int j = step; j < D; ++j) {
@@ -273,6 +274,7 @@ bool is_flat(const Index* row, int space_dim, const Real* coordinates) {
     std::swap(edges[step], edges[pivot]);
     longest = std::max(longest, best);
     if (best <= kFlat * kFlat * longest) return true;
+    // subtract its direction from the others
     for (int j = step + 1; j < D; ++j) {
       const double along = dot(edges[j], edges[step]) / best;
       for (int a = 0; a < space_dim; ++a) edges[j][a] -= along * edges[step][a];
@@ -302,6 +304,7 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
       if (!std::all_of(at.begin(), at.end(), [](Real x) { return std::isfinite(x); })) ++report.nonfinite_vertices;
     }
   });
+  // components, collapsed and flat simplices
   const detail::Stars stars = detail::make_stars<D + 1>(rows, complex.vertex_count, part_of(progress, 0.03, 0.08));
   LinkChecker<D> links(complex);
   detail::DisjointSets connected;
@@ -318,6 +321,7 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
         if (connected.join(complex[s][0], complex[s][i])) ++joins;
     }
   });
+  // links of vertices
   const auto visit_links = [&](std::size_t from, std::size_t to) {
     for (std::size_t v = from; v < to; ++v) {
       const std::span<const Index> star = stars.of(v);
@@ -329,8 +333,7 @@ MeshReport check_complex(std::span<const Index> rows, int space_dim, std::span<c
   in_parts(complex.vertex_count, part_of(progress, 0.15, 1.0), visit_links, kVerticesAtOnce);
   report.unused_vertices = complex.vertex_count - report.vertices;
   report.components = report.vertices - joins;
-  // V - E + F - …, the simplices themselves last; below D = 2, 3, 4 the counts of edges, triangles and tetrahedra are
-  // zero.
+  // V - E + F - …, with the simplices last. For D < 2, 3, 4 the counts of edges, triangles and tetrahedra are 0.
   report.euler = static_cast<std::int64_t>(report.vertices) - static_cast<std::int64_t>(links.edges()) +
                  static_cast<std::int64_t>(links.triangles()) - static_cast<std::int64_t>(links.tetrahedra()) +
                  (D % 2 == 0 ? 1 : -1) * static_cast<std::int64_t>(sound);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Components by parallel union-find over the simplices; what each is, by sums in fixed blocks; parts of a contour.
+// Connected components by parallel union-find over the simplices, their measures, and extraction of components.
 //
-// Based on: Zhu Jingwei, Meng Peisheng, Wang Cheng, An Improved Marching Cubes Algorithm, 2008, section 3.2, whose seed
-// fill gives the same labels, counted from 1, in one thread.
+// Based on: Zhu Jingwei, Meng Peisheng, Wang Cheng, An Improved Marching Cubes Algorithm, 2008, section 3.2. Their
+// single-threaded seed fill gives the same labels, counted from 1.
 #include "tegl/components.hpp"
 
 #include <algorithm>
@@ -22,14 +22,14 @@ namespace {
 
 using detail::kBlock;
 
-/// The rows that `part_of_contour` copies: of a contour with so many vertices and simplices.
+/// Number of rows that `part_of_contour` copies for this number of vertices and simplices.
 template <int N, class Real>
 std::uint64_t rows_to_copy(const Contour<N, Real>& contour, std::uint64_t vertices, std::uint64_t simplices) {
   return vertices * (1 + (contour.normals.empty() ? 0 : 1) + contour.vertex_attributes.size()) +
          simplices * (1 + contour.simplex_attributes.size());
 }
 
-/// The part of a contour with these vertices and simplices. `number`: the new number of each of the vertices.
+/// The part of a contour with these vertices and simplices. `number`: by vertex of the contour, its new number.
 template <int N, class Real>
 Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<const Index> vertices,
                                  std::span<const Index> simplices, const Buffer<Index>& number,
@@ -64,8 +64,8 @@ Contour<N, Real> part_of_contour(const Contour<N, Real>& contour, std::span<cons
   return part;
 }
 
-/// As many labels as there are vertices and simplices, each below their count and each used; of simplices those of
-/// their vertices, and of vertices in no simplex none.
+/// Throws InvalidArgument unless the labels fit the contour: one per vertex and simplex, each below the count, each
+/// used by a simplex, equal for a simplex and its vertices, and none for vertices in no simplex.
 template <int N, class Real>
 void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labels, const Progress& progress = {}) {
   detail::require_vertices(contour);
@@ -74,11 +74,13 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
     if (found != expected)
       fail(fmt::format("labels for {} {}; expected {}, as many as the contour has", found, what, expected));
   };
+  // counts
   require_count(labels.vertices.size(), contour.vertices.size(), "vertices");
   require_count(labels.simplices.size(), contour.simplices.size(), "simplices");
   if (labels.count > contour.simplices.size())
     fail(fmt::format("{} components of {} simplices; expected the labels of this contour", labels.count,
                      contour.simplices.size()));
+  // simplices and their vertices
   std::vector<bool> is_in_simplex(contour.vertices.size(), false);
   std::vector<bool> has_simplex(labels.count, false);
   const auto look_at = [&](std::size_t s) {
@@ -97,6 +99,7 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
   detail::in_parts(contour.simplices.size(), progress, [&](std::size_t from, std::size_t to) {
     for (std::size_t s = from; s < to; ++s) look_at(s);
   });
+  // vertices in no simplex, components without simplices
   for (std::size_t v = 0; v < is_in_simplex.size(); ++v)
     if (!is_in_simplex[v] && labels.vertices[v] != kNoComponent)
       fail(fmt::format("vertex {} in no simplex has the label {}; expected none", v, labels.vertices[v]));
@@ -105,7 +108,8 @@ void require_labels(const Contour<N, Real>& contour, const ComponentLabels& labe
                      empty - has_simplex.begin(), labels.count));
 }
 
-/// Labels in the order of the sets' leaders, which are their smallest vertices. Vertices without `used` get none.
+/// Numbers the sets in the order of their roots, which are their smallest vertices. Vertices without `used` get
+/// kNoComponent.
 Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& used, unsigned threads,
                   const Progress& progress, Buffer<Index>& labels) {
   labels.resize(used.size());
@@ -113,7 +117,7 @@ Index number_sets(detail::SharedDisjointSets& sets, const Buffer<std::uint8_t>& 
     for (std::size_t v = from; v < to; ++v) labels[v] = used[v] != 0 ? sets.find(static_cast<Index>(v)) : kNoComponent;
   });
   Index count = 0;
-  for (std::size_t v = 0; v < labels.size(); ++v) {  // a leader comes before all others of its set
+  for (std::size_t v = 0; v < labels.size(); ++v) {  // a root comes before all others of its set
     if (labels[v] == kNoComponent) continue;
     labels[v] = labels[v] == v ? count++ : labels[labels[v]];
   }
@@ -127,6 +131,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
   detail::require_vertices(contour);
   const std::size_t vertices = contour.vertices.size();
   const std::size_t simplices = contour.simplices.size();
+  // merge the vertices of each simplex
   detail::SharedDisjointSets sets(vertices);
   Buffer<std::uint8_t> used(vertices);
   std::fill(used.begin(), used.end(), std::uint8_t{0});
@@ -138,6 +143,7 @@ ComponentLabels label_components(const Contour<N, Real>& contour, const WorkOpti
                                std::atomic_ref<std::uint8_t>(used[v]).store(1, std::memory_order_relaxed);
                              }
                          });
+  // number the sets, then label the simplices
   ComponentLabels labels;
   labels.count = number_sets(sets, used, options.threads, detail::part_of(options.progress, 0.7, 0.9), labels.vertices);
   labels.simplices.resize(simplices);
@@ -154,6 +160,7 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
                                      const WorkOptions& options) {
   require_labels(contour, labels, detail::part_of(options.progress, 0.0, 0.05));
   detail::require_finite(contour);
+  // count faces by label
   const std::span<const Index> rows = detail::rows_of(contour);
   std::vector<detail::FaceCounts> faces;
   {
@@ -163,6 +170,7 @@ std::vector<Component<N>> components(const Contour<N, Real>& contour, const Comp
                                    detail::part_of(options.progress, 0.1, 0.8),
                                    [](std::size_t, const auto&) { /* counted */ });
   }
+  // sums over simplices by label
   const detail::Groups groups =
       detail::group_by(labels.simplices, labels.count, detail::part_of(options.progress, 0.8, 0.82));
   const std::vector<detail::PieceSums<N>> sums =
@@ -224,6 +232,7 @@ Contour<N, Real> select_components(const Contour<N, Real>& contour, const Compon
     });
     return items;
   };
+  // list the kept vertices and simplices
   const Buffer<Index> vertices = kept(labels.vertices, part_of(progress, 0.2, 0.3));
   const Buffer<Index> simplices = kept(labels.simplices, part_of(progress, 0.3, 0.5));
   const Progress copying = part_of(progress, 0.5, 1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elements of contours, by simplex and by tile; see tegl/elements.hpp.
+// Elements of contours (centroid, normal, measure, attributes), by simplex and by tile; see tegl/elements.hpp.
 #include "tegl/elements.hpp"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ Elements<N> make_elements(const Contour<N, Real>& contour, std::size_t count) {
   return result;
 }
 
-/// The attributes of element s from those of its vertices.
+/// Interpolates the attributes of element s from its vertices.
 template <int N, class Real>
 void interpolate(const Contour<N, Real>& contour, std::size_t s, std::vector<Attribute>& attributes) noexcept {
   std::size_t next = 0;
@@ -65,18 +65,19 @@ void interpolate(const Contour<N, Real>& contour, std::size_t s, std::vector<Att
   }
 }
 
-/// A simplex, and the place that its element belongs to: the number of the tile, times 2 N + 1, plus the border that a
-/// cap lies in (1 + 2 axis + side).
+/// A simplex and the place of its element: the tile number times 2 N + 1, plus the side of the border that a cap lies
+/// in (1 + 2 axis + side; 0: none).
 struct Placed {
   std::uint64_t place;
   Index simplex;
   bool operator<(const Placed& other) const { return std::tie(place, simplex) < std::tie(other.place, other.simplex); }
 };
 
-/// Where each simplex belongs, in order. All of a tile's simplices have their centroids in it: a tile is convex.
+/// The place of each simplex, sorted. A tile is convex, so it contains the centroids of all its simplices.
 template <int N, class Real>
 std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>& grid, const WorkOptions& options) {
-  constexpr double kInBorder = std::is_same_v<Real, float> ? 1e-5 : 1e-9;  // steps: what vertices are rounded by
+  constexpr double kInBorder =
+      std::is_same_v<Real, float> ? 1e-5 : 1e-9;  // in grid steps: bound of the rounding of vertices
   constexpr std::uint64_t kNowhere = ~std::uint64_t{0};
   const detail::GridLocator<N> locator(grid);
   const std::array<std::size_t, N> sizes = grid.sizes();
@@ -104,13 +105,14 @@ std::vector<Placed> place_simplices(const Elements<N>& simplices, const Grid<N>&
   return placed;
 }
 
-/// Parts simplices of one place into those that hang together by vertices.
+/// Finds the connected components, by shared vertices, of the simplices of one place.
 template <int N, class Real>
 class PieceFinder {
  public:
   explicit PieceFinder(const Contour<N, Real>& contour) : contour_(contour) {}
 
-  /// Reorders the simplices piece by piece, each in order and the pieces by their first, and returns where pieces end.
+  /// Reorders the simplices by component: components by their first simplex, and simplices in order within each.
+  /// Returns the ends of the components.
   const std::vector<std::size_t>& part(std::span<Placed> simplices) {
     sets_.reset(simplices.size());
     corners_.clear();
@@ -133,13 +135,13 @@ class PieceFinder {
 
  private:
   const Contour<N, Real>& contour_;
-  detail::DisjointSets sets_;  ///< of simplices: the first of a piece leads it
+  detail::DisjointSets sets_;  ///< of simplices; the first simplex of a component is its root
   std::vector<std::pair<Index, Index>> corners_;
   std::vector<std::pair<Index, Placed>> order_;
   std::vector<std::size_t> ends_;
 };
 
-/// Element `to` of `result`: those of `simplices` that `piece` names, as one.
+/// Computes element `to` of `result` from the elements of `simplices` in `piece`.
 template <int N>
 void merge(const Elements<N>& simplices, std::span<const Placed> piece, std::size_t to, Elements<N>& result) noexcept {
   double total = 0.0;
@@ -188,11 +190,11 @@ Elements<N> elements(const Contour<N, Real>& contour, const WorkOptions& options
 
 template <int N, class Real>
 Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& grid, const WorkOptions& options) {
-  // Two passes over all simplices, and two over the sorted ones, of which the last is left to tell.
+  // Progress: two passes over all simplices and two over the sorted ones; only the last of these reports.
   const Elements<N> simplices = elements(contour, {options.threads, detail::part_of(options.progress, 0.0, 0.4)});
   std::vector<Placed> placed =
       place_simplices<N, Real>(simplices, grid, {options.threads, detail::part_of(options.progress, 0.4, 0.6)});
-  std::vector<std::size_t> ends;  // of pieces in `placed`
+  std::vector<std::size_t> ends;  // of components in `placed`
   PieceFinder<N, Real> finder(contour);
   for (std::size_t first = 0, end; first < placed.size(); first = end) {
     end = first;
@@ -200,6 +202,7 @@ Elements<N> elements_by_cell(const Contour<N, Real>& contour, const Grid<N>& gri
     for (const std::size_t piece_end : finder.part(std::span(placed).subspan(first, end - first)))
       ends.push_back(first + piece_end);
   }
+  // merge each component into an element
   Elements<N> result = make_elements(contour, ends.size());
   detail::for_each_item(ends.size(), options.threads, detail::part_of(options.progress, 0.8, 1.0), [&](std::size_t e) {
     const std::size_t first = e == 0 ? 0 : ends[e - 1];

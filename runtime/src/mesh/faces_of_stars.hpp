@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Counts the faces of a complex, each at its smallest vertex, which sees all simplices around the face: the Euler
-// characteristic, where the complex is open, and where orientations do not cancel. No table of faces is made.
+// Counts the faces of a complex: Euler characteristic, boundary faces, and faces whose orientations do not cancel. Each
+// face is counted at its smallest vertex, whose star contains all simplices around the face. So no table of faces is
+// needed.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +16,9 @@
 
 namespace tegl::detail {
 
-/// What is counted at one vertex, or summed up over several.
+/// Counts at one vertex, or their sums over several vertices.
 struct FaceCounts {
-  std::int64_t euler = 0;      ///< the alternating sum of the numbers of faces
+  std::int64_t euler = 0;      ///< alternating sum of the numbers of faces
   std::uint64_t boundary = 0;  ///< (N-2)-faces in exactly one simplex
   std::uint64_t open = 0;      ///< (N-2)-faces whose simplices' orientations do not cancel
 
@@ -29,7 +30,7 @@ struct FaceCounts {
   }
 };
 
-/// Faces of a complex of simplices with N vertices each. One per thread.
+/// Face counter for a complex of simplices with N vertices each. Use one per thread.
 template <int N>
 class FacesOfStars {
  public:
@@ -63,8 +64,8 @@ class FacesOfStars {
   }
 
  private:
-  using Rest = std::array<Index, N - 2>;  // a ridge's vertices but the smallest
-  /// One side of a ridge: the simplex there runs through it along the ascending order of its vertices, or against it.
+  using Rest = std::array<Index, N - 2>;  // the vertices of a ridge except the smallest
+  /// One side of a ridge. `orientation`: 1 if the simplex induces the ascending order of the ridge's vertices, else -1.
   struct Side {
     Rest rest;
     int orientation;
@@ -79,12 +80,13 @@ class FacesOfStars {
     return std::unique(keys.begin(), keys.end()) - keys.begin();
   }
 
-  /// Lists the faces of a simplex that have v as their smallest vertex. True if the simplex itself has.
+  /// Lists the faces of a simplex whose smallest vertex is v. Returns whether v is the smallest vertex of the simplex
+  /// itself.
   bool load(Index v, const Index* row) {
     std::array<Index, N> sorted;
     std::copy_n(row, N, sorted.begin());
     int orientation = 1;
-    for (int i = 1; i < N; ++i)  // insertion sort, as it counts exchanges
+    for (int i = 1; i < N; ++i)  // insertion sort, to count the exchanges
       for (int j = i; j > 0 && sorted[j] < sorted[j - 1]; --j) {
         std::swap(sorted[j], sorted[j - 1]);
         orientation = -orientation;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Measures of a contour, and of its cuts without making them.
+// Measures of a contour, and measures of its cuts without constructing them.
 //
 // Based on: H. B. Curry and I. J. Schoenberg, On Pólya frequency functions IV: the fundamental spline functions and
-// their limits, 1966 (the volume of the cuts of a simplex is a B-spline with the vertices' positions as knots).
+// their limits, 1966. The volume of the cuts of a simplex is a B-spline whose knots are the positions of the vertices.
 #include "tegl/measure.hpp"
 
 #include <cmath>
@@ -22,11 +22,12 @@ using detail::CompensatedSum;
 using detail::kBlock;
 using detail::PointOf;
 
-/// The B-spline with the knots k_0 ≤ … ≤ k_d that has the integral 1, at t; of degree d - 1. At knots it is the limit
-/// from below (`from_above`: from above). By recursion, as a mean of two splines with a knot less: nothing cancels.
+/// The B-spline of degree d - 1 with the knots k_0 ≤ … ≤ k_d and integral 1, at t. At knots it is the limit from below
+/// (`from_above`: from above). Recursion by convex combinations of two splines with one knot less, so there is no
+/// cancellation.
 template <int Knots>
 double normalised_spline(std::array<double, Knots> knots, double t, bool from_above) noexcept {
-  std::array<double, Knots - 1> spline;  // with two knots: one over their distance, between them
+  std::array<double, Knots - 1> spline;  // two knots: 1 / distance between them
   for (int i = 0; i + 1 < Knots; ++i) {
     const bool inside = from_above ? knots[i] <= t && t < knots[i + 1] : knots[i] < t && t <= knots[i + 1];
     spline[i] = inside ? 1.0 / (knots[i + 1] - knots[i]) : 0.0;
@@ -42,10 +43,10 @@ double normalised_spline(std::array<double, Knots> knots, double t, bool from_ab
   return spline[0];
 }
 
-/// Which of the values asked for, ascending, lie where something that reaches from `low` to `high` is cut.
+/// The requested values in ascending order, with lookup of those that cut a range from `low` to `high`.
 class CutValues {
  public:
-  /// `first`: the contour's first value, where limits are from above.
+  /// `first`: the minimum of the contour, at which limits are from above.
   CutValues(std::span<const double> at, double first) : at_(at.size()), order_(at.size()), first_(first) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
@@ -53,11 +54,11 @@ class CutValues {
   }
   [[nodiscard]] std::size_t size() const noexcept { return at_.size(); }
   [[nodiscard]] double operator[](std::size_t i) const noexcept { return at_[i]; }
-  /// The place in the caller's list.
+  /// Index in the caller's list.
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return order_[i]; }
   [[nodiscard]] bool from_above(std::size_t i) const noexcept { return at_[i] == first_; }
 
-  /// The range [from, to) of the values in (low, high]; in [low, high) where limits are from above.
+  /// The indices [from, to) of the values in (low, high]; in [low, high] if low is the first value of the contour.
   [[nodiscard]] std::pair<std::size_t, std::size_t> between(double low, double high) const noexcept {
     if (!(low < high)) return {0, 0};
     const auto begin =
@@ -72,14 +73,14 @@ class CutValues {
   double first_;
 };
 
-/// The sums at one value.
+/// Sums at one value.
 struct CutSums {
   CompensatedSum size;
-  CompensatedSum content;  // N - 1 times it
+  CompensatedSum content;  // N - 1 times the enclosed content
 };
 
-/// Adds what the cuts of one simplex have to the sums. Its cut at t lies in the plane with the normal w (the spatial
-/// part of the simplex's normal vector W), in which x . w = x_0 . w + (t_0 - t) W_t for any of its vertices (x_0, t_0).
+/// Adds the cuts of one simplex to the sums. Its cut at t lies in the plane with the normal w (the spatial part of the
+/// simplex's normal vector W), in which x . w = x_0 . w + (t_0 - t) W_t for any of its vertices (x_0, t_0).
 template <int N>
 void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin, const CutValues& values,
               std::span<CutSums> sums) noexcept {
@@ -101,7 +102,7 @@ void add_cuts(const std::array<PointOf<N>, N>& corners, const PointOf<N>& origin
   }
 }
 
-/// At which values the contour's cut is open: where an (N-2)-face whose orientations do not cancel is cut.
+/// By value, whether the cut is open: an (N-2)-face whose orientations do not cancel is cut there.
 template <int N, class Real>
 std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValues& values, const WorkOptions& options) {
   std::vector<std::vector<std::pair<double, double>>> spans(detail::block_count(contour.vertices.size(), kBlock));
@@ -117,6 +118,7 @@ std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValue
                            }
                            spans[block].push_back(span);
                          });
+  // count open faces by value, from the changes at their ends
   std::vector<std::int64_t> changes(values.size() + 1, 0);
   for (const auto& block : spans)
     for (const auto& [low, high] : block) {
@@ -130,7 +132,7 @@ std::vector<bool> find_open_cuts(const Contour<N, Real>& contour, const CutValue
   return open;
 }
 
-/// The lowest and the highest coordinates of the simplices; 0 for none.
+/// Bounding box of the simplices; 0 if there are none.
 template <int N, class Real>
 std::pair<PointOf<N>, PointOf<N>> bounding_box(const Contour<N, Real>& contour) {
   if (contour.simplices.empty()) return {};
@@ -153,9 +155,10 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
   detail::require_finite(contour);
   Measures<N> result;
   if (contour.simplices.empty()) {
-    result.content = 0.0;  // it has no border
+    result.content = 0.0;  // it has no boundary
     return result;
   }
+  // boundary faces
   const std::span<const Index> rows = detail::rows_of(contour);
   detail::FaceCounts faces;
   {
@@ -166,6 +169,7 @@ Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& options)
                                [](std::size_t, const auto&) { /* counted */ })
             .front();
   }
+  // sums over simplices
   const detail::PieceSums<N> sums = detail::sum_groups(contour, detail::one_group(contour.simplices.size()),
                                                        options.threads, detail::part_of(options.progress, 0.7, 1.0))
                                         .front();
@@ -189,14 +193,14 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
     if (!std::isfinite(t))
       throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
   const auto [low, high] = bounding_box(contour);
-  std::vector<double> levels;  // where `slice` cuts
+  std::vector<double> levels;  // the values rounded as by `slice`
   for (const double t : at) levels.push_back(static_cast<double>(detail::rounded_at<Real>(t)));
   const CutValues values(levels, low[N - 1]);
   const std::vector<bool> open = find_open_cuts(contour, values, options);
-  PointOf<N> origin;  // near the contour, to keep the terms of the contents small
+  PointOf<N> origin;  // near the contour, so that the terms of the contents are small
   for (int a = 0; a < N; ++a) origin[a] = low[a] + 0.5 * (high[a] - low[a]);
 
-  // Parts that depend on the input alone, each with its own sums for all values.
+  // The partition depends only on the input, so sums are reproducible. Each part has its own sums for all values.
   const std::size_t simplices = contour.simplices.size();
   const std::size_t parts =
       std::clamp<std::size_t>((std::size_t{1} << 20) / std::max<std::size_t>(1, values.size()), 1, 64);
@@ -208,6 +212,7 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
                            for (std::size_t s = from; s < to; ++s)
                              add_cuts<N>(detail::corners_of(contour, s), origin, values, sums[block]);
                          });
+  // add up the parts
   std::vector<CutMeasures> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     CutSums total;

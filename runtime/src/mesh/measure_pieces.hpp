@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sums over the pieces of a contour, whole or by groups of simplices: what `measure` and `components` share.
+// Sums over a whole contour or over groups of simplices, shared by `measure` and `components`.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 
 namespace tegl::detail {
 
-/// Items of one block: enough to make up for what a block costs, few enough for all threads to have some.
+/// Items per block: large enough to amortize the cost of a block, small enough to occupy all threads.
 inline constexpr std::size_t kBlock = 4096;
 
 template <int N, class Real>
@@ -33,10 +33,10 @@ std::span<const Index> rows_of(const Contour<N, Real>& contour) noexcept {
   return {contour.simplices.empty() ? nullptr : contour.simplices.data()->data(), contour.simplices.size() * N};
 }
 
-/// Items in the order of the groups that they are in: members[first[g] … first[g + 1]), ascending.
+/// Items sorted by group: group g has members[first[g] … first[g + 1]), ascending.
 struct Groups {
   std::vector<std::size_t> first;
-  Buffer<Index> members;  ///< empty: the items in their own order
+  Buffer<Index> members;  ///< empty: all items in their own order
 
   [[nodiscard]] Index member(std::size_t i) const noexcept {
     return members.empty() ? static_cast<Index>(i) : members[i];
@@ -49,10 +49,10 @@ struct Groups {
 /// All items in one group.
 inline Groups one_group(std::size_t count) { return {{0, count}, {}}; }
 
-/// The items by their labels, 0 … count - 1; those with other labels are in no group.
+/// Groups the items by their labels 0 … count - 1. Items with other labels are in no group.
 inline Groups group_by(std::span<const Index> labels, Index count, const Progress& progress = {}) {
   Groups groups;
-  groups.first.assign(std::size_t{count} + 2, 0);  // counted two places up, so that filling leaves it right
+  groups.first.assign(std::size_t{count} + 2, 0);  // counts are two places up, so that filling turns them into offsets
   in_parts(labels.size(), part_of(progress, 0.0, 0.4), [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i)
       if (labels[i] < count) ++groups.first[labels[i] + std::size_t{2}];
@@ -67,11 +67,11 @@ inline Groups group_by(std::span<const Index> labels, Index count, const Progres
   return groups;
 }
 
-/// Sums over simplices, with coordinates from a point of reference near them, which keeps the terms small.
+/// Sums over simplices. Coordinates are relative to a reference point near them, so that the terms are small.
 template <int N>
 struct PieceSums {
   CompensatedSum size;
-  CompensatedSum content;  ///< N times that of the cone over the simplices with its apex at the point of reference
+  CompensatedSum content;  ///< N times the volume of the cone over the simplices with its apex at the reference point
   std::array<CompensatedSum, N> moment;
   PointOf<N> reference{};
   PointOf<N> lowest{};
@@ -96,7 +96,7 @@ struct PieceSums {
     }
     content.add(flux);
   }
-  /// Adds sums from the same point of reference.
+  /// Adds sums with the same reference point.
   void add(const PieceSums& other) noexcept {
     size.add(other.size.value());
     content.add(other.content.value());
@@ -115,7 +115,7 @@ struct PieceSums {
   }
 };
 
-/// The sums of each group of simplices; a group must not be empty.
+/// The sums of each group of simplices. No group may be empty.
 template <int N, class Real>
 std::vector<PieceSums<N>> sum_groups(const Contour<N, Real>& contour, const Groups& groups, unsigned threads,
                                      const Progress& progress) {
@@ -140,9 +140,9 @@ std::vector<PieceSums<N>> sum_groups(const Contour<N, Real>& contour, const Grou
   return result;
 }
 
-/// Counts the faces of a complex by the label of their vertices (all in one without labels). Calls on_open(block,
-/// ridge) for each (N-2)-face whose orientations do not cancel: blocks are worked on side by side, those of a block one
-/// after the other.
+/// Counts the faces of a complex by the label of their vertices (without labels: one label for all). Calls
+/// on_open(block, ridge) for each (N-2)-face whose orientations do not cancel. Blocks run in parallel; the calls of one
+/// block are sequential.
 template <int N, class OnOpen>
 std::vector<FaceCounts> count_faces(std::span<const Index> rows, const Stars& stars, std::span<const Index> labels,
                                     std::size_t label_count, bool with_euler, unsigned threads,
@@ -168,7 +168,7 @@ std::vector<FaceCounts> count_faces(std::span<const Index> rows, const Stars& st
   return result;
 }
 
-/// The content that the sums of a contour tell, if it encloses one.
+/// The enclosed content from the sums of a contour; empty if the contour is open.
 template <int N>
 std::optional<double> content_of(const PieceSums<N>& sums, const FaceCounts& faces, GradientDirection direction) {
   if (faces.open > 0) return std::nullopt;

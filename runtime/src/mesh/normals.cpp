@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Normals of contours; see tegl/normals.hpp.
+// Normals of contours: of simplices, averaged at vertices, and from gradients of the image; see tegl/normals.hpp.
 #include "tegl/normals.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 using detail::PointOf;
 
-/// Of length 1, or 0.
+/// Normalized to length 1; 0 stays 0.
 template <int N>
 PointOf<N> unit(PointOf<N> v) noexcept {
   const double length = detail::length_of<N>(v);
@@ -52,7 +52,7 @@ double angle_at(const std::array<PointOf<N>, N>& corners, int j) noexcept {
   if constexpr (N == 2) {
     return 1.0;
   } else if constexpr (N == 3) {
-    // By halves of the sum and the difference: exact for thin angles, too (W. Kahan).
+    // From half the sum and half the difference: accurate also for thin angles (W. Kahan).
     PointOf<N> sum, difference;
     for (int a = 0; a < N; ++a) {
       sum[a] = edges[0][a] + edges[1][a];
@@ -89,12 +89,12 @@ template <int N, class Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
     const Contour<N, Real>& contour, NormalWeights weights, const WorkOptions& options) {
   detail::require_vertices(contour);
-  // By simplex: its unit normal, and what it counts for at its corners.
+  // By simplex: its unit normal and its weights at the corners.
   struct Share {
     PointOf<N> normal;
     std::array<double, N> weights;
   };
-  constexpr std::size_t kBatch = std::size_t{1} << 20;  // so that shares are never many
+  constexpr std::size_t kBatch = std::size_t{1} << 20;  // bounds the memory of shares
   std::vector<PointOf<N>> sums(contour.vertices.size());
   Buffer<Share> shares(std::min(kBatch, contour.simplices.size()));
   const std::size_t count = contour.simplices.size();
@@ -111,7 +111,7 @@ requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geo
       const double measure = detail::length_of<N>(normal);
       for (int j = 0; j < N; ++j) shares[i].weights[j] = weight_of<N>(corners, j, measure, weights);
     });
-    // In the order of simplices, whoever works.
+    // Sequential, in the order of simplices: sums do not depend on the threads.
     for (std::size_t i = 0; i < batch; ++i)
       for (int j = 0; j < N; ++j)
         for (int a = 0; a < N; ++a)

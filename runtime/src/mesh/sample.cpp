@@ -14,7 +14,7 @@ namespace tegl {
 
 namespace {
 
-/// The value at a place of a cell; NaN if samples of more than kSlack of the weight are missing.
+/// The interpolated value at a place of a cell; NaN if missing samples have more than kSlack of the weight.
 template <Value T, int N>
 double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noexcept {
   double sum = 0.0;
@@ -27,7 +27,7 @@ double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noe
       weight *= ahead ? place.share[a] : 1.0 - place.share[a];
       index[a] += ahead ? 1 : 0;
     }
-    // Also what is ahead of an axis' only sample.
+    // This also skips the index beyond the end of an axis with one sample.
     if (weight == 0.0) continue;
     const auto value = static_cast<double>(image(index));
     if (std::isnan(value)) continue;
@@ -35,7 +35,7 @@ double value_at(const Image<T, N>& image, const detail::CellPlace<N>& place) noe
     sum += weight * value;
   }
   if (present < 1.0 - detail::kSlack) return std::numeric_limits<double>::quiet_NaN();
-  // Weights add up to 1 but for a rounding, which is none of the image's.
+  // Weights add up to 1 up to rounding: do not divide by that.
   return present < 1.0 - 1e-12 ? sum / present : sum;
 }
 

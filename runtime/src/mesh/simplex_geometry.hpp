@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The geometry of single simplices of a contour, in double: corners, centroid, and the normal vector whose length is
-// the simplex's length, area or volume.
+// Geometry of single simplices of a contour, in double precision: corners, centroid, and the normal vector whose length
+// is the measure of the simplex.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ std::array<PointOf<N>, N> corners_of(const Contour<N, Real>& contour, std::size_
 
 template <int N>
 double length_of(const PointOf<N>& v) noexcept {
-  // hypot-like: squares of the largest and smallest numbers are none.
+  // Scaled as in hypot, so that squares neither overflow nor underflow.
   double largest = 0.0;
   for (const double x : v) largest = std::max(largest, std::abs(x));
   if (!(largest > 0.0) || std::isinf(largest)) return largest;
@@ -46,8 +46,9 @@ PointOf<N> centroid_of(const std::array<PointOf<N>, N>& corners) noexcept {
   return sum;
 }
 
-/// The vector n with n . w = det(e_1, ..., e_{N-1}, w) / (N-1)! for the edges e_j = corner_j - corner_0: perpendicular
-/// to the simplex, as long as this is large, to the side that its orientation faces. A covector: it needs no metric.
+/// The vector n with n . w = det(e_1, ..., e_{N-1}, w) / (N-1)! for the edges e_j = corner_j - corner_0. It is
+/// perpendicular to the simplex, its length is the measure of the simplex, and it points to the side that the
+/// orientation faces. It is a covector and needs no metric.
 template <int N>
 PointOf<N> normal_vector_of(const std::array<PointOf<N>, N>& corners) noexcept {
   using Minor = Eigen::Matrix<double, N - 1, N - 1>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points, and simplices of dimension N - 1 in N-space: normals, shapes, distances. Templates on the dimension, nothing
-// else: N = 1 to 4.
+// Points, and simplices of dimension N - 1 in N-space: normals, shapes, distances. Templates on the dimension, N = 1 to
+// 4.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ double norm(const std::array<double, N>& a) {
   return std::sqrt(dot(a, a));
 }
 
-/// a + t (b - a): a coordinate in which both agree is kept to the bit.
+/// a + t (b - a). A coordinate that is equal in a and b is exact.
 template <std::size_t N>
 std::array<double, N> between(const std::array<double, N>& a, const std::array<double, N>& b, double t) {
   std::array<double, N> result;
@@ -46,8 +46,8 @@ std::array<double, N> between(const std::array<double, N>& a, const std::array<d
   return result;
 }
 
-/// The vector at right angles to an (N-1)-simplex whose length is (N-1)! times its measure. Its side is the same for
-/// all even permutations of the corners.
+/// The normal of an (N-1)-simplex with length (N-1)! times its measure. Even permutations of the corners give the same
+/// side.
 template <int N>
 PointN<N> normal_of(const CornersN<N>& corners) {
   std::array<PointN<N>, N> e;
@@ -61,7 +61,7 @@ PointN<N> normal_of(const CornersN<N>& corners) {
             e[1][0] * e[2][1] - e[1][1] * e[2][0]};
   } else {
     static_assert(N == 4);
-    // The minors of the last two edges, each used twice.
+    // The 2 x 2 minors of the last two edges, each used twice.
     const auto minor = [&](int a, int b) { return e[2][a] * e[3][b] - e[2][b] * e[3][a]; };
     const double xy = minor(0, 1), xz = minor(0, 2), xt = minor(0, 3);
     const double yz = minor(1, 2), yt = minor(1, 3), zt = minor(2, 3);
@@ -82,8 +82,8 @@ double longest_edge(const CornersN<N>& corners) {
   return std::sqrt(square);
 }
 
-/// The measure over that of a cube with the longest edge, times (N-1)!: 0 for flat simplices, about 1 for good ones,
-/// whatever the size.
+/// Shape quality, independent of size: (N-1)! times the measure, relative to a cube with the longest edge. 0 for flat
+/// simplices, about 1 for good ones.
 template <int N>
 double shape_of_simplex(const CornersN<N>& corners, double normal_length) {
   const double edge = longest_edge<N>(corners);
@@ -93,14 +93,16 @@ double shape_of_simplex(const CornersN<N>& corners, double normal_length) {
   return normal_length / cube;
 }
 
-/// The distance of a point from the convex hull of `count` points (count <= N).
+/// Distance of a point from the convex hull of `count` points (count <= N).
 ///
-/// If the foot on the affine hull has a negative barycentric coordinate, the nearest point lies on a face opposite to a
-/// corner with such a one; so faces are tried, down to points. Flat simplices are the union of their faces.
+/// If the projection onto the affine hull has negative barycentric coordinates, the nearest point lies on a face
+/// opposite to a corner with such a coordinate: these faces are tested recursively, down to points. A flat simplex is
+/// the union of its faces.
 template <int N>
 double distance_to_simplex(const PointN<N>& p, const std::array<PointN<N>, N>& corners, int count) {
   if (count == 1) return norm(minus(p, corners[0]));
-  // Coordinates in an orthonormal basis of the edges, from which barycentric ones follow by back substitution.
+  // Gram-Schmidt: coordinates in an orthonormal basis of the edges. Back substitution gives the barycentric
+  // coordinates.
   std::array<PointN<N>, N> basis;
   std::array<std::array<double, N>, N> upper{};
   std::array<double, N> at{};

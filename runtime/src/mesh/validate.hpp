@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a contour must be to be worked on: contours come from files and callers too, and no number in them may lead
-// beyond the end of something.
+// Validation of contours. Contours also come from files and callers, so every vertex number is checked before it is
+// used as an index.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace tegl::detail {
 /// Throws InvalidArgument unless all vertex numbers are below the number of vertices. O(#S).
 template <int N, class Real>
 void require_vertices(const Contour<N, Real>& contour) {
-  std::array<Index, N> highest{};  // by corner: the maxima do not wait for each other
+  std::array<Index, N> highest{};  // by corner: independent maxima, which run in parallel
   for (const auto& simplex : contour.simplices)
     for (int j = 0; j < N; ++j) highest[j] = std::max(highest[j], simplex[j]);
   if (contour.simplices.empty() || *std::max_element(highest.begin(), highest.end()) < contour.vertices.size()) return;
@@ -38,12 +38,11 @@ void require_finite(const Contour<N, Real>& contour) {
   for (std::size_t v = 0; v < contour.vertices.size(); ++v)
     for (const Real x : contour.vertices[v])
       if (!std::isfinite(x))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("a coordinate of vertex {} is {}; expected a finite one", v,
-                                std::isnan(x) ? std::abs(x) : x));  // the sign of nan means nothing
+        throw Error(ErrorCode::InvalidArgument, fmt::format("a coordinate of vertex {} is {}; expected a finite one", v,
+                                                            std::isnan(x) ? std::abs(x) : x));  // drop the sign of NaN
 }
 
-/// Throws InvalidArgument unless attributes and normals are as many as what they belong to.
+/// Throws InvalidArgument unless attributes and normals match the number of vertices or simplices.
 template <int N, class Real>
 void require_attributes(const Contour<N, Real>& contour) {
   const auto require = [](const std::vector<Attribute>& attributes, std::size_t count, const char* what) {
@@ -60,7 +59,7 @@ void require_attributes(const Contour<N, Real>& contour) {
                                                         contour.normals.size(), contour.vertices.size()));
 }
 
-/// All of that.
+/// All of the checks above.
 template <int N, class Real>
 void require_sound(const Contour<N, Real>& contour) {
   require_vertices(contour);

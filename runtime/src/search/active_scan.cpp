@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Active tiles by looking at all samples: a bit for each, as the extraction does it. The slow way that all others must
-// agree with, and the quickest where most rows are active.
+// Active tiles by a scan of all samples, one bit per sample, as in the extraction. This is the reference for all other
+// methods, and the fastest one if most rows are active.
 #include <bit>
 #include <vector>
 
@@ -14,7 +14,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// The bits of a layer's samples.
+/// The bits of a layer of samples.
 struct LayerBits {
   std::vector<Word> high, missing;  ///< rows x pitch
   std::vector<std::uint8_t> row_missing;
@@ -45,7 +45,7 @@ class FullScan final : public tegl::ActiveTiles<N> {
       bits.row_missing.resize(shape_.rows());
       return std::array{bits, bits};
     });
-    // The first layer of a part is classified once more for it.
+    // Each part classifies its own first layer again.
     constexpr std::size_t kLeastSlabs = 8;
     workers.for_range(slabs, kLeastSlabs, [&](std::size_t from, std::size_t to, std::array<LayerBits, 2>& bits) {
       classify(from, threshold, bits[from % 2]);

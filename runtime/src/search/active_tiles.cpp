@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What all indexes of active tiles share: order, rows, and the head of a file.
+// Common parts of all indexes of active tiles: order, rows, and the head of a file.
 #include "tegl/active_tiles.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 constexpr std::array<std::string_view, 5> kMethodNames = {"full-scan", "interval-tree", "span-space", "min-max-tree",
                                                           "seed-set"};
 
-/// By digits, the lowest first: O(tiles).
+/// Radix sort, lowest digit first: O(tiles).
 void sort_by_digits(std::vector<TileNumber>& tiles, TileNumber end) {
   constexpr unsigned kDigitBits = 12;
   constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
@@ -38,7 +38,8 @@ void sort_by_digits(std::vector<TileNumber>& tiles, TileNumber end) {
   }
 }
 
-/// In time proportional to the tiles, not to how many there could be: the most by a bit each, few by comparisons.
+/// Sorts in time proportional to the number of tiles in the list, not in the grid: many by a bit set, few by
+/// comparisons, others by radix sort.
 void put_in_order(std::vector<TileNumber>& tiles, TileNumber end) {
   constexpr std::size_t kFew = 4096;
   constexpr TileNumber kTilesPerBit = 32;
@@ -58,7 +59,7 @@ std::uint64_t high_half(std::uint64_t a, std::uint64_t b) noexcept {
   return static_cast<std::uint64_t>(static_cast<Wide>(a) * b >> 64);
 }
 
-/// Of a value of the type with that name; throws MalformedFile where there is none.
+/// Bytes of a value of the named type; throws MalformedFile if there is none.
 std::size_t bytes_of_value(std::string_view type) {
   std::size_t bytes = 0;
   const auto compare = [&]<Value... T>() { ((bytes = detail::value_type_name<T>() == type ? sizeof(T) : bytes), ...); };
@@ -97,8 +98,8 @@ std::size_t TileRowSet::count() const noexcept {
 
 template <int N>
 void TileRowSet::add_rows_of(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) noexcept {
-  // Neighbours are often of one row: only where a tile is not of the last one is there a division, which is a
-  // multiplication where numbers have 32 bits. (Lemire, Kaser, Kurz, Faster Remainder by Direct Computation, 2019.)
+  // Consecutive tiles are often in one row. The row is computed only if the tile is outside the last row, by a
+  // multiplication if tile numbers have 32 bits. (Lemire, Kaser, Kurz, Faster Remainder by Direct Computation, 2019.)
   const TileNumber along = grid.size(0);
   const bool narrow = grid.count() <= std::uint64_t{1} << 32 && along > 1;
   const std::uint64_t inverse = ~std::uint64_t{0} / along + 1;
@@ -228,7 +229,7 @@ ActiveTilesHead check_active_tiles(ByteSource& from) {
     case ActiveMethod::min_max_tree:
       reader.value<std::uint32_t>("length of bricks");
       reader.value<std::uint32_t>("width of bricks");
-      while (reader.pass_array(value, "least values") > 1) pass({value});  // the greatest ones
+      while (reader.pass_array(value, "least values") > 1) pass({value});  // the maxima
       pass({value});
       break;
     case ActiveMethod::seed_set:

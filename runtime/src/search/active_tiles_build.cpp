@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From an image, or a file, to an index of active tiles by any method; and tiles that are chosen by hand.
+// Builds and loads indexes of active tiles, by any method, and makes indexes of chosen tiles.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -18,14 +18,14 @@
 namespace tegl {
 
 namespace {
-constexpr double kIdentifyShare = 0.2;  ///< of the progress
+constexpr double kIdentifyShare = 0.2;  ///< fraction of the progress
 }
 
 namespace detail {
 
 namespace {
 
-/// A row of samples, and whether any is NaN, to the hash of a layer.
+/// Adds a row of samples to the hash of its layer. Sets `missing` if any sample is NaN.
 template <Value T>
 std::uint64_t hash_row(const T* samples, std::ptrdiff_t stride, std::vector<T>& row, std::uint64_t hash,
                        bool& missing) {
@@ -58,7 +58,7 @@ bool has_missing_corner(const Image<T, N>& image, const typename TileGrid<N>::In
   return false;
 }
 
-/// Those of tiles that someone else has found.
+/// Tiles that the caller chose, at every isovalue.
 template <int N>
 class ChosenTiles final : public tegl::ActiveTiles<N> {
  public:
@@ -73,7 +73,7 @@ class ChosenTiles final : public tegl::ActiveTiles<N> {
   void collect(double /*isovalue*/, std::vector<TileNumber>& tiles) const override {
     tiles.insert(tiles.end(), tiles_.begin(), tiles_.end());
   }
-  void write(IndexWriter& /*to*/) const override {}  // `save` refuses before
+  void write(IndexWriter& /*to*/) const override {}  // not reached: `save` throws
 
  private:
   std::vector<TileNumber> tiles_;
@@ -98,6 +98,7 @@ IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progr
   detail::Workers<std::vector<T>> workers(threads, [&] { return std::vector<T>(sizes[0]); });
   constexpr std::size_t kSamplesAtOnce = std::size_t{1} << 24;
   const std::size_t at_once = std::max<std::size_t>(1, kSamplesAtOnce / (rows * sizes[0]));
+  // hash each layer
   for (std::size_t first = 0; first < layers; first += at_once) {
     if (progress && !progress(static_cast<double>(first) / static_cast<double>(layers)))
       throw Error(ErrorCode::Cancelled, fmt::format("reading of values cancelled at layer {} of {}", first, layers));
@@ -115,6 +116,7 @@ IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progr
                         }
                       });
   }
+  // combine type, sizes and layers
   result.digest = detail::hash_bytes(result.value_type.data(), result.value_type.size(), N);
   for (const std::size_t size : sizes) {
     const std::uint64_t wide = size;
@@ -130,7 +132,8 @@ IndexedImage<N> identify(const Image<T, N>& image, unsigned threads, const Progr
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, ActiveMethod method,
                                                    const ActiveTilesOptions& options) {
-  // All of it where nothing is built; otherwise values are read many times more.
+  // A full scan builds nothing, so identification is all of its progress; other methods read the values several times
+  // more.
   const double identified = method == ActiveMethod::full_scan ? 1.0 : kIdentifyShare;
   const IndexedImage<N> identity = identify(image, options.threads, detail::part_of(options.progress, 0, identified));
   ActiveTilesOptions rest = options;
@@ -162,6 +165,7 @@ std::unique_ptr<ActiveTiles<N>> build_active_tiles(const Image<T, N>& image, Act
 template <Value T, int N>
 std::unique_ptr<ActiveTiles<N>> load_active_tiles(ByteSource& from, const Image<T, N>& image,
                                                   const ActiveTilesOptions& options) {
+  // compare sizes and type first: computing the digest reads all values
   detail::IndexReader reader(from);
   const ActiveTilesHead head = detail::read_head(reader);
   IndexedImage<N> identity = detail::known_of(image);

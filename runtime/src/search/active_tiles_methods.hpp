@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The ways to find active tiles: each is built from an image, or read from a file, whose head says of which image.
+// The methods to find active tiles. Each index is built from an image or read from a file, whose head identifies the
+// image.
 #pragma once
 
 #include <algorithm>
@@ -20,21 +21,21 @@ namespace tegl::detail {
 template <int N>
 using ActiveTilesPtr = std::unique_ptr<tegl::ActiveTiles<N>>;
 
-/// What a method works on. All must outlive the building or reading, the image's values the index too.
+/// Input of a method. All members must outlive building or reading; the samples must also outlive the index.
 template <Value T, int N>
 struct IndexTask {
   const Image<T, N>& image;
   const IndexedImage<N>& identity;
   const ActiveTilesOptions& options;
 
-  /// Throws Cancelled where the caller's progress says stop.
+  /// Throws Cancelled if the caller's progress callback returns false.
   void tell(double fraction) const {
     if (options.progress && !options.progress(fraction))
       throw Error(ErrorCode::Cancelled, fmt::format("building of the index cancelled at {:.0f} %", 100 * fraction));
   }
 };
 
-/// Numbers of tiles in trees and buckets.
+/// Tile number in trees and buckets.
 using TileId = std::uint32_t;
 
 template <Value T, int N>
@@ -62,7 +63,7 @@ ActiveTilesPtr<N> read_seed_index(IndexReader& from, const IndexTask<T, N>& task
 
 inline constexpr std::array<char, 8> kIndexMagic = {'T', 'E', 'G', 'L', 'I', 'D', 'X', '\n'};
 inline constexpr std::uint32_t kIndexByteOrder = 0x01020304;
-/// To be raised with any change of what is behind it.
+/// Raise it with every change of the format after it.
 inline constexpr std::uint32_t kIndexVersion = 1;
 
 void write_magic(IndexWriter& to, ActiveMethod method, int dim);
@@ -79,7 +80,7 @@ void write_head(IndexWriter& to, ActiveMethod method, const IndexedImage<N>& ima
 /// Throws MalformedFile, UnsupportedFormat.
 ActiveTilesHead read_head(IndexReader& from);
 
-/// Throws InvalidArgument, saying what differs.
+/// Throws InvalidArgument with the difference.
 void require_same_image(const ActiveTilesHead& head, std::span<const std::size_t> sizes, std::string_view value_type,
                         std::uint64_t digest);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of active tiles as bytes; see index_file.hpp.
+// Reading and writing of indexes of active tiles; see index_file.hpp.
 #include "search/index_file.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kOdd[2] = {0x9E3779B97F4A7C15u, 0xD6E8FEB86659FD93u};
 
-/// Can be undone: two words that differ leave lanes that differ.
+/// A bijection of `word` for a fixed lane: different words give different lanes.
 constexpr std::uint64_t mix(std::uint64_t lane, std::uint64_t word) noexcept {
   return std::rotl((lane ^ word) * kOdd[0], 29) * kOdd[1];
 }
@@ -23,7 +23,7 @@ constexpr std::uint64_t mix(std::uint64_t lane, std::uint64_t word) noexcept {
 }  // namespace
 
 std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed) noexcept {
-  constexpr std::size_t kLanes = 4;  // side by side: a multiplication takes several cycles
+  constexpr std::size_t kLanes = 4;  // independent lanes hide the latency of multiplications
   constexpr std::size_t kBlock = kLanes * sizeof(std::uint64_t);
   std::array<std::uint64_t, kLanes> lanes{seed, seed + 1, seed + 2, seed + 3};
   const auto* from = static_cast<const unsigned char*>(data);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of active tiles as bytes: a head that says what they belong to, values and arrays, and a checksum. Numbers
-// are in the machine's byte order, which the head tells.
+// File format of indexes of active tiles: a head that identifies the image and the method, values and arrays, and a
+// checksum. Numbers are in the byte order of the machine, which the head records.
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,15 @@
 
 namespace tegl::detail {
 
-/// A hash of 64 bits that goes on from `seed`. Any change within 8 bytes changes it; it is no protection against
-/// intent.
+/// A 64-bit hash, continued from `seed`. It detects any change within 8 bytes. It is not cryptographic.
 std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed) noexcept;
 
-/// The name of a value type, as in IndexedImage.
+/// Name of a value type, as in IndexedImage.
 template <Value T>
 std::string_view value_type_name() noexcept;
 
-/// Arrays go in pieces, each hashed from the hash before: a file that is cut short does not make room for all that it
-/// promises.
+/// Arrays are written and read in pieces of this many elements, each hashed from the hash before. So a truncated file
+/// does not make the reader allocate all that its counts claim.
 inline constexpr std::size_t kPieceElements = std::size_t{1} << 22;
 
 /// Writes an index, piece by piece.
@@ -39,7 +38,7 @@ class IndexWriter {
     static_assert(std::is_trivially_copyable_v<V> && std::has_unique_object_representations_v<V>);
     bytes(&value, sizeof(V));
   }
-  /// How many there are, then the elements.
+  /// Writes the number of elements, then the elements.
   template <class V>
   void array(const std::vector<V>& values) {
     static_assert(std::is_arithmetic_v<V>);
@@ -48,7 +47,7 @@ class IndexWriter {
       bytes(values.data() + first, std::min(values.size() - first, kPieceElements) * sizeof(V));
   }
   void text(std::string_view text);
-  /// The checksum; last.
+  /// Writes the checksum. Call it last.
   void finish();
 
  private:
@@ -58,7 +57,7 @@ class IndexWriter {
   std::uint64_t sum_ = 0;
 };
 
-/// Reads what IndexWriter wrote, in the same order. Throws MalformedFile where it cannot be.
+/// Reads the output of IndexWriter in the same order. Throws MalformedFile if the data do not fit.
 class IndexReader {
  public:
   explicit IndexReader(ByteSource& from) : from_(from) {}
@@ -70,7 +69,7 @@ class IndexReader {
     bytes(&value, sizeof(V), what);
     return value;
   }
-  /// At most so many elements. `what` names them in messages.
+  /// At most `most` elements. `what` names them in messages.
   template <class V>
   std::vector<V> array(std::uint64_t most, const char* what) {
     static_assert(std::is_arithmetic_v<V>);
@@ -84,13 +83,13 @@ class IndexReader {
     }
     return values;
   }
-  /// Reads an array whose elements have so many bytes, and keeps none. How many there were.
+  /// Reads and discards an array with elements of `element_bytes` bytes. Returns the number of elements.
   std::uint64_t pass_array(std::size_t element_bytes, const char* what);
   std::string text(std::size_t most, const char* what);
-  /// Compares the checksum, and that nothing comes behind it.
+  /// Checks the checksum, and that no bytes follow it.
   void finish();
 
-  /// Throws MalformedFile: "damaged index: `what` ...".
+  /// Throws MalformedFile: "the index is damaged: `what`".
   [[noreturn]] static void damaged(const std::string& what);
 
  private:

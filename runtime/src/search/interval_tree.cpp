@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Active tiles by an interval tree. A node has a value and the tiles whose ranges it lies in, once by their least and
-// once by their greatest value; to its left are those that lie below, to its right those above. A query goes down from
-// the root to a leaf and takes the beginning of one list in each node: O(log^2 n + k) for k tiles, as each beginning
-// is found by bisection.
+// Active tiles by an interval tree. A node has a value and the tiles whose ranges contain it, sorted by minimum and
+// again by maximum. Ranges below the value are in the left subtree, ranges above it in the right one. A query descends
+// from the root to a leaf and takes a prefix of one list per node, found by bisection: O(log^2 n + k) for k active of n
+// tiles.
 //
 // Based on: P. Cignoni, P. Marino, C. Montani, E. Puppo, R. Scopigno, Speeding Up Isosurface Extraction Using Interval
-// Trees, 1997. T. Takahashi, I. Ide, Y. Mekada, H. Murase, T. Yonekura, A Speedup Method for Isosurfacing Volumetric
-// Data Sampled with a Face-Centered Cubic Lattice, section 2.3, has it as pseudo code, with the middle of the values
-// that are left in a node. Here the nodes' values are quantiles of the ranges' ends: a node is then known from two
-// small numbers by bit operations, and a leaf keeps the few tiles that lie between two values.
+// Trees, 1997. Pseudo code: T. Takahashi, I. Ide, Y. Mekada, H. Murase, T. Yonekura, A Speedup Method for Isosurfacing
+// Volumetric Data Sampled with a Face-Centered Cubic Lattice, section 2.3, which splits a node at the middle of its
+// remaining values. Here the node values are quantiles of the range ends. So the node of a range follows from two small
+// integers by bit operations, and a leaf keeps the few tiles that lie between two consecutive values.
 #include <algorithm>
 #include <bit>
 #include <vector>
@@ -21,17 +21,17 @@ namespace tegl::detail {
 
 namespace {
 
-/// Nodes are numbered 1 ... C, in the order of their values; the children of one with z trailing zeros are 2^(z-1)
-/// away. (Of a number of nodes that is no power of two less one, some are not there.) Bin j - 1 is node j; bin C + c is
-/// the leaf above c values.
+/// Nodes are numbered 1 ... C in the order of their values. The children of a node with z trailing zeros are 2^(z-1)
+/// away; if C + 1 is no power of two, some nodes of the implicit tree do not exist. Bin j - 1 is node j; bin C + c is
+/// the leaf above the first c node values.
 template <Value T>
 struct IntervalLists {
   std::vector<T> values;             ///< by node
-  std::vector<std::uint64_t> first;  ///< by bin, and the end: where its tiles are below
-  std::vector<TileId> by_least;      ///< in each bin, by least value
+  std::vector<std::uint64_t> first;  ///< by bin: its first place in the arrays below; then the end
+  std::vector<TileId> by_least;      ///< sorted by minimum within each bin
   std::vector<T> least;              ///< of these
-  std::vector<TileId> by_greatest;   ///< in each node, by greatest value, the greatest first; not of leaves
-  std::vector<T> greatest;           ///< of these; then of by_least's tiles in leaves
+  std::vector<TileId> by_greatest;   ///< sorted by descending maximum within each node; without leaves
+  std::vector<T> greatest;  ///< maxima of these tiles; then maxima of the leaves' tiles, in the order of by_least
 
   [[nodiscard]] std::size_t nodes() const noexcept { return values.size(); }
   [[nodiscard]] std::size_t in_nodes() const noexcept { return first[nodes()]; }
@@ -56,7 +56,7 @@ class IntervalTree final : public tegl::ActiveTiles<N> {
     if (threshold.never) return;
     const T value = threshold.value;
     std::size_t node = std::bit_floor(lists_.nodes());
-    std::size_t cell = 0;  // how many of the values are not above
+    std::size_t cell = 0;  // number of node values that are below
     for (std::size_t step = node / 2; node != 0; step /= 2) {
       bool right = false;
       if (node <= lists_.nodes()) {
@@ -91,17 +91,19 @@ class IntervalTree final : public tegl::ActiveTiles<N> {
     tiles.insert(tiles.end(), from.begin() + static_cast<std::ptrdiff_t>(first),
                  from.begin() + static_cast<std::ptrdiff_t>(end));
   }
-  /// Where, of ascending values from `first` on, those below `value` end.
+  /// End of the minima below `value` among the ascending minima first ... end - 1.
   [[nodiscard]] std::size_t end_of_below(std::size_t first, std::size_t end, T value) const {
     const T* const least = lists_.least.data();
     return static_cast<std::size_t>(std::lower_bound(least + first, least + end, value) - least);
   }
-  /// The node's value lies above: all of its tiles reach over `value`, and those that begin below it are active.
+  /// The node's value is above `value`: the ranges of all its tiles reach beyond `value`; active are those that begin
+  /// below it.
   void take_below(std::size_t node, T value, std::vector<TileNumber>& tiles) const {
     const std::size_t first = lists_.first[node - 1];
     take(lists_.by_least, first, end_of_below(first, lists_.first[node], value), tiles);
   }
-  /// The node's value lies below: all of its tiles begin below `value`, and those that reach it are active.
+  /// The node's value is below `value`: the ranges of all its tiles begin below `value`; active are those that reach
+  /// it.
   void take_above(std::size_t node, T value, std::vector<TileNumber>& tiles) const {
     const T* const greatest = lists_.greatest.data();
     const std::size_t first = lists_.first[node - 1];
@@ -120,7 +122,7 @@ class IntervalTree final : public tegl::ActiveTiles<N> {
   IntervalLists<T> lists_;
 };
 
-/// About so many tiles are in a leaf, at most.
+/// Approximate maximum number of tiles in a leaf.
 constexpr std::size_t kLeafTiles = 64;
 
 }  // namespace
@@ -133,29 +135,33 @@ ActiveTilesPtr<N> build_interval_tree(const IndexTask<T, N>& task) {
   task.tell(0.4);
   Buffer<TileId> down = ascending_order(intervals.greatest);
   task.tell(0.6);
+  // node values
   add_quantiles(intervals.least, up, kLeafTiles, lists.values);
   add_quantiles(intervals.greatest, down, kLeafTiles, lists.values);
   sort_unique(lists.values);
   const std::size_t nodes = lists.nodes();
+  // the bin of each tile
   Buffer<std::uint32_t> bins = cells_of(intervals.least, up, lists.values);
   {
     const Buffer<std::uint32_t> ends = cells_of(intervals.greatest, down, lists.values);
     for (std::size_t i = 0; i < bins.size(); ++i) {
       const std::uint32_t a = bins.data()[i];
       const std::uint32_t b = ends.data()[i];
-      // Of the nodes a + 1 ... b, the one nearest to the root.
+      // Among the nodes a + 1 ... b, the one nearest to the root.
       bins.data()[i] = a == b ? static_cast<std::uint32_t>(nodes) + a : (b & ~(std::bit_floor(a ^ b) - 1)) - 1;
     }
   }
   task.tell(0.7);
+  // lists by minimum
   Bins by_least = distribute(up, bins, 2 * nodes + 1);
   lists.by_least = in_order(intervals.tiles, by_least.order);
   lists.least = in_order(intervals.least, by_least.order);
   lists.first = std::move(by_least.first);
   task.tell(0.85);
+  // lists by maximum
   std::reverse(down.begin(), down.end());
   Bins by_greatest = distribute(down, bins, 2 * nodes + 1);
-  // In leaves the greatest values go with by_least.
+  // In leaves, maxima are in the order of by_least.
   const auto leaves = static_cast<std::ptrdiff_t>(lists.in_nodes());
   std::copy(by_least.order.begin() + leaves, by_least.order.end(), by_greatest.order.begin() + leaves);
   lists.greatest = in_order(intervals.greatest, by_greatest.order);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sweep. A component can be without a pick only where something has gone since the level before, or come: so at
-// each level the trees that come are looked at, and the ends of links that have gone.
+// The level sweep. Only a component that changed since the level before can lack a pick. So the sweep checks, at each
+// level, the trees that become active and the ends of the links that expired.
 #include "search/level_sweep.hpp"
 
 #include <algorithm>
@@ -34,18 +34,18 @@ class LevelSweep {
   }
 
  private:
-  /// A set of trees, kept at its root; every tree knows its parent and the next of its set.
+  /// A set of trees, stored at its root tree. Every tree stores its parent and its successor in the ring of its set.
   struct Set {
     std::uint32_t parent;
     std::uint32_t size;
-    std::uint32_t farthest;  ///< of those that may be picked
-    bool pickable;           ///< whether there are any
-    std::uint32_t next;      ///< all trees of a set, in a ring
+    std::uint32_t farthest;  ///< among its trees that may be picked
+    bool pickable;           ///< whether any of its trees may be picked
+    std::uint32_t next;      ///< next tree of the set, in a ring
     bool picked;
   };
   struct Undo {
-    std::uint32_t set;  ///< that was hung on another; or, for a pick, that was picked
-    std::uint32_t on;   ///< kNone for a pick
+    std::uint32_t set;  ///< the set that was merged into another; for a pick, the set that was picked
+    std::uint32_t on;   ///< the set it was merged into; kNone for a pick
     std::uint32_t farthest;
     bool pickable, picked;
   };
@@ -55,7 +55,7 @@ class LevelSweep {
     return options_.allowed == nullptr || (*options_.allowed)[tree];
   }
   [[nodiscard]] bool down() const noexcept { return options_.direction == SweepDirection::down; }
-  /// Levels as the sweep meets them.
+  /// Levels in the order of the sweep.
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> span(std::uint32_t first, std::uint32_t end) const noexcept {
     return down() ? std::pair(graph_.levels - end, graph_.levels - first) : std::pair(first, end);
   }
@@ -100,7 +100,7 @@ class LevelSweep {
     on.pickable = on.pickable || set.pickable;
     on.picked = on.picked || set.picked;
   }
-  /// Of those that are active for as long, the one that was so for longest, then the first.
+  /// Whether a is active longer than b from here on. Ties: the tree that became active earlier, then the lower number.
   [[nodiscard]] bool is_farther(std::uint32_t a, std::uint32_t b) const noexcept {
     const auto [first_a, end_a] = tree_span(a);
     const auto [first_b, end_b] = tree_span(b);
@@ -131,8 +131,9 @@ class LevelSweep {
     }
   }
 
-  /// Node `node` has levels first ... end - 1; links from `links` on in `waiting_` are all that have some of them and
-  /// were not joined above. Puts nothing there that stays.
+  /// Visits the levels first ... end - 1 of a node of the binary tree. `waiting_` holds, from `links` on, all links
+  /// that are active in some of these levels and were not joined at an ancestor. Restores `waiting_` and the sets
+  /// before it returns.
   void descend(std::size_t node, std::uint32_t first, std::uint32_t end, std::size_t links) {
     if (next_event_ == events_.size() || events_[next_event_].first >= end) return;
     const std::size_t before = undo_.size();
@@ -144,8 +145,8 @@ class LevelSweep {
       else if (link.first < end && first < link.end)
         waiting_.push_back(link);
     }
-    // Sets that are joined here are so for all levels of the node: further down a link need only know these, and none
-    // that joins a set to itself.
+    // Sets that are joined here stay joined in all levels of the node. So the links passed down connect sets, and a
+    // link within one set is dropped.
     std::size_t kept = links_end;
     for (std::size_t i = links_end; i < waiting_.size(); ++i) {
       const SeedLink link{find(waiting_[i].a), find(waiting_[i].b), waiting_[i].first, waiting_[i].end};
@@ -185,7 +186,7 @@ class LevelSweep {
     report_progress(options_.progress, static_cast<double>(level) / static_cast<double>(leaves_));
   }
 
-  /// At this level, and at those to come.
+  /// Marks a tree as picked at this level and at all later levels of the tree.
   void pick(std::uint32_t tree, std::uint32_t level) {
     mark_picked(tree);
     mark_levels(tree, level + 1, tree_span(tree).second);
@@ -202,13 +203,15 @@ class LevelSweep {
   const SeedGraph& graph_;
   const LevelSweepOptions& options_;
   std::vector<Set> sets_;
-  std::uint32_t leaves_;  ///< a power of 2: levels of the binary tree, node 1 its root, node n's children 2n and 2n + 1
+  std::uint32_t leaves_;  ///< leaves of the binary tree, a power of 2; node 1 is its root, 2n and 2n + 1 are the
+                          ///< children of node n
   std::vector<std::vector<std::uint32_t>> picks_of_node_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> events_;  ///< level, tree; ascending
   std::size_t next_event_ = 0;
   std::uint32_t next_report_ = 0;  ///< level
   std::vector<Undo> undo_;
-  std::vector<SeedLink> waiting_;  ///< of the nodes on the way to the one at hand, in the levels that the sweep meets
+  std::vector<SeedLink>
+      waiting_;  ///< links of the nodes from the root to the current one, in the sweep's order of levels
   LevelSweepResult result_;
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Goes through the levels of a seed graph, one after the other, with the components of each at hand, and picks trees
-// whenever a component has none that is picked: a cover of all components of all levels, or a packing.
+// Sweep over the levels of a seed graph with the connected components of each level. Whenever a component has no picked
+// tree, the sweep picks one (a cover of all components of all levels) or all (a packing).
 //
-// Links come and go: which of them a level has is known from the start, so components are those of a union-find that
-// forgets. Levels are the leaves of a binary tree; a link is joined at the few nodes that its levels are made up of,
-// on the way down, and undone on the way up. Based on: Tarjan 1979 and the offline connectivity that is folklore since;
-// applied to Reeb graphs by Doraiswamy and Natarajan 2009. O((trees + links) log levels log trees) time.
+// Offline dynamic connectivity: the levels of every link are known in advance. The levels are the leaves of a binary
+// tree. A link is joined at the few nodes that its levels decompose into, on the way down, and undone on the way up.
+// Based on: Tarjan 1979 and offline dynamic connectivity (folklore); applied to Reeb graphs by Doraiswamy and Natarajan
+// 2009. O((trees + links) log levels log trees) time.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,11 @@ inline SweepDirection opposite(SweepDirection direction) noexcept {
 }
 
 enum class SweepPick {
-  farthest,  ///< of a component without picks, the tree that is active for longest from there on
-  all,       ///< all of its trees: then each time is a component that shares no tree with the others, a packing
+  farthest,  ///< pick the tree of the component that stays active longest
+  all,       ///< pick all trees of the component: such components share no tree (a packing)
 };
 
-/// Levels first ... end - 1 at which a tree's component has a pick that the graph does not show.
+/// Levels first ... end - 1 at which the component of a tree has a pick outside the graph.
 struct PickedElsewhere {
   std::uint32_t tree, first, end;
 };
@@ -36,15 +36,15 @@ struct PickedElsewhere {
 struct LevelSweepOptions {
   SweepDirection direction = SweepDirection::up;
   SweepPick pick = SweepPick::farthest;
-  /// Of each tree, whether it may be picked; null: all may. Components without any get none.
+  /// By tree, whether it may be picked; null: all may. A component without such a tree gets no pick.
   const std::vector<bool>* allowed = nullptr;
-  std::span<const PickedElsewhere> elsewhere;  ///< these components need no pick
+  std::span<const PickedElsewhere> elsewhere;  ///< components that need no pick
   Progress progress;
 };
 
 struct LevelSweepResult {
-  std::vector<std::uint32_t> picked;  ///< ascending; `farthest` alone
-  std::uint64_t times = 0;            ///< how often a component had no pick
+  std::vector<std::uint32_t> picked;  ///< ascending; only for `farthest`
+  std::uint64_t times = 0;            ///< number of components found without a pick
 };
 
 LevelSweepResult sweep_levels(const SeedGraph& graph, const LevelSweepOptions& options);

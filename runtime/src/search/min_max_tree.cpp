@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Active tiles by a pyramid: the least and the greatest value of bricks of tiles, of 2^N bricks each, and so on up to
-// one. A query goes down where the isovalue lies between the two, and looks at the samples of the bricks that it comes
-// to. It needs the image and little beside it: two values for each brick and a 2^N-th more for all levels above.
+// Active tiles by a min-max pyramid: minimum and maximum of each brick of tiles, of 2^N bricks each, and so on up to
+// one. A query descends into the nodes whose range contains the isovalue and reads the samples of the active bricks.
+// Memory beside the image: two values per brick, and about 1 / (2^N - 1) of that for all levels above.
 //
 // Based on: J. Wilhelms, A. Van Gelder, Octrees for Faster Isosurface Generation, 1992.
 #include <algorithm>
@@ -20,12 +20,12 @@ namespace tegl::detail {
 
 namespace {
 
-/// Tiles of a brick along axis 0 and along the others.
+/// Tiles of a brick along axis 0 and along the other axes.
 constexpr std::size_t kBrickLength = 8;
 constexpr std::size_t brick_width(int dim) noexcept { return dim <= 3 ? 4 : 2; }
 
-/// One level: ranges of bricks, or of what they are brought together to, axis 0 fastest. Where there are no tiles that
-/// are ever active: greatest < least.
+/// One level of the pyramid: ranges of bricks or of their unions, axis 0 fastest. A node without tiles that can be
+/// active has greatest < least.
 template <Value T, int N>
 struct MinMaxLevel {
   std::array<std::size_t, N> sizes{};
@@ -87,12 +87,12 @@ class MinMaxTree final : public tegl::ActiveTiles<N> {
   }
 
  private:
-  /// Rows of a brick's samples, a bit each.
+  /// Rows of the samples of a brick, one bit per sample.
   struct Bits {
     std::vector<std::uint16_t> high, missing;
   };
 
-  /// Where a brick is.
+  /// Position of a brick: its first tile and its number of tiles along each axis.
   struct Brick {
     Brick(const MinMaxTree& tree, std::size_t number) {
       for (int a = 0; a < N; ++a) {
@@ -102,7 +102,8 @@ class MinMaxTree final : public tegl::ActiveTiles<N> {
         number /= tree.levels_[0].sizes[a];
       }
     }
-    /// Calls visit(index, ordinal) for the beginnings of its rows of tiles, or with `more` = 1, of samples.
+    /// Calls visit(index, ordinal) for the first tile of each row of tiles; with `more` = 1, for the first sample of
+    /// each row of samples.
     template <class Visit>
     void for_rows(std::size_t more, const Visit& visit) const {
       Index index = first;
@@ -159,15 +160,17 @@ class MinMaxTree final : public tegl::ActiveTiles<N> {
   void find_in_brick(std::size_t number, const Threshold<T>& threshold, Bits& bits,
                      std::vector<TileNumber>& tiles) const {
     const Brick brick(*this, number);
-    std::array<std::size_t, N> strides{};  // of rows of samples, by axis
+    std::array<std::size_t, N> strides{};  // in rows of samples, by axis
     std::size_t rows = 1;
     for (int a = 1; a < N; ++a) {
       strides[a] = rows;
       rows *= brick.tiles[a] + 1;
     }
+    // classify the samples
     bits.high.resize(rows);
     bits.missing.resize(rows);
     brick.for_rows(1, [&](const Index& index, std::size_t row) { classify(brick, index, row, threshold, bits); });
+    // combine the bits of the 2^N corners of each tile
     const auto inside = static_cast<std::uint16_t>((1u << brick.tiles[0]) - 1);
     brick.for_rows(0, [&](const Index& index, std::size_t) {
       std::size_t row = 0;
@@ -204,7 +207,7 @@ class MinMaxTree final : public tegl::ActiveTiles<N> {
   Levels levels_;
 };
 
-/// Levels without their values, from that of the bricks to the top.
+/// Sizes of the levels, without values, from the bricks to the top.
 template <Value T, int N>
 std::vector<MinMaxLevel<T, N>> plan_levels(const TileGrid<N>& grid) {
   std::vector<MinMaxLevel<T, N>> levels(1);
@@ -220,7 +223,7 @@ std::vector<MinMaxLevel<T, N>> plan_levels(const TileGrid<N>& grid) {
   return levels;
 }
 
-/// The bricks of one row of bricks.
+/// Fills one row of bricks.
 template <Value T, int N>
 void fill_brick_row(std::size_t brick_row, TileRanges<T, N>& ranges, MinMaxLevel<T, N>& bricks) {
   const TileGrid<N>& grid = ranges.grid();
@@ -239,7 +242,7 @@ void fill_brick_row(std::size_t brick_row, TileRanges<T, N>& ranges, MinMaxLevel
   }
 }
 
-/// All bricks, rows of them side by side.
+/// Fills all bricks; rows of bricks in parallel.
 template <Value T, int N>
 void fill_bricks(const IndexTask<T, N>& task, MinMaxLevel<T, N>& bricks) {
   Workers<TileRanges<T, N>> workers(task.options.threads, [&] { return TileRanges<T, N>(task.image); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Places of tiles, and their ranges.
+// Padded numbering of tiles, and the ranges of all tiles.
 #include "search/padded_ranges.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ranges of all tiles of an image in memory, with a margin of tiles without a range: every tile then has all its
-// neighbours, each at a fixed distance, and no loop asks for the border.
+// Ranges of all tiles of an image in memory, with a margin of constant tiles. So every tile has all its neighbours,
+// each at a fixed distance, and loops need no border tests.
 #pragma once
 
 #include <array>
@@ -16,28 +16,30 @@
 
 namespace tegl::detail {
 
-/// Values as unsigned numbers in the same order: so that algorithms on ranges are built for four types, not seven.
+/// Unsigned integer type whose order is that of the values. Algorithms on ranges are instantiated for four key types
+/// instead of seven value types.
 template <Value T>
 using KeyOf = std::conditional_t<sizeof(T) == 1, std::uint8_t,
                                  std::conditional_t<sizeof(T) == 2, std::uint16_t,
                                                     std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>>>;
 
-/// -0 and 0 have one key. NaN has none.
+/// -0 and 0 have the same key. NaN has none.
 template <Value T>
 KeyOf<T> key_of(T value) noexcept;
 template <Value T>
 T value_of(KeyOf<T> key) noexcept;
 
-/// Where a tile's ranges are. Places are numbers below 2^32.
+/// Place of a tile in the padded arrays, below 2^32.
 using Place = std::uint32_t;
 inline constexpr int kMostAxes = 5;
 
 /// A step from a tile to a neighbour: -1, 0 or 1 along every axis.
 using Step = std::array<std::int8_t, kMostAxes>;
-/// Those of a neighbourhood in `dim` dimensions, in the order in which a scan meets them, the first axis fastest.
+/// The steps of a neighbourhood in `dim` dimensions, in scan order, the first axis fastest.
 std::vector<Step> neighbour_steps(int dim, Neighbourhood neighbourhood);
 
-/// Tiles at places: axis 0 fastest, one more along every axis than there are, and a margin before and behind.
+/// Numbering of tiles with a margin: axis 0 fastest, one place more along every axis than there are tiles, and a margin
+/// before and after.
 class PaddedTiles {
  public:
   /// Throws TooLarge for 2^32 places or more.
@@ -48,13 +50,13 @@ class PaddedTiles {
   [[nodiscard]] std::ptrdiff_t step(int axis) const noexcept { return steps_[axis]; }
   [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
   [[nodiscard]] std::size_t room() const noexcept { return room_; }
-  /// The first tile of a row (a line along axis 0), rows in the order of TileGrid.
+  /// Place of the first tile of a row (a line along axis 0); rows are in the order of TileGrid.
   [[nodiscard]] Place row_place(std::size_t row) const noexcept;
   [[nodiscard]] TileNumber number(Place place) const noexcept;
   [[nodiscard]] Place place(TileNumber number) const noexcept;
   [[nodiscard]] std::array<std::size_t, kMostAxes> index(Place place) const noexcept;
 
-  /// Distances to the neighbours, in the order in which a scan meets them: the first of `order` fastest.
+  /// Distances to the neighbours in scan order, the first axis of `order` fastest.
   [[nodiscard]] std::vector<std::ptrdiff_t> neighbours(Neighbourhood neighbourhood, std::span<const int> order) const;
   [[nodiscard]] std::vector<std::ptrdiff_t> neighbours(Neighbourhood neighbourhood) const;
 
@@ -91,8 +93,8 @@ class PaddedTiles {
 /// Axes 0, 1, ... of an image.
 std::vector<int> default_order(int dim);
 
-/// The range (least, greatest] of every tile: active where least < T <= greatest. Both are 0 in the margin and for
-/// tiles with a missing corner.
+/// The range (least, greatest] of every tile, which is active if least < T <= greatest. Both are 0 in the margin and
+/// for tiles with a missing corner.
 template <class Key>
 struct RangeMap {
   PaddedTiles tiles;
@@ -103,7 +105,7 @@ struct RangeMap {
     return least[a] == least[b] && greatest[a] == greatest[b];
   }
   [[nodiscard]] Key width(Place tile) const noexcept { return static_cast<Key>(greatest[tile] - least[tile]); }
-  /// Whether a's range lies in b's, and is not b's.
+  /// Whether the range of a is a proper subset of the range of b.
   [[nodiscard]] bool inside(Place a, Place b) const noexcept {
     return least[b] <= least[a] && greatest[a] <= greatest[b] && !same(a, b);
   }
@@ -112,7 +114,7 @@ struct RangeMap {
   }
 };
 
-/// By all threads that are asked for. Errors: TooLarge, Cancelled.
+/// Computes the ranges with `threads` threads. Errors: TooLarge, Cancelled.
 template <Value T, int N>
 RangeMap<KeyOf<T>> map_ranges(const Image<T, N>& image, unsigned threads, const Progress& progress);
 

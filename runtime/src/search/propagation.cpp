@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// A bit for each tile, set by whichever thread comes first. The system gives zeros where there are bits to be set, and
-/// nothing elsewhere.
+/// One bit per tile, set atomically by the first thread that reaches it. calloc provides zeroed pages on demand, so
+/// pages without visited tiles take no memory.
 template <Value T, int N>
 class TileFlood<T, N>::Seen {
  public:
@@ -93,7 +93,7 @@ void TileFlood<T, N>::visit(TileNumber tile, const std::vector<Move>& moves, Flo
     bool inside = true;
     for (int a = 0; a < N; ++a) {
       next[a] += static_cast<std::size_t>(static_cast<std::ptrdiff_t>(move.along[a]));
-      inside = inside && next[a] < grid_.size(a);  // below 0 is far above
+      inside = inside && next[a] < grid_.size(a);  // negative indices wrap around to large ones
     }
     if (!inside) continue;
     const auto other = static_cast<TileNumber>(static_cast<std::ptrdiff_t>(tile) + move.distance);
@@ -109,11 +109,12 @@ template <Value T, int N>
 std::vector<TileNumber> TileFlood<T, N>::run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
                                              unsigned threads, const Progress& progress, bool* stopped) const {
   const std::vector<Move> moves = this->moves(neighbourhood);
+  // the starting tiles are the first layer
   Seen seen(grid_.count());
   Found all;
   for (const TileNumber tile : from)
     if (seen.add(tile)) all.tiles.push_back(tile);
-  constexpr std::size_t kGrain = 512;  // fewer are found sooner by one thread
+  constexpr std::size_t kGrain = 512;  // one thread is faster for fewer tiles
   Workers<Found> workers(threads, [] { return Found(); });
   std::mutex mutex;
   for (std::size_t first = 0; first < all.tiles.size();) {

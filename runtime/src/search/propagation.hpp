@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From active tiles to their active neighbours, and on: breadth first, layer by layer, a layer by all threads.
+// Propagation from active tiles to their active neighbours: breadth first, each layer in parallel.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace tegl::detail {
 
-/// Which neighbours are gone to.
+/// Which neighbours are visited.
 enum class FloodRule {
   active_neighbours,  ///< all that are active
-  crossed_faces,      ///< those behind a face that the contour passes: tiles of the same components of the contour
+  crossed_faces,      ///< those across a face that the contour crosses: tiles of the same contour components
 };
 
-/// Looks at the image's values around the tiles that it meets, and at no others. The image must outlive it.
+/// Reads only the samples of the tiles that it visits. The image must outlive it.
 template <Value T, int N>
 class TileFlood {
  public:
@@ -32,12 +32,12 @@ class TileFlood {
   [[nodiscard]] static bool is_active(std::uint32_t signature) noexcept {
     return signature != 0 && signature != kAllHigh;
   }
-  /// All tiles that are reached from active ones, with those, each once, in no particular order. `stopped`: whether the
-  /// way went to a tile of the image that is not active; through crossed faces these are tiles with missing corners.
+  /// All tiles reached from the active tiles `from`, which are included; each once, in no particular order. `stopped`:
+  /// whether propagation met an inactive tile of the image; with `crossed_faces` such a tile has a missing corner.
   /// Errors: Cancelled.
   [[nodiscard]] std::vector<TileNumber> run(std::vector<TileNumber> from, FloodRule rule, Neighbourhood neighbourhood,
                                             unsigned threads, const Progress& progress, bool* stopped = nullptr) const;
-  /// Those that one step more leads to from active tiles, each once, in no particular order.
+  /// The tiles one step away from the active tiles, each once, in no particular order.
   [[nodiscard]] std::vector<TileNumber> beside(const std::vector<TileNumber>& tiles, FloodRule rule,
                                                Neighbourhood neighbourhood) const;
 
@@ -46,7 +46,7 @@ class TileFlood {
   struct Move {
     std::array<std::int8_t, N> along;
     std::ptrdiff_t distance;  ///< in tile numbers
-    std::uint32_t face;       ///< corners of the face that is passed
+    std::uint32_t face;       ///< corners of the face that the move crosses
   };
   class Seen;
   struct Found {
@@ -55,7 +55,7 @@ class TileFlood {
   };
 
   [[nodiscard]] std::vector<Move> moves(Neighbourhood neighbourhood) const;
-  /// Adds what is reached from the tile and was not seen before.
+  /// Adds the neighbours of the tile that were not seen before.
   void visit(TileNumber tile, const std::vector<Move>& moves, FloodRule rule, Seen& seen, Found& found) const;
   [[nodiscard]] std::uint32_t signature_at(const Index& index) const noexcept;
 

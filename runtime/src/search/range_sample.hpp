@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A sample of the tiles that are ever active, for quantiles of the ends of their ranges.
+// A sample of the tiles that are not constant, for quantiles of the ends of their ranges.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace tegl::detail {
 
-/// Places of `most` tiles at most that are not constant, ascending: all of them, or one of each run of so many, at a
-/// place in the run that differs from one to the next. (With a fixed step all would lie in one column, or in the
-/// margin, wherever the step and the length of rows have a common divisor.) Two passes over all tiles.
+/// Ascending places of at most `most` tiles that are not constant: all, or one per run of equal length, at a
+/// pseudorandom place in the run. (A fixed step would select a single column or the border of the image if it shares a
+/// divisor with the row length.) Two passes over all tiles.
 template <class Key>
 std::vector<Place> sample_places(const RangeMap<Key>& map, std::size_t most) {
   const std::size_t room = map.least.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seeds as a cover of components by trees (and Whole2, which covers tree by tree).
+// Seeds as a cover of components by trees, and the method Whole2, which covers tree by tree.
 #include <algorithm>
 #include <tuple>
 
@@ -13,9 +13,9 @@ namespace tegl::detail {
 
 namespace {
 
-constexpr int kMostSparing = 8;  ///< sweeps, of which the last ones gain least
+constexpr int kMostSparing = 8;  ///< sweeps; the last ones remove least
 
-/// Sweeps among `picked` alone, up and down in turn, as long as picks can be spared.
+/// Repeats the sweep with only the trees in `picked`, alternately up and down, until two sweeps remove none.
 std::vector<std::uint32_t> spare(const SeedGraph& graph, std::vector<std::uint32_t> picked, SweepDirection last,
                                  const Progress& progress) {
   std::vector<bool> allowed(graph.roots.size());
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> spare(const SeedGraph& graph, std::vector<std::uint32
   return picked;
 }
 
-/// Trees around roots that are still there, and what roots that have gone depend on.
+/// Whole2: keeps the roots that their neighbouring trees do not cover, and records which trees cover the removed roots.
 class Whole2 {
  public:
   Whole2(const SeedGraph& graph, Dependence dependence)
@@ -62,7 +62,7 @@ class Whole2 {
  private:
   static constexpr std::uint32_t kNever = ~0u;
 
-  /// Finds all that depend on a root.
+  /// Marks, in `asked_`, all roots that depend on this root.
   void ask(std::uint32_t root) {
     if (dependence_ == Dependence::sets) return;
     std::vector<std::uint32_t> open{root};
@@ -81,7 +81,7 @@ class Whole2 {
     return dependence_ == Dependence::sets ? sets_.find(tree) == sets_.find(on) : asked_[tree] == on;
   }
 
-  /// Whether `around` covers the root: then it goes, by the fewest that do.
+  /// Whether `around` covers the root. If so, records the smallest set of covering trees (greedy interval cover).
   bool cover(std::uint32_t root, std::vector<SeedLink>& around) {
     std::sort(around.begin(), around.end(),
               [](const SeedLink& p, const SeedLink& q) { return std::tie(p.first, p.b) < std::tie(q.first, q.b); });
@@ -114,8 +114,8 @@ class Whole2 {
   const SeedGraph& graph_;
   Dependence dependence_;
   DisjointSets sets_;
-  std::vector<std::vector<std::uint32_t>> users_;  ///< which roots that have gone it helps to cover
-  std::vector<std::uint32_t> asked_;               ///< the last root that it was found to depend on
+  std::vector<std::vector<std::uint32_t>> users_;  ///< by tree: the removed roots that it helps to cover
+  std::vector<std::uint32_t> asked_;               ///< by tree: the last root that it was found to depend on
 };
 
 }  // namespace
@@ -129,7 +129,7 @@ SeedCover cover_components(const SeedGraph& graph, const Progress& progress) {
                                 .progress = part_of(progress, done, done + 0.2)});
   };
   SeedCover cover;
-  // Where cover and bound meet nothing is left to be gained, and that is often so at once.
+  // A cover as small as the lower bound is minimum; often the first one is.
   auto up = sweep(SweepDirection::up, SweepPick::farthest, 0.0);
   cover.trees = std::move(up.picked);
   cover.bound = sweep(SweepDirection::down, SweepPick::all, 0.2).times;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Groups, trees and links. Each step goes through all tiles once and looks at their neighbours.
+// Builds the groups, trees and links of a seed graph. Each step visits all tiles once, with their neighbours.
 #include "search/seed_graph.hpp"
 
 #include "base/disjoint_sets.hpp"
@@ -42,8 +42,9 @@ class GraphMaker {
   }
 
  private:
-  /// Neighbours with one range are one group; its root is the one that the scan meets first.
+  /// Neighbours with equal ranges form a group. Its root is its first tile in scan order.
   void group() {
+    // neighbours that the scan visits before a tile
     std::vector<std::ptrdiff_t> before;
     const auto scans_before = [&](std::ptrdiff_t distance) {
       const std::size_t at =
@@ -52,10 +53,11 @@ class GraphMaker {
     };
     for (const std::ptrdiff_t distance : neighbours_)
       if (scans_before(distance)) before.push_back(distance);
-    std::vector<std::uint32_t> met;  // when the scan met a tile, where that is not the order of places
+    std::vector<std::uint32_t> met;  // position of a tile in the scan, if the scan is not in the order of places
     const bool by_place = std::is_sorted(options_.order.begin(), options_.order.end());
     if (!by_place) met.resize(map_.tiles.room());
     std::uint32_t now = 0;
+    // merge each tile with earlier neighbours of equal range
     map_.tiles.scan(options_.order, [&](Place tile) {
       if (!by_place) met[tile] = now++;
       if (map_.constant(tile)) {
@@ -79,12 +81,13 @@ class GraphMaker {
     });
   }
 
-  /// Groups hang on the widest neighbour, of the tile met first that has any, whose range has theirs inside.
+  /// Attaches each group to a neighbour whose range contains the range of the group: the widest one of the first tile,
+  /// in scan order, that has any.
   void hang() {
     map_.tiles.scan(options_.order, [&](Place tile) {
       if (map_.constant(tile)) return;
       const Place root = trees_.find(tile);
-      if (!map_.same(root, tile)) return;  // its group hangs already
+      if (!map_.same(root, tile)) return;  // its group is attached already
       Place widest = tile;
       for (const std::ptrdiff_t distance : neighbours_) {
         const auto other = static_cast<Place>(tile + distance);
@@ -145,7 +148,7 @@ class GraphMaker {
   const SeedGraphOptions& options_;
   std::vector<std::ptrdiff_t> neighbours_;
   DisjointSets trees_;
-  std::vector<std::uint32_t> number_;  ///< of a root's tree
+  std::vector<std::uint32_t> number_;  ///< by root: number of its tree
   SeedGraph graph_;
 };
 
@@ -157,7 +160,7 @@ SeedGraph make_seed_graph(const RangeMap<Key>& map, const SeedGraphOptions& opti
 }
 
 void contract(SeedGraph& graph) {
-  // The last few are not worth another round.
+  // Stop if a round merges at most 1/64 of the trees.
   for (std::size_t hung = graph.roots.size(); hung * 64 > graph.roots.size();) {
     hung = 0;
     DisjointSets sets(graph.roots.size());
@@ -165,7 +168,7 @@ void contract(SeedGraph& graph) {
       return link.first <= graph.first[tree] && graph.end[tree] <= link.end;
     };
     for (const SeedLink& link : graph.links) {
-      // The wider of two roots stays: ends that hang already are as wide as the link at least.
+      // The wider of two roots stays: a tree that is attached already is at least as wide as the link.
       for (const auto& [tree, on] : {std::pair(link.a, link.b), std::pair(link.b, link.a)}) {
         if (!covers(link, tree) || sets.find(tree) != tree) continue;
         const std::uint32_t root = sets.find(on);
@@ -176,6 +179,7 @@ void contract(SeedGraph& graph) {
       }
     }
     if (hung == 0) return;
+    // renumber the remaining trees and their links
     std::vector<std::uint32_t> number(graph.roots.size());
     std::uint32_t kept = 0;
     for (std::uint32_t tree = 0; tree < graph.roots.size(); ++tree) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Active tiles from a seed set: the seeds that are active, and what is reached from them through faces.
+// Active tiles from a seed set: the active seeds and all tiles reached from them through faces.
 #include <vector>
 
 #include "search/active_tiles_methods.hpp"
@@ -11,7 +11,8 @@ namespace tegl::detail {
 
 namespace {
 
-/// Through faces: few more seeds than through corners, and a sixth or less of the neighbours to look at.
+/// Propagation through faces needs few more seeds than through all neighbours, and tests 2N instead of 3^N - 1
+/// neighbours.
 constexpr Neighbourhood kNeighbourhood = Neighbourhood::faces;
 
 template <Value T, int N>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Links between trees of tiles while they are collected: by keys, and then by levels.
+// Collection of links between trees of tiles, by keys, and their conversion to levels.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,12 @@ struct KeyLink {
   Key least, greatest;
 };
 
-/// Links come in runs along borders between trees: those that overlap are made one before they are kept.
+/// Collects links. Links arrive in runs along the borders between trees; a cache merges overlapping ones before they
+/// are stored.
 template <class Key>
 class LinkCollector {
  public:
-  /// Keeps about so many at hand, but not more than stay near the processor.
+  /// `at_hand`: wanted size of the cache of recent links, at most 8192 so that it fits in the processor's cache.
   explicit LinkCollector(std::size_t at_hand = kMostAtHand)
       : recent_(std::bit_ceil(std::clamp<std::size_t>(at_hand, 64, kMostAtHand)), Link{0, 0, 0, 0}),
         shift_(static_cast<unsigned>(32 - std::countr_zero(recent_.size()))) {}
@@ -58,7 +59,7 @@ class LinkCollector {
     if (links_.size() == links_.capacity() && links_.size() >= wanted_) compress();
     links_.push_back(link);
   }
-  /// Far more than there are different ones are not kept.
+  /// Merges overlapping links, so that memory stays proportional to the number of distinct links.
   void compress() {
     std::sort(links_.begin(), links_.end(), [](const Link& p, const Link& q) {
       return std::tie(p.a, p.b, p.least, p.greatest) < std::tie(q.a, q.b, q.least, q.greatest);
@@ -82,7 +83,7 @@ class LinkCollector {
   std::size_t wanted_ = kMostUnsorted;
 };
 
-/// Keys as levels: their ranks among those that occur.
+/// Maps keys to levels: their ranks among the keys that occur.
 template <class Key>
 class Levels {
  public:
@@ -97,7 +98,7 @@ class Levels {
     for (std::size_t i = keys_.size(); i-- > 0;) first_[bucket(keys_[i])] = static_cast<std::uint32_t>(i);
     for (std::size_t i = first_.size() - 1; i-- > 0;) first_[i] = std::min(first_[i], first_[i + 1]);
   }
-  /// Of a key that occurs.
+  /// Level of a key that occurs.
   [[nodiscard]] std::uint32_t operator[](Key key) const noexcept {
     const std::size_t at = bucket(key);
     return static_cast<std::uint32_t>(
@@ -114,10 +115,10 @@ class Levels {
 
   std::vector<Key> keys_;
   int shift_ = 0;
-  std::vector<std::uint32_t> first_;  ///< key of a bucket, as many as there are keys or so
+  std::vector<std::uint32_t> first_;  ///< by bucket: its first key; about as many buckets as keys
 };
 
-/// Gives a graph that has roots their levels, and links. Ends of `others` are levels too.
+/// Sets the levels and links of a graph that has roots. The ends of `others` become levels too.
 template <class Key>
 Levels<Key> put_in_levels(const RangeMap<Key>& map, const std::vector<KeyLink<Key>>& links,
                           const std::vector<KeyLink<Key>>& others, SeedGraph& graph) {

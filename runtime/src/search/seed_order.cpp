@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seeds by going through tiles in some order: one that those before it cover is none. What is covered by tiles before
-// is found from a seed, one tile after the other, because none depends on a later one.
+// Seeds by traversing tiles in an order: a tile that earlier tiles cover is no seed. No tile depends on a later one, so
+// propagation from the seeds reaches every covered tile.
 #include <algorithm>
 #include <queue>
 
@@ -11,7 +11,7 @@ namespace tegl::detail {
 
 namespace {
 
-/// Whether the ranges of the neighbours that are done have all of a tile's range.
+/// Whether the ranges of the neighbours in `done` cover the range of a tile.
 template <class Key>
 bool is_covered(const RangeMap<Key>& map, const std::vector<std::ptrdiff_t>& neighbours, const std::vector<bool>& done,
                 Place tile) {
@@ -91,7 +91,7 @@ class Climb {
   std::vector<Place> seeds_;
 };
 
-/// Calls visit(place) for all tiles, and tells how far it is.
+/// Calls visit(place) for all tiles and reports progress.
 template <class Visit>
 void scan_with_progress(const PaddedTiles& tiles, const std::vector<int>& order, const Progress& progress,
                         const Visit& visit) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which of the trees of seed_regions.hpp are seeds: sweeps over the levels of a few thousand trees at a time, as a
-// sweep over all takes longer than its share for each of many, and hardly finds fewer.
+// Selects the seeds among the trees of seed_regions.hpp: level sweeps over groups of 32 768 trees. One sweep over all
+// trees takes longer per tree and finds hardly fewer seeds.
 #include <algorithm>
 #include <utility>
 
@@ -14,14 +14,14 @@ namespace tegl::detail {
 
 namespace {
 
-constexpr std::uint32_t kTreesOfPart = std::uint32_t{1} << 15;  ///< a sweep of so many stays near the processor
+constexpr std::uint32_t kTreesOfPart = std::uint32_t{1} << 15;  ///< a sweep over this many fits in the cache
 constexpr int kMostPasses = 6;
-constexpr std::size_t kFewParts = 2;  ///< are swept anyway
-/// Sweeps are worth their time where they leave fewer trees than sparing them one by one does, by one of so many.
+constexpr std::size_t kFewParts = 2;  ///< up to this many groups are always swept
+/// A sweep pays off if it leaves fewer trees than `spare_one_by_one`, by at least one in this many.
 constexpr std::size_t kWorthSweeping = 64;
 
-/// Spares trees part by part: all that are picked meet every component, and go on to do so when those of a part are
-/// chosen anew such that each component of the part has one, or a link to one that is picked elsewhere.
+/// Removes superfluous picks group by group. Invariant: the picked trees meet every component. It holds after a group
+/// is selected again, because every component of the group then has a pick or a link to a tree picked in another group.
 template <class Key>
 class PartwiseCover {
  public:
@@ -49,7 +49,7 @@ class PartwiseCover {
     for (int pass = 0; pass < kMostPasses; ++pass, direction = opposite(direction)) {
       const std::size_t before = count_;
       gain_ = {};
-      // Borders between parts lie elsewhere in every pass.
+      // Shift the borders between groups in every pass.
       const std::uint32_t shift = kTreesOfPart * static_cast<std::uint32_t>(pass % 3) / 3;
       for (std::uint32_t first = 0; first < trees;) {
         const std::uint32_t end = std::min(trees, first == 0 ? kTreesOfPart - shift : first + kTreesOfPart);
@@ -66,14 +66,15 @@ class PartwiseCover {
   }
 
  private:
-  /// How many trees are left of parts that were swept, and how many would be without.
+  /// Picks left in the groups that were swept, and the number left without the sweep.
   struct Gain {
     std::size_t swept = 0, spared = 0;
     [[nodiscard]] bool is_small() const noexcept { return spared - swept < spared / kWorthSweeping; }
   };
 
-  /// Trees first ... end - 1: the fewer of those that two ways leave. A sweep takes ten times as long as the other way,
-  /// and among much noise, where the next tree is in another component, finds hardly any that the other does not.
+  /// Selects among the trees first ... end - 1 by two methods and keeps the smaller result. A sweep takes ten times as
+  /// long as `spare_one_by_one`. In noise, where consecutive trees lie in different components, it finds hardly any
+  /// more to remove.
   void choose(std::uint32_t first, std::uint32_t end, SweepDirection direction, const Progress& progress) {
     const std::vector<bool> allowed(picked_.begin() + first, picked_.begin() + end);
     std::size_t spared = count_of(first, end);
@@ -95,7 +96,7 @@ class PartwiseCover {
     }
   }
 
-  /// Picks go whose links to others that stay have all of their range, narrow ones first.
+  /// Removes every pick whose links to other picked trees cover its whole range, narrow ones first.
   void spare_one_by_one(std::uint32_t first, std::uint32_t end) {
     const auto width = [&](std::uint32_t tree) { return map_.width(regions_.roots[tree]); };
     std::vector<std::uint32_t> order;
@@ -121,7 +122,7 @@ class PartwiseCover {
       lowest = std::min(lowest, link.least);
       highest = std::max(highest, link.greatest);
     }
-    if (lowest > level || highest < greatest) return false;  // most that stay
+    if (lowest > level || highest < greatest) return false;  // the reason for most trees that stay
     std::sort(spans_.begin(), spans_.end());
     for (const auto& [least, end] : spans_) {
       if (least > level) return false;
@@ -134,12 +135,12 @@ class PartwiseCover {
     return static_cast<std::size_t>(std::count(picked_.begin() + first, picked_.begin() + end, true));
   }
 
-  /// As few as a sweep over the part's levels takes.
+  /// The trees, counted from `first`, that a sweep over the levels of the group picks.
   [[nodiscard]] std::vector<std::uint32_t> sweep(std::uint32_t first, std::uint32_t end,
                                                  const std::vector<bool>& allowed, SweepDirection direction,
                                                  const Progress& progress) const {
-    std::vector<KeyLink<Key>> links;      // of two trees of the part
-    std::vector<KeyLink<Key>> elsewhere;  // a: of the part
+    std::vector<KeyLink<Key>> links;      // between two trees of the group
+    std::vector<KeyLink<Key>> elsewhere;  // a: tree of the group; b: picked tree of another group
     for (std::uint32_t tree = first; tree < end; ++tree)
       for (std::size_t i = first_of_[tree]; i < first_of_[tree + 1]; ++i) {
         const KeyLink<Key>& link = regions_.links[links_of_[i]];
@@ -167,7 +168,7 @@ class PartwiseCover {
   const Regions<Key>& regions_;
   std::vector<bool> picked_;
   std::size_t count_;
-  std::vector<std::size_t> first_of_;  ///< of a tree's links in links_of_
+  std::vector<std::size_t> first_of_;  ///< by tree: its first link in links_of_
   std::vector<std::size_t> links_of_;
   std::vector<std::pair<Key, Key>> spans_;
   Gain gain_;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Wide tiles come first: a tile that those before it cover is given up, part by part, to the trees that these belong
-// to. None depends on one that comes later, and so each part ends at a root. Based on: Bajaj, Pascucci, Schikore, Fast
-// isocontouring for improved interactivity, 1996 (responsibility handed on), with parts and links kept.
+// Tiles are processed in the order of descending width. A tile that earlier tiles cover is given up: the parts of its
+// range pass to the trees that own the covering parts. No tile depends on a later one, so each part ends at a root.
+// Based on: Bajaj, Pascucci, Schikore, Fast isocontouring for improved interactivity, 1996 (responsibility passes on),
+// extended by parts and links.
 #include "search/seed_regions.hpp"
 
 #include <array>
@@ -20,13 +21,14 @@ namespace tegl::detail {
 
 namespace {
 
-constexpr std::size_t kEnoughTrees = std::size_t{1} << 15;  ///< a cover of so many is found at once
+constexpr std::size_t kEnoughTrees = std::size_t{1} << 15;  ///< a cover of this many is found directly
 constexpr std::size_t kTreesAtOnce = std::size_t{1} << 14;
-constexpr std::size_t kLinksAtOnce = std::size_t{1} << 18;  ///< between two reports
+constexpr std::size_t kLinksAtOnce = std::size_t{1} << 18;  ///< between two progress reports
 constexpr unsigned kMostRounds = 16;
 constexpr unsigned kMostRoundsOfBlocks = 3;
 
-/// How wide ranges are, counted in ends of ranges of a sample: so the order does not depend on the scale of the values.
+/// Widths of ranges, measured as the number of range ends of a sample inside, so that the order does not depend on the
+/// scale of the values.
 template <class Key>
 class Widths {
  public:
@@ -55,16 +57,16 @@ class Widths {
     for (std::size_t i = 1; i < below_.size(); ++i) below_[i] += below_[i - 1];
     scale(sample, map);
   }
-  /// A power of 2 each, the widest first: finer ones would leave more tiles.
+  /// One class per power of 2, the widest first. Finer classes would leave more tiles.
   [[nodiscard]] std::size_t class_of(Key least, Key greatest) const noexcept {
     const auto bits = static_cast<std::size_t>(std::bit_width(width(least, greatest)));
     return kClasses - 1 - std::min(bits, kClasses - 1);
   }
 
  private:
-  static constexpr std::uint64_t kBins = std::uint64_t{1} << 16;  // stays near the processor
-  /// Of all ends, so many are to be 2^19: then classes do not depend on the size of the sample. By trial on many kinds
-  /// of images, from 0.5 to 0.92: these leave fewest seeds, the larger one in noise.
+  static constexpr std::uint64_t kBins = std::uint64_t{1} << 16;  // the table fits in the cache
+  /// Fraction of all range ends whose width is scaled to 2^19, so that classes do not depend on the sample size. Tuned
+  /// on many kinds of images between 0.5 and 0.92: these values leave the fewest seeds; the larger one is for noise.
   static constexpr double kWidest = 0.66, kWidestOfNoise = 0.84;
   [[nodiscard]] std::uint32_t width(Key least, Key greatest) const noexcept {
     return below_[bin(greatest)] - below_[bin(least)];
@@ -87,10 +89,10 @@ class Widths {
   Key least_;
   unsigned shift_ = 0;
   std::uint64_t last_ = 0;            ///< bin
-  std::vector<std::uint32_t> below_;  ///< ends of ranges in bins before, of a sample of tiles; scaled
+  std::vector<std::uint32_t> below_;  ///< number of range ends of the sample in lower bins; scaled
 };
 
-/// Whom tiles, or trees, belong to, from part to part of their ranges: to trees that are kept.
+/// Owners of tiles or trees, by part of their ranges. Owners are trees that stay.
 template <class Key>
 class Ownership {
  public:
@@ -98,17 +100,18 @@ class Ownership {
 
   [[nodiscard]] bool has(std::uint32_t i) const noexcept { return parts_of_[i] != kNone; }
 
-  /// What is asked next may be covered by i from `least` to `greatest`, in which it has that range at least.
+  /// Offers i as a cover of the next tile between `least` and `greatest`; i has at least this range.
   void offer(std::uint32_t i, Key least, Key greatest) {
     lowest_ = std::min(lowest_, least);
     highest_ = std::max(highest_, greatest);
     offers_.push_back({least, greatest, parts_of_[i]});
   }
-  /// Whether the offers cover i: then it belongs to whom these belong to; otherwise to itself. Forgets the offers.
+  /// If the offers cover i, i passes to their owners; otherwise i owns itself. Clears the offers. Returns whether i was
+  /// given up.
   bool give_up(std::uint32_t i, Key least, Key greatest) {
     const std::uint64_t first = parts_.size();
     parts_of_[i] = first;
-    // Most that are not covered are not so at an end.
+    // Most uncovered ranges are uncovered at an end.
     const bool covered = lowest_ <= least && greatest <= highest_ && divide(least, greatest, first);
     if (!covered) {
       parts_.resize(first);
@@ -117,13 +120,13 @@ class Ownership {
     forget_offers();
     return covered;
   }
-  /// All of i belongs to one: to itself if it is not given up.
+  /// Sets one owner of the whole range of i: i itself if it is not given up.
   void set_one(std::uint32_t i, std::uint32_t owner, Key greatest) {
     parts_of_[i] = parts_.size();
     parts_.push_back({greatest, owner});
   }
-  /// Gives i up to a single one that `other`, which has all of i's range, belongs to there; forgets the offers. False
-  /// if there is none.
+  /// Gives i up to a single owner if one owner of `other`, whose range contains the range of i, has all of it; then
+  /// clears the offers. Returns false otherwise.
   bool give_up_to_one(std::uint32_t i, std::uint32_t other, Key least, Key greatest) {
     const Part* part = &parts_[parts_of_[other]];
     while (part->end <= least) ++part;
@@ -132,7 +135,7 @@ class Ownership {
     forget_offers();
     return true;
   }
-  /// Calls visit(owner, end) for those whom i belongs to from `level` to `end`, from below.
+  /// Calls visit(owner, end) for the owners of i between `level` and `end`, in ascending order of levels.
   template <class Visit>
   void for_owners(std::uint32_t i, Key level, Key end, const Visit& visit) const {
     for (const Part* part = &parts_[parts_of_[i]]; level < end;) {
@@ -141,7 +144,7 @@ class Ownership {
       visit(part->owner, level);
     }
   }
-  /// Links between those whom a and b belong to, by their new numbers, from `level` to `end`.
+  /// Adds links between the owners of a and b, by their new numbers, from `level` to `end`.
   template <class Number>
   void add_links(std::uint32_t a, std::uint32_t b, Key level, Key end, const Number& number,
                  LinkCollector<Key>& collector) const {
@@ -160,25 +163,25 @@ class Ownership {
     }
   }
 
-  /// What is added from here on can be taken away again, or tiles of it be given new parts.
+  /// A position to which `back_to` truncates the parts; `set` may then give the tiles new parts.
   [[nodiscard]] std::uint64_t mark() const noexcept { return parts_.size(); }
   [[nodiscard]] bool since(std::uint64_t mark, std::uint32_t i) const noexcept { return parts_of_[i] >= mark; }
   void back_to(std::uint64_t mark) { parts_.resize(mark); }
-  /// Parts of i, from below; owner and end.
+  /// Sets the parts of i, as owner and end, in ascending order.
   void set(std::uint32_t i, std::span<const std::pair<std::uint32_t, Key>> parts) {
     parts_of_[i] = parts_.size();
     for (const auto& [owner, end] : parts) parts_.push_back({end, owner});
   }
 
  private:
-  /// Up to `end`, from the part before (or the least value) on.
+  /// From the end of the part before (or the minimum of the range) up to `end`.
   struct Part {
     Key end;
     std::uint32_t owner;
   };
   struct Offer {
     Key least, greatest;
-    std::uint64_t part;  ///< the first that may matter
+    std::uint64_t part;  ///< the first part that may still matter
   };
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
 
@@ -187,7 +190,7 @@ class Ownership {
     lowest_ = std::numeric_limits<Key>::max();
     highest_ = 0;
   }
-  /// Appends parts, from below, each as long as there is one; false where there is none.
+  /// Appends parts in ascending order, each as long as possible. Returns false at a gap.
   bool divide(Key level, Key end, std::uint64_t first) {
     while (level < end) {
       Part best{level, 0};
@@ -208,15 +211,14 @@ class Ownership {
     return true;
   }
 
-  std::vector<std::uint64_t> parts_of_;  ///< where they start; the last one ends with the range
+  std::vector<std::uint64_t> parts_of_;  ///< first part of each tile; the last part ends with the range
   std::vector<Part> parts_;
   std::vector<Offer> offers_;
   Key lowest_ = std::numeric_limits<Key>::max();  ///< of the offers
   Key highest_ = 0;
 };
 
-/// Numbers in the order of their classes, those of a class in the order in which they come: a counting sort.
-/// `for_each(visit)` calls visit(number, class) for all.
+/// Counting sort of numbers by class, stable. `for_each(visit)` calls visit(number, class) for all.
 template <class ForEach>
 std::vector<std::uint32_t> sort_by_class(std::size_t classes, const ForEach& for_each) {
   std::vector<std::size_t> next(classes + 1);
@@ -227,18 +229,18 @@ std::vector<std::uint32_t> sort_by_class(std::size_t classes, const ForEach& for
   return order;
 }
 
-/// One of eight classes, by a hash: of neighbours of one width some come before others, and in every round other ones.
+/// One of eight pseudorandom subclasses, different in every round: it breaks ties between neighbours of equal width.
 unsigned turn_of(std::uint32_t number, unsigned round) noexcept {
   std::uint32_t bits = (number + round * 0x632be5abu) * 0x9e3779b1u;
   bits = (bits ^ bits >> 15) * 0x85ebca6bu;
   return bits >> 29;
 }
 
-/// Trees given up to others that they are linked to, and the links between those that stay.
+/// One round of coarsening: trees are given up to linked trees, and links are kept between the trees that stay.
 template <class Key>
 class Coarsening {
  public:
-  /// Trees from `loose` on stay.
+  /// Trees with numbers from `loose` on are fixed.
   Coarsening(const RangeMap<Key>& map, const Widths<Key>& widths, const Regions<Key>& fine, std::size_t loose,
              unsigned round, const Progress& progress)
       : owners_(fine.roots.size()), number_(fine.roots.size()) {
@@ -262,23 +264,23 @@ class Coarsening {
     coarse_.links = collector.take();
   }
   [[nodiscard]] const Regions<Key>& coarse() const noexcept { return coarse_; }
-  /// How many of them may still be given up; they come first.
+  /// Number of trees that may still be given up; they come first.
   [[nodiscard]] std::size_t loose() const noexcept { return loose_; }
   Regions<Key> take() { return std::move(coarse_); }
-  /// Calls visit(number of a tree that stays, end) for those that a fine tree belongs to.
+  /// Calls visit(number, end) for the coarse trees that own a fine tree.
   template <class Visit>
   void for_owners(std::uint32_t tree, Key level, Key end, const Visit& visit) const {
     owners_.for_owners(tree, level, end, [&](std::uint32_t owner, Key to) { visit(number_[owner], to); });
   }
 
  private:
-  /// A link, as one of its ends has it.
+  /// A link, seen from one of its ends.
   struct Neighbour {
     std::uint32_t tree;
     Key least, greatest;
   };
 
-  /// Neighbours of trees before `loose`, tree by tree, and where each tree's start.
+  /// Neighbours of the trees before `loose`, grouped by tree, and the first neighbour of each tree.
   static std::pair<std::vector<Neighbour>, std::vector<std::size_t>> find_neighbours(const Regions<Key>& fine,
                                                                                      std::size_t loose) {
     std::vector<std::size_t> first_of(loose + 2);
@@ -324,15 +326,15 @@ class Coarsening {
   }
 
   Ownership<Key> owners_;
-  std::vector<std::uint32_t> number_;  ///< of those that stay
+  std::vector<std::uint32_t> number_;  ///< by fine tree that stays: its coarse number
   std::vector<std::uint8_t> given_up_;
   std::size_t loose_ = 0;
   Regions<Key> coarse_;
 };
 
-/// From tiles to trees, in blocks that are small enough to stay near the processor: trees of a block are given up to
-/// one another, and to those of blocks before it, while their links are few; then only tiles at the border of the block
-/// are looked at again, by the blocks beside it.
+/// Builds trees from tiles in blocks that fit in the cache. The tiles of a block are given up to one another and to
+/// trees of earlier blocks, and its trees are coarsened at once. Afterwards only tiles at the border of the block are
+/// read again, by adjacent blocks.
 template <class Key>
 class RegionMaker {
  public:
@@ -361,13 +363,13 @@ class RegionMaker {
   }
 
  private:
-  /// All its tiles that are ever active, and which of them have neighbours in other blocks.
+  /// Its tiles that are not constant, and which of them have neighbours in other blocks.
   struct Block {
     std::vector<Place> tiles;
-    std::vector<std::uint32_t> border;  ///< of `tiles`
+    std::vector<std::uint32_t> border;  ///< indexes into `tiles`
   };
-  static constexpr std::uint32_t kNoNumber = 0;         ///< others are one more than in a block
-  static constexpr std::uint32_t kKept = 1, kGone = 2;  ///< of tiles of the block, before trees are numbered
+  static constexpr std::uint32_t kNoNumber = 0;         ///< other numbers are 1 + the number in the block
+  static constexpr std::uint32_t kKept = 1, kGone = 2;  ///< state of the block's tiles before trees are numbered
 
   template <class Visit>
   void for_blocks(const Visit& visit) const {
@@ -408,7 +410,7 @@ class RegionMaker {
 
   void add(const Block& block) {
     const std::uint64_t mark = owners_.mark();
-    Regions<Key> trees;  // those of the block first
+    Regions<Key> trees;  // trees of the block first
     give_up_tiles(block, trees);
     std::size_t loose = trees.roots.size();
     link(block, mark, trees);
@@ -432,8 +434,8 @@ class RegionMaker {
   }
 
   void give_up_tiles(const Block& block, Regions<Key>& trees) {
-    // Every other tile comes first: of tiles in a row, each of which has a little more than the one before, the others
-    // then lie between two that are done.
+    // Within a class, even places come first: in a row of tiles with slowly increasing values, each odd tile then lies
+    // between two processed ones.
     classes_.clear();
     for (const Place tile : block.tiles)
       classes_.push_back(
@@ -453,7 +455,8 @@ class RegionMaker {
       number_[tile] = static_cast<std::uint32_t>(trees.roots.size());
     }
   }
-  /// Calls visit(root, end) for those that a tile belongs to, from below, now that some have gone.
+  /// Calls visit(root, end) for the current owners of a tile in ascending order, resolving owners that were given up
+  /// since.
   template <class Visit>
   void for_roots(Place tile, Key level, Key end, const Visit& visit) const {
     owners_.for_owners(tile, level, end, [&](Place owner, Key to) {
@@ -464,7 +467,7 @@ class RegionMaker {
       level = to;
     });
   }
-  /// Narrow ones first: those that were kept, and that tiles given up later have between them.
+  /// Second pass, narrow tiles first: gives up kept tiles that tiles processed later now cover together.
   void give_up_again(const std::vector<Place>& order) {
     bool any = false;
     for (auto tile = order.rbegin(); tile != order.rend(); ++tile) {
@@ -489,10 +492,11 @@ class RegionMaker {
       owners_.set(tile, parts_);
     }
   }
-  /// Then `parts_` are those that have it.
+  /// Whether other trees cover the tile; `parts_` are then their parts.
   bool is_covered_by_others(Place tile) {
     const Key least = map_.least[tile];
     const Key greatest = map_.greatest[tile];
+    // collect the parts that other roots offer
     offered_.clear();
     Key lowest = greatest, highest = least;
     for (const std::ptrdiff_t distance : neighbours_) {
@@ -509,6 +513,7 @@ class RegionMaker {
       });
     }
     if (lowest > least || highest < greatest) return false;
+    // greedy interval cover
     parts_.clear();
     for (Key level = least; level < greatest;) {
       Key farthest = level;
@@ -530,7 +535,7 @@ class RegionMaker {
     for (const std::ptrdiff_t distance : neighbours_) {
       const auto other = static_cast<Place>(tile + distance);
       if (!owners_.has(other) || !map_.overlap(tile, other)) continue;
-      // One that has more at both ends is as good as any: in noise most tiles lie in such a one.
+      // A tile that contains the range with room at both ends is as good as any. In noise most tiles lie in one.
       if (map_.least[other] < least && greatest < map_.greatest[other] &&
           owners_.give_up_to_one(tile, other, least, greatest))
         return true;
@@ -539,7 +544,7 @@ class RegionMaker {
     return owners_.give_up(tile, least, greatest);
   }
 
-  /// Links of the block's tiles to each other and to those of blocks before; numbers the trees of these.
+  /// Collects the links among the tiles of the block and to earlier blocks, and numbers the trees of the latter.
   void link(const Block& block, std::uint64_t mark, Regions<Key>& trees) {
     LinkCollector<Key> collector(block.tiles.size() / 2);
     const auto number = [&](Place root) {
@@ -569,12 +574,13 @@ class RegionMaker {
     trees.links = collector.take();
   }
 
-  /// Tiles at the border belong to trees that stay from now on; of others nobody will ask.
+  /// Fixes the owners of the border tiles. The owners of interior tiles are discarded: no later block reads them.
   void keep_border(const Block& block, std::uint64_t mark, const std::vector<Coarsening<Key>>& rounds,
                    const std::vector<Place>& roots) {
     using Parts = std::vector<std::pair<std::uint32_t, Key>>;
     std::vector<std::size_t> end_of;
     Parts kept, parts, finer;
+    // find the owners after all rounds of coarsening
     for (const std::uint32_t i : block.border) {
       const Place tile = block.tiles[i];
       const Key least = map_.least[tile];
@@ -599,6 +605,7 @@ class RegionMaker {
       for (const auto& [tree, end] : parts) kept.emplace_back(roots[tree], end);
       end_of.push_back(kept.size());
     }
+    // replace the parts of the block by those of the border
     owners_.back_to(mark);
     std::size_t from = 0;
     for (std::size_t i = 0; i < block.border.size(); ++i) {
@@ -611,11 +618,11 @@ class RegionMaker {
   const Widths<Key>& widths_;
   const Progress& progress_;
   std::vector<std::ptrdiff_t> neighbours_;
-  std::vector<std::ptrdiff_t> ahead_;  ///< of these one of each pair
+  std::vector<std::ptrdiff_t> ahead_;  ///< one of each pair of opposite neighbours
   Ownership<Key> owners_;
-  std::vector<std::uint32_t> number_;  ///< of a root's tree in the block at hand
+  std::vector<std::uint32_t> number_;  ///< by root: number of its tree in the current block
   std::vector<std::uint8_t> classes_;
-  std::vector<KeyLink<Key>> offered_;  ///< a: by which root
+  std::vector<KeyLink<Key>> offered_;  ///< a: the offering root
   std::vector<std::pair<Place, Key>> parts_;
   Regions<Key> regions_;
 };
@@ -631,7 +638,7 @@ Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood,
   double done = 0.7;
   for (unsigned round = 0; round < kMostRounds && regions.roots.size() > kEnoughTrees; ++round) {
     const std::size_t before = regions.roots.size();
-    const double end = done + (1.0 - done) / 2;  // each leaves less than the one before
+    const double end = done + (1.0 - done) / 2;  // each round takes less time than the one before
     regions = Coarsening<Key>(map, widths, regions, before, round, part_of(progress, done, end)).take();
     done = end;
     if (regions.roots.size() > before - before / 32) break;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where values differ nearly everywhere few tiles lie in the range of a neighbour, and the trees of seed_graph.hpp are
-// nearly as many as tiles. Here a tile is also given up where several neighbours have its range between them, each a
-// part of it, wide tiles last. What is left are fewer trees by far, with the same components at every isovalue.
+// Trees of tiles for images whose values differ nearly everywhere. There, few tiles lie in the range of one neighbour,
+// and seed_graph.hpp finds nearly as many trees as tiles. Here a tile is also given up if several neighbours together
+// cover its range; wide tiles are processed first. Far fewer trees remain, with the same components at every isovalue.
 #pragma once
 
 #include <vector>
@@ -12,21 +12,22 @@
 
 namespace tegl::detail {
 
-/// Trees, in the order of their numbers, and links between them, which may overlap. Each tile belongs, from part to
-/// part of its range, to trees that are active there; links are between those of neighbours. So a component of trees
-/// and links is a component of tiles, and a set of roots that meets all of the former is a seed set; a smallest one may
-/// be larger than one of all tiles.
+/// Trees in the order of their numbers, and links between them, which may overlap. The range of each tile is divided
+/// into parts; each part belongs to a tree that is active there. Links connect the trees of neighbouring tiles. So the
+/// components of trees and links correspond to the components of active tiles, and a set of roots that meets all of the
+/// former is a seed set. The smallest such set may be larger than the smallest set of tiles.
 template <class Key>
 struct Regions {
   std::vector<Place> roots;
   std::vector<KeyLink<Key>> links;
 };
 
-/// Near linear: a tile is looked at a few times, and what is left is fewer by half or more from round to round.
+/// Nearly linear time: each tile is visited a few times, and each round leaves at most about half of the trees.
 template <class Key>
 Regions<Key> make_regions(const RangeMap<Key>& map, Neighbourhood neighbourhood, const Progress& progress);
 
-/// Roots that meet all components. Linear in links: trees with numbers in a row are chosen from at a time.
+/// Roots that meet all components. Linear in the number of links: trees with consecutive numbers are selected in
+/// groups.
 template <class Key>
 std::vector<Place> cover_regions(const RangeMap<Key>& map, const Regions<Key>& regions, const Progress& progress);
 

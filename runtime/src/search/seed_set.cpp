@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seed sets by any method, from an image.
+// Seed sets of an image, by any method.
 #include "tegl/seed_set.hpp"
 
 #include <algorithm>
@@ -34,11 +34,12 @@ std::vector<int> checked_order(const std::vector<int>& order, int dim) {
   return order;
 }
 
-/// Up to which trees are covered as they are: see SeedGraphOptions. Of few values most fall to their neighbours later.
+/// Maximum work (SeedGraphOptions::most_work) up to which all trees are covered directly. It is larger for 8-bit
+/// values, because with few levels `contract` removes most trees.
 template <class Key>
 constexpr std::uint64_t kMostWork = std::uint64_t{1} << (sizeof(Key) == 1 ? 20 : 18);
 
-/// From ranges to places of seeds.
+/// Finds the places of seeds from the ranges of tiles.
 template <class Key>
 class SeedFinder {
  public:
@@ -67,7 +68,7 @@ class SeedFinder {
     }
   }
 
-  /// Takes the progress up to `end`.
+  /// Reports progress up to the fraction `end`.
   detail::SeedGraph make_graph(std::vector<int> order, bool with_links, bool of_root_groups, double end) {
     detail::SeedGraphOptions options;
     options.neighbourhood = options_.neighbourhood;
@@ -80,7 +81,8 @@ class SeedFinder {
     return graph;
   }
 
-  /// Of all tiles; null if there is too much to be covered: then kProgressWithRoots is told at most.
+  /// The contracted graph of all tiles; null if the work exceeds `most_work`: then the reported progress is at most
+  /// kProgressWithRoots.
   std::optional<detail::SeedGraph> make_small_graph(std::uint64_t most_work, const Progress& progress) {
     detail::SeedGraphOptions options;
     options.neighbourhood = options_.neighbourhood;
@@ -111,7 +113,7 @@ class SeedFinder {
   }
   std::vector<detail::Place> of_cover() {
     double done = 0.0;
-    // Trees of many tiles whose values differ are not even counted: that takes as long as to do without them.
+    // For many tiles with distinct values trees are not even counted: counting takes as long as `make_regions`.
     if (sizeof(Key) == 1 || stats_.tiles <= kMostTilesCounted) {
       if (const auto graph = make_small_graph(kMostWork<Key>, detail::part_of(progress_, 0.0, 0.5))) {
         const auto cover = detail::cover_components(*graph, detail::part_of(progress_, 0.5, 1.0));
@@ -134,8 +136,8 @@ class SeedFinder {
   SeedSetStats& stats_;
 };
 
-/// Ranges in so many levels at most, from quantiles of the ends of ranges: what is active at a level is active at an
-/// isovalue, and so components at levels are components at some of all isovalues.
+/// Ranges quantized to at most `levels` levels, taken from quantiles of range ends. Tiles active at a level are the
+/// tiles active at one isovalue, so components at levels are components at some of the isovalues.
 template <class Key>
 detail::RangeMap<std::uint8_t> at_some_levels(const detail::RangeMap<Key>& map, std::size_t levels) {
   constexpr std::size_t kSample = std::size_t{1} << 16;
@@ -162,7 +164,7 @@ detail::RangeMap<std::uint8_t> at_some_levels(const detail::RangeMap<Key>& map, 
 template <Value T>
 SeedSet to_seed_set(const detail::RangeMap<detail::KeyOf<T>>& map, const SeedSetOptions& options,
                     std::vector<detail::Place> places) {
-  std::sort(places.begin(), places.end());  // places are in the order of numbers
+  std::sort(places.begin(), places.end());  // ascending places are ascending tile numbers
   SeedSet set;
   set.method = options.method;
   set.neighbourhood = options.neighbourhood;
@@ -210,7 +212,7 @@ template <Value T, int N>
 std::uint64_t seed_lower_bound(const Image<T, N>& image, const SeedSetOptions& options) {
   const auto map = detail::map_ranges(image, options.threads, detail::part_of(options.progress, 0.0, 0.1));
   double done = 0.1;
-  // Of all levels, or some; null if that is too much work.
+  // The lower bound from all levels or from quantized ones; null if the work exceeds `most_work`.
   const auto pack = [&](const auto& ranges, std::uint64_t most_work) -> std::optional<std::uint64_t> {
     SeedSetStats stats;
     SeedFinder finder(ranges, options, stats);

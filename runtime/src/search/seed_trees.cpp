@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Links in order, and the progress of what finds seeds.
+// Merging of links, and progress reports of the seed search.
 #include "search/seed_trees.hpp"
 
 #include <algorithm>

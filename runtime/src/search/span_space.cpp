@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Active tiles by the span space, whose axes are the least and the greatest value of tiles: active are those in a
-// corner of it. It is cut into buckets of about as many tiles each by the greatest value; within a bucket tiles are in
-// the order of their least. A query takes the beginning of every bucket above the isovalue, and looks at the greatest
-// values in one: O(sqrt(n) log n + k) for k of n tiles. Images of few values (8 bits) have a bucket for each, and
-// greatest values are then not kept.
+// Active tiles by the span space, whose axes are the minimum and the maximum of tiles. The active tiles lie in a
+// quadrant. The maxima divide the space into buckets with about the same number of tiles; within a bucket tiles are
+// sorted by minimum. A query takes a prefix of every bucket above the isovalue and tests the maxima of one bucket:
+// O(sqrt(n) log n + k) for k active of n tiles. If there are few distinct values (8 bits), each has its own bucket and
+// maxima are not stored.
 //
 // Based on: Y. Livnat, H.-W. Shen, C. Johnson, A Near Optimal Isosurface Extraction Algorithm Using the Span Space,
-// 1996; H.-W. Shen, C. Hansen, Y. Livnat, C. Johnson, Isosurfacing in Span Space with Utmost Efficiency (ISSUE), 1996,
-// whose lattice has buckets along both axes: sorted by least value, those of a row become one.
+// 1996; H.-W. Shen, C. Hansen, Y. Livnat, C. Johnson, Isosurfacing in Span Space with Utmost Efficiency (ISSUE), 1996.
+// The ISSUE lattice has buckets along both axes; here the buckets of a row are one, sorted by minimum.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -22,11 +22,11 @@ namespace {
 
 template <Value T>
 struct SpanBuckets {
-  std::vector<T> bounds;             ///< by bucket: what its greatest values are not below
-  std::vector<std::uint64_t> first;  ///< by bucket, and the end: where its tiles are below
-  std::vector<TileId> tiles;         ///< in each bucket, by least value
+  std::vector<T> bounds;             ///< by bucket: lower bound of its maxima
+  std::vector<std::uint64_t> first;  ///< by bucket: its first place in the arrays below; then the end
+  std::vector<TileId> tiles;         ///< sorted by minimum within each bucket
   std::vector<T> least;              ///< of these
-  std::vector<T> greatest;           ///< of these; none if every bucket has but one greatest value, its bound
+  std::vector<T> greatest;           ///< of these tiles; empty if every bucket has only one maximum, its bound
 };
 
 template <Value T, int N>
@@ -49,7 +49,7 @@ class SpanSpace final : public tegl::ActiveTiles<N> {
     const T value = threshold.value;
     const auto reached = std::lower_bound(buckets_.bounds.begin(), buckets_.bounds.end(), value);
     auto bucket = static_cast<std::size_t>(reached - buckets_.bounds.begin());
-    // In the bucket before the first whose bound reaches the value, some tiles may reach it.
+    // Only the last bucket with a bound below the value can hold both tiles that reach it and tiles that do not.
     if (bucket > 0 && !buckets_.greatest.empty()) {
       const std::size_t end = end_of_below(bucket - 1, value);
       for (std::size_t i = buckets_.first[bucket - 1]; i < end; ++i)
@@ -69,7 +69,7 @@ class SpanSpace final : public tegl::ActiveTiles<N> {
   }
 
  private:
-  /// Where, in a bucket, tiles that begin below `value` end.
+  /// End of the tiles of a bucket whose minimum is below `value`.
   [[nodiscard]] std::size_t end_of_below(std::size_t bucket, T value) const {
     const T* const least = buckets_.least.data();
     const T* const end = least + buckets_.first[bucket + 1];
@@ -79,7 +79,7 @@ class SpanSpace final : public tegl::ActiveTiles<N> {
   SpanBuckets<T> buckets_;
 };
 
-/// With more buckets bisections take longer than what they save.
+/// With more buckets the bisections take longer than they save.
 constexpr std::size_t kMostBuckets = 4096;
 
 }  // namespace
@@ -91,7 +91,7 @@ ActiveTilesPtr<N> build_span_space(const IndexTask<T, N>& task) {
   Buffer<std::uint32_t> bucket_of;
   {
     const Buffer<TileId> order = ascending_order(intervals.greatest);
-    // All values, where there are few of them; else quantiles.
+    // bounds: all distinct maxima if they are few, else quantiles
     for (const TileId i : order) {
       const T value = intervals.greatest[i];
       if (!buckets.bounds.empty() && buckets.bounds.back() == value) continue;
@@ -105,6 +105,7 @@ ActiveTilesPtr<N> build_span_space(const IndexTask<T, N>& task) {
       add_quantiles(intervals.greatest, order, order.size() / count + 1, buckets.bounds);
       sort_unique(buckets.bounds);
     }
+    // sort by bucket, then by minimum
     bucket_of = cells_of(intervals.greatest, order, buckets.bounds);
     for (std::uint32_t& bucket : bucket_of) --bucket;
     task.tell(0.5);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Volume thinning in any dimension: tiles are taken away from outside, layer by layer, as long as what is left can be
-// shrunk from what was there before (a homotopy), but never those around an extremum. A component of the contour that
-// met none of the rest would part the image in two, each with an extremum, and the rest joins those.
+// Volume thinning in any dimension. Tiles are removed from outside, layer by layer, if the remaining tiles are a
+// deformation retract of the tiles before. Tiles around an extremum always stay. The result is a seed set: a component
+// of the contour that met no remaining tile would separate the image into two sides, each with an extremum, but the
+// remaining tiles connect all extrema.
 #include <algorithm>
 #include <bitset>
 #include <cmath>
@@ -17,8 +18,8 @@ namespace tegl::detail {
 
 namespace {
 
-/// Proper faces of an N-cube: base-3 numbers, digit 0 or 1 for the end of an axis that they lie at, 2 for an axis that
-/// they run along. A neighbour in direction d shares the face with digits 0, 2, 1 for d = -1, 0, 1.
+/// Proper faces of an N-cube as base-3 numbers, one digit per axis: 0 or 1 if the face lies at that end of the axis, 2
+/// if it extends along the axis. The neighbour in direction d shares the face with digits 0, 2, 1 for d = -1, 0, 1.
 template <int N>
 class CubeBoundary {
  public:
@@ -27,7 +28,7 @@ class CubeBoundary {
 
   CubeBoundary() {
     for (std::size_t f = 0; f < kFaces; ++f)
-      for (std::size_t g = 0; g + 1 < kFaces; ++g) {  // the last is the cube itself
+      for (std::size_t g = 0; g + 1 < kFaces; ++g) {  // the last one is the cube itself
         if (f + 1 == kFaces || !is_part(f, g)) continue;
         closure_[g].set(f);
         if (dim(g) == dim(f) + 1) above_[f].set(g);
@@ -36,8 +37,8 @@ class CubeBoundary {
 
   [[nodiscard]] const Set& closure(std::size_t face) const noexcept { return closure_[face]; }
 
-  /// Whether a set of faces, each with all its parts, collapses to a point: as long as there is a face that is part of
-  /// one other alone, both are taken away.
+  /// Whether a set of faces, closed under taking subfaces, collapses to a point. Each elementary collapse removes a
+  /// free face and the only face of the set that contains it.
   [[nodiscard]] bool collapses(Set set) const {
     if (set.none()) return false;
     for (bool changed = true; changed;) {
@@ -129,7 +130,7 @@ class Thinning {
       });
   }
 
-  /// The tile of the image that has this corner at a sample; none beyond the border.
+  /// The tile whose given corner is the sample; none if that tile lies outside the image.
   [[nodiscard]] std::optional<Place> tile_with_corner(const std::array<std::size_t, N>& index, unsigned corner) const {
     auto at = static_cast<std::ptrdiff_t>(tiles_.row_place(0));
     for (int a = 0; a < N; ++a) {
@@ -140,14 +141,14 @@ class Thinning {
     return static_cast<Place>(at);
   }
 
-  /// Tiles of the image with a corner at a sample, whatever their state.
+  /// Calls visit(place) for all tiles of the image with a corner at the sample, whatever their state.
   template <class Visit>
   void for_tiles_around(const std::array<std::size_t, N>& index, const Visit& visit) const {
     for (unsigned corner = 0; corner < 1u << N; ++corner)
       if (const auto place = tile_with_corner(index, corner)) visit(*place);
   }
 
-  /// Whether an edge, from a sample to the next along an axis, has a tile.
+  /// Whether any remaining tile contains the edge from a sample to the next one along an axis.
   [[nodiscard]] bool has_tile(const std::array<std::size_t, N>& index, int axis) const {
     for (unsigned corner = 0; corner < 1u << N; ++corner) {
       if ((corner >> axis & 1u) != 0) continue;
@@ -157,7 +158,8 @@ class Thinning {
     return false;
   }
 
-  /// The tiles around one sample of every plateau without higher, or without lower, neighbours along the axes.
+  /// Keeps the tiles around one sample of every extremal plateau (a connected set of equal samples with no higher, or
+  /// no lower, neighbour along the axes).
   void keep_extrema() {
     const auto sizes = image_.grid().sizes();
     std::size_t count = 1;
@@ -175,6 +177,7 @@ class Thinning {
         }
       });
     };
+    // merge equal neighbours into plateaus
     for_edges([&](std::size_t i, std::size_t j, T value, T next) {
       has_tiles[i] = has_tiles[j] = true;
       if (value != next) return;
@@ -182,6 +185,7 @@ class Thinning {
       const auto b = plateaus.find(static_cast<std::uint32_t>(j));
       if (a != b) plateaus.hang(std::max(a, b), std::min(a, b));
     });
+    // mark plateaus that have higher or lower neighbours
     for_edges([&](std::size_t i, std::size_t j, T value, T next) {
       if (value == next) return;
       const auto lower = static_cast<std::uint32_t>(value < next ? i : j);
@@ -189,6 +193,7 @@ class Thinning {
       has_higher[plateaus.find(lower)] = true;
       has_lower[plateaus.find(higher)] = true;
     });
+    // keep the tiles around the roots of extremal plateaus
     for_each_sample<N>(sizes, [&](std::size_t i, const std::array<std::size_t, N>& index) {
       if (!has_tiles[i] || plateaus.find(static_cast<std::uint32_t>(i)) != i || (has_higher[i] && has_lower[i])) return;
       for_tiles_around(index, [&](Place place) {
@@ -198,6 +203,7 @@ class Thinning {
   }
 
   void take_away(const Progress& progress) {
+    // the outer tiles are the first layer
     std::vector<Place> layer, next;
     std::vector<bool> waits(state_.size());
     tiles_.scan(default_order(N), [&](Place place) {
@@ -248,7 +254,7 @@ class Thinning {
   std::vector<std::uint8_t> state_;
   std::vector<std::pair<std::ptrdiff_t, std::size_t>> neighbours_;  ///< distance, face shared
   CubeBoundary<N> boundary_;
-  std::unordered_map<typename CubeBoundary<N>::Set, bool> may_go_;  ///< asked for by key alone
+  std::unordered_map<typename CubeBoundary<N>::Set, bool> may_go_;  ///< lookup by key only: the order does not matter
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Gathering and sorting of tiles by their ranges; see tile_intervals.hpp.
+// Collects tiles by their ranges and sorts them; see tile_intervals.hpp.
 #include "search/tile_intervals.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
   TileIntervals<T> result;
   Workers<TileRanges<T, N>> workers(task.options.threads, [&] { return TileRanges<T, N>(task.image); });
   const std::size_t along = grid.size(0);
-  // Twice: once to count, once to write, so that nothing grows.
+  // count per part, then write: buffers are allocated once
   workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
     for (std::size_t part = from; part < to; ++part) {
       std::size_t count = 0;
@@ -37,11 +37,13 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
       first[part + 1] = count;
     }
   });
+  // prefix sum
   for (std::size_t part = 0; part < parts; ++part) first[part + 1] += first[part];
   task.tell(0.1);
   result.tiles.resize(first[parts]);
   result.least.resize(first[parts]);
   result.greatest.resize(first[parts]);
+  // write
   workers.for_range(parts, 1, [&](std::size_t from, std::size_t to, TileRanges<T, N>& ranges) {
     for (std::size_t part = from; part < to; ++part) {
       std::size_t next = first[part];
@@ -63,7 +65,7 @@ TileIntervals<T> gather_intervals(const IndexTask<T, N>& task) {
 
 namespace {
 
-/// A number without sign that is ordered as the value is. (-0 comes before +0, which no comparison minds.)
+/// An unsigned integer with the order of the value. (-0 comes before +0; no later comparison distinguishes them.)
 template <Value T>
 auto ordered_bits(T value) noexcept {
   using Bits = std::conditional_t<sizeof(T) == 1, std::uint8_t,
@@ -92,16 +94,18 @@ Buffer<TileId> ascending_order(const Buffer<T>& keys) {
   constexpr std::size_t kMask = (std::size_t{1} << kDigitBits) - 1;
   std::array<std::vector<std::uint32_t>, kDigits> first;
   for (auto& digit : first) digit.resize(kMask + 1);
+  // count digits
   Buffer<KeyedPlace<Bits>> items(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const Bits key = ordered_bits(keys.data()[i]);
     items.data()[i] = {key, static_cast<TileId>(i)};
     for (unsigned d = 0; d < kDigits; ++d) ++first[d].data()[std::size_t{key} >> (d * kDigitBits) & kMask];
   }
+  // distribute by one digit after the other
   Buffer<KeyedPlace<Bits>> sorted(keys.size());
   for (unsigned d = 0; d < kDigits; ++d) {
     std::uint32_t* const next = first[d].data();
-    // A digit that all keys share moves nothing.
+    // skip a digit that is equal in all keys
     if (std::find(next, next + kMask + 1, keys.size()) != next + kMask + 1) continue;
     std::uint32_t sum = 0;
     for (std::size_t digit = 0; digit <= kMask; ++digit) sum += std::exchange(next[digit], sum);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tiles of an image as intervals of values, and ways to put them in order in linear time: what interval trees and
-// buckets are built from.
+// The tiles of an image as intervals of values, and linear-time sorting of them, for interval trees and buckets.
 #pragma once
 
 #include <cstddef>
@@ -17,33 +16,33 @@ namespace tegl::detail {
 template <Value T>
 struct TileIntervals {
   Buffer<TileId> tiles;
-  Buffer<T> least, greatest;  ///< of each of them, least < greatest
+  Buffer<T> least, greatest;  ///< by tile; least < greatest
 };
 
 /// Throws TooLarge if there are more tiles than TileId can number.
 template <Value T, int N>
 TileIntervals<T> gather_intervals(const IndexTask<T, N>& task);
 
-/// The places of keys in ascending order; equal ones stay in order. Radix sort, O(keys).
+/// Permutation that sorts the keys in ascending order. Stable radix sort, O(keys).
 template <Value T>
 Buffer<TileId> ascending_order(const Buffer<T>& keys);
 
-/// Adds every `step`-th of the keys in this order, from the first on.
+/// Appends every `step`-th key in this order, from the first on.
 template <Value T>
 void add_quantiles(const Buffer<T>& keys, const Buffer<TileId>& order, std::size_t step, std::vector<T>& values);
 
-/// Makes values ascending, each once.
+/// Sorts values and removes duplicates.
 template <Value T>
 void sort_unique(std::vector<T>& values);
 
-/// For each key, how many of the (ascending) bounds are not above it.
+/// For each key, the number of bounds <= key. `order` sorts the keys; `bounds` ascend.
 template <Value T>
 Buffer<std::uint32_t> cells_of(const Buffer<T>& keys, const Buffer<TileId>& order, const std::vector<T>& bounds);
 
-/// Places 0 ... size - 1 of an order, brought together by bin.
+/// Places 0 ... size - 1, grouped by bin.
 struct Bins {
-  std::vector<std::uint64_t> first;  ///< by bin, and the end: where its places are in `order`
-  Buffer<TileId> order;              ///< within a bin in the order that they came in
+  std::vector<std::uint64_t> first;  ///< by bin: its first element in `order`; then the end
+  Buffer<TileId> order;              ///< grouped by bin; within a bin in the input order
 };
 Bins distribute(const Buffer<TileId>& order, const Buffer<std::uint32_t>& bin_of, std::size_t bins);
 
@@ -56,7 +55,7 @@ std::vector<V> in_order(const Buffer<V>& values, const Buffer<TileId>& order) {
   return result;
 }
 
-/// Throws MalformedFile unless all are numbers of tiles.
+/// Throws MalformedFile unless all tile numbers are below `end`.
 void require_tiles(const std::vector<TileId>& tiles, TileNumber end);
 
 }  // namespace tegl::detail

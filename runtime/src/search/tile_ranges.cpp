@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ranges of tiles: first over the rows of samples around a row of tiles, then over neighbours along it. The loops are
-// simple ones, which the compiler turns into vector code.
+// Ranges of tiles: first over the rows of samples around a row of tiles, then over neighbours along the row. The loops
+// are simple so that the compiler vectorizes them.
 #include "search/tile_ranges.hpp"
 
 #include <algorithm>
@@ -23,6 +23,7 @@ void TileRanges<T, N>::load(std::size_t row) noexcept {
     at += static_cast<std::ptrdiff_t>(row % grid_.size(a)) * image_.strides()[a];
     row /= grid_.size(a);
   }
+  // combine the rows of samples
   missing_ = false;
   for (unsigned corner = 0; corner < kRows; ++corner) {
     const T* samples = image_.data() + at;
@@ -41,6 +42,7 @@ void TileRanges<T, N>::load(std::size_t row) noexcept {
     merge(samples);
   }
   const std::size_t tiles = grid_.size(0);
+  // combine neighbours along the row
   for (std::size_t i = 0; i < tiles; ++i) {
     least_[i] = least_[i + 1] < least_[i] ? least_[i + 1] : least_[i];
     greatest_[i] = greatest_[i] < greatest_[i + 1] ? greatest_[i + 1] : greatest_[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The least and the greatest value of every tile, row by row: what all indexes of active tiles are made from.
+// Minimum and maximum of every tile, row by row. All indexes of active tiles are built from these ranges.
 #pragma once
 
 #include <array>
@@ -12,23 +12,23 @@
 
 namespace tegl::detail {
 
-/// Whether a range (least, greatest] has values in it: only then is the tile active at some isovalue.
+/// Whether the range (least, greatest] is not empty, that is, the tile is active at some isovalue.
 template <Value T>
 [[nodiscard]] constexpr bool has_range(T least, T greatest) noexcept {
   return least < greatest;
 }
 
-/// Goes through the ranges of an image's tiles. One for each thread: it keeps room for a row. The values must outlive
-/// it.
+/// Computes the ranges of the tiles of an image. It holds a buffer for one row: use one per thread. The samples must
+/// outlive it.
 template <Value T, int N>
 class TileRanges {
  public:
   explicit TileRanges(const Image<T, N>& image);
 
   [[nodiscard]] const TileGrid<N>& grid() const noexcept { return grid_; }
-  /// Makes `least` and `greatest` those of a row of tiles. A tile with a missing corner gets an empty range, 0 and 0.
+  /// Computes `least` and `greatest` for a row of tiles. A tile with a missing corner gets the empty range (0, 0].
   void load(std::size_t row) noexcept;
-  /// size(0) values each.
+  /// grid().size(0) values each.
   [[nodiscard]] const T* least() const noexcept { return least_.data(); }
   [[nodiscard]] const T* greatest() const noexcept { return greatest_.data(); }
 
@@ -36,7 +36,7 @@ class TileRanges {
   void merge(const T* samples) noexcept;
   void leave_out_missing() noexcept;
 
-  static constexpr unsigned kRows = 1u << (N - 1);  ///< of samples around a row of tiles
+  static constexpr unsigned kRows = 1u << (N - 1);  ///< rows of samples around a row of tiles
 
   Image<T, N> image_;
   TileGrid<N> grid_;

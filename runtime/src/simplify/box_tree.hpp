@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which simplices are near? A binary tree of boxes, each side by side with the other half of its simplices.
+// A bounding volume hierarchy of simplices for range and nearest-neighbour queries: a binary tree of boxes, split at
+// the median along the longest axis.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +37,7 @@ struct Box {
     add(other.low);
     add(other.high);
   }
-  /// Whether the two come within `reach` of each other along every axis.
+  /// Whether the gap between the boxes is at most `reach` along every axis.
   [[nodiscard]] bool meets(const Box& other, double reach) const {
     for (int a = 0; a < N; ++a)
       if (low[a] > other.high[a] + reach || other.low[a] > high[a] + reach) return false;
@@ -52,7 +53,7 @@ struct Box {
   }
 };
 
-/// Of simplices with N corners each.
+/// Bounding volume hierarchy of simplices with N corners each. The simplices must outlive it.
 template <int N>
 class BoxTree {
  public:
@@ -62,13 +63,13 @@ class BoxTree {
     for (std::size_t s = 0; s < simplices.size(); ++s)
       for (const PointN<N>& corner : simplices[s]) boxes_[s].add(corner);
     if (!order_.empty()) build(0, static_cast<Index>(order_.size()));
-    std::vector<Box<N>> in_order;  // as they are visited
+    std::vector<Box<N>> in_order;  // in the order of the leaves
     in_order.reserve(boxes_.size());
     for (const Index s : order_) in_order.push_back(boxes_[s]);
     boxes_.swap(in_order);
   }
 
-  /// Calls visit(simplex) for those whose box comes within `reach` of the box along every axis.
+  /// Calls visit(simplex) for every simplex whose box is within `reach` of the box along every axis.
   template <class Visit>
   void visit_near(const Box<N>& box, double reach, const Visit& visit) const {
     if (!nodes_.empty()) visit_node(0, box, reach, visit);
@@ -78,13 +79,14 @@ class BoxTree {
     double distance = std::numeric_limits<double>::infinity();
     Index simplex = 0;
   };
-  /// The nearest simplex; infinitely far without any.
+  /// The nearest simplex; the distance is infinite if there is none.
   [[nodiscard]] Nearest nearest(const PointN<N>& p) const {
     Nearest best;
     if (!nodes_.empty()) find_nearest(0, p, best);
     return best;
   }
-  /// The same, faster if `guess` is near. Of several as near as each other, which one it is may depend on the guess.
+  /// The nearest simplex, found faster if `guess` is near. Among equally near simplices the result may depend on the
+  /// guess.
   [[nodiscard]] Nearest nearest(const PointN<N>& p, Index guess) const {
     Nearest best = {distance_to_simplex<N>(p, simplices_[guess], N), guess};
     find_nearest(0, p, best);
@@ -95,8 +97,8 @@ class BoxTree {
   static constexpr Index kLeafSize = 4;
   struct Node {
     Box<N> box;
-    Index first = 0, end = 0;  ///< of a leaf; empty for others
-    Index right = 0;           ///< the left one is the next
+    Index first = 0, end = 0;  ///< simplices of a leaf in order_; 0, 0 for inner nodes
+    Index right = 0;           ///< right child; the left child is the next node
   };
 
   Index build(Index first, Index end) {
@@ -152,7 +154,7 @@ class BoxTree {
 
   std::span<const CornersN<N>> simplices_;
   std::vector<Index> order_;
-  std::vector<Box<N>> boxes_;  ///< in that order, once it is known
+  std::vector<Box<N>> boxes_;  ///< in the order of order_, after the build
   std::vector<Node> nodes_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stars as lists of corners, link conditions, and contractions.
+// Stars as linked lists of corners, the link condition, and edge contraction.
 #include "simplify/collapsible_complex.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace tegl::detail {
 namespace {
 
-constexpr std::size_t kTellEvery = std::size_t{1} << 14;  ///< simplices
+constexpr std::size_t kTellEvery = std::size_t{1} << 14;  ///< simplices between two progress reports
 
 constexpr std::uint64_t edge_key(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
@@ -68,7 +68,7 @@ void ShrinkingComplex<N>::find_border(const Progress& progress) {
   for (Index s = 0; s < simplices_.size(); ++s) {
     if (s % kTellEvery == 0) tell(progress, static_cast<double>(s) / static_cast<double>(simplices_.size()));
     for (int omitted = 0; omitted < N; ++omitted) {
-      // The simplices with this face are at each of its vertices; the first one will do.
+      // Every simplex with this face is in the star of each of its vertices; any one of them will do.
       const Index at = simplices_[s][omitted == 0 ? 1 : 0];
       int others = 0;
       for (Index c = first_[at]; c != kNone; c = next_[c]) {
@@ -93,7 +93,7 @@ void ShrinkingComplex<N>::find_border(const Progress& progress) {
 template <int N>
 void ShrinkingComplex<N>::star(Index v, std::vector<Index>& result) {
   result.clear();
-  // Corners of simplices that are gone are dropped on the way.
+  // Removed simplices are unlinked during the traversal.
   Index* link = &first_[v];
   while (*link != kNone) {
     const Index s = *link / N;
@@ -171,7 +171,8 @@ void ShrinkingComplex<N>::gather_edge_link(const Edge& edge) {
     for (int omitted = 0; omitted < N; ++omitted) {
       if ((border_faces_[s] >> omitted & 1u) == 0) continue;
       if (omitted == i || omitted == j) {
-        // The face that keeps one end: with the cone it is in that end's link, away from the other end.
+        // This border face contains one end only. Its cone is in the link of that end and does not contain the other
+        // end.
         Face border{};
         for (int a = 0, k = 0; a < N; ++a)
           if (a != i && a != j) border[k++] = simplex[a];
@@ -218,7 +219,7 @@ bool ShrinkingComplex<N>::share_only_the_edges_link() {
   return true;
 }
 
-/// Whether both links have an edge that is not in the link of uv (which has edges where N = 4).
+/// Whether both links share an edge that is not in the link of uv. The link of uv has edges if N = 4.
 template <int N>
 bool ShrinkingComplex<N>::share_a_link_edge(bool beside_edges_link) {
   const auto gather = [&](std::span<const Face> faces, const std::vector<std::uint32_t>& in_other,
@@ -241,7 +242,7 @@ bool ShrinkingComplex<N>::share_a_link_edge(bool beside_edges_link) {
   });
 }
 
-/// The link of uv has no triangles, so whatever triangle both have is one too many.
+/// Whether both links share a triangle. The link of uv has no triangles, so a shared one violates the link condition.
 template <int N>
 bool ShrinkingComplex<N>::share_a_link_triangle() const {
   for (const Face& face : link_u_) {
@@ -273,12 +274,15 @@ void ShrinkingComplex<N>::contract(const Edge& edge) {
   for (const Index s : edge.both) {
     const unsigned i = static_cast<unsigned>(position(simplices_[s], edge.u));
     const unsigned j = static_cast<unsigned>(position(simplices_[s], edge.v));
-    // The two faces that become one: if one of them was border, so is what lies beyond the other.
+    // Two faces of s are identified. If one of them was on the border, the other one becomes a border face of its other
+    // simplex.
     if ((border_faces_[s] >> i & 1u) != 0) open_face(edge.only_u, s, edge.v);
     if ((border_faces_[s] >> j & 1u) != 0) open_face(edge.only_v, s, edge.u);
   }
+  // remove the simplices at the edge
   for (const Index s : edge.both) simplices_[s].fill(kNone);
   alive_ -= edge.both.size();
+  // attach the other simplices of v to u
   for (const Index s : edge.only_v) {
     const auto i = static_cast<std::size_t>(position(simplices_[s], edge.v));
     simplices_[s][i] = edge.u;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A manifold of (N-1)-simplices whose edges can be contracted, one after the other, as long as it stays the same
-// manifold.
+// A manifold of (N-1)-simplices with edge contractions that preserve its topology.
 //
-// Based on: T. Dey, H. Edelsbrunner, S. Guha and D. Nekhayev, Topology preserving edge contraction, 1999: contracting
-// an edge uv changes nothing if the links of u and v have nothing in common but the link of uv. For a complex with a
-// border this holds of the complex with a cone from one more vertex over its border, so that vertex is in the links
-// here.
+// Based on: T. Dey, H. Edelsbrunner, S. Guha and D. Nekhayev, Topology preserving edge contraction, 1999. Link
+// condition: contracting the edge uv preserves the topology if the intersection of the links of u and v is the link of
+// uv. A complex with a boundary is completed by a cone from one additional vertex over its boundary. The links here
+// contain that vertex.
 #pragma once
 
 #include <array>
@@ -26,7 +25,7 @@ class ShrinkingComplex {
   using Simplex = std::array<Index, N>;
   static constexpr Index kNone = std::numeric_limits<Index>::max();
 
-  /// The two ends of an edge, and the simplices at one of them, at the other, and at both.
+  /// The ends of an edge, and the simplices that contain only u, only v, or both.
   struct Edge {
     Index u = 0;
     Index v = 0;
@@ -47,41 +46,41 @@ class ShrinkingComplex {
   /// Bit i: the face opposite to corner i is in no other simplex.
   [[nodiscard]] unsigned border_faces(Index s) const { return border_faces_[s]; }
 
-  /// The simplices at a vertex, in an order that depends on what was contracted before alone.
+  /// The simplices at a vertex. Their order depends only on the contractions before.
   void star(Index v, std::vector<Index>& result);
   /// The vertices that share an edge with v, each once.
   void neighbours(Index v, std::vector<Index>& result);
 
   /// Fills `edge`. u and v have to differ.
   void load(Index u, Index v, Edge& edge);
-  /// Whether contracting the edge leaves the manifold as it is.
+  /// Whether contracting the edge preserves the topology of the manifold.
   bool is_contractible(const Edge& edge);
   /// Moves v to u. The edge has to be contractible.
   void contract(const Edge& edge);
 
  private:
-  /// A face of a link, as many vertices as it has, ascending.
+  /// Vertices of a face of a link, ascending; shorter faces fill only the first ones.
   using Face = std::array<Index, N - 1>;
 
   void find_border(const Progress& progress);
-  /// The link of `v` without what contains `other`, with the cone over the border.
+  /// Appends the link of `v` in the given simplices of its star, with the cone over the border.
   void gather_link(std::span<const Index> star, Index v, std::vector<Face>& faces);
   void gather_edge_link(const Edge& edge);
   void mark(std::span<const Face> faces, std::vector<std::uint32_t>& marks, int vertices);
   bool share_only_the_edges_link();
   bool share_a_link_edge(bool beside_edges_link);
   bool share_a_link_triangle() const;
-  /// The simplex of `star` other than `s` that has all its vertices but one: there the face becomes border.
+  /// Finds the simplex of `star` that shares with `s` the face opposite to `without`, and marks that face as border.
   void open_face(std::span<const Index> star, Index s, Index without);
 
   std::vector<Simplex> simplices_;
   std::vector<std::uint8_t> border_faces_;
   std::vector<bool> border_vertex_;
-  std::vector<Index> first_;  ///< of each vertex: a corner, N * simplex + position
-  std::vector<Index> next_;   ///< of each corner: the next of the same vertex
+  std::vector<Index> first_;  ///< by vertex: its first corner, N * simplex + position
+  std::vector<Index> next_;   ///< by corner: the next corner of the same vertex
   std::size_t alive_ = 0;
 
-  // Scratch; marks hold the round in which they were set.
+  // Scratch. A mark is the round in which it was set.
   std::uint32_t round_ = 0;
   std::vector<std::uint32_t> in_u_, in_v_, in_edge_;
   std::vector<Face> link_u_, link_v_, link_edge_;

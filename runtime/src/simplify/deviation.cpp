@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far every point of one contour is from another, simplex by simplex: by the sheets of the other contour that pass
-// over all of it, or else by how far its corners are from one simplex; in parts, where that tells too little.
+// Bound of the distance of every point of one contour from another contour, simplex by simplex: from the sheets of the
+// other contour that cover the simplex, or from the distances of its corners to one simplex. Simplices are subdivided
+// if the bound is too loose.
 #include "tegl/deviation.hpp"
 
 #include <algorithm>
@@ -26,31 +27,33 @@ namespace detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// How much more than a distance that is reached a bound may be; and where it is measured again.
+/// Accepted ratio of a bound to a distance that is attained; the second one is for refinement.
 constexpr double kLooseness = 1.25;
 constexpr double kRefinedLooseness = 1.05;
-/// A bound below these shares, of the longest edge and of the largest distance of a vertex, is good enough.
+/// A bound below these fractions, of the longest edge and of the largest known distance, is accepted.
 constexpr double kEdgeShare = 0.02;
 constexpr double kLeastShare = 0.5;
-/// Sheets are looked for as far off as the corners are, by this factor and this share of the longest edge; then wider.
+/// Sheets are searched within kSlack times the distance of the corners plus kReachShare times the longest edge, then
+/// within kWider times that.
 constexpr double kSlack = 1.5;
 constexpr double kReachShare = 0.05;
 constexpr double kWider = 4.0;
-/// Farther away than this share of the longest edge, distances alone tell enough.
+/// At distances beyond this multiple of the longest edge, bounds from distances are close enough.
 constexpr double kFarAway = 2.0;
-/// Of the longest edge: the rim that is left out of a simplex where it decides. Much more than rounding.
+/// Relative width of the rim that is excluded if a simplex is decided without it, in longest edges. Much more than
+/// rounding errors.
 constexpr double kRim = 1e-11;
-/// Of the longest edge: much more than the rim.
+/// In longest edges: much more than the rim.
 constexpr double kBeyond = 1e-9;
-/// Flatter simplices are looked at along the normal of what is next to them.
+/// Flatter simplices use the normal of the nearest simplex of the other contour.
 constexpr double kFlat = 1e-2;
-/// In how many parts a simplex is measured at most; and where the largest bounds are measured again, how many
-/// simplices those are (and which share of all), in how many parts.
+/// Maximum number of parts of a simplex. Refinement of the largest bounds: kMostRefined simplices, one more per
+/// kRefinedShare simplices, and their maximum number of parts.
 constexpr std::size_t kMostParts = 24;
 constexpr std::size_t kMostRefined = 64;
 constexpr std::size_t kRefinedShare = 4000;
 constexpr std::size_t kRefinedParts = 400;
-/// The middle of each of so many simplices tells beforehand how large distances are.
+/// Every kSampled-th simplex is sampled at its centroid for a first estimate of the distances.
 constexpr std::size_t kSampled = 8;
 constexpr std::size_t kGrain = 256;
 
@@ -69,7 +72,7 @@ PointN<N> middle_of(const CornersN<N>& corners) {
   return middle;
 }
 
-/// The simplices of a contour, scaled.
+/// The scaled simplices of a contour.
 template <int N>
 struct Pieces {
   std::span<const std::array<Index, N>> simplices;
@@ -92,15 +95,15 @@ struct Pieces {
   }
 };
 
-/// Where the chain of a contour's simplices ends: of each simplex, bit i: its face opposite to corner i is one whose
-/// orientations do not cancel.
+/// Boundary of the chain of a contour's simplices. By simplex, bit i: the orientations at the face opposite to corner i
+/// do not cancel.
 template <int N>
 class OpenFaces {
  public:
   OpenFaces(const Pieces<N>& pieces, unsigned threads, const Progress& progress)
       : rows_(pieces.simplices.begin(), pieces.simplices.end()), faces_(rows_.size(), 0) {
     find(pieces.points.size(), threads, part_of(progress, 0.0, 0.5));
-    // Vertices at one place are one: files may have each simplex with corners of its own.
+    // Vertices at equal places are identified: files may store each simplex with its own vertices.
     if (!ridges_.empty() && unite(pieces.points)) find(pieces.points.size(), threads, part_of(progress, 0.5, 1.0));
     rows_ = {};
   }
@@ -131,7 +134,7 @@ class OpenFaces {
     if (std::has_single_bit(others)) faces_[s] |= static_cast<std::uint8_t>(others);
   }
 
-  /// False if no two vertices of open faces are at one place.
+  /// Identifies vertices of open faces at equal places. Returns false if there are none.
   bool unite(const std::vector<PointN<N>>& points) {
     std::vector<Index> open;
     for (const Ridge& ridge : ridges_) open.insert(open.end(), ridge.begin(), ridge.end());
@@ -157,19 +160,19 @@ class OpenFaces {
   std::vector<Ridge> ridges_;
 };
 
-/// What all simplices are measured with.
+/// Shared input of all measurements.
 template <int N>
 struct Measure {
   const Pieces<N>& from;
   const Pieces<N>& to;
   const BoxTree<N>& tree;
   const OpenFaces<N>& open;
-  const std::vector<double>& of_vertices;  ///< how far each vertex of `from` is from the nearest of `to`
-  double enough;                           ///< no bound needs to be less
+  const std::vector<double>& of_vertices;  ///< distance of each vertex of `from` from the nearest point of `to`
+  double enough;                           ///< bounds below it are not refined
   std::vector<double>& of_to;
 };
 
-/// Measures one simplex after the other. One per thread.
+/// Measures simplices one by one. Use one per thread.
 template <int N>
 class Matcher {
  public:
@@ -177,7 +180,7 @@ class Matcher {
 
   explicit Matcher(const Measure<N>& measure) : m_(measure) {}
 
-  /// No point of simplex s is farther than that; `least` is raised to a distance that is reached.
+  /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
     load(s);
     looseness_ = kLooseness;
@@ -188,7 +191,7 @@ class Matcher {
     return result;
   }
 
-  /// A bound that took more pains, until it is `enough`, or as long as is worth it.
+  /// A closer bound, refined until it is at most `enough` or kRefinedParts parts are reached.
   double refined_bound(Index s, double enough) {
     load(s);
     looseness_ = kRefinedLooseness;
@@ -197,13 +200,13 @@ class Matcher {
   }
 
  private:
-  /// A simplex of `to`, in the frame.
+  /// A simplex of `to` in the frame.
   struct Near {
     Index simplex;
     CornersN<N> at;
-    double low, high;  ///< the last coordinates
+    double low, high;  ///< range of the last coordinate
   };
-  /// What is left of such a one over a part.
+  /// The part of a near simplex inside a prism, as a range of heights.
   struct Sheet {
     double low, high;
     Index near;
@@ -212,10 +215,10 @@ class Matcher {
   struct Part {
     double bound = kInfinity;
     CornersN<N> corners;              ///< in the frame
-    std::vector<std::uint32_t> near;  ///< numbers in near_: all that come near it
+    std::vector<std::uint32_t> near;  ///< numbers in near_ of all simplices near the part
     std::vector<std::pair<Index, double>> matches;
-    std::uint32_t farthest = 0;  ///< the number in near_ of the match with the largest distance
-    Index next = 0;              ///< one of those nearest to it
+    std::uint32_t farthest = 0;  ///< number in near_ of the match with the largest distance
+    Index next = 0;              ///< a nearest simplex of `to`
     bool operator<(const Part& other) const { return bound < other.bound; }
   };
 
@@ -242,16 +245,17 @@ class Matcher {
     for (int i = 0; i < N; ++i) whole_[i] = frame_.to_frame(corners[i]);
   }
 
-  /// Whether a closer bound is of no use.
+  /// Whether the bound needs no refinement.
   [[nodiscard]] bool is_enough(const Part& part, double enough) const {
     return part.bound <= std::max(enough, looseness_ * nearest_);
   }
 
-  /// The largest bound of the parts; they are left in parts_.
+  /// Maximum bound over the parts, which remain in parts_.
   double in_parts(double enough, std::size_t most, double& least) {
     parts_.clear();
     Part whole;
     whole.corners = whole_;
+    // the whole simplex, with a narrow and a wide reach
     for (const double wider : {1.0, kWider}) {
       gather_near(wider * (kSlack * nearest_ + kReachShare * edge_));
       whole.near.resize(near_.size());
@@ -262,12 +266,13 @@ class Matcher {
     }
     if (!(whole.bound < kInfinity)) measure_by_distances(whole);
     parts_.push_back(std::move(whole));
+    // bisect the part with the largest bound
     while (!is_enough(parts_.front(), enough) && parts_.size() < most) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part worst = std::move(parts_.back());
       parts_.pop_back();
       for (const CornersN<N>& half : halves(worst.corners)) {
-        Part part = worst;  // with what bounds the whole, until there is something nearer
+        Part part = worst;  // keeps the bound of the whole until a closer one is found
         part.corners = half;
         measure(part, enough);
         parts_.push_back(std::move(part));
@@ -278,7 +283,7 @@ class Matcher {
     return parts_.front().bound;
   }
 
-  /// All that comes within `reach` of the whole along the frame's normal.
+  /// Collects the simplices within `reach` of the whole simplex along the normal.
   void gather_near(double reach) {
     reach_ = reach;
     near_.clear();
@@ -291,6 +296,7 @@ class Matcher {
         box.add(frame_.to_space(x));
       }
     };
+    // box in space; of a thin simplex, of its whole box in the frame
     for (const PointN<N>& corner : whole_) add(corner);
     if (prism.thin()) {
       Box<N> whole;
@@ -305,6 +311,7 @@ class Matcher {
     for (const PointN<N>& corner : whole_) around.add(corner);
     around.low[D] -= reach;
     around.high[D] += reach;
+    // box test in the frame
     const double rounding = 10.0 * prism.rounding();
     m_.tree.visit_near(box, rounding, [&](Index t) {
       Near near;
@@ -320,27 +327,27 @@ class Matcher {
     });
   }
 
-  /// By the nearest of the sheets that pass over all of the part, or by distances. What is not near it is dropped from
-  /// its list.
+  /// Bounds a part by the nearest group of sheets that covers it, or by distances. Simplices that are not near the part
+  /// are removed from its list.
   void measure(Part& part, double enough) {
     const Prism<N> prism(part.corners, edge_);
-    // If all of each simplex is near enough, none needs to be cut.
+    // First without cutting: enough if each whole simplex is near enough.
     gather_sheets(prism, part, false);
     take_best_sheet(prism, part, 0.0);
     if (is_enough(part, m_.enough)) return;
-    // Where sheets did not tell of the whole they will hardly tell of its parts; distances cost less, and these are
-    // smaller.
+    // If sheets did not bound the whole simplex, they will hardly bound its parts. Distances are cheaper, and smaller
+    // for parts.
     if (!parts_.empty()) measure_by_distances(part);
     if (!parts_.empty() && is_enough(part, enough)) return;
-    // All but a rim, every point of which is nearer than that to the rest: borders and walls that begin at the edge of
-    // the part are not over it then.
+    // The part without a rim; every point of the rim is within kRim * edge_ of the rest. So borders and walls that
+    // begin at the edge of the part do not lie above it.
     CornersN<N> inner = part.corners;
     const PointN<N> middle = middle_of<N>(part.corners);
     for (PointN<N>& corner : inner) corner = between(corner, middle, kRim);
     const Prism<N> inner_prism(inner, edge_);
     gather_sheets(inner_prism, part, true);
     const bool found = take_best_sheet(inner_prism, part, kRim * edge_);
-    if (part.bound <= 2.0 * kRim * edge_) {  // the same contour: without a rim it is as near as rounding allows
+    if (part.bound <= 2.0 * kRim * edge_) {  // identical contours: without the rim the bound is exact up to rounding
       gather_sheets(prism, part, true);
       take_best_sheet(prism, part, 0.0);
     }
@@ -348,10 +355,11 @@ class Matcher {
     if (parts_.empty() && !is_enough(part, enough)) measure_by_distances(part);
   }
 
-  /// `cut`: what is left of them over the part; else what their corners and hyperplanes tell of that.
+  /// Collects the height ranges of the near simplices over the part: with `cut`, of their remnants in the prism; else
+  /// estimated from their corners and hyperplanes.
   void gather_sheets(const Prism<N>& prism, Part& part, bool cut) {
     sheets_.clear();
-    // What is farther off than the bound that is known, by more than rounding, will not better it.
+    // Simplices farther away than the known bound, by more than rounding, cannot improve it.
     double lowest = kInfinity, highest = -kInfinity;
     for (const PointN<N>& corner : part.corners) {
       lowest = std::min(lowest, corner[D]);
@@ -360,6 +368,7 @@ class Matcher {
     const double limit = part.bound + kBeyond * edge_;
     lowest -= limit;
     highest += limit;
+    // height range of each near simplex
     std::size_t kept = 0;
     for (const std::uint32_t number : part.near) {
       const Near& near = near_[number];
@@ -382,8 +391,8 @@ class Matcher {
               [](const Sheet& a, const Sheet& b) { return a.low != b.low ? a.low < b.low : a.near < b.near; });
   }
 
-  /// Of the groups of sheets that are apart from others by their heights, the nearest that passes over all of the part
-  /// for sure. False if none is nearer than what is known.
+  /// Groups sheets by separate ranges of heights and takes the nearest group that certainly covers the part. Returns
+  /// false if none improves the bound.
   bool take_best_sheet(const Prism<N>& prism, Part& part, double rim) {
     const double apart = prism.rounding() + 1e-15 * reach_;
     const double reach = reach_ - std::max(-prism.low(), prism.high());
@@ -412,17 +421,17 @@ class Matcher {
     return found;
   }
 
-  /// Finds out how far the part is below or above the farthest corner of its sheets.
+  /// Raises nearest_ to the distance of the point of the part below or above the farthest corner of its sheets.
   void probe(const Prism<N>& prism, Part& part) {
     if (!remnant_.load(near_[part.farthest].at, prism) || !remnant_.cut(prism)) return;
     const PointN<N> below = prism.at_level(remnant_.farthest(prism));
     nearest_ = std::max(nearest_, m_.tree.nearest(frame_.to_space(below), near_[part.farthest].simplex).distance);
   }
 
-  /// Whether sheets cover some point of the part other than as often from above as from below.
+  /// Whether the sheets cover a point of the part with a nonzero degree (orientations counted with signs).
   [[nodiscard]] bool covered(std::span<const Sheet> sheets, const CornersN<N>& part) const {
     for (int attempt = 0; attempt < 4; ++attempt) {
-      // Points without any symmetry to the part.
+      // Asymmetric weights avoid points on outlines.
       PointN<N> x{};
       double sum = 0.0;
       for (int i = 0; i < N; ++i) {
@@ -444,8 +453,8 @@ class Matcher {
     return false;
   }
 
-  /// The distance from one simplex is convex, so its largest value is at a corner; and no distance grows faster than
-  /// the way does. Either bound will do.
+  /// Two bounds: the distance from one simplex is convex, so its maximum is at a corner; and distances are 1-Lipschitz.
+  /// Takes the smaller one.
   void measure_by_distances(Part& part) {
     CornersN<N> corners;
     for (int i = 0; i < N; ++i) corners[i] = frame_.to_space(part.corners[i]);
@@ -464,7 +473,7 @@ class Matcher {
     part.matches.assign(1, {t, bound});
   }
 
-  /// The two halves of a simplex, across its longest edge.
+  /// Bisects a simplex at the middle of its longest edge.
   static std::array<CornersN<N>, 2> halves(const CornersN<N>& part) {
     int first = 0, second = 1;
     double longest = -1.0;
@@ -483,16 +492,16 @@ class Matcher {
   }
 
   const Measure<N>& m_;
-  // Of the simplex at hand.
+  // Current simplex.
   double edge_ = 0.0;
   double looseness_ = kLooseness;
-  double nearest_ = 0.0;  ///< the largest distance of a point of it that is known
+  double nearest_ = 0.0;  ///< largest known distance of one of its points
   Frame<N> frame_ = Frame<N>({1.0}, {});
   CornersN<N> whole_;
   double reach_ = 0.0;
   std::vector<Near> near_;
   std::vector<Part> parts_;
-  // Of the part at hand.
+  // Current part.
   std::vector<Sheet> sheets_;
   Remnant<N> remnant_;
 };
@@ -504,7 +513,7 @@ void require_scale(const std::array<double, N>& scale) {
       throw Error(ErrorCode::InvalidArgument, fmt::format("a scale is {}; expected a positive number", s));
 }
 
-/// Measures the simplices with the largest bounds again: few decide on the bound of all.
+/// Refines the simplices with the largest bounds: a few of them determine the bound of the whole contour.
 template <int N>
 void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
   std::vector<std::size_t> order(result.of_from.size());
@@ -514,7 +523,7 @@ void refine_largest(const Measure<N>& measure, Deviation& result, unsigned threa
     return result.of_from[a] != result.of_from[b] ? result.of_from[a] > result.of_from[b] : a < b;
   };
   std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(most), order.end(), larger);
-  // No use in a closer bound of some than the others have.
+  // A bound needs no refinement below the largest bound of the other simplices.
   const double enough = std::max(result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
   for_each_block(
       std::max<std::size_t>(most, 1), 1, threads, progress, [&] { return Matcher<N>(measure); },
@@ -533,6 +542,7 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
                  Deviation& result) {
   const OpenFaces<N> open(to, threads, part_of(progress, 0.0, 0.05));
   const BoxTree<N> tree(to.corners);
+  // distances of vertices
   std::vector<double> of_vertices(from.points.size());
   for_each_block(from.points.size(), kGrain, threads, part_of(progress, 0.1, 0.2),
                  [&](std::size_t, std::size_t first, std::size_t end) {
@@ -544,6 +554,7 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
                  });
   for (const auto& simplex : from.simplices)
     for (const Index v : simplex) result.least = std::max(result.least, of_vertices[v]);
+  // distances of sampled centroids
   for_each_block(from.simplices.size() / kSampled, kGrain, threads, part_of(progress, 0.2, 0.25),
                  [&](std::size_t, std::size_t first, std::size_t end) {
                    double farthest = 0.0;
@@ -551,6 +562,7 @@ void measure_all(const Pieces<N>& from, const Pieces<N>& to, double enough, unsi
                      farthest = std::max(farthest, tree.nearest(middle_of<N>(from.corners[s * kSampled])).distance);
                    raise(result.least, farthest);
                  });
+  // bounds of simplices
   const Measure<N> measure{from,        to, tree, open, of_vertices, std::max(enough, kLeastShare * result.least),
                            result.of_to};
   for_each_block(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Places, shapes and tolerances of contractions.
+// Placement, shape tests and tolerances of edge contractions.
 //
-// Based on: M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997, section 3 (places,
+// Based on: M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997, section 3 (placement,
 // border planes) and section 4.3 (no flips), here in any dimension.
 #include "simplify/edge_collapse.hpp"
 
@@ -17,15 +17,15 @@
 namespace tegl::detail {
 namespace {
 
-/// No normal may turn so far that the cosine is less: 78 degrees.
+/// Minimum cosine of the angle by which a normal may turn: 78 degrees.
 constexpr double kLeastCosine = 0.2;
-/// Simplices of this shape are good enough, whatever was there before. Those below kFlat count as flat.
+/// Simplices of at least this shape are accepted whatever the shapes before. Those at or below kFlat count as flat.
 template <int N>
 constexpr double kGoodShape = N == 4 ? 0.01 : 0.05;
 constexpr double kFlat = 1e-6;
-/// How much more a border face weighs than the simplex that it belongs to.
+/// Weight of a border face relative to its simplex.
 constexpr double kBorderWeight = 10.0;
-/// A place may be this many lengths of the edge away from it.
+/// Maximum distance of a place from the middle of the edge, in edge lengths.
 constexpr double kFarthestPlace = 2.0;
 
 constexpr double factorial(int n) { return n <= 1 ? 1.0 : n * factorial(n - 1); }
@@ -116,12 +116,13 @@ void Shrinker<N>::add_quadrics(const Progress& progress) {
   });
 }
 
-/// The hyperplane through a border face at right angles to its simplex: what keeps borders that may move in shape.
+/// Adds the hyperplane through each border face at right angles to its simplex. These preserve the shape of borders
+/// that may move.
 template <int N>
 void Shrinker<N>::add_border_quadrics(Index s, const CornersN<N>& at, double weight) {
   for (int omitted = 0; omitted < N; ++omitted) {
     if ((complex_.border_faces(s) >> omitted & 1u) == 0) continue;
-    // What is left of the way to the opposite corner when the directions of the face are taken out.
+    // The component of a vector from the base corner orthogonal to the directions of the face (Gram-Schmidt).
     std::array<PointN<N>, N> basis{};
     int found = 0;
     const int base = omitted == 0 ? 1 : 0;
@@ -164,6 +165,7 @@ std::optional<MeetingPlace<N>> Shrinker<N>::meeting_place(Index u, Index v) cons
   MeetingPlace<N> place;
   const std::uint32_t of_u = bound_[u], of_v = bound_[v];
   if (border_fixed_ && (of_u & of_v & kBorderBit) != 0) return std::nullopt;
+  // equal constraints: along the edge; different ones: at an end; none: at the minimum of the quadric
   if (of_u == of_v && of_u != 0) {
     place.share = sum.least_between(scaled_[u], scaled_[v]);
     place.at = rounded(between(points_[u], points_[v], place.share));
@@ -203,17 +205,19 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
     of_border += (bound_[v] & kBorderBit) != 0;
   }
   if (border_fixed_ && of_border > 1) return std::nullopt;
+  // different constraints: the place of a vertex that has all of them
   if (!equal) {
     for (const Index v : vertices)
       if (bound_[v] == all) return CommonPlace{points_[v], v};
     return std::nullopt;
   }
-  // Relative to the first, so that a coordinate that is common to all stays as it is.
+  // Relative to the first vertex, so that a coordinate equal in all of them is exact.
   PointN<N> middle = points_[vertices[0]];
   for (const Index v : vertices)
     for (int a = 0; a < N; ++a)
       middle[a] += (points_[v][a] - points_[vertices[0]][a]) / static_cast<double>(vertices.size());
   if (all != 0) return CommonPlace{rounded(middle), std::nullopt};
+  // no constraints: the minimum of the quadric, if it is near
   Quadric<N> sum;
   double size = 0.0;
   const PointN<N> from = to_scaled(middle);
@@ -226,8 +230,9 @@ auto Shrinker<N>::common_place(std::span<const Index> vertices) const -> std::op
   return CommonPlace{rounded(near ? from_scaled(best) : middle), std::nullopt};
 }
 
-/// The root mean square of the distances from all hyperplanes that went into the two vertices. No tolerance forbids
-/// all: where simplices have no size there are no hyperplanes, so that all places would cost nothing.
+/// Whether the root mean square distance from all hyperplanes of the two vertices is within the tolerance. A tolerance
+/// of 0 forbids every contraction: simplices of zero measure contribute no hyperplane, so every place would have cost
+/// 0.
 template <int N>
 bool Shrinker<N>::within_tolerance(Index u, Index v, const MeetingPlace<N>& place) const {
   const double tolerance = std::min(tolerance_[u], tolerance_[v]);
@@ -259,7 +264,8 @@ PointN<N> Shrinker<N>::normal_around(const Edge& edge) const {
   return sum;
 }
 
-/// Whether simplex s stays on its side, and sound, when its vertex moves. `worst`: worst_shape(edge), once it is known.
+/// Whether simplex s is neither flipped nor degraded when its vertex `moving` moves to `place`. `worst` caches
+/// worst_shape(edge).
 template <int N>
 bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edge& edge,
                         std::optional<double>& worst) const {
@@ -271,13 +277,16 @@ bool Shrinker<N>::bears(Index s, Index moving, const PointN<N>& place, const Edg
   const double old_length = norm(old_normal), new_length = norm(new_normal);
   const double old_shape = shape_of_simplex<N>(before, old_length);
   const double new_shape = shape_of_simplex<N>(after, new_length);
+  // a flat simplex may stay flat if it gets no flatter
   const bool was_flat = old_shape <= kFlat;
   if (new_shape <= kFlat) return was_flat && new_shape >= old_shape;
+  // orientation: against the mean normal if it was flat, else against its own
   if (was_flat) {
     if (!(dot(new_normal, normal_around(edge)) > 0.0)) return false;
   } else if (!(dot(new_normal, old_normal) > kLeastCosine * old_length * new_length)) {
     return false;
   }
+  // shape: good, or no worse than the worst one around the edge
   if (new_shape >= kGoodShape<N>) return true;
   if (!worst) worst = worst_shape(edge);
   return new_shape >= *worst;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A contour that shrinks by contracting edges: where the ends may go, whether the simplices around bear it, and what
-// vertices carry along. The order of contractions is for others (simplify_orders.hpp).
+// A contour that shrinks by edge collapse: placement of the merged vertex, tests of the simplices around it, and
+// attributes of vertices. The order of contractions is in simplify_orders.hpp.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,26 @@
 
 namespace tegl::detail {
 
-/// Where the ends of an edge meet.
+/// Place of the vertex that replaces the ends of an edge.
 template <int N>
 struct MeetingPlace {
-  PointN<N> at{};      ///< in the contour's coordinates, as its number type can show them
-  double share = 0.5;  ///< of what the second end carries
-  double cost = 0;     ///< the sum of squared distances from planes
+  PointN<N> at{};      ///< in the contour's coordinates, rounded to its number type
+  double share = 0.5;  ///< weight of the second end's attributes
+  double cost = 0;     ///< sum of squared distances from the planes
 };
 
-/// What a shrinking contour starts from.
+/// Input of a Shrinker.
 template <int N>
 struct ShrinkStart {
   std::span<const std::array<Index, N>> simplices;
   std::vector<PointN<N>> points;  ///< #V, in the contour's coordinates
-  std::vector<double>
-      tolerance;  ///< #V: how large the root mean square of the distances from planes may be; 0: it stays
+  std::vector<double> tolerance;  ///< #V: largest root mean square distance from the planes; 0: the vertex is fixed
   std::array<double, N> scale{};
-  std::size_t carried_width = 0;  ///< numbers that each vertex carries
+  std::size_t carried_width = 0;  ///< attribute values per vertex
   std::vector<double> carried;    ///< #V x carried_width
   bool border_fixed = true;
   bool single_precision = false;
-  Progress progress = {};  ///< of getting ready
+  Progress progress = {};  ///< of the constructor
 };
 
 template <int N>
@@ -49,7 +48,7 @@ class Shrinker {
   explicit Shrinker(ShrinkStart<N> start);
 
   [[nodiscard]] ShrinkingComplex<N>& complex() noexcept { return complex_; }
-  /// v stays in the hyperplane of this number, below 31.
+  /// Binds v to the hyperplane of this number, below 31.
   void bind(Index v, unsigned hyperplane) { bound_[v] |= std::uint32_t{1} << hyperplane; }
   [[nodiscard]] const std::vector<PointN<N>>& points() const noexcept { return points_; }
   [[nodiscard]] const std::vector<PointN<N>>& scaled() const noexcept { return scaled_; }
@@ -57,18 +56,19 @@ class Shrinker {
   [[nodiscard]] std::span<const double> carried(Index v) const {
     return std::span(carried_).subspan(v * carried_width_, carried_width_);
   }
-  /// The vertex that v has become part of; itself while it is there.
+  /// The vertex that v was merged into; v itself if it still exists.
   [[nodiscard]] Index survivor(Index v);
-  /// Grows with everything that changes at a vertex.
+  /// Increases with every contraction at the vertex.
   [[nodiscard]] std::uint32_t version(Index v) const { return version_[v]; }
 
-  /// Where the ends of the edge u v meet best; nothing where borders and hyperplanes forbid it.
+  /// The best place for contracting the edge u v; empty if borders and hyperplanes forbid it.
   [[nodiscard]] std::optional<MeetingPlace<N>> meeting_place(Index u, Index v) const;
-  /// The same ends at a place that the caller has chosen.
+  /// A MeetingPlace of u and v at a place chosen by the caller.
   [[nodiscard]] MeetingPlace<N> place_at(Index u, Index v, const PointN<N>& at, double share) const;
-  /// Whether v may move to where u is, for all that borders and hyperplanes say.
+  /// Whether borders and hyperplanes allow moving v to the place of u.
   [[nodiscard]] bool may_move_to(Index v, Index u) const;
-  /// Where all vertices of a simplex may meet, or nothing; if that is where one of them has to stay, that is `anchor`.
+  /// A place where all vertices of a simplex may be merged, or nothing. If that is the place of a vertex that has to
+  /// stay, `anchor` is that vertex.
   struct CommonPlace {
     PointN<N> at{};
     std::optional<Index> anchor;
@@ -77,14 +77,14 @@ class Shrinker {
 
   /// Contracts u v into u, at `place`, if manifold, shape and tolerance allow it.
   bool try_contract(Index u, Index v, const MeetingPlace<N>& place);
-  /// To be told of a contraction that a limit forbids, such as the tolerance: if all else allows it, is_limited() is
-  /// true from then on.
+  /// Call it for a contraction that a limit forbids, such as the tolerance. If everything else allows the contraction,
+  /// is_limited() is true from then on.
   void note_limit(Index u, Index v, const MeetingPlace<N>& place);
   [[nodiscard]] bool is_limited() const noexcept { return limited_; }
 
-  /// Corners of a simplex, scaled.
+  /// Scaled corners of a simplex.
   [[nodiscard]] CornersN<N> corners(Index s) const;
-  /// The sum of the normals around v, weighted by measure; its star is left in `star`.
+  /// Sum of the normals around v, weighted by measure. Stores the star of v in `star`.
   PointN<N> mean_normal(Index v, std::vector<Index>& star);
 
  private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Does one contour pass over the whole of a simplex of another, and how far from it? Sheets of a contour in the prism
-// over the simplex, told apart by their heights.
+// Tests whether one contour covers a whole simplex of another, and bounds its distance: the sheets of a contour in the
+// prism over the simplex, separated by their heights.
 //
-// What this rests on: let a chain of oriented simplices pass a prism (a convex base times a range of heights) without
-// reaching its two ends, and let the chain's boundary stay outside of it. Then the chain runs over every point of the
-// base the same number of times, counted with signs (the degree of its projection is constant, as the base is
-// connected); and if that number is not zero at one point, every line along the prism meets the chain between the ends.
-// So gaps, folds and flat pieces need no comparison of sizes, and nothing is hidden by rounding but rounding itself.
+// Principle. Let a chain of oriented simplices cross a prism (a convex base times a range of heights) without reaching
+// its two ends, and let the boundary of the chain lie outside the prism. Then the chain covers every point of the base
+// the same number of times, counted with signs: the degree of its projection is constant, because the base is
+// connected. If that number is not zero at one point, every line along the prism meets the chain between the ends. So
+// gaps, folds and flat pieces need no comparison of sizes, and the only error is rounding.
 #pragma once
 
 #include <algorithm>
@@ -24,13 +24,13 @@
 
 namespace tegl::detail {
 
-/// Coordinates along a hyperplane, of D = N - 1 dimensions, and the height above it as the last one.
+/// Coordinate frame of a hyperplane: D = N - 1 coordinates in it, and the height above it as the last one.
 template <int N>
 class Frame {
  public:
   static constexpr int D = N - 1;
 
-  /// `unit_normal` becomes the last of an orthonormal basis by the reflection that carries an axis to it.
+  /// `unit_normal` becomes the last vector of an orthonormal basis, by the reflection that maps an axis to it.
   Frame(const PointN<N>& unit_normal, const PointN<N>& at) : origin_(at) {
     int longest = 0;
     for (int a = 1; a < N; ++a)
@@ -64,7 +64,7 @@ class Frame {
   PointN<N> origin_;
 };
 
-/// The coordinates of a point of a frame without its height.
+/// The frame coordinates of a point without its height.
 template <int N>
 PointN<N - 1> flat(const PointN<N>& x) {
   PointN<N - 1> result;
@@ -72,19 +72,21 @@ PointN<N - 1> flat(const PointN<N>& x) {
   return result;
 }
 
-/// The lines along a frame's normal through a simplex: half-spaces that hold all of it, whatever the rounding.
+/// The prism of all lines through a simplex along the normal of a frame, as an intersection of half-spaces. They
+/// contain the whole simplex despite rounding.
 template <int N>
 class Prism {
  public:
   static constexpr int D = N - 1;
   static constexpr int kMostSides = N + 2 * D;
 
-  /// `part`: the simplex, in the frame; `edge`: its longest edge.
+  /// `part`: the simplex in the frame; `edge`: the length of its longest edge.
   Prism(const CornersN<N>& part, double edge) : edge_(edge) {
     double cube = 1.0;
     for (int k = 0; k < D; ++k) cube *= edge;
     std::array<PointN<D>, N> at;
     for (int i = 0; i < N; ++i) at[i] = flat<N>(part[i]);
+    // one side per face; the slope of the simplex from its heights
     bool thin = false;
     for (int omitted = 0; omitted < N; ++omitted) {
       std::array<PointN<D>, D> face;
@@ -92,7 +94,7 @@ class Prism {
         if (i != omitted) face[k++] = at[i];
       PointN<D> normal = normal_of<D>(face);
       const double size = norm(normal);
-      const double content = dot(normal, minus(at[omitted], face[0]));  // D! times that of the simplex
+      const double content = dot(normal, minus(at[omitted], face[0]));  // D! times the measure of the simplex
       thin = thin || !(std::abs(content) > kThin * cube);
       if (!(size > kThin * kThin * cube / edge)) continue;
       for (double& x : normal) x /= content < 0.0 ? -size : size;
@@ -101,6 +103,7 @@ class Prism {
       const double height = std::abs(content) / size;
       for (int k = 0; k < D; ++k) slope_[k] += part[omitted][D] * normal[k] / height;
     }
+    // thin: the sides of its bounding box as well
     if (thin) {
       slope_ = {};
       for (int k = 0; k < D; ++k)
@@ -110,6 +113,7 @@ class Prism {
           add_side(normal, at);
         }
     }
+    // range of heights
     level_ = part[0][D] - dot(slope_, at[0]);
     low_ = high_ = 0.0;
     for (const PointN<N>& corner : part) {
@@ -125,30 +129,30 @@ class Prism {
     for (int k = 0; k < D; ++k) sum += normals_[side][k] * x[k];
     return sum;
   }
-  /// Of a point, over the simplex (or over a level that the simplex is at about).
+  /// Height of a point above the simplex (for a thin simplex, above a level through it).
   [[nodiscard]] double height(const PointN<N>& x) const {
     double sum = x[D] - level_;
     for (int k = 0; k < D; ++k) sum -= slope_[k] * x[k];
     return sum;
   }
-  /// The heights of the simplex itself: 0, or if it is seen from the side, a range with 0 in it.
+  /// Range of heights of the simplex itself: 0; if it is thin, a range that contains 0.
   [[nodiscard]] double low() const noexcept { return low_; }
   [[nodiscard]] double high() const noexcept { return high_; }
-  /// Whether it is that: then the sides hold more than the simplex.
+  /// Whether the projection of the simplex is almost degenerate. Then the prism contains more than the simplex.
   [[nodiscard]] bool thin() const noexcept { return thin_; }
-  /// The point of the simplex (if it is not thin) below or above x.
+  /// The projection of x along the normal onto the simplex, if it is not thin.
   [[nodiscard]] PointN<N> at_level(PointN<N> x) const {
     x[D] -= height(x);
     return x;
   }
   [[nodiscard]] double edge() const noexcept { return edge_; }
-  /// What rounding may change of places in it.
+  /// Bound of the rounding errors of places in the prism.
   [[nodiscard]] double rounding() const noexcept { return kRounding * edge_; }
 
  private:
-  /// Of the cube of the longest edge.
+  /// Relative to the D-th power of the longest edge.
   static constexpr double kThin = 1e-3;
-  /// Of the longest edge. Places relative to a corner are good to some 1e-16.
+  /// Relative to the longest edge. Places relative to a corner have errors of about 1e-16.
   static constexpr double kRounding = 1e-14;
 
   void add_side(const PointN<D>& normal, const std::array<PointN<D>, N>& at) {
@@ -167,15 +171,15 @@ class Prism {
   bool thin_ = false;
 };
 
-/// What is left of a simplex between the sides of a prism: a convex body that is simple (each corner in D of its
-/// facets, or taken to be), as each corner that a cut makes lies on one edge. So corners share an edge if they share
-/// D - 1 facets. Facets: bit i: the simplex's, opposite to corner i; bit N + k: side k of the prism.
+/// The part of a simplex inside a prism. It is a simple convex polytope (each corner in D of its facets, or treated
+/// so), because each corner that a cut creates lies on one edge. So two corners share an edge if they share D - 1
+/// facets. Facet bits: bit i is the facet of the simplex opposite to corner i; bit N + k is side k of the prism.
 template <int N>
 class Remnant {
  public:
   static constexpr int D = N - 1;
 
-  /// The whole simplex. False if all of it is beyond one side of the prism.
+  /// Loads the whole simplex. Returns false if all of it is outside one side of the prism.
   bool load(const CornersN<N>& simplex, const Prism<N>& prism) {
     cutting_ = 0;
     for (int side = 0; side < prism.sides(); ++side) {
@@ -189,20 +193,20 @@ class Remnant {
     return true;
   }
 
-  /// Of the simplex that was loaded. False if nothing is left.
+  /// Cuts the loaded simplex by the prism. Returns false if nothing is left.
   bool cut(const Prism<N>& prism) {
     for (unsigned rest = cutting_; rest != 0; rest &= rest - 1)
       if (!cut_off(prism, std::countr_zero(rest))) return false;
     return true;
   }
 
-  /// Whether facet i of the simplex has a part in it.
+  /// Bit i: facet i of the simplex meets the remnant.
   [[nodiscard]] unsigned facets() const {
     unsigned all = 0;
     for (int i = 0; i < count_; ++i) all |= corners_[i].facets;
     return all & ((1u << N) - 1);
   }
-  /// The least and the largest height; of what is only loaded, that of its corners.
+  /// Minimum and maximum height; before `cut`, of the corners of the simplex.
   [[nodiscard]] std::pair<double, double> heights(const Prism<N>& prism) const {
     std::pair<double, double> range = {prism.height(corners_[0].at), 0.0};
     range.second = range.first;
@@ -213,7 +217,7 @@ class Remnant {
     }
     return range;
   }
-  /// The corner with the largest height above or below.
+  /// The corner with the largest absolute height.
   [[nodiscard]] const PointN<N>& farthest(const Prism<N>& prism) const {
     const auto last = corners_.begin() + count_;
     return std::max_element(corners_.begin(), last,
@@ -228,11 +232,11 @@ class Remnant {
     PointN<N> at;
     std::uint32_t facets;
   };
-  /// A simple body of dimension 3 with F facets has 2 F - 4 corners and 3 F - 6 edges: none has more with those that a
-  /// cut makes.
+  /// A simple polytope of dimension 3 with F facets has 2 F - 4 corners and 3 F - 6 edges. The bound is their sum,
+  /// which includes the corners that a cut adds.
   static constexpr int kMostCorners = 5 * (N + Prism<N>::kMostSides) - 10;
 
-  /// Whether the facets that two corners have in common are D - 1.
+  /// Whether two corners have D - 1 facets in common.
   static bool share_an_edge(std::uint32_t common) noexcept {
     if constexpr (D == 1) return true;
     if constexpr (D == 2) return common != 0;
@@ -250,7 +254,7 @@ class Remnant {
         if (inside[j] >= 0.0) continue;
         const std::uint32_t common = corners_[i].facets & corners_[j].facets;
         if (!share_an_edge(common)) continue;
-        if (end == kMostCorners) return true;  // never, but for rounding: uncut it holds all that it has to
+        if (end == kMostCorners) return true;  // only by rounding; without the cut the remnant is still a superset
         corners_[end++] = {between(corners_[i].at, corners_[j].at, inside[i] / (inside[i] - inside[j])),
                            common | 1u << (N + side)};
       }
@@ -263,11 +267,11 @@ class Remnant {
 
   std::array<Corner, kMostCorners> corners_;
   int count_ = 0;
-  unsigned cutting_ = 0;  ///< sides that have corners of the simplex beyond them
+  unsigned cutting_ = 0;  ///< sides with corners of the simplex outside
 };
 
-/// The least and the largest height over a part at which its prism's lines meet the hyperplane of a simplex, with what
-/// rounding may add; all heights, where the hyperplane is too steep or the simplex too flat to tell.
+/// Minimum and maximum height above a part at which the lines of its prism meet the hyperplane of a simplex, with a
+/// margin for rounding. All heights if the hyperplane is too steep or the simplex too flat.
 template <int N>
 std::pair<double, double> heights_of_plane(const CornersN<N>& simplex, const CornersN<N>& part, const Prism<N>& prism) {
   constexpr int D = N - 1;
@@ -278,7 +282,7 @@ std::pair<double, double> heights_of_plane(const CornersN<N>& simplex, const Cor
   double size = prism.edge();
   for (int i = 1; i < N; ++i)
     for (int a = 0; a < N; ++a) size = std::max(size, std::abs(simplex[i][a] - simplex[0][a]));
-  double error = 1e-14 * size / std::abs(normal[D]);  // of the normal's direction, times a length
+  double error = 1e-14 * size / std::abs(normal[D]);  // error of the normal's direction times a length
   for (int k = 0; k < D; ++k) error *= size;
   if (!(error < 1e-6 * prism.edge())) return range;
   range = {kInfinity, -kInfinity};
@@ -290,11 +294,12 @@ std::pair<double, double> heights_of_plane(const CornersN<N>& simplex, const Cor
   return range;
 }
 
-/// Whether a simplex, seen along the frame's normal, covers x: 1 or -1 by the side it shows, 0 if it does not. Nothing
-/// if x is too near to its outline to tell.
+/// Whether a simplex, projected along the normal of the frame, covers x: 1 or -1 by its orientation, 0 if not. Empty if
+/// x is too near to its outline to decide.
 template <int N>
 std::optional<int> covers(const CornersN<N>& simplex, const PointN<N - 1>& x) {
   constexpr int D = N - 1;
+  // outside of the bounding box?
   std::array<PointN<D>, N> way;
   double longest = 0.0;
   for (int k = 0; k < D; ++k) {
@@ -307,11 +312,12 @@ std::optional<int> covers(const CornersN<N>& simplex, const PointN<N - 1>& x) {
     }
     if (!above || !below) return 0;
   }
+  // signs of the barycentric coordinates
   double enough = 1e-13;
   for (int k = 0; k < D; ++k) enough *= longest;
   int positive = 0, negative = 0;
   for (int omitted = 0; omitted < N; ++omitted) {
-    // The determinant of the others.
+    // Determinant of the other corners.
     double content = 0.0;
     if constexpr (D == 1) {
       content = way[1 - omitted][0];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sum of squared distances from hyperplanes, as one quadratic function.
+// Quadric error metric: the weighted sum of squared distances from hyperplanes as a quadratic function.
 //
 // Based on: M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997, and Simplifying
 // surfaces with color and texture using quadric error metrics, 1998 (any number of dimensions).
@@ -42,7 +42,7 @@ class Quadric {
 
   [[nodiscard]] double weight() const noexcept { return weight_; }
 
-  /// Never negative, whatever the rounding.
+  /// The value at x; never negative, despite rounding.
   [[nodiscard]] double operator()(const PointN<N>& x) const {
     double sum = constant_;
     int k = 0;
@@ -55,8 +55,8 @@ class Quadric {
     return std::max(0.0, sum);
   }
 
-  /// Where the function and a little of the squared distance from `near` are least together. The latter decides along
-  /// directions in which the surface is flat, so there is always one such point.
+  /// Minimizes the function plus a small multiple of the squared distance from `near`. The second term makes the
+  /// minimum unique where the surface is flat.
   [[nodiscard]] PointN<N> least_near(const PointN<N>& near) const {
     Eigen::Matrix<double, N, N> a;
     Eigen::Matrix<double, N, 1> b;
@@ -78,10 +78,10 @@ class Quadric {
     return result;
   }
 
-  /// The t in [0, 1] for which a + t (b - a) has the least value; 1/2 where it does not matter.
+  /// The t in [0, 1] that minimizes the function at a + t (b - a); 1/2 if it is constant.
   [[nodiscard]] double least_between(const PointN<N>& a, const PointN<N>& b) const {
     const double at_a = (*this)(a), at_b = (*this)(b), middle = (*this)(between(a, b, 0.5));
-    const double bend = at_a + at_b - 2.0 * middle;  // half of the second derivative over t, twice
+    const double bend = at_a + at_b - 2.0 * middle;  // a quarter of the second derivative by t
     if (!(bend > 1e-12 * (at_a + at_b))) return at_a < at_b ? 0.0 : (at_b < at_a ? 1.0 : 0.5);
     return std::clamp(0.5 + (at_a - at_b) / (4.0 * bend), 0.0, 1.0);
   }

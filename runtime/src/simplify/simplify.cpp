@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Simplification from the options to the result: what is bound to hyperplanes, rounds until the error bound holds, and
-// what vertices and simplices carry along.
+// Simplification from the options to the result: constraints by hyperplanes, rounds until the error bound holds, and
+// attributes of vertices and simplices.
 #include "tegl/simplify.hpp"
 
 #include <algorithm>
@@ -35,36 +35,37 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kErrorName = "simplification_error";
 constexpr std::string_view kScaleUnit = "scale ";
-/// Rounds in which parts with too large an error get less tolerance; in those after that they get none at all.
+/// Rounds that reduce the tolerance of parts with too large an error; later rounds set it to 0.
 constexpr unsigned kGentleRounds = 6;
 constexpr unsigned kMostRounds = 12;
-/// As many more that stop at a count.
+/// Maximum number of further rounds that stop at a count.
 constexpr unsigned kMostRoundsOfStop = 4;
-/// By a count alone: so many errors are tried, from this many times the least tolerance, in steps of this factor, until
-/// the least error that reaches the count is known up to this one.
+/// Search for the smallest error that reaches a count: number of trials, first error in least tolerances, step factor,
+/// and the factor up to which the result is determined.
 constexpr unsigned kMostTries = 10;
 constexpr double kErrorOfTolerance = 3.0;
 constexpr double kNextError = 1.5;
 constexpr double kNarrow = 1.25;
-/// So many steps down to a quarter, before it is tried whether next to no tolerance will do.
+/// Number of steps down by a factor of 4 before a tolerance of almost 0 is tried.
 constexpr unsigned kMostSteps = 2;
-/// How far the progress of one round is when it is ready to begin, and when there is less.
+/// Progress of one round after its preparation and after its contractions.
 constexpr double kReady = 0.2;
 constexpr double kShrunk = 0.97;
-/// Of the size of the contour: what rounding may add to an error.
+/// Relative to the size of the contour: bound of the rounding errors of an error.
 constexpr double kRounding = 1e-12;
-/// Of the size of the contour: an error as good as none. Sums of squared distances are no more exact than this squared.
+/// Relative to the size of the contour: an error that counts as 0. Sums of squared distances are accurate only to its
+/// square.
 constexpr double kNothing = 1e-8;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What is left of a contour, before it is one again.
+/// Remaining simplices, before they become a contour.
 template <int N>
 struct Remains {
-  std::vector<std::array<Index, N>> simplices;  ///< numbers of the original's vertices
-  std::vector<std::size_t> sources;             ///< #S: the original's simplex; empty if there is no such thing
+  std::vector<std::array<Index, N>> simplices;  ///< vertex numbers of the original
+  std::vector<std::size_t> sources;             ///< #S: simplex of the original; empty if unknown
 };
 
 template <int N, class Real>
@@ -103,7 +104,7 @@ class Simplifier {
  private:
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-  /// By how much distances have grown at most since an earlier error was taken, under the scale that its unit says.
+  /// Maximum growth of distances since an earlier error was computed, from the scale in its unit.
   [[nodiscard]] double factor_of_earlier(const Attribute& attribute) const {
     const bool scaled = attribute.unit.starts_with(kScaleUnit);
     std::istringstream numbers(scaled ? attribute.unit.substr(kScaleUnit.size()) : "");
@@ -122,7 +123,7 @@ class Simplifier {
     return factor;
   }
 
-  /// Of errors: that of the axes, or else what was done to them.
+  /// Unit of errors: the common unit of the axes, or the scale.
   [[nodiscard]] std::string error_unit() const {
     const auto& units = contour_.axis_units;
     const auto is_one = [](double scale) { return scale == 1.0; };
@@ -133,7 +134,8 @@ class Simplifier {
     return same ? units[0] : std::string();
   }
 
-  /// Normals and attributes of each vertex, side by side. An error from before is no attribute but a debt.
+  /// Collects normals and attributes by vertex. The error attribute of an earlier simplification is not carried along:
+  /// it is added to the new error.
   void gather_carried() {
     if (!contour_.normals.empty()) carried_width_ = N;
     for (const Attribute& attribute : contour_.vertex_attributes) {
@@ -163,13 +165,13 @@ class Simplifier {
     }
   }
 
-  /// A result, and what is known of it.
+  /// The result of a round, and its errors.
   struct Round {
     Contour<N, Real> result;
     std::vector<double> errors;  ///< #S; empty if not measured
     std::optional<double> error_of_original, error_of_result;
     SimplifyEnd end = SimplifyEnd::count;
-    std::vector<Index> survivors;  ///< #V: what each vertex became part of; empty if that is not known
+    std::vector<Index> survivors;  ///< #V: the vertex that each vertex was merged into; empty if unknown
     std::vector<Index> kept;       ///< the original numbers of the result's vertices
   };
 
@@ -181,7 +183,7 @@ class Simplifier {
               "the largest error is {}, but the contour's error from before (its attribute {}, by this scale) is {}; "
               "expected at least that, or a contour without one",
               *options_.max_error, kErrorName, earlier_error_));
-    // Rounding alone moves points by more than nothing: only what is left as it is has no error.
+    // Rounding alone moves points, so only the unchanged contour has an error of 0.
     if (options_.max_error && (*options_.max_error == 0.0 || earlier_error_ > *options_.max_error))
       return hand_out(untouched(may_anything_go() ? SimplifyEnd::error : end_without_limits(contour_)));
     if (options_.max_error) return hand_out(until_error_holds());
@@ -194,8 +196,8 @@ class Simplifier {
   }
   [[nodiscard]] bool by_count() const { return options_.count || options_.ratio; }
 
-  /// By the largest error, or what an earlier one leaves of it; with a count too, as by that alone, if it is within the
-  /// error. Nothing was near enough after all rounds: then what is sure to be is the contour itself.
+  /// Simplifies within the maximum error less the earlier one. With a count, the result for the count is taken if it is
+  /// within the error. If no round keeps the error, the result is the contour itself.
   Round until_error_holds() {
     const double allowed = *options_.max_error - earlier_error_ + kRounding * size_;
     if (by_count() && count_ > 0) {
@@ -208,8 +210,8 @@ class Simplifier {
     return best;
   }
 
-  /// Whether there is a round that keeps this error (and reaches the count, if it has to). `best` becomes that, or, of
-  /// those that reach a count that has to be, one that is nearer.
+  /// Whether some round keeps this error (and reaches the count if `to_count`). `best` becomes that round; or, with
+  /// `to_count`, a round that reaches the count with a smaller error than `best`.
   bool comes_within(double allowed, Round& best, bool to_count) {
     std::vector<double> tolerance = uniform_tolerance(allowed);
     std::optional<Round> all = all_that_goes(allowed, tolerance, to_count);
@@ -231,14 +233,14 @@ class Simplifier {
     return !to_count;
   }
 
-  /// Simplified as far as this error lets it, whatever the count: parts that are too far off are simplified anew with
-  /// less tolerance. (Stopped at a count, others would go in their place, and be too far off in their turn.) Nothing if
-  /// that is not enough for a count that has to be, or after too many rounds.
+  /// Simplifies as far as this error allows, without a count. Parts with too large an error are simplified again with
+  /// less tolerance. (With a count, other parts would be contracted in their place, and exceed the error in turn.)
+  /// Empty if `to_count` and the count is not reached, or after kMostRounds rounds.
   std::optional<Round> all_that_goes(double allowed, std::vector<double>& tolerance, bool to_count) {
     for (unsigned tried = 1; tried <= kMostRounds; ++tried) {
       Round round = one_round(tolerance, part_of_rest(0.25), 0);
       if (to_count && round.end != SimplifyEnd::count) break;
-      // Closer bounds than half of what decides are of no use to anyone.
+      // Bounds below half of the allowed error need no refinement.
       measure(round, part_of_rest(1.0 / 3.0), 0.5 * allowed);
       if (own_error(round) <= allowed) return round;
       tighten(tolerance, round, allowed, tried);
@@ -246,8 +248,8 @@ class Simplifier {
     return std::nullopt;
   }
 
-  /// By a count: a few contractions, where parts are thin, make most of the error. So the least of the largest errors
-  /// is searched for with which the count is still reached; up to `most`, beyond which it is of no use.
+  /// Reaches a count with a small error. Most of the error comes from a few contractions in thin parts. So this
+  /// searches for the smallest maximum error with which the count is still reached, up to `most`.
   Round as_near_as_can_be(double most) {
     const bool fast = options_.method == SimplifyMethod::fast;
     Round best = one_round(uniform_tolerance(fast ? most : kInfinity), part_of_rest(0.25), count_);
@@ -267,15 +269,16 @@ class Simplifier {
         continue;
       }
       low = allowed;
-      // Up slowly at first: mostly, the least is not far.
+      // Small steps first: usually the smallest error is near.
       factor = failed ? factor * factor : kNextError;
       failed = true;
     }
     return best;
   }
 
-  /// The least for all vertices by which the count is reached, or somewhat less, below the error of `best`; above 0,
-  /// as flat parts alone may reach it with next to none. `best` becomes what is reached by it, if that is nearer.
+  /// The smallest uniform tolerance that reaches the count, or a slightly smaller one, below the error of `best`. It is
+  /// positive, because flat regions alone may reach the count with almost none. `best` becomes the result for it if its
+  /// error is smaller.
   double least_tolerance(Round& best) {
     const double least = kNothing * size_;
     double low = 0.0, high = own_error(best);
@@ -296,13 +299,13 @@ class Simplifier {
   }
 
   static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }
-  /// Without what was there before.
+  /// The error without the earlier one.
   [[nodiscard]] double own_error(const Round& round) const { return error(round) - earlier_error_; }
 
-  /// How far the progress is after this share of what is left: nobody knows how many rounds there will be.
+  /// Progress after this fraction of the remaining range: the number of rounds is unknown.
   [[nodiscard]] double part_of_rest(double share) const { return progress_ + share * (1.0 - progress_); }
 
-  /// Simplified once, which brings the progress to `to`; not measured.
+  /// Simplifies once, and advances the progress to `to`; without measurement.
   Round one_round(const std::vector<double>& tolerance, double to, std::size_t stop) {
     stop_ = stop;
     ++stats_.rounds;
@@ -320,13 +323,13 @@ class Simplifier {
     return round;
   }
 
-  /// Why there are not fewer, if it is not for a largest error or curvature.
+  /// Reason of the end if no maximum error or curvature was the limit.
   [[nodiscard]] SimplifyEnd end_without_limits(const Contour<N, Real>& result) const {
     return by_count() && result.simplices.size() <= count_ ? SimplifyEnd::count : SimplifyEnd::shape;
   }
 
-  /// Whether there is more than was asked for, and anything of it could go, whatever the error. Errors: those of a
-  /// contour that is no manifold, too.
+  /// Whether the contour has more simplices than requested and any could be removed without an error limit. Errors:
+  /// also those for a contour that is no manifold.
   bool may_anything_go() {
     const std::size_t before = contour_.simplices.size();
     is_trial_ = true;
@@ -336,7 +339,7 @@ class Simplifier {
     return limited_ || round.result.simplices.size() < before;
   }
 
-  /// The contour itself.
+  /// The unchanged contour as a round.
   Round untouched(SimplifyEnd end) const {
     Round round;
     round.result = contour_;
@@ -382,11 +385,13 @@ class Simplifier {
     Shrinker<N> shrinker(std::move(what));
     bind_to_planes(shrinker);
 
+    // contract
     ShrinkGoal goal{stop_, options_.max_curvature, &progress, kReady, kShrunk};
     if (options_.method == SimplifyMethod::quadric) shrink_by_quadrics(shrinker, goal);
     if (options_.method == SimplifyMethod::facets) shrink_by_curvature(shrinker, goal);
     if (options_.method == SimplifyMethod::vertices) shrink_by_distance(shrinker, goal);
 
+    // collect the remaining simplices
     limited_ = shrinker.is_limited();
     survivors_.resize(contour_.vertices.size());
     for (std::size_t v = 0; v < survivors_.size(); ++v) survivors_[v] = shrinker.survivor(static_cast<Index>(v));
@@ -407,6 +412,7 @@ class Simplifier {
     if constexpr (N == 3) {
       const auto start = std::chrono::steady_clock::now();
       if (progress && !progress(0.0)) throw Error(ErrorCode::Cancelled, "simplification cancelled before it began");
+      // scale
       std::vector<PointN<3>> points;
       points.reserve(contour_.vertices.size());
       for (const auto& vertex : contour_.vertices) {
@@ -418,9 +424,10 @@ class Simplifier {
         return simplify_fast(contour_.simplices, points, stop_, error, options_.border == SimplifyBorder::fixed);
       };
       if (!options_.allow_nonmanifold) {
-        const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // throws what it does for other methods
+        const ShrinkingComplex<3> complex(contour_.simplices, points.size());  // for the same errors as other methods
         require_manifold(contour_, "the contour");
       }
+      // simplify with the smallest tolerance; test whether it is the limit
       const double tightest = *std::min_element(tolerance.begin(), tolerance.end());
       remains.simplices = within(tightest);
       limited_ = remains.simplices.size() > count_ && tightest < kInfinity &&
@@ -434,7 +441,7 @@ class Simplifier {
 
   static void require_manifold(const Contour<N, Real>& contour, const char* what) {
     const MeshReport report = check(contour);
-    auto sorted = contour.simplices;  // two triangles with the same corners pass for a sphere
+    auto sorted = contour.simplices;  // `check` takes two triangles with the same corners for a sphere
     for (auto& simplex : sorted) std::sort(simplex.begin(), simplex.end());
     std::sort(sorted.begin(), sorted.end());
     const bool twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
@@ -472,7 +479,7 @@ class Simplifier {
     }
   }
 
-  /// Whether a whole simplex, or a whole face of the border, lies in a side of the bounding box.
+  /// Whether a whole simplex or a whole border face lies in a side of the bounding box.
   static bool has_part_in_side(Shrinker<N>& shrinker, int axis, double side) {
     for (Index s = 0; s < shrinker.complex().simplex_count(); ++s) {
       int outside = 0, last_outside = 0;
@@ -489,7 +496,7 @@ class Simplifier {
 
   // ---- errors ----
 
-  /// The bound of each simplex of the result, both ways.
+  /// Computes error bounds in both directions, and by simplex of the result.
   void measure(Round& round, double to, double enough = 0.0) {
     if (round.error_of_original) return;  // the contour itself
     const double from = std::exchange(progress_, to);
@@ -511,19 +518,19 @@ class Simplifier {
     stats_.measure_seconds += seconds_since(start);
   }
 
-  /// What was near enough not to look closer, looked at closer.
+  /// Measures without a threshold a result whose bounds were accepted early.
   void measure_closer(Round& round) {
     if (round.survivors.empty()) return;  // the contour itself
     const Round before{{}, round.errors, round.error_of_original, round.error_of_result, round.end, {}, {}};
     round.error_of_original.reset();
     measure(round, part_of_rest(0.5));
     if (error(round) <= error(before)) return;
-    round.errors = before.errors;  // other parts, other bounds: both hold
+    round.errors = before.errors;  // both sets of bounds hold; keep the smaller maximum
     round.error_of_original = before.error_of_original;
     round.error_of_result = before.error_of_result;
   }
 
-  /// Less tolerance (or care) for all that became part of a simplex with too large an error.
+  /// Reduces the tolerance of all vertices that were merged into a simplex with too large an error.
   void tighten(std::vector<double>& tolerance, const Round& round, double allowed, unsigned tried) const {
     const bool gently = tried <= kGentleRounds;
     const auto factor_for = [&](double error) { return std::clamp(0.8 * allowed / error, 0.1, 0.8); };
@@ -539,12 +546,12 @@ class Simplifier {
       const double factor = gently ? factor_for(error) : 0.0;
       for (const Index v : round.result.simplices[s]) factors[round.kept[v]] = std::min(factors[round.kept[v]], factor);
     }
-    // What is around may be the cause: were it left as it is, the next round would do the same once more.
+    // The cause may lie around it: unchanged surroundings would give the same result again.
     if (!gently) widen(factors, round, std::size_t{1} << (tried - kGentleRounds - 1));
     for (std::size_t v = 0; v < tolerance.size(); ++v) tolerance[v] *= factors[round.survivors[v]];
   }
 
-  /// Spreads the least factors by so many rings of simplices.
+  /// Spreads the minimum factors by `rings` rings of simplices.
   void widen(std::vector<double>& factors, const Round& round, std::size_t rings) const {
     for (std::size_t ring = 0; ring < rings; ++ring) {
       const std::vector<double> before = factors;
@@ -556,7 +563,7 @@ class Simplifier {
     }
   }
 
-  /// The attribute: for each vertex the largest bound of its simplices.
+  /// Adds the error attribute: by vertex the maximum bound of its simplices.
   void add_errors(Contour<N, Real>& result, const std::vector<double>& errors) const {
     Attribute attribute;
     attribute.name = kErrorName;
@@ -570,8 +577,8 @@ class Simplifier {
 
   // ---- the result ----
 
-  /// Vertices that are used, in their order, and what goes with them. `shrinker`: where they are now; null: where they
-  /// were.
+  /// Builds a contour of the used vertices, in their order, with attributes. `shrinker`: gives the new places of
+  /// vertices; null: the places are unchanged.
   Contour<N, Real> to_contour(const Remains<N>& remains, const Shrinker<N>* shrinker) {
     Contour<N, Real> result;
     result.axis_names = contour_.axis_names;
@@ -580,12 +587,14 @@ class Simplifier {
     std::vector<Index> number(contour_.vertices.size(), 0);
     for (const auto& simplex : remains.simplices)
       for (const Index v : simplex) number[v] = 1;
+    // number the used vertices
     kept_.clear();
     for (std::size_t v = 0; v < number.size(); ++v) {
       if (number[v] == 0) continue;
       number[v] = static_cast<Index>(kept_.size());
       kept_.push_back(static_cast<Index>(v));
     }
+    // simplices and vertices
     result.simplices.reserve(remains.simplices.size());
     for (auto simplex : remains.simplices) {
       for (Index& v : simplex) v = number[v];
@@ -660,11 +669,11 @@ class Simplifier {
   std::vector<double> carried_;
   std::vector<const Attribute*> carried_attributes_;
   double earlier_error_ = 0.0;
-  bool limited_ = false;          ///< of the round: more would have gone but for a largest error or curvature
-  bool is_trial_ = false;         ///< the round is none whose result anyone gets
-  double progress_ = 0.0;         ///< told so far
-  std::vector<Index> survivors_;  ///< of the round: what each vertex became part of; empty if that is not known
-  std::vector<Index> kept_;       ///< of the round: the original numbers of the result's vertices
+  bool limited_ = false;          ///< of the round: only the maximum error or curvature prevented more contractions
+  bool is_trial_ = false;         ///< the result of the round is discarded
+  double progress_ = 0.0;         ///< reported so far
+  std::vector<Index> survivors_;  ///< of the round: the vertex that each vertex was merged into; empty if unknown
+  std::vector<Index> kept_;       ///< of the round: original numbers of the result's vertices
   SimplifyStats stats_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A contour's triangles as meshoptimizer wants them: 32-bit numbers, coordinates of single precision.
+// Conversion to meshoptimizer's format: 32-bit indices, coordinates in single precision.
 #include "simplify/simplify_fast.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::vector<std::array<Index, 3>> simplify_fast(std::span<const std::array<Index
   static_assert(sizeof(Index) == sizeof(unsigned int));
   std::vector<std::array<Index, 3>> result(triangles.size());
   if (triangles.empty()) return result;
-  // Near the origin floats are finest.
+  // Translate to the origin, where single precision is finest.
   PointN<3> low = points[0];
   for (const PointN<3>& point : points)
     for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], point[a]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Triangles by the library meshoptimizer, where the build has it.
+// Simplification of triangles by the library meshoptimizer, if the build includes it.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace tegl::detail {
 
-/// Fewer triangles between the same points (which are to be scaled already). `max_error` is what meshoptimizer makes of
-/// it, an estimate. Errors: InvalidArgument if the build has no meshoptimizer.
+/// Reduces the triangles; the points stay (they must be scaled already). `max_error` is an error estimate of
+/// meshoptimizer. Errors: InvalidArgument if the build has no meshoptimizer.
 std::vector<std::array<Index, 3>> simplify_fast(std::span<const std::array<Index, 3>> triangles,
                                                 std::span<const PointN<3>> points, std::size_t count, double max_error,
                                                 bool border_fixed);

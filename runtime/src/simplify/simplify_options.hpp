@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a simplification may be asked for.
+// Validation of the options of a simplification.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace tegl::detail {
 
 inline constexpr std::size_t kMostPlanes = 20;
 
-/// Throws InvalidArgument that names the value and what was expected.
+/// Throws InvalidArgument with the value and the expected one.
 template <int N>
 void require_options(const SimplifyOptions<N>& options) {
   const auto fail = [](const std::string& message) { throw Error(ErrorCode::InvalidArgument, message); };

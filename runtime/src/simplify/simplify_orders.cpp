@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Queues of candidates. What changes near a contraction gets a new key. Edges have no number by which to find them in
-// their queue, so they are put into it anew, with a stamp; what was there before is known by its old stamp, and
-// skipped.
+// Priority queues of contraction candidates. Candidates near a contraction get a new key. Edges have no number to be
+// found by in their queue, so they are inserted again with a new stamp; entries with an old stamp are skipped.
 //
 // Based on: M. Liversage, thesis, 1994, sections 8.3.8 to 8.3.14 (facets by curvature, vertices); G. Turk, Re-tiling
 // polygonal surfaces, 1992 (curvature); W. Schroeder, J. Zarge and W. Lorensen, Decimation of triangle meshes, 1992
@@ -24,24 +23,25 @@
 namespace tegl::detail {
 namespace {
 
-/// What counts of the length of an edge beside its error: a thousandth, so that flat parts begin with short edges.
+/// Weight of the squared edge length in the key of an edge, so that flat regions begin with short edges: a thousandth
+/// of the length counts as error.
 constexpr double kLengthShare = 1e-6;
 constexpr std::size_t kTellEvery = 1024;
 constexpr int kMostPasses = 20;
 constexpr double kLeastGain = 0.02;
 
-/// How far the work is, told now and then.
+/// Reports progress from time to time.
 class Teller {
  public:
   Teller(const ShrinkGoal& goal, std::size_t before) : goal_(goal), before_(before) {}
 
-  /// Whether there is more to do with `alive` simplices. Throws Cancelled.
+  /// Whether `alive` simplices are more than the goal. Throws Cancelled.
   bool goes_on(std::size_t alive) {
     if (alive <= goal_.count) return false;
     wait(alive);
     return true;
   }
-  /// One step that makes nothing less. Throws Cancelled.
+  /// Counts a step that removes no simplex. Throws Cancelled.
   void wait(std::size_t alive) {
     if (calls_++ % kTellEvery == 0) tell(alive);
   }
@@ -70,7 +70,7 @@ struct EdgeCandidate {
   Index a;
   Index b;
   std::uint64_t stamp;
-  bool operator<(const EdgeCandidate& other) const {  // the least is on top
+  bool operator<(const EdgeCandidate& other) const {  // min-heap
     return std::tie(other.key, other.a, other.b, other.stamp) < std::tie(key, a, b, stamp);
   }
 };
@@ -100,7 +100,7 @@ class QuadricOrder {
   }
 
  private:
-  /// At the best place, or else at one of the ends.
+  /// Contracts at the best place, or else at one of the ends.
   bool contract(Index a, Index b) {
     const auto place = shrinker_.meeting_place(a, b);
     if (!place) return false;
@@ -166,13 +166,13 @@ class CurvatureOrder {
   }
 
  private:
-  /// The largest over the edges at v of the curvature of the circle that touches the edge and its mirror image about
-  /// the normal in their middles (thesis, 8.3.12): 2 cot(angle) / length.
+  /// Maximum, over the edges at v, of the curvature of the circle that touches the edge and its mirror image about the
+  /// normal in their middles (thesis, 8.3.12): 2 cot(angle) / length.
   double curvature(Index v) {
     const PointN<N> normal = shrinker_.mean_normal(v, star_);
     const double length = norm(normal);
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
-    double largest = 0.0;  // a quarter of the square
+    double largest = 0.0;  // of the curvature: a quarter of the square
     for (const Index s : star_)
       for (const Index a : shrinker_.complex().simplex(s)) {
         if (a == v) continue;
@@ -185,22 +185,23 @@ class CurvatureOrder {
     return 2.0 * std::sqrt(largest);
   }
 
-  /// The mean of its vertices'.
+  /// Mean curvature of the vertices of a facet.
   [[nodiscard]] double curvature_of(Index s) const {
     double sum = 0.0;
     for (const Index v : shrinker_.complex().simplex(s)) sum += curvature_[v];
     return sum / N;
   }
 
-  /// The curvature decides, times the square of the longest edge: that is (8 times) how far an arc of this curvature
-  /// rises over the facet. Among facets of one size, as tiles make them, the order is that of the thesis; by curvature
-  /// alone, facets that have grown in even parts would go on growing whatever that costs.
+  /// The key is the curvature times the square of the longest edge, that is 8 times the rise of an arc of this
+  /// curvature over the facet. For facets of similar size, as extraction generates them, this is the order of the
+  /// thesis. With the curvature only, large facets in flat regions would grow at any cost.
   void push(Index s) {
     const double edge = longest_edge<N>(shrinker_.corners(s));
     queue_.set(s, curvature_of(s) * edge * edge);
   }
 
-  /// Draws the facet together to one point, edge by edge. The vertex that is left; none if no edge could go.
+  /// Contracts the facet to one point, edge by edge. Returns the remaining vertex; kNone if no edge could be
+  /// contracted.
   Index remove(std::array<Index, N> facet) {
     const auto place = shrinker_.common_place(facet);
     if (!place) return ShrinkingComplex<N>::kNone;
@@ -219,7 +220,7 @@ class CurvatureOrder {
     return ShrinkingComplex<N>::kNone;
   }
 
-  /// Whether the largest curvature is what keeps the facet.
+  /// Notes a limit if only the maximum curvature keeps the facet.
   void note_limit(const std::array<Index, N>& facet) {
     if (shrinker_.is_limited()) return;
     const auto place = shrinker_.common_place(facet);
@@ -229,11 +230,11 @@ class CurvatureOrder {
       if (v != u) shrinker_.note_limit(u, v, shrinker_.place_at(u, v, place->at, place->anchor ? 0.0 : 0.5));
   }
 
-  /// The vertices around have other curvatures now, and the facets at the one that is left other neighbours.
+  /// Updates the curvatures of the vertices around `left` and the keys of the facets at `left`.
   void update(Index left) {
     shrinker_.complex().neighbours(left, around_);
     for (const Index v : around_) curvature_[v] = curvature(v);
-    curvature_[left] = curvature(left);  // leaves its star
+    curvature_[left] = curvature(left);  // stores the star in star_
     for (const Index s : star_) push(s);
   }
 
@@ -270,8 +271,8 @@ class DistanceOrder {
   }
 
  private:
-  /// From the hyperplane through the middle of what surrounds v, at right angles to the mean normal: the mean, weighted
-  /// by measure, of how far the middles of the faces opposite to v are along it.
+  /// Distance of v from the hyperplane that is orthogonal to the mean normal and passes through the weighted mean of
+  /// the centroids of the faces opposite to v; weights are the measures.
   double distance(Index v) {
     shrinker_.complex().star(v, star_);
     PointN<N> normal{}, middle{};
@@ -298,7 +299,8 @@ class DistanceOrder {
     if (!star_.empty()) queue_.set(v, key);
   }
 
-  /// Fills the hole that v leaves from the neighbour that lies best in the planes around. That neighbour; or none.
+  /// Removes v by contracting it to a neighbour: the one with the lowest quadric cost that is possible. Returns that
+  /// neighbour, or kNone.
   Index remove(Index v) {
     shrinker_.complex().neighbours(v, around_);
     targets_.clear();
@@ -318,7 +320,8 @@ class DistanceOrder {
   std::vector<std::pair<double, Index>> targets_;
 };
 
-/// What could not go at first may be able to when its surroundings have changed: passes, as long as they are worth it.
+/// Repeats passes while they remove at least kLeastGain of the simplices: a contraction that was impossible may become
+/// possible after its surroundings have changed.
 template <class Order, int N>
 void shrink(Shrinker<N>& shrinker, const ShrinkGoal& goal) {
   Order order(shrinker, goal);

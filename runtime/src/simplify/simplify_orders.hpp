@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The three orders in which a contour is simplified: edges by quadrics, facets by curvature, vertices by distance.
+// The three orders of simplification: edges by quadrics, facets by curvature, vertices by distance.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 namespace tegl::detail {
 
 struct ShrinkGoal {
-  std::size_t count = 0;     ///< stop at so many simplices
-  double max_curvature = 0;  ///< facets alone
+  std::size_t count = 0;     ///< stop at this number of simplices
+  double max_curvature = 0;  ///< only for `shrink_by_curvature`
   const Progress* progress = nullptr;
-  double from = 0, to = 1;  ///< the part of the whole work that this is, for `progress`
+  double from = 0, to = 1;  ///< range of `progress` that this work covers
 };
 
-/// Each contracts until the goal is reached or nothing is left that may be contracted. Throws Cancelled.
+/// Contracts until the goal is reached or no contraction is possible. Throws Cancelled.
 template <int N>
 void shrink_by_quadrics(Shrinker<N>& shrinker, const ShrinkGoal& goal);
 template <int N>

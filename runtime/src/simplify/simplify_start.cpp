@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a simplification may be told of the image and the axes: hyperplanes of the border, and a scale.
+// Options derived from the input of a simplification: hyperplanes of the image border, and an automatic scale of the
+// axes.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace tegl {
 
 template <int N>
 requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(const Grid<N>& grid) {
-  // Points of the border across axis a: origin + what the other columns of the map span.
+  // Border hyperplane of axis a: origin + the span of the other columns of the map.
   const Eigen::Matrix<double, N, N> inverse = grid.linear.inverse();
   std::vector<Hyperplane<N>> result;
   for (int a = 0; a < N; ++a)
@@ -30,6 +31,7 @@ requires DimensionBetween<N, 2, 4> std::vector<Hyperplane<N>> border_planes(cons
 
 template <int N, class Real>
 requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const Contour<N, Real>& contour) {
+  // sum of the extents of all simplices
   std::array<double, N> extent{};
   for (const auto& simplex : contour.simplices)
     for (int a = 0; a < N; ++a) {
@@ -40,6 +42,7 @@ requires DimensionBetween<N, 2, 4> std::array<double, N> automatic_scale(const C
       }
       extent[a] += static_cast<double>(high) - static_cast<double>(low);
     }
+  // axes with another unit are scaled to the extent of the first
   std::array<double, N> result;
   for (int a = 0; a < N; ++a) {
     const bool same = contour.axis_units[a] == contour.axis_units[0];

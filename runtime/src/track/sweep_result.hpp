@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a sweep through time finds: the components between two times, and the vertices where they change.
+// Result of a sweep through time: the components between two times, and the vertices where they change.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@ namespace tegl::detail {
 /// No vertex, no arc.
 inline constexpr Index kNone = ~Index{0};
 
-/// What lies at the very time of a vertex, of what is around it: a simplex, or more than that a facet in the border.
+/// What part of a vertex's star lies at exactly its time: nothing, a whole simplex, or (the strongest) a facet in the
+/// border.
 enum class Flatness : std::uint8_t { none, simplex, border };
 
 /// A vertex where components start, end, merge or split.
@@ -29,14 +30,14 @@ struct SweepNode {
 struct SweepArc {
   Index from = kNone;
   Index to = kNone;
-  // Just after all vertices of the time of `from`, and just before those of the time of `to`.
+  // After all vertices at the time of `from`, and before all those at the time of `to`.
   std::uint64_t size_at_start = 0;
   std::uint64_t size_at_end = 0;
   std::int64_t euler_at_start = 0;
   std::int64_t euler_at_end = 0;
 };
 
-/// A vertex where a component changes its Euler characteristic and remains one.
+/// A vertex where the Euler characteristic of a component changes and the component persists.
 struct SweepHandle {
   Index vertex = 0;
   double time = 0;
@@ -55,7 +56,7 @@ struct SweepResult {
   std::vector<SweepArc> arcs;        ///< in the order of their start
   std::vector<SweepHandle> handles;  ///< by time, then vertex
   std::vector<SweepSample> samples;  ///< by time, then arc
-  std::vector<Index> simplex_arcs;   ///< #S, if asked for; kNone for simplices that repeat a vertex
+  std::vector<Index> simplex_arcs;   ///< #S, if requested; kNone for simplices that repeat a vertex
 };
 
 }  // namespace tegl::detail

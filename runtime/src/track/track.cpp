@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The graph of a contour's parts through time: the sweep's result, made simple and given names.
+// Tracks of components through time: simplifies the graph of the sweep, and assigns events, segments and tracks.
 #include "tegl/track.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ void require_sound(const Contour<N, Real>& contour) {
   detail::require_finite(contour);
 }
 
-/// Puts the graph together: from the sweep's numbers to those of the result.
+/// Builds the result, with conversion from the sweep's numbers to those of the result.
 template <int N, class Real>
 class Builder {
  public:
@@ -77,7 +77,7 @@ class Builder {
   }
 
  private:
-  /// After this share of what is left after the sweep.
+  /// Reports this fraction of the progress that remains after the sweep.
   void tell(double share) const {
     detail::tell(options_.progress, share < 1.0 ? detail::kSwept + (1.0 - detail::kSwept) * share : 1.0,
                  "tracking was cancelled");
@@ -164,7 +164,7 @@ class Builder {
       event.kind = event.in.size() == 1 ? TrackEventKind::split : TrackEventKind::exchange;
   }
 
-  /// Gives each segment its track. Events come by time, so what comes in has one.
+  /// Assigns a track to each segment. Events are sorted by time, so incoming segments already have one.
   void follow() {
     const auto largest = [&](const std::vector<Index>& segments, auto size) {
       return *std::max_element(segments.begin(), segments.end(), [&](Index a, Index b) {
@@ -224,14 +224,14 @@ class Builder {
   std::vector<detail::SweepSample> samples_;
   std::vector<Index> simplex_arcs_;
   SweptGraph graph_;
-  double tolerance_ = 0;  ///< what is apart by less may be so by rounding
+  double tolerance_ = 0;  ///< times that differ by at most this may be equal up to rounding
   std::vector<Index> event_of_node_;
   std::vector<Index> node_of_event_;
   std::vector<Index> segment_of_arc_;
   TrackGraph result_;
 };
 
-/// For each number that is kept, its new one; kNone for the others.
+/// By number: the new number if it is kept, else kNone.
 std::vector<Index> renumber(const std::vector<bool>& keep) {
   std::vector<Index> numbers(keep.size(), kNone);
   Index next = 0;
@@ -285,12 +285,14 @@ TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep)
     keep_segment[s] = keep[segment.track];
     if (keep_segment[s]) keep_event[segment.from] = keep_event[segment.to] = true;
   }
+  // new numbers
   const std::vector<Index> tracks = renumber(keep);
   const std::vector<Index> segments = renumber(keep_segment);
   const std::vector<Index> events = renumber(keep_event);
   keep_only(result.tracks, tracks);
   keep_only(result.segments, segments);
   keep_only(result.events, events);
+  // renumber the references
   for (Track& track : result.tracks) renumber_all(track.segments, segments);
   for (TrackSegment& segment : result.segments) {
     segment.from = events[segment.from];

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Contraction and pruning of the graph of a sweep; see track_graph.hpp.
 #include "track/track_graph.hpp"
 
 #include <algorithm>
@@ -32,12 +34,12 @@ void SweptGraph::list_arcs() {
 double SweptGraph::length(Index a) const { return nodes_[arcs_[a].to].event.time - nodes_[arcs_[a].from].event.time; }
 
 void SweptGraph::contract(double tolerance) {
-  // Nodes come by time. Those that are apart by the tolerance at most from the first of them are of one time.
+  // Nodes are sorted by time. Nodes within the tolerance of the first node of a group have the same time.
   std::vector<Index> first(nodes_.size());
   for (Index i = 1; i < nodes_.size(); ++i)
     first[i] = nodes_[i].event.time - nodes_[first[i - 1]].event.time > tolerance ? i : first[i - 1];
   absorb_handles(first, tolerance);
-  DisjointSets sets;  // the first node of a set is its earliest, and leads it
+  DisjointSets sets;  // the root of a set is its earliest node
   sets.reset(nodes_.size());
   for (const SweepArc& arc : arcs_)
     if (first[arc.from] == first[arc.to]) sets.join(arc.from, arc.to);
@@ -65,7 +67,7 @@ void SweptGraph::absorb_handles(const std::vector<Index>& first, double toleranc
       const double start = nodes_[first[node]].event.time;
       return handle.time >= start && handle.time - start <= tolerance;
     };
-    // An arc's own numbers are those beyond all vertices of its ends' very times.
+    // The values of an arc at its ends exclude the vertices at exactly the times of its ends.
     if (is_at(arc.from)) {
       nodes_[arc.from].event.euler_change += handle.euler_change;
       if (handle.time > nodes_[arc.from].event.time) arc.euler_at_start += handle.euler_change;
@@ -113,10 +115,10 @@ bool SweptGraph::is_prunable(Index a) const {
   const Node& to = nodes_[arcs_[a].to];
   const bool starts = from.in.empty() && from.out.size() == 1;
   const bool ends = to.out.empty() && to.in.size() == 1;
-  if (starts && ends) return true;               // a part of its own
+  if (starts && ends) return true;               // an isolated arc
   if (starts && to.in.size() >= 2) return true;  // merges into others
   if (ends && from.out.size() >= 2) return true;
-  // One way round of a loop: the smaller one, or the later one of two that are alike.
+  // One branch of a loop: the smaller one, or the later one of two equal ones.
   return std::any_of(from.out.begin(), from.out.end(), [&](Index b) {
     return b != a && arcs_[b].to == arcs_[a].to &&
            std::pair(arcs_[b].size_at_start, a) > std::pair(arcs_[a].size_at_start, b);
@@ -136,7 +138,7 @@ void SweptGraph::prune(double lifetime) {
     if (!is_left(a) || length(a) != time || !is_prunable(a)) continue;
     const std::array<Index, 2> ends{arcs_[a].from, arcs_[a].to};
     remove(a);
-    // What was not in a loop, or not the last branch, may be now.
+    // Arcs at the ends may have become removable.
     const auto add_all_at = [&](Index node) {
       for (const Index b : nodes_[node].in) add(b);
       for (const Index b : nodes_[node].out) add(b);
@@ -159,7 +161,7 @@ Index SweptGraph::represent(Index a) const {
       case Kind::part_of:
         a = states_[a].of;
         break;
-      case Kind::in_node: {  // the largest one that goes on from it; else one that led to it
+      case Kind::in_node: {  // the largest arc that starts there, else an arc that ends there
         const Node& node = nodes_[states_[a].of];
         if (node.passing != kNone) {
           a = node.passing;

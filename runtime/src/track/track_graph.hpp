@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The graph that a sweep finds, made simpler: without what lasts no time, and without what lasts less than asked for.
+// Simplification of the graph from a sweep: removes arcs of zero duration and branches shorter than a lifetime.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,23 @@ class SweptGraph {
   struct Node {
     SweepNode event;
     std::vector<Index> in;   ///< arcs, ascending
-    std::vector<Index> out;  ///< likewise
-    Index passing = kNone;   ///< the arc that was made of the two that it connected
+    std::vector<Index> out;  ///< arcs, ascending
+    Index passing = kNone;   ///< the arc that replaced the two arcs at this node
   };
 
   SweptGraph(std::vector<SweepNode> nodes, std::vector<SweepArc> arcs, std::vector<SweepHandle> handles);
 
-  /// Joins the ends of all arcs that last no time, where times that are apart by the tolerance may be one.
+  /// Contracts all arcs of zero duration. Times that differ by at most the tolerance count as equal.
   void contract(double tolerance);
-  /// Takes out the shortest branch until none that may be taken out is shorter than `lifetime`.
+  /// Removes the shortest removable branch until all are at least `lifetime` long.
   void prune(double lifetime);
 
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   [[nodiscard]] const SweepArc& arc(Index a) const { return arcs_[a]; }
   [[nodiscard]] std::size_t arc_count() const { return arcs_.size(); }
-  /// The arc that is left of an arc, or goes on from it; kNone if it was taken out.
+  /// The remaining arc that contains or continues an arc; kNone if it was removed.
   [[nodiscard]] Index represent(Index a) const;
-  /// Handles on arcs that are left, by time, then vertex; those of one arc at one time are one.
+  /// Handles on remaining arcs, by time, then vertex. Handles of one arc at one time are merged.
   [[nodiscard]] std::vector<SweepHandle> handles() const;
   [[nodiscard]] bool is_left(Index a) const { return states_[a].kind == Kind::left; }
 
@@ -43,10 +43,11 @@ class SweptGraph {
   };
 
   [[nodiscard]] double length(Index a) const;
-  /// What happens at the time of an event on one of its arcs is a part of it. `first`: per node, the first of its time.
+  /// Merges each handle at the time of an end of its arc into the event there. `first`: by node, the first node of its
+  /// time.
   void absorb_handles(const std::vector<Index>& first, double tolerance);
   void remove(Index a);
-  /// Makes one arc of two that a node merely connects; the arc that grew, or kNone.
+  /// Merges the two arcs at a node with one arc in and one out. Returns the remaining arc, or kNone.
   Index splice(Index node);
   void list_arcs();
   [[nodiscard]] bool is_prunable(Index a) const;

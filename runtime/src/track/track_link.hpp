@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What lies around a vertex of a swept complex: its star, and its link below and above it.
+// The neighbourhood of a vertex of a swept complex: its star, and its lower and upper link.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,13 @@
 
 namespace tegl::detail {
 
-/// A list of faces by their vertices, to count each once.
+/// A list of faces by their vertices, which counts each face once.
 template <int N>
 class Faces {
  public:
   void clear() { keys_.clear(); }
 
-  /// Adds those faces of a simplex (vertices[0 … count - 1]) that `wanted(mask)` wants, bit i for vertex i.
+  /// Adds the faces of a simplex (vertices[0 … count - 1]) for which wanted(mask) is true; bit i of mask: vertex i.
   template <class Wanted>
   void add(const std::array<Index, N>& vertices, int count, const Wanted& wanted) {
     for (unsigned mask = 1; mask < (1u << count); ++mask) {
@@ -40,7 +40,7 @@ class Faces {
     }
   }
 
-  /// The number of vertices, less that of edges, plus that of triangles …
+  /// Euler characteristic: number of vertices - edges + triangles - …
   [[nodiscard]] std::int64_t euler() {
     std::sort(keys_.begin(), keys_.end());
     const auto end = std::unique(keys_.begin(), keys_.end());
@@ -57,7 +57,7 @@ class Faces {
   std::vector<Key> keys_;
 };
 
-/// A simplicial complex in the order of its last coordinate.
+/// A simplicial complex whose vertices are ordered by the last coordinate (time).
 template <int N, class Real>
 class SweptComplex {
  public:
@@ -73,16 +73,16 @@ class SweptComplex {
   [[nodiscard]] const Contour<N, Real>& contour() const { return contour_; }
   [[nodiscard]] const Simplex& simplex(Index s) const { return contour_.simplices[s]; }
   [[nodiscard]] double time(Index v) const { return static_cast<double>(contour_.vertices[v][N - 1]); }
-  /// Vertices by time, then number; and the place of each in it.
+  /// Vertices by time, then number; `rank` is the position of a vertex in that order.
   [[nodiscard]] std::span<const Index> order() const { return order_; }
   [[nodiscard]] Index rank(Index v) const { return rank_[v]; }
-  /// Simplices around a vertex but those that repeat a vertex, ascending.
+  /// Simplices around a vertex, ascending, without those that repeat a vertex.
   [[nodiscard]] std::span<const Index> star(Index v) const { return stars_.of(v); }
-  /// Bit i: the facet without vertex i is in no other simplex.
+  /// Bit i: the facet without vertex i is in no other simplex (border).
   [[nodiscard]] unsigned border(Index s) const { return border_[s]; }
 
  private:
-  /// Sorts in parts and merges these two by two, to tell the progress in between.
+  /// Merge sort in parts, so that progress can be reported in between.
   void rank_vertices(const Progress& progress) {
     constexpr std::size_t kPart = std::size_t{1} << 16;
     const auto comes_first = [&](Index a, Index b) {
@@ -97,11 +97,13 @@ class SweptComplex {
     const auto at = [&](Buffer<Index>& of, std::size_t i) {
       return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
     };
+    // sort each part
     in_parts(
         count, part_of(progress, 0.0, 0.5),
         [&](std::size_t from, std::size_t to) { std::sort(at(order_, from), at(order_, to), comes_first); }, kPart);
     tell(progress, 0.5);
-    Buffer<Index>& merged = rank_;  // nothing is in it yet
+    Buffer<Index>& merged = rank_;  // unused so far: scratch for merging
+    // merge parts in pairs
     for (std::size_t size = kPart; size < count; size *= 2) {
       in_parts(
           count, {},
@@ -116,7 +118,7 @@ class SweptComplex {
     for (std::size_t i = 0; i < count; ++i) rank_[order_[i]] = static_cast<Index>(i);
   }
 
-  /// A facet in a simplex, without its vertex of the least number, at which it is looked for.
+  /// A facet of a simplex, without its lowest-numbered vertex, at which it is searched.
   struct Facet {
     std::array<Index, N - 2> others;
     Index simplex;
@@ -152,7 +154,7 @@ class SweptComplex {
     std::sort(facets.begin(), facets.end());
     for (std::size_t i = 0, j = 0; i < facets.size(); i = j) {
       while (j < facets.size() && facets[j].others == facets[i].others) ++j;
-      // Another thread may find another facet of the same simplex.
+      // Another thread may set another bit of the same simplex.
       if (j - i == 1)
         std::atomic_ref(border_[facets[i].simplex]).fetch_or(static_cast<std::uint8_t>(1u << facets[i].omitted));
     }
@@ -165,7 +167,7 @@ class SweptComplex {
   std::vector<std::uint8_t> border_;
 };
 
-/// The star of one vertex at a time.
+/// Star and link of one vertex at a time.
 template <int N, class Real>
 class VertexStar {
  public:
@@ -191,12 +193,12 @@ class VertexStar {
   }
 
   [[nodiscard]] std::span<const Index> cells() const { return cells_; }
-  /// In how many pieces the link below, and above, the vertex is.
+  /// Number of connected components of the lower and the upper link.
   [[nodiscard]] Index parts_below() const { return parts_[0]; }
   [[nodiscard]] Index parts_above() const { return parts_[1]; }
 
-  /// The piece of the link that a cell has below, or above, the vertex: some number below `link_size`; kNone if it has
-  /// none there.
+  /// The component of the lower or upper link that contains vertices of a cell: a number below `link_size`; kNone if
+  /// the cell has no vertex on that side.
   [[nodiscard]] Index part(Index s, bool above) {
     for (const Index u : complex_.simplex(s))
       if (u != v_ && is_above(u) == above) return sets_.find(number_[u]);
@@ -242,7 +244,7 @@ class VertexStar {
  private:
   [[nodiscard]] bool is_above(Index u) const { return complex_.rank(u) > complex_.rank(v_); }
 
-  /// The vertices of a cell on one side are connected.
+  /// Connects the vertices of a cell on each side.
   void join_sides(const std::array<Index, N>& simplex) {
     std::array<Index, 2> last{kNone, kNone};
     for (const Index u : simplex) {
@@ -256,7 +258,7 @@ class VertexStar {
   const SweptComplex<N, Real>& complex_;
   Index v_ = kNone;
   std::span<const Index> cells_;
-  std::vector<Index> met_;  ///< the last vertex in whose link each vertex was met
+  std::vector<Index> met_;  ///< by vertex: the last vertex in whose link it was met
   std::vector<Index> number_;
   std::vector<Index> link_;
   DisjointSets sets_;

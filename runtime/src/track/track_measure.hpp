@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The parts of a cut, summed up simplex by simplex: size, enclosed content, centroid and box.
+// Measures of the components of a cut, summed over simplices: size, enclosed content, centroid and bounding box.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace tegl::detail {
 
-/// What one simplex, or many, contribute to a sample.
+/// Sums of the contributions of simplices to a sample.
 struct PartSums {
   bool open = false;
   double measure = 0;
@@ -27,14 +27,14 @@ struct PartSums {
 
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
-  /// `dim` components of places are used; `origin` is the place that the sums were taken from.
+  /// `dim`: number of coordinates. `origin`: the point that the sums are relative to.
   [[nodiscard]] TrackSample to_sample(double time, int dim, const std::array<double, 3>& origin) const {
     TrackSample sample;
     sample.time = time;
     sample.measure = measure;
     if (!open) sample.content = content;
     for (int a = 0; a < dim; ++a) {
-      // What is cut to no size at all has its centre in the middle of its box.
+      // The centroid of a component of zero size is the middle of its box.
       const double middle = measure > 0 ? moment[a] / measure : 0.5 * (lower[a] + upper[a]);
       sample.centroid[a] = origin[a] + middle;
       sample.lower[a] = origin[a] + lower[a];
@@ -44,15 +44,15 @@ struct PartSums {
   }
 };
 
-/// A simplex cut at a time that lies above its first `low` vertices (sorted by time) and not above the others.
+/// The cut of a simplex at a time above its first `low` vertices (sorted by time) and not above the others.
 template <int N>
 class CutCell {
  public:
-  static constexpr int D = N - 1;  ///< dimension of the space that the cut lies in
+  static constexpr int D = N - 1;  ///< dimension of the space of the cut
   using Place = Eigen::Matrix<double, D, 1>;
   using Corner = PointOf<N>;
 
-  /// `corners`: the vertices sorted by time, seen from the origin.
+  /// `corners`: the vertices sorted by time, relative to the origin.
   CutCell(const std::array<Corner, N>& corners, int low, double time) {
     const auto point = [&](int a, int b) {
       const double share = (time - corners[a][D]) / (corners[b][D] - corners[a][D]);
@@ -60,12 +60,12 @@ class CutCell {
       ++count_;
     };
     for (int a = 0; a < low; ++a)
-      for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // a quadrilateral's way round
+      for (int b = 0; b < N - low; ++b) point(a, a % 2 == 0 ? low + b : N - 1 - b);  // cyclic order of a quadrilateral
   }
 
-  /// `normal`: of the simplex, to the low side; of any length.
+  /// `normal`: normal of the simplex towards the low side, of any length.
   void add_to(PartSums& sums, const Corner& normal) const {
-    const Eigen::Map<const Place> outward(normal.data());  // within the cut
+    const Eigen::Map<const Place> outward(normal.data());  // its components within the cut
     const auto [size, centre] = size_and_centre();
     sums.measure += size;
     for (int a = 0; a < D; ++a) {

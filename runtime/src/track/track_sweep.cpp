@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A level rises over a simplicial complex, vertex by vertex. The level set consists of cells, one in each simplex that
-// has vertices at or below the level and above it; two cells touch if their simplices share an edge that does so too.
+// The level set of a simplicial complex while the level rises vertex by vertex. It consists of cells, one in each
+// simplex that has vertices on both sides of the level (vertices at the level count as below). Two cells touch if their
+// simplices share an edge that crosses the level.
 //
-// Each cell has a label, and labels are joined in sets (union-find); a set is a component. Around a vertex v the cells
-// just below it fall into as many connected groups as the link of v has pieces below, and just above it likewise. One
-// group below and one above: nothing happens, new cells take the label of the old ones. Otherwise the components
-// of the groups below meet in v, hence become one set; and what leaves v in several groups above may be several
-// components. Whether it is, is searched for from all groups at once, a cell of each in turn, over the cells just
-// above v, until all groups but one (connected groups count as one) are seen to the end. The cells of those get
-// labels of their own, and the one that was not seen to the end keeps the set. So a part that splits off costs its own
-// size, or that of the remainder if that is smaller, and two groups that are connected cost the cells around the
-// place where the searches meet.
+// Each cell has a label; labels are merged by union-find, and a set of labels is a component. Around a vertex v the
+// cells just below it form as many connected groups as the lower link of v has components; the same holds above v and
+// its upper link. With one group below and one above there is no event: new cells take the label of the old ones.
+// Otherwise the components of the groups below meet in v and become one set. The groups above v may belong to several
+// components. To find these, a search over the cells just above v starts from all groups at once, one cell of each in
+// turn. It ends when all groups except one are exhausted (connected groups count as one). The cells of exhausted groups
+// get new labels; the remaining group keeps the set. So splitting off a component costs the size of the smaller side,
+// and two connected groups cost the cells around the place where their searches meet.
 //
-// The Euler characteristic of the level set changes at v by that of the link above less that of the link below: the
-// level set below, near v, is what is around the link below, likewise above, and the two have the same border.
+// The Euler characteristic of the level set changes at v by that of the upper link minus that of the lower link: near v
+// the level set is a neighbourhood of the lower link before v and of the upper link after v, and both have the same
+// boundary.
 //
 // Based on: S. Parsa, A deterministic O(m log m) time algorithm for the Reeb graph, 2012 (components of the level set
 // under insertion and deletion); H. Doraiswamy and V. Natarajan, Output-sensitive construction of Reeb graphs, 2012
-// (only vertices whose link below or above is not in one piece count).
+// (only vertices with a disconnected lower or upper link are critical).
 #include "track/track_sweep.hpp"
 
 #include <algorithm>
@@ -40,8 +41,8 @@ struct Component {
   Index arc = kNone;
   std::uint64_t size = 0;  ///< cells
   std::int64_t euler = 0;
-  // As it was before the vertices of the time at hand, if it has met any of them:
-  std::uint64_t time = 0;  ///< the number of that time
+  // State before the vertices of the current time, if the component has met any of them:
+  std::uint64_t time = 0;  ///< number of that time
   std::uint64_t size_before = 0;
   std::int64_t euler_before = 0;
 };
@@ -77,14 +78,14 @@ class Sweeper {
   }
 
  private:
-  /// Whether a sample is to be taken before the first vertex at `time` is visited. At the contour's first time it is
-  /// the limit from above, as in `slice`: all vertices there come first.
+  /// Whether a sample is due before the first vertex at `time` is visited. At the first time of the contour a sample is
+  /// the limit from above, as in `slice`: all vertices at that time are visited before it.
   [[nodiscard]] bool is_due(double sample, double time) const {
     return sample < time || (sample == time && time != first_);
   }
 
-  /// So many more simplices were looked at: by that, and not by vertices, the caller is told now and then, for a vertex
-  /// may be one where searches for a long time whether something falls apart.
+  /// Counts visited simplices and reports progress from time to time. Progress is measured by simplices, not by
+  /// vertices: the search at a single vertex may take long.
   void tell_all(std::size_t seen) {
     seen_since_ += seen;
     if (seen_since_ < kTellEvery) return;
@@ -109,7 +110,7 @@ class Sweeper {
       visit_special(v);
   }
 
-  /// The sets of the cells below the vertex, each once, by their arcs.
+  /// The sets of the cells below the vertex, without duplicates, sorted by arc.
   const std::vector<Index>& find_incoming() {
     incoming_.clear();
     const bool one = star_.parts_below() == 1;
@@ -124,7 +125,7 @@ class Sweeper {
     return incoming_;
   }
 
-  /// The cells above the vertex belong to the set.
+  /// Adds the new cells above the vertex to the set.
   void pass(Index set, std::int64_t euler_change) {
     Component& component = components_[set];
     if (component.time != time_) {
@@ -167,7 +168,7 @@ class Sweeper {
     relabel_new_cells(v);
   }
 
-  /// One set of all, or a new one of none.
+  /// Merges the sets, or creates a set if there are none.
   Index join(const std::vector<Index>& sets) {
     if (sets.empty()) return new_set({});
     if (sets.size() == 1) return sets.front();
@@ -196,7 +197,7 @@ class Sweeper {
     started_.push_back(set);
   }
 
-  /// Takes down the arcs that have started, once all vertices of a time have been visited.
+  /// Stores the start values of new arcs after all vertices of a time have been visited.
   void settle_starts() {
     for (const Index set : started_) {
       const Component& component = components_[sets_.find(set)];
@@ -208,7 +209,7 @@ class Sweeper {
     ++time_;
   }
 
-  /// The cells that begin at a node are in the arcs that begin there.
+  /// Assigns the cells that begin at a node to the arcs that begin there.
   void relabel_new_cells(Index v) {
     if (!options_.label_simplices) return;
     for (const Index s : star_.cells())
@@ -216,20 +217,21 @@ class Sweeper {
         result_.simplex_arcs[s] = components_[sets_.find(labels_[s])].arc;
   }
 
-  // ---- do the cells above a vertex fall apart? ----
+  // ---- separation of the cells above a vertex ----
 
-  /// Cells reached from one group, in the order in which they were reached.
+  /// Cells reached from one group, in breadth-first order.
   struct Front {
     std::vector<Index> cells;
     std::size_t next = 0;
     [[nodiscard]] bool is_done() const { return next == cells.size(); }
   };
 
-  /// The components of the level set just above v among the cells of `set`: the set itself, and new ones for parts that
-  /// were seen to the end, in the order of their least group.
+  /// The components of the level set just above v within `set`: the set itself, and new sets for exhausted groups, in
+  /// the order of their lowest group.
   std::vector<Index> separate(Index v, Index set) {
     std::vector<Index> parts{set};
     if (star_.parts_above() <= 1) return parts;
+    // search from all groups in turn until at most one is open
     const std::size_t count = start_fronts();
     const Index level = complex_.rank(v);
     for (std::size_t open = count; open > 1;) {
@@ -242,6 +244,7 @@ class Sweeper {
       }
       if (changed) open = open_groups(count);
     }
+    // exhausted groups become new sets
     const Index rest = find_rest(count);
     for (Index group = 0; group < count; ++group)
       if (groups_.find(group) == group && group != rest) parts.push_back(part_off(group, count, set, level));
@@ -249,7 +252,7 @@ class Sweeper {
     return parts;
   }
 
-  /// One front for each piece of the link above the vertex, its cells marked.
+  /// Creates one front per component of the upper link and marks its cells. Returns the number of fronts.
   std::size_t start_fronts() {
     const auto count = std::size_t{star_.parts_above()};
     if (fronts_.size() < count) fronts_.resize(count);
@@ -274,7 +277,7 @@ class Sweeper {
     return count;
   }
 
-  /// Marks the cells that touch a cell; true if groups were joined.
+  /// Adds the unmarked cells that touch a cell to the front. Returns true if groups were merged.
   bool expand(Index s, std::size_t front, Index level) {
     bool joined = false;
     const auto& simplex = complex_.simplex(s);
@@ -312,7 +315,7 @@ class Sweeper {
       if (groups_.find(f) == group && !fronts_[f].is_done()) return false;
     return true;
   }
-  /// The group that was not seen to the end; the last one if all were.
+  /// The group that is not exhausted; the last one if all are.
   [[nodiscard]] Index find_rest(std::size_t count) {
     Index rest = 0;
     for (Index f = 0; f < count; ++f) {
@@ -328,7 +331,7 @@ class Sweeper {
     return open;
   }
 
-  /// A new set for a group that was seen to the end, taken from the old one.
+  /// Moves the cells of an exhausted group from the old set to a new one.
   Index part_off(Index group, std::size_t count, Index old_set, Index level) {
     faces_.clear();
     Component part;
@@ -364,7 +367,7 @@ class Sweeper {
 
   // ---- samples ----
 
-  /// Lists the simplices that are cut at some time, by the first such time.
+  /// Sorts the simplices that are cut at some sample time by the first such time.
   void plan_samples() {
     const auto& contour = complex_.contour();
     const auto first_cut = [&](Index s) {
@@ -398,15 +401,17 @@ class Sweeper {
     return result;
   }
 
-  /// All vertices before the time have been visited; a vertex at the time counts as above it, as in `slice`, but at the
-  /// first time as below.
+  /// Takes a sample. All vertices before its time have been visited. A vertex at the time counts as above, as in
+  /// `slice`; at the first time it counts as below.
   void take_sample() {
     const double time = times_[next_time_];
     const double asked_for = options_.times[next_time_];
+    // update the list of simplices that are cut
     std::erase_if(cut_, [&](Index s) { return span(s).second < time; });
     cut_.insert(cut_.end(), starting_.begin() + static_cast<std::ptrdiff_t>(starts_[next_time_]),
                 starting_.begin() + static_cast<std::ptrdiff_t>(starts_[next_time_ + 1]));
     ++next_time_;
+    // add up by arc
     sums_.clear();
     for (const Index s : cut_) {
       tell_all(1);
@@ -445,21 +450,22 @@ class Sweeper {
 
   static constexpr unsigned kAll = (1u << N) - 1;
   static constexpr std::size_t kTellEvery = std::size_t{1} << 16;
-  static constexpr double kReady = 0.2;  ///< of the progress, when the sweep begins
+  static constexpr double kReady = 0.2;  ///< progress at the start of the sweep
 
   const TrackOptions& options_;
   double fraction_ = 0.0;       ///< of the sweep
-  std::size_t seen_since_ = 0;  ///< simplices, since the progress was told
+  std::size_t seen_since_ = 0;  ///< simplices visited since the last progress report
   SweptComplex<N, Real> complex_;
   VertexStar<N, Real> star_;
   SweepResult result_;
   DisjointSets sets_;
-  std::vector<Component> components_;  ///< of each set, valid at its leader
-  std::vector<Index> labels_;          ///< #S: a member of the set of the simplex's cell; kNone before it has one
+  std::vector<Component> components_;  ///< by set, valid at its root
+  std::vector<Index>
+      labels_;  ///< #S: a member of the set that the simplex's cell belongs to; kNone before the cell exists
   std::vector<Index> incoming_;
-  std::vector<Index> started_;  ///< sets whose arcs started at the time at hand
-  std::uint64_t time_ = 0;      ///< how many different times there were
-  std::uint64_t born_ = 0;      ///< cells that begin, and end, at the vertex
+  std::vector<Index> started_;  ///< sets whose arcs started at the current time
+  std::uint64_t time_ = 0;      ///< number of distinct times so far
+  std::uint64_t born_ = 0;      ///< cells that begin and that end at the current vertex
   std::uint64_t died_ = 0;
 
   std::vector<Front> fronts_;
@@ -469,14 +475,14 @@ class Sweeper {
   std::vector<Index> front_of_part_;
   Faces<N> faces_;
 
-  double first_ = 0.0;         ///< the least time of a vertex, if there are samples
-  std::vector<double> times_;  ///< those of the options in the precision of the vertices, as `slice` rounds them
+  double first_ = 0.0;         ///< minimum time of a vertex, if there are samples
+  std::vector<double> times_;  ///< sample times rounded to the precision of the vertices, as in `slice`
   std::size_t next_time_ = 0;
-  std::vector<std::size_t> starts_;  ///< per time: where in `starting_` its simplices start
+  std::vector<std::size_t> starts_;  ///< by time: first of its simplices in `starting_`
   std::vector<Index> starting_;
-  std::vector<Index> cut_;  ///< those cut at the time before
+  std::vector<Index> cut_;  ///< simplices cut at the previous sample time
   std::array<double, 3> origin_{};
-  std::vector<Index> slots_;  ///< per arc: its place in `sums_`
+  std::vector<Index> slots_;  ///< by arc: its position in `sums_`
   std::vector<std::pair<Index, PartSums>> sums_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The sweep of a level over a simplicial complex: which components the level set has, and at which vertices that
-// changes. What comes out is the Reeb graph with every event that lasts no time (see tegl/track.hpp).
+// Sweep of a level over a simplicial complex: the components of the level set, and the vertices at which they change.
+// The result is the Reeb graph including events of zero duration (see tegl/track.hpp).
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace tegl::detail {
 
-/// The part of the whole progress after which the sweep is done.
+/// Progress at the end of the sweep.
 inline constexpr double kSwept = 0.95;
 
-/// Tells the progress up to kSwept. Instantiated for what `track` is. The options are sound, the contour's numbers
-/// finite and in range.
+/// Reports progress up to kSwept. Instantiated for the same types as `track`. The options must be valid, and the
+/// contour's numbers finite and in range.
 template <int N, class Real>
 SweepResult sweep(const Contour<N, Real>& contour, const TrackOptions& options);
 
