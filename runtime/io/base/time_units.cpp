@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Parses units of time and converts times between them.
 #include "base/time_units.hpp"
 
 #include <algorithm>
