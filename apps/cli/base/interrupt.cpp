@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the handling of signals that end the program.
 #include "base/interrupt.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements conversion between numbers and text.
 #include "base/numbers.hpp"
 
 #include <fmt/format.h>

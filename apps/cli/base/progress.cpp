@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the progress bar.
 #include "base/progress.hpp"
 
 #include <fmt/format.h>

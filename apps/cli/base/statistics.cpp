@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Computes statistics of values, histograms and suggested isovalues.
 #include "base/statistics.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Finds similar words by edit distance, and unknown options.
 #include "base/suggestions.hpp"
 
 #include <fmt/format.h>

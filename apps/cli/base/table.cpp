@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Formats tables as aligned columns and CSV.
 #include "base/table.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements ThreadLimit: starts threads to find how many the system allows.
 #include "base/thread_limit.hpp"
 
 #include <fmt/format.h>

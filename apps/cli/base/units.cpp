@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Derives units of measures from the units of the axes.
 #include "base/units.hpp"
 
 #include <fmt/format.h>

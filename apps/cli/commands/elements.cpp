@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl elements: a contour as points with normal vectors, for codes that integrate over it.
+// tegl elements: writes a contour as points with normal vectors, for codes that integrate over it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -32,7 +32,7 @@ constexpr const char* kExamples =
     "Each element is a line: the centroid, then the normal times the volume (d sigma), then attributes, time first.\n"
     "It is how the surface lies, without a metric: the same for Euclid and for Minkowski.";
 
-/// What a run found, in one type for all dimensions.
+/// Result of a run, in one type for all dimensions.
 struct ElementReport {
   std::size_t count = 0;
   std::vector<std::string> axes;  ///< as in the contour
@@ -194,7 +194,7 @@ class ElementsCommand final : public ContourInputCommand {
     return json;
   }
 
-  /// Whether the elements close up, as all that a contour encloses does.
+  /// The sum of the normals as text, with a verdict whether the elements are closed.
   [[nodiscard]] static std::string sum_text(const ElementReport& report) {
     std::string sum;
     for (std::size_t a = 0; a < report.axes.size(); ++a)

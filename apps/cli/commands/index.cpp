@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl index: an index of the active tiles of an image, for contours at many isovalues.
+// tegl index: builds an index of the active tiles of an image, for contours at many isovalues.
 #include "commands/index.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ constexpr const char* kExamples =
     "An index finds the tiles that a contour passes without looking at all of them. It belongs to one image: the\n"
     "same values, in the same order.";
 
-/// What was built and written.
+/// The result of building and writing.
 struct IndexResult {
   InputFiles input;
   std::string variable, output, method;
@@ -137,7 +137,7 @@ class IndexCommand final : public Command {
   }
 
  private:
-  /// FILE with .tindex behind it; of a folder, beside it.
+  /// FILE with .tindex appended; for a folder, a file beside it.
   [[nodiscard]] std::string default_output() const {
     std::string name = file();
     while (name.size() > 1 && name.back() == '/') name.pop_back();

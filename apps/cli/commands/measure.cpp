@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl measure: how large a contour is, what it encloses, and how both change along its last axis.
+// tegl measure: measures the size and the enclosed content of a contour, and of its cuts along the last axis.
 #include "tegl/measure.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ constexpr const char* kExamples =
     "  tegl measure ocean.vtkhdf --samples 100 --csv curve.csv\n"
     "What an open contour encloses is not defined; --close closes the contour of an image at its border.";
 
-/// What was measured, without its dimension.
+/// The measures, independent of the dimension.
 struct Found {
   double size = 0;
   std::optional<double> content;
@@ -129,8 +129,8 @@ class MeasureCommand final : public ContourInputCommand {
     return found;
   }
 
-  /// Of an image the cut has to lie within its last axis; of a saved contour within that contour, from `first` to
-  /// `last`, which may come from a file of floats.
+  /// Throws unless the cut is within the last axis of the image, or within a saved contour, from `first` to `last`,
+  /// which may come from a file with floats.
   static void require_within(const Cut& cut, double first, double last, const ContourInput& input) {
     const CutAxis axis = input.last_axis.value_or(CutAxis{input.axis_name(input.space_dim() - 1), first, last});
     const auto single = [](double x) { return static_cast<float>(x); };
@@ -162,7 +162,7 @@ class MeasureCommand final : public ContourInputCommand {
     return text;
   }
 
-  /// A table with its units in a line of their own, as these may be long.
+  /// A table with units on a separate line, as they may be long.
   static std::string cuts_text(const ContourInput& input, const Found& found) {
     Table cuts = table(input, found, &number);
     std::string in;

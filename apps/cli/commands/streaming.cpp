@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements streamed extraction of one or several isovalues to files.
 #include "commands/streaming.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// Layers whose values are counted in until samples lie on both sides of every isovalue.
+/// Layers that update the range of values read, until samples are on both sides of every isovalue.
 template <class T, int N>
 class RangedLayers final : public LayerReader<T, N> {
  public:
@@ -43,7 +45,7 @@ class RangedLayers final : public LayerReader<T, N> {
       range_.max = std::fmax(range_.max, value);
     }
   }
-  /// Of the values read so far, complete if an isovalue lies outside of it.
+  /// The range of the values read so far; complete if an isovalue lies outside of it.
   [[nodiscard]] const ValueRange& range() const noexcept { return range_; }
 
  private:
@@ -99,7 +101,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
 }  // namespace
 
 void require_open_files(std::size_t contours) {
-  constexpr rlim_t kOthers = 32;  // standard streams, inputs, what libraries have open
+  constexpr rlim_t kOthers = 32;  // standard streams, inputs, files opened by libraries
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
   const rlim_t needed = contours + kOthers;

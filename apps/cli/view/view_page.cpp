@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the packing of contours as numbers and JSON, and the assembly of the page.
 #include "view/view_page.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +27,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "pages hold numbers as this machine has them");
 
-/// Small whole numbers of either sign as small ones without.
+/// Zigzag encoding: maps small signed numbers to small unsigned numbers.
 std::uint32_t zigzag(std::uint32_t difference) {
   return (difference << 1) ^ static_cast<std::uint32_t>(static_cast<std::int32_t>(difference) >> 31);
 }
@@ -50,7 +52,7 @@ Box<N> box_of(const Contour<N, double>& contour) {
   return box;
 }
 
-/// Coordinates in space, in float from the middle of the box.
+/// Spatial coordinates as float, relative to the centre of the box.
 template <int N>
 std::vector<float> places(const Contour<N, double>& contour, const std::vector<double>& center) {
   std::vector<float> result;
@@ -60,8 +62,8 @@ std::vector<float> places(const Contour<N, double>& contour, const std::vector<d
   return result;
 }
 
-/// The times of the vertices, ascending and each once, and the place of each vertex among them: by these the page cuts
-/// as exactly as the library does.
+/// The distinct times of the vertices, ascending, and the index of each vertex's time among them. With these the page's
+/// cuts are as exact as the library's.
 std::pair<std::vector<double>, std::vector<std::uint32_t>> ranked_times(const Contour<4, double>& contour) {
   std::vector<double> times;
   times.reserve(contour.vertices.size());
@@ -76,7 +78,7 @@ std::pair<std::vector<double>, std::vector<std::uint32_t>> ranked_times(const Co
   return {std::move(times), std::move(ranks)};
 }
 
-/// What of the normals lies in space, of length 127 in whole numbers, or 0 where nothing is left.
+/// The spatial part of the normals, scaled to length 127 and rounded to integers, or 0 if it is zero.
 template <int N>
 std::vector<std::int8_t> normals_in_space(const Contour<N, double>& contour, const WorkOptions& options) {
   Buffer<std::array<double, N>> made;
@@ -92,7 +94,7 @@ std::vector<std::int8_t> normals_in_space(const Contour<N, double>& contour, con
   return result;
 }
 
-/// The label of each vertex's component, counted from the largest (by simplices) on.
+/// The label of each vertex's component; components are numbered by decreasing number of simplices.
 template <int N>
 std::vector<std::uint32_t> components_by_size(const ComponentLabels& labels) {
   std::vector<std::uint64_t> sizes(labels.count, 0);
@@ -108,7 +110,7 @@ std::vector<std::uint32_t> components_by_size(const ComponentLabels& labels) {
   return result;
 }
 
-/// Attributes as single numbers: those of several as their length.
+/// Attributes as scalars: those of several numbers are replaced by their length.
 Json describe_attributes(const std::vector<Attribute>& attributes, PageNumbers& numbers) {
   Json list = Json::array();
   for (const Attribute& attribute : attributes) {
@@ -127,7 +129,7 @@ Json describe_attributes(const std::vector<Attribute>& attributes, PageNumbers& 
       lowest = std::min(lowest, value);
       highest = std::max(highest, value);
     }
-    if (!(lowest <= highest)) continue;  // no number to colour by
+    if (!(lowest <= highest)) continue;  // no finite value for a colour scale
     Json& one = list.emplace_back();
     one["name"] = width > 1 ? fmt::format("|{}|", attribute.name) : attribute.name;
     one["unit"] = attribute.unit;
@@ -151,7 +153,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// The same document with all strings printable: names and units of files may hold anything.
+/// Makes all strings of a document printable: names and units from files may contain anything.
 Json with_printable_strings(Json json) {
   if (json.is_string()) return printable(json.get_ref<const std::string&>());
   if (json.is_structured())
@@ -159,7 +161,7 @@ Json with_printable_strings(Json json) {
   return json;
 }
 
-/// JSON that may stand in a <script>: without "<".
+/// Formats JSON for a <script> element: without "<".
 std::string script_json(const Json& json) {
   std::string result;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
@@ -171,7 +173,7 @@ std::string script_json(const Json& json) {
   return result;
 }
 
-/// The graph of the tracks that are shown; its events also have the numbers of parts in the graph of all tracks.
+/// The graph of the shown tracks; events also have the numbers of parts in the graph of all tracks.
 Json graph_of(const PageTracks& tracks) {
   Json graph = Json::parse(track_json(tracks.graph));
   for (std::size_t i = 0; i < tracks.event_parts.size(); ++i) {
@@ -223,7 +225,8 @@ std::string PageNumbers::packed(const Progress& progress) const {
   bool is_cancelled = false;
   for (std::size_t at = 0; !is_cancelled && at <= bytes_.size(); at += kPiece) {
     const std::size_t count = std::min(kPiece, bytes_.size() - at);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data() + at));  // zlib does not write there
+    stream.next_in =
+        reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data() + at));  // zlib does not write to its input
     stream.avail_in = static_cast<uInt>(count);
     const int flush = at + kPiece > bytes_.size() ? Z_FINISH : Z_NO_FLUSH;
     do {
@@ -333,8 +336,8 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// What says so when a page was cut off on its way: it stands before all that could be missing, and looks when the
-/// browser has come to the end. A browser that cannot run the program reads the page up to its end nevertheless.
+/// A script that reports a truncated page. It is placed before all parts that could be missing, and runs when the
+/// browser has reached the end. It also reports a browser that cannot run the program.
 constexpr std::string_view kEndCheck = R"(<script>
 addEventListener('DOMContentLoaded', function () {
   if (window.teglStarted) return;
@@ -356,7 +359,7 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
   page.reserve(kViewerProgram.size() + packed.size() / 3 * 4 + (std::size_t{1} << 20));
   page += "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  // Nothing is fetched, whatever the file says: the page is all there is.
+  // The policy forbids all requests: the page contains everything it needs.
   page +=
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
       "style-src 'unsafe-inline'; img-src data: blob:\">\n";
