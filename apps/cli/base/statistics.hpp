@@ -5,10 +5,6 @@
 // Based on: N. Otsu, A threshold selection method from gray-level histograms, 1979; C. Bajaj, V. Pascucci and D.
 // Schikore, The contour spectrum, 1997 (the size of a contour as a function of its isovalue, and the gradient along it,
 // from one pass over the grid).
-//
-// Based on: N. Otsu, A threshold selection method from gray-level histograms, 1979; C. Bajaj, V. Pascucci
-// and D. Schikore, The contour spectrum, 1997 (the size of a contour as a function of its isovalue, and the
-// gradient along it, from one pass over the grid).
 #pragma once
 
 #include <cstdint>

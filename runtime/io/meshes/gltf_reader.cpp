@@ -7,9 +7,6 @@
 // instances. So nesting is limited before the text is parsed, buffers are views of one copy, and the mesh is counted
 // before it is made.
 //
-// A small file can ask for much: text nested deeply, buffers of the same bytes, primitives in many places. So nesting
-// is limited before the text is parsed, buffers are views of one copy, and the mesh is counted before it is made.
-//
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.5 to 3.7 and 4.4.
 #include <algorithm>
 #include <array>

@@ -6,11 +6,6 @@
 // that the C library makes safe after a fork (the allocator's among them), runs no signal or exit handlers of the
 // program, prints nothing, and leaves no core file. Its messages are validated like untrusted input. It ends with its
 // parent.
-//
-// The child is a fork without exec, so that a library needs no program of its own beside it. It has one thread, takes
-// no lock but those that the C library makes safe for that (the allocator's among them), runs neither handlers of
-// signals nor those of the program's end, prints nothing, and leaves no core file. What it sends is checked as if it
-// came from anyone. It ends with its parent.
 #pragma once
 
 #include <sys/types.h>

@@ -4,9 +4,6 @@
 //
 // Based on: P. Huovinen and H. Petersen, "Particlization in hybrid models", Eur. Phys. J. A 48 (2012) 171,
 // arXiv:1206.3371, and the authors' example program, whose line format is used.
-//
-// Based on: P. Huovinen and H. Petersen, "Particlization in hybrid models", Eur. Phys. J. A 48 (2012) 171,
-// arXiv:1206.3371, and the example program that the authors give with their code: what its lines hold.
 #include <algorithm>
 #include <array>
 #include <cmath>
