@@ -49,8 +49,8 @@ class AmbiguousFace {
     std::array<std::ptrdiff_t, 5> first{};   ///< by axis: first available sample, in local indices
     std::array<std::ptrdiff_t, 5> end{};     ///< by axis: end of the available samples, in local indices
   };
-  /// Used by extractions: a face by its first corner, its axes and the values of its corners. Keeps references: all
-  /// arguments must outlive it.
+  /// Used by extractions: a face by its first corner, its axes and the values of its corners. `values` and `around` are
+  /// not copied and must outlive the face.
   AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
                 const Surroundings& around);
   /// Deleted: `around` is kept by reference and must not be a temporary.

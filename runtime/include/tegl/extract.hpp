@@ -81,7 +81,6 @@ struct ExtractStats {
 /// images, 3 ms for noise. Smooth images have few kinds of tiles and spend little time on this; noise spends nearly all
 /// of it there. Up to 256 MiB of built tiles and faces are cached, whatever the number of threads; the tiles of two
 /// slabs are held in memory besides. With `close`, a 5D contour may have simplices of zero size at the border.
-/// size there.
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
@@ -111,7 +110,6 @@ struct ContourRoom {
 /// simplices equal those of `extract` byte by byte, except for the width of the numbers. Images with missing values are
 /// processed twice. Errors: those of `extract`; InvalidArgument if `room` is too small. After an error the contents of
 /// the memory are undefined.
-/// error, is not defined.
 template <Value T, int N, class Real, VertexNumber I>
 requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
                                                             const ContourRoom<N, Real, I>& room,
