@@ -130,7 +130,7 @@ void end_by_signal(int signal) noexcept {
 void occupy_closed_streams() noexcept {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) == -1 && errno == EBADF)
-      // open() returns the lowest free descriptor, which is this one. The wrong access mode makes writes to it fail.
+      // open() returns the lowest free descriptor: this one. Standard output is read-only, so writes to it still fail.
       static_cast<void>(open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_WRONLY));
 }
 

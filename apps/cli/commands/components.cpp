@@ -95,6 +95,7 @@ class ComponentsCommand final : public ContourInputCommand {
   ExitCode run(const Streams& streams) override {
     require_inputs();
     require_outputs();
+    // read, parse conditions, select and write
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
     require_outputs_hold(input.space_dim() - 1);
@@ -102,6 +103,7 @@ class ComponentsCommand final : public ContourInputCommand {
     std::vector<ComponentSelection> conditions;
     for (const std::string& condition : conditions_) conditions.emplace_back(condition, axes_);
     const Found found = std::visit([&](auto& contour) { return work(contour, input, conditions, bar); }, input.contour);
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(document(input, found)));

@@ -355,6 +355,7 @@ class ContourCommand final : public Command {
 
   ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
                       const std::vector<std::string>& outputs, const ExtractOptions& options) {
+    // validate options and files
     const auto given = options_.given();
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(ErrorCode::InvalidArgument,
@@ -369,6 +370,7 @@ class ContourCommand final : public Command {
       require_facets_output(output, files());
       compress_.require_known(output, true);
     }
+    // read
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
@@ -383,6 +385,7 @@ class ContourCommand final : public Command {
       require_output_holds_facets(result.output, result.image_dim);
       require_contour(input, result.isovalue, options_.allows_empty());
     }
+    // extract and write
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)
@@ -390,6 +393,7 @@ class ContourCommand final : public Command {
                          {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()},
                          bar, result, written);
     written.keep();
+    // report
     bar.clear();
     for (const FacetsResult& result : results)
       if (result.facets[0] == 0) remark(remark_without_contour(input.image, result.isovalue));
@@ -397,6 +401,7 @@ class ContourCommand final : public Command {
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
+    // validate options and files
     require_open_files(results.size());
     for (const ContourResult& result : results) require_output_grows(result.output);
     if (options_.wants_shape_normals() || attributes_.wanted())
@@ -404,6 +409,7 @@ class ContourCommand final : public Command {
                   fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
+    // open, extract and write in one pass
     OpenLayersResult input = open();
     for (ContourResult& result : results) {
       result.input = inputs();

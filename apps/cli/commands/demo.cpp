@@ -193,6 +193,7 @@ class DemoCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
+    // read
     const fs::path data = find_data();
     ProgressBar bar(streams.err, wants_progress());
     const ReadImageResult input = read_image(data, image_options(bar.stage("read")));
@@ -201,12 +202,14 @@ class DemoCommand final : public Command {
     if (image == nullptr)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: not the demo's data; expected 4D floats", data.string()));
+    // contour
     Stopwatch watch;
     ExtractOptions options;
     options.triangulation = Triangulation::barycentric;
     options.progress = bar.stage("contour");
     const Contour<4, double> contour = extract<double>(image->view(), kIsovalue, options);
     const double seconds = watch.lap();
+    // animation or report
     bar.clear();
     const bool animated = !json() && !quiet() && !no_animation_ && streams.out.moves_its_cursor() &&
                           map_width(streams.out, true).has_value();
@@ -255,6 +258,7 @@ class DemoCommand final : public Command {
       HiddenCursor& operator=(const HiddenCursor&) = delete;
       const Console& console;
     };
+    // play
     const HiddenCursor hidden(console);
     const bool in_colour = console.has_colours() && knows_unicode();
     const Axis& time = image.grid.axes[3];

@@ -87,6 +87,7 @@ class ElementsCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     require_inputs();
     require_element_output();
     also_read(attributes_.files());
@@ -94,10 +95,12 @@ class ElementsCommand final : public ContourInputCommand {
     if (per_ == "cell" && find_mesh_file_format(file()) != nullptr)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--per cell with {}, a saved contour, which knows no cells; expected an image", file()));
+    // read and make elements
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, per_ == "cell");
     ElementReport report;
     std::visit([&](auto& contour) { make(contour, input, report, bar); }, input.contour);
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(to_json(input, report)));
@@ -132,13 +135,16 @@ class ElementsCommand final : public ContourInputCommand {
 
   template <int N>
   void make(Contour<N, double>& contour, const ContourInput& input, ElementReport& report, ProgressBar& bar) const {
+    // attributes
     Stopwatch watch;
     attributes_.sample_to(contour, image_options(), threads(), bar);
     report.attribute_seconds = watch.lap();
+    // elements
     const WorkOptions work{threads(), bar.stage("elements")};
     const Elements<N> all =
         input.image ? elements_by_cell(contour, grid_of<N>(input.image->image), work) : elements(contour, work);
     report.elements_seconds = watch.lap();
+    // sums for the report
     const ElementSum<N> sum = sum_of(all);
     report.count = all.centroids.size();
     report.sum.assign(sum.normal.begin(), sum.normal.end());
@@ -147,6 +153,7 @@ class ElementsCommand final : public ContourInputCommand {
     report.measure = sum.measure;
     for (int a = 0; a < N; ++a) report.axes.push_back(input.axis_name(a));
     for (const Attribute& attribute : all.attributes) report.attributes.push_back(range_of(attribute));
+    // write
     ElementFileOptions options = file_options();
     options.progress = bar.stage("write");
     watch.lap();

@@ -114,6 +114,7 @@ class IndexCommand final : public Command {
     IndexResult result;
     result.output = output_.empty() ? default_output() : output_;
     result.method = method_;
+    // validate options and files
     require_inputs();
     if (method_ != active_method_name(ActiveMethod::seed_set) &&
         (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
@@ -122,6 +123,7 @@ class IndexCommand final : public Command {
     if (!is_index_file(result.output))
       throw Error(ErrorCode::WriteFailed, fmt::format("{}: expected a file named *{}", result.output, kIndexExtension));
     require_text_output(result.output, files());
+    // read and build
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
@@ -131,6 +133,7 @@ class IndexCommand final : public Command {
     result.read_seconds = watch.lap();
     std::visit([&](const auto& typed) { std::visit([&](const auto& owned) { build(owned, bar, result); }, typed); },
                input.image);
+    // report
     bar.clear();
     if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
     return ExitCode::Ok;

@@ -337,6 +337,7 @@ class InfoCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     require_inputs();
+    // an index file
     if (is_index_file(file())) {
       if (const auto given = images().given(); !given.empty() || files().size() > 1)
         throw Error(ErrorCode::InvalidArgument,
@@ -345,6 +346,7 @@ class InfoCommand final : public Command {
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }
+    // several variables: a list to choose from
     if (images().variable().empty() && !images().has_fixed()) {
       const std::vector<ImageVariable> variables = images().variables(files());
       if (variables.size() > 1 || (variables.size() == 1 && variables[0].sizes.size() > kMostAxes)) {
@@ -353,6 +355,7 @@ class InfoCommand final : public Command {
         return ExitCode::Ok;
       }
     }
+    // an image: read and describe
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult image = read(bar.stage("read"));

@@ -99,6 +99,7 @@ class MeasureCommand final : public ContourInputCommand {
   template <int N>
   Found measured(const Contour<N, double>& contour, const ContourInput& input, const std::vector<Cut>& cuts,
                  ProgressBar& bar) const {
+    // whole contour
     const Measures<N> whole = tegl::measure(contour, {threads(), bar.stage("measure")});
     Found found{whole.size,
                 whole.content,
@@ -109,6 +110,7 @@ class MeasureCommand final : public ContourInputCommand {
                 whole.open_simplices,
                 {}};
     if constexpr (N >= 3) {
+      // values of --at and --samples
       std::vector<double> at;
       const double first = whole.lowest[N - 1];
       const double last = whole.highest[N - 1];
@@ -121,6 +123,7 @@ class MeasureCommand final : public ContourInputCommand {
                          ? last
                          : first + (last - first) * static_cast<double>(i) / static_cast<double>(samples_ - 1));
       if (at.empty()) return found;
+      // cuts
       const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
                                              contour.vertices.size() * N);
       found.cuts = measure_cuts(contour, meet_vertices(at, vertices, N, N - 1), {threads(), bar.stage("cuts")});

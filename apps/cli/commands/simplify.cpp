@@ -83,11 +83,13 @@ class SimplifyCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     require_inputs();
     require_output(output_, files());
     compress_.require_known(output_);
     require_output_keeps(output_, normals(), false);
     require_goal();
+    // read and simplify
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);
     require_output_holds(output_, input.space_dim() - 1);
@@ -98,9 +100,11 @@ class SimplifyCommand final : public ContourInputCommand {
     std::visit([&](const auto& contour) { result.mesh = to_mesh(simplified(contour, input, stats, bar)); },
                input.contour);
     input.contour = AnyContour();
+    // check and write
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);
     remark(result.lost.remark(output_));
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(document(result, stats)));

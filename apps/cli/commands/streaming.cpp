@@ -58,11 +58,13 @@ class RangedLayers final : public LayerReader<T, N> {
 template <int N, class Real, class T>
 std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
                                       std::vector<ContourResult>& results) {
+  // check the axes
   for (int a = 0; a < N; ++a)
     if (source.grid().axes[a].size() < 2)
       throw Error(ErrorCode::EmptyResult,
                   fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
                               axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
+  // open the output files
   RangedLayers<T, N> layers(source, results);
   std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
   std::vector<StreamedContour<N, Real>> contours;
@@ -77,6 +79,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
     });
     contours.push_back({*result.isovalue, files.back().get(), {}, {}});
   }
+  // extract, check the range of values, complete the files
   written.with_target_names([&] {
     extract_streamed_several<Real, T, N>(layers, contours, options.extract);
     for (const auto& contour : contours) {
@@ -87,6 +90,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
     for (const auto& file : files) file->commit();
   });
   written.keep();
+  // report
   const double seconds = watch.lap();
   for (std::size_t i = 0; i < results.size(); ++i) {
     results[i].image_dim = N;

@@ -125,6 +125,7 @@ class TrackCommand final : public ContourInputCommand {
     TrackOptions options;
     options.min_lifetime = parse_finite("--min-lifetime", min_lifetime_);
     require_options(options);
+    // read
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);
     if (input.image) {
@@ -133,13 +134,16 @@ class TrackCommand final : public ContourInputCommand {
     }
     for (const std::string& output : outputs_)
       if (!is_track_file(output)) require_output_holds(output, input.space_dim() - 1);
+    // track
     Stopwatch watch;
     TrackGraph graph = std::visit([&](const auto& contour) { return follow(contour, options, bar); }, input.contour);
     const std::size_t all = graph.tracks.size();
     graph = selected(std::move(graph));
     const double track_seconds = watch.lap();
+    // write
     write(input, graph, bar);
     const double write_seconds = watch.lap();
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(document(input, graph, all, track_seconds, write_seconds)));
@@ -211,6 +215,7 @@ class TrackCommand final : public ContourInputCommand {
   }
 
   void write(ContourInput& input, const TrackGraph& graph, ProgressBar& bar) {
+    // graph files, and contours with labels
     WrittenFiles written;
     for (const std::string& output : outputs_) {
       const Progress writing = bar.stage("write");
@@ -227,6 +232,7 @@ class TrackCommand final : public ContourInputCommand {
       else
         std::visit(write_labelled, input.contour);
     }
+    // tables
     if (!csv_.empty())
       for (const Csv& table : kTables)
         written.write(csv_ + table.ending, [&](const auto& file) { write_text(table.text(graph), file); });

@@ -116,12 +116,14 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
     program.exit(error);  // prints the help or the version to standard output
     return ExitCode::Ok;
   }
+  // the command, for the hint at --help
   std::string help = "tegl";
   const CLI::App* named = &program;
   for (const CLI::App* command : program.get_subcommands()) {
     help += " " + command->get_name();
     named = command;
   }
+  // the message
   std::string what = error.what();
   if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
     what = what.substr(0, what.find(':')) + " is given more than once; expected it once";

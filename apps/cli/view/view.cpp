@@ -84,6 +84,7 @@ class ViewCommand final : public ContourInputCommand {
 
   ExitCode run(const Streams& streams) override {
     require_page();
+    // add a layer for each file
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     PageNumbers numbers;
@@ -100,10 +101,12 @@ class ViewCommand final : public ContourInputCommand {
       scene["layers"].push_back(add_file(numbers, bar, shown));
       require_one_space(shown);
     }
+    // assemble and write the page
     const std::string packed = numbers.packed(bar.stage("pack"));
     const std::string page = make_page(scene, scene["title"].get<std::string>(), packed);
     bar.stage("write")(0);
     const std::uint64_t bytes = write_file(output_, [&] { write_text(page, output_); });
+    // report
     const double seconds = watch.lap();
     bar.clear();
     if (json())

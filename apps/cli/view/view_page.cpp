@@ -247,6 +247,7 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
   const ComponentLabels labels = label_components(contour, options);
   Thinned result{labels.count, labels.count, contour.simplices.size(), contour.simplices.size()};
   if (limit.of_all == 0 || result.simplices <= limit.of_all) return result;
+  // order components by size
   std::vector<std::uint64_t> sizes(labels.count, 0);
   for (const Index label : labels.simplices) ++sizes[label];
   std::vector<Index> order(labels.count);
@@ -258,6 +259,7 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
                             "--count {}' makes a smaller one",
                             counted_simplices(N - 1, sizes[order[0]]), grouped(limit.of_largest), sizes[order[0]],
                             limit.of_all));
+  // keep the largest ones within the limit
   std::vector<bool> keep(labels.count, false);
   result.components = result.simplices = 0;
   for (const Index label : order) {
@@ -274,6 +276,7 @@ template <int N>
 Json describe_layer(const Contour<N, double>& contour, const ContourInput& input, const Thinned& thinned,
                     const std::optional<PageTracks>& tracks, PageNumbers& numbers, const WorkOptions& options) {
   constexpr std::size_t kSpace = N == 2 ? 2 : 3;
+  // description
   const Box<N> box = box_of(contour);
   std::vector<double> center;
   for (std::size_t a = 0; a < kSpace; ++a) center.push_back((box.lower[a] + box.upper[a]) / 2);
@@ -294,6 +297,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   json["components"] = thinned.components;
   json["of_components"] = thinned.of_components;
   json["of_simplices"] = thinned.of_simplices;
+  // vertices
   Json& arrays = json["arrays"];
   arrays["places"] = numbers.add(std::span<const float>(places(contour, center)), kSpace);
   if constexpr (N == 4) {
@@ -303,6 +307,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   }
   if constexpr (N > 2)
     arrays["normals"] = numbers.add(std::span<const std::int8_t>(normals_in_space(contour, options)), 3);
+  // simplices and components
   arrays["simplices"] = numbers.add_simplices(
       {contour.simplices.empty() ? nullptr : contour.simplices.data()->data(), N * contour.simplices.size()}, N);
   arrays["component"] =
@@ -315,6 +320,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
     arrays["segment_next"] = numbers.add(std::span<const std::uint32_t>(tracks->next), 1);
     arrays["segment_tracks"] = numbers.add(std::span<const std::uint32_t>(tracks->tracks), 1);
   }
+  // attributes and tracks
   json["vertex_attributes"] = describe_attributes(contour.vertex_attributes, numbers);
   json["simplex_attributes"] = describe_attributes(contour.simplex_attributes, numbers);
   json["tracks_found"] = tracks ? tracks->found : 0;

@@ -121,6 +121,7 @@ class Splits {
 
 PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> first, std::optional<double> last,
                        std::size_t most, const WorkOptions& options) {
+  // track
   TrackOptions wanted;
   wanted.first = first;
   wanted.last = last;
@@ -129,6 +130,7 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
   wanted.threads = options.threads;
   wanted.progress = options.progress;
   const TrackGraph graph = track(contour, wanted);
+  // order tracks by lifetime
   PageTracks result;
   result.found = graph.tracks.size();
   std::vector<std::size_t> order(graph.tracks.size());
@@ -141,6 +143,7 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
     place[order[i]] = static_cast<std::uint32_t>(i);
     keep[order[i]] = i < most;
   }
+  // data for colours
   result.simplex_segments = graph.simplex_segments;
   result.simplex_after = Splits(contour, graph).after();
   for (const TrackSegment& segment : graph.segments) {
@@ -149,6 +152,7 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
     result.next.push_back(next_segment(graph, segment));
     result.tracks.push_back(place[segment.track]);
   }
+  // events of the shown tracks
   result.events_found = graph.events.size();
   const auto is_shown = [&](Index s) { return static_cast<bool>(keep[graph.segments[s].track]); };
   for (const TrackEvent& event : graph.events)  // the events that select_tracks keeps, in its order

@@ -24,13 +24,13 @@ requires DimensionBetween<N, 2, 5>
 struct Elements {
   using Point = std::array<double, N>;  ///< coordinates, or components of a vector
 
-  Buffer<Point> centroids = {};                ///< #E x N world coordinates, row = element
-  Buffer<Point> normals = {};                  ///< #E x N, row = element
-  Buffer<double> measures = {};                ///< #E: Euclidean lengths, areas or volumes
-  Buffer<Index> counts = {};                   ///< #E: number of simplices of the element
-  std::vector<Attribute> attributes = {};      ///< of elements: the contour's, of vertices first, then of simplices
-  std::array<std::string, N> axis_names = {};  ///< the contour's
-  std::array<std::string, N> axis_units = {};  ///< the contour's
+  Buffer<Point> centroids = {};                              ///< #E x N world coordinates, row = element
+  Buffer<Point> normals = {};                                ///< #E x N, row = element
+  Buffer<double> measures = {};                              ///< #E: Euclidean lengths, areas or volumes
+  Buffer<Index> counts = {};                                 ///< #E: number of simplices of the element
+  std::vector<Attribute> attributes = {};                    ///< #E rows: the contour's of vertices, then of simplices
+  std::array<std::string, N> axis_names = {};                ///< the contour's
+  std::array<std::string, N> axis_units = {};                ///< the contour's
   GradientDirection direction = GradientDirection::descent;  ///< the side that normals face
 };
 

@@ -24,7 +24,7 @@ using Reason = std::array<char, 256>;
 
 /// Callback of H5Ewalk2. Exceptions must not pass through HDF5, so the text is stored in a fixed array.
 herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* out) {
-  // The walk starts at the innermost call: the first entry with a text is the reason.
+  // H5Ewalk2 starts at the innermost call: the first entry with a text is the reason.
   auto& reason = *static_cast<Reason*>(out);
   if (reason[0] == '\0' && error->desc != nullptr) std::strncpy(reason.data(), error->desc, reason.size() - 1);
   return 0;

@@ -384,6 +384,7 @@ std::string uneven_text(const Stack& stack) {
 
 /// The spatial grid of the planes: x, y, and z if there are several positions.
 RawImage spatial_grid(const Volume& volume) {
+  // matrix and origin
   const DicomFile& first = volume.files.front();
   const DicomFrame& frame = volume.frame(volume.planes.front());
   const Eigen::Vector2d spacing = frame.spacing.value_or(Eigen::Vector2d(1, 1));
@@ -400,6 +401,7 @@ RawImage spatial_grid(const Volume& volume) {
     offset = *frame.position;
     image.info.world_frame = "LPS";
   }
+  // grid; a rectilinear axis for uneven distances
   image.grid = affine_grid({first.columns, first.rows, volume.places}, affine, offset, first.path);
   if (!stack.even) {
     Axis& along = image.grid.axes[2];
@@ -408,6 +410,7 @@ RawImage spatial_grid(const Volume& volume) {
     along = Axis::rectilinear(std::move(coordinates));
     image.info.remarks.push_back(uneven_text(stack));
   }
+  // units and names
   for (Axis& axis : image.grid.axes) axis.unit = frame.spacing ? "mm" : "";
   if (!is_placed(volume)) image.grid.axes[2].unit.clear();
   name_axes(image.grid);
@@ -543,22 +546,26 @@ bool is_dicom(const fs::path& path) {
 }
 
 RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series, const Progress& progress) {
+  // select and arrange the series
   Found found = read_all_series(paths, progress);
   if (series.empty() && found.series.size() == 1 && !found.damaged.empty()) throw found.damaged.front();
   for (const Error& error : found.damaged)  // they may belong to this series; a missing slice would be detected
     found.remarks.push_back(fmt::format("left out: {}; it does not say of which series it is", error.what()));
   Volume volume = arrange(choose(std::move(found.series), series, paths.front()));
   RawImage spatial = spatial_grid(volume);
+  // metadata
   RawLayers result;
   result.info = info_of(volume);
   result.info.remarks = std::move(found.remarks);
   result.info.remarks.insert(result.info.remarks.end(), spatial.info.remarks.begin(), spatial.info.remarks.end());
   result.info.world_frame = spatial.info.world_frame;
+  // grid
   const bool moves = volume.times > 1;
   const std::size_t per_layer = moves ? volume.places : 1;
   const bool flat = volume.planes.size() == 1;
   const std::size_t columns = volume.files.front().columns;
   result.grid = moves ? with_last_axis(spatial.grid, volume.time) : std::move(spatial.grid);
+  // reader of layers
   Rescaling rescaling = rescaling_of(volume);
   const auto reader = std::make_shared<PlaneReader>(std::move(volume), std::move(rescaling));
   result.read = [reader, per_layer, flat, columns, progress](std::size_t first, std::size_t count) {

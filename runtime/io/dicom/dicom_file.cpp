@@ -380,6 +380,7 @@ bool begins_as_dicom(const fs::path& path) {
 
 std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   now_reading(path);
+  // load
   DcmFileFormat format;
   const auto damage = try_to_load(format, path, kSmallElement);
   if (damage && (format.getDataset() == nullptr || !format.getDataset()->tagExists(DCM_SeriesInstanceUID)))
@@ -387,6 +388,7 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   DcmItem& data = *format.getDataset();
   if (!damage && (!data.tagExists(DCM_Rows) || !data.tagExists(DCM_BitsAllocated))) return {};
   format.getDataset()->convertToUTF8();  // if the character set is declared and known
+  // series and sizes
   DicomFile file;
   file.path = path;
   file.series = text_of(data, DCM_SeriesInstanceUID);
@@ -398,6 +400,7 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   file.series_number = number_of(data, DCM_SeriesNumber).value_or(0);
   file.rows = static_cast<std::size_t>(number_of(data, DCM_Rows).value_or(0));
   file.columns = static_cast<std::size_t>(number_of(data, DCM_Columns).value_or(0));
+  // pixels; errors are stored
   try {
     file.frames.resize(1);  // at least one frame
     if (damage) throw *damage;
@@ -420,6 +423,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
   load(format, file.path, DCM_MaxReadLength);
   DcmDataset& data = *format.getDataset();
   const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
+  // decompress
   if (is_jpeg2000(data.getOriginalXfer())) return read_jpeg2000_frames(data, file);
   if (data.getOriginalXfer() == EXS_RLELossless) require_whole_rle(data, file);
   const DcmXfer syntax(data.getOriginalXfer());
@@ -427,6 +431,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
       !data.canWriteXfer(EXS_LittleEndianExplicit, data.getOriginalXfer()))
     fail(ErrorCode::MalformedFile, file.path, "pixels that cannot be decompressed; expected sound ones as {}",
          syntax.getXferName());
+  // copy the values
   ValueArray values = array_of_type(file.type);
   std::visit(
       [&]<class T>(ValueVector<T>& all) {

@@ -235,6 +235,7 @@ Header parse_header(const Fields& fields, std::uint64_t header_end, bool allow_o
 /// The matrix has one row per axis: the world direction of a step along it.
 RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& path) {
   const std::size_t n = header.sizes.size();
+  // directions
   Eigen::MatrixXd affine = Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   const std::string matrix = fields.first_of({"TransformMatrix", "Rotation", "Orientation"});
@@ -242,11 +243,13 @@ RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& pa
     const auto numbers = fields.numbers("TransformMatrix", matrix, n * n);
     affine = Eigen::Map<const Eigen::MatrixXd>(numbers.data(), affine.rows(), affine.cols());
   }
+  // origin
   const std::string origin = fields.first_of({"Offset", "Position", "Origin"});
   if (!origin.empty()) {
     const auto numbers = fields.numbers("Offset", origin, n);
     offset = Eigen::Map<const Eigen::VectorXd>(numbers.data(), offset.size());
   }
+  // spacing
   const std::string spacing = fields.first_of({"ElementSpacing", "ElementSize"});
   if (!spacing.empty()) {
     const auto numbers = fields.numbers("ElementSpacing", spacing, n);
@@ -261,10 +264,12 @@ StoredImage open_metaimage(const fs::path& path, bool allow_outside_paths) {
   std::uint64_t header_end = 0;
   const Fields fields = read_fields(path, header_end);
   Header header = parse_header(fields, header_end, allow_outside_paths, path);
+  // grid
   StoredImage image;
   image.grid = make_grid(fields, header, path);
   image.info.format = "MetaImage";
   image.info.stored_type = header.type.name;
+  // frame and units
   const std::string anatomy = fields.first_of({"AnatomicalOrientation"});
   const bool anatomical = !anatomy.empty() && anatomy.find('?') == std::string::npos;
   if (anatomical) image.info.world_frame = "LPS";

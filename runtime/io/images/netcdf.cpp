@@ -318,6 +318,7 @@ struct VariableGrid {
 
 VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
   VariableGrid result;
+  // axes in the order of the file, from the fastest
   std::vector<Axis>& axes = result.grid.axes;
   std::vector<bool> is_time;
   std::vector<std::size_t> dimension_of;
@@ -332,6 +333,7 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcS
     is_time.push_back(read.is_time);
     dimension_of.push_back(d);
   }
+  // move time, or else the slowest axis, to the end
   const auto found = is_time.back() ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
   const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
   const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
@@ -411,10 +413,12 @@ NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::siz
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
+  // header
   const NcFile file(path, options.progress, options.allow_outside_paths);
   Found found = find_variable(file, options);
   VariableGrid grid = read_grid(file, found.variable, found.slab);
   found.info.axis_directions = std::move(grid.directions);
+  // values
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;

@@ -125,6 +125,7 @@ bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UI
 
 NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outside_paths) : path_(path) {
   now_reading(path);
+  // check the file before the library opens it
   if (is_gzip(path)) content_ = inflate_netcdf(path, progress);
   const std::vector<unsigned char> start = content_.empty() ? read_bytes(path, 0, 8) : std::vector<unsigned char>();
   const auto all = std::span<const unsigned char>(content_.empty() ? start : content_);
@@ -273,6 +274,7 @@ void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::si
   const std::size_t block = block_length(variable, along);
   std::size_t step = std::min(kBlockBytes / std::max<std::size_t>(1, layer_bytes), kBlockChunks / layer_chunks * block);
   step = std::max<std::size_t>(1, (step + block - 1) / block) * block;
+  // read
   NcSlab part = slab;
   const std::size_t layers = slab.count[along];
   for (std::size_t first = 0; first < layers; first += step) {

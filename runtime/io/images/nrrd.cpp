@@ -478,9 +478,11 @@ void require_sound_rest(const Fields& fields, const Header& header, const Space&
 }
 
 RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, const fs::path& path) {
+  // geometry without directions
   std::vector<double> steps;
   std::vector<double> origins;
   scalar_geometry(fields, header, steps, origins, path);
+  // order of the axes
   std::vector<std::size_t> order;  // file axes in the order of the image's axes
   for (std::size_t a = 0; a < header.kept.size(); ++a)
     if (header.kept[a]) order.push_back(a);
@@ -495,10 +497,12 @@ RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, cons
     affine(i, i) = steps[a];
     offset[i] = origins[a];
   }
+  // directions
   const Space space = read_space(fields, path);
   if (space.dimension > 0 && spatial_geometry(fields, space, header.kept, affine, offset, path) && space.anatomical)
     frame = "LPS";
   RawGrid grid = affine_grid(sizes, affine, offset, path);
+  // names, units, other fields
   label_axes(fields, header, space, grid, path);
   name_axes(grid);
   require_sound_rest(fields, header, space, path);

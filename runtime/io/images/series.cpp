@@ -262,6 +262,7 @@ void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::p
 
 /// Opens the series with one file per layer.
 LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options) {
+  // headers, coordinates and grid
   std::vector<Member> members = read_headers(files, options);
   auto [last, direction] = make_axis(members, options);
   RawLayers result;
@@ -271,6 +272,7 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
   if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
   std::vector<fs::path> paths;
   for (const Member& member : members) paths.push_back(member.path);
+  // reader of layers
   const auto sizes = sizes_of(first);
   const std::size_t layer =
       std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });

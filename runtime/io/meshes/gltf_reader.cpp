@@ -406,6 +406,7 @@ class GltfReader {
 
   void read_primitive(const Json& primitive, const Eigen::Affine3d& place) {
     const auto first = static_cast<std::size_t>(mesh_.coordinates.size() / 3);
+    // vertices
     const Json& attributes = member(primitive, "attributes");
     const View points =
         vectors(attributes, "POSITION", mesh_.coordinates, [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
@@ -413,6 +414,7 @@ class GltfReader {
         });
     if (attributes.contains("NORMAL")) read_normals(attributes, place, points.count);
     read_attributes(attributes, points.count);
+    // simplices
     const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
     const bool indexed = primitive.contains("indices");
     View indices;
@@ -490,6 +492,7 @@ class GltfReader {
     const auto is_whole = [&](const Attribute& attribute) {
       return attribute.values.size() == mesh_.coordinates.size() / 3 * static_cast<std::size_t>(attribute.width);
     };
+    // attributes of the writer, in its order
     FileNames names({});
     std::vector<bool> taken(attributes_.size(), false);
     const Json& meshes = member(json_, "meshes");
@@ -504,6 +507,7 @@ class GltfReader {
       attribute.name = names.make(attribute.name);
       attribute.unit = text_at(text, "unit");
     }
+    // other attributes
     for (std::size_t i = 0; i < attributes_.size(); ++i) {
       if (taken[i] || !is_whole(attributes_[i])) continue;
       attributes_[i].name = names.make(attributes_[i].name.empty() ? "_" : attributes_[i].name);

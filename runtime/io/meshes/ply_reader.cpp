@@ -384,6 +384,7 @@ class PlyReader {
   /// Reads faces, triangulated as fans from their first vertex, or edges.
   void read_simplices(const Element& element) {
     const bool face = element.name == "face";
+    // columns
     std::size_t list = element.index_of("vertex_indices");
     if (list >= element.properties.size()) list = element.index_of("vertex_index");
     const std::size_t first = element.index_of("vertex1");
@@ -401,6 +402,7 @@ class PlyReader {
     mesh_.simplices.reserve(static_cast<std::size_t>(simplices) * (face ? 3 : 2));
     CopyLimit limit(path_, bytes_.size());
     const std::uint64_t copied = attributes.bytes();
+    // read and triangulate
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_item(element, list, item);
       if (!face) item.list = {item.scalars[first], item.scalars[second]};

@@ -251,6 +251,7 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
              mesh.isovalue, mesh.single_precision,
              mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
              compression});
+  // progress
   std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
     for (const Attribute& attribute : *attributes) all += attribute.values.size();
@@ -261,6 +262,7 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
       append(values.subspan(at, std::min(most, values.size() - at)));
     }
   };
+  // points, normals, simplices
   in_blocks(std::span<const double>(mesh.coordinates), 0, static_cast<std::size_t>(mesh.space_dim),
             [&](std::span<const double> part) { writer.append_vertices(part); });
   in_blocks(std::span<const double>(mesh.normals), mesh.coordinates.size(), static_cast<std::size_t>(mesh.space_dim),
@@ -268,6 +270,7 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size() + mesh.normals.size(),
             static_cast<std::size_t>(mesh.dim) + 1,
             [&](std::span<const Index> part) { writer.append_simplices(part); });
+  // attributes
   std::size_t done = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   const auto append_attributes = [&](const char* group, const std::vector<Attribute>& attributes) {
     for (std::size_t i = 0; i < attributes.size(); ++i) {

@@ -117,6 +117,7 @@ std::string header(const VtuGrid& grid, FileSizes sizes, Compression compression
 
 void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress,
                Compression compression) {
+  // arrays in the order of the file
   std::vector<const VtuArray*> arrays;
   for (const VtuArray& array : grid.point_arrays) arrays.push_back(&array);
   for (const VtuArray& array : grid.cell_arrays) arrays.push_back(&array);
@@ -125,6 +126,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
   double all = 1.0, done = 0.0;
   for (const VtuArray* const array : arrays) all += static_cast<double>(byte_count(*array));
   const bool is_compressed = compression != Compression::none;
+  // compress, or compute sizes
   std::vector<CompressedArray> compressed;
   std::vector<std::uint64_t> sizes;
   for (const VtuArray* const array : arrays) {
@@ -137,6 +139,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
     sizes.push_back(is_compressed ? compressed.back().file_bytes() : sizeof(std::uint64_t) + byte_count(*array));
   }
 
+  // write
   OutputFile file(path);
   file.write(header(grid, FileSizes(std::move(sizes)), compression));
   for (const CompressedArray& array : compressed) array.write(file);

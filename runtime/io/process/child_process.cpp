@@ -239,6 +239,7 @@ Package ChildProcess::wait(const Progress& progress, bool shared) {
   };
   has_progressed();
   tick(progress, fraction, path_);
+  // handle messages until the result
   for (;;) {
     pollfd waiting{socket_, POLLIN, 0};
     if (poll(&waiting, 1, kMilliseconds) <= 0) {
@@ -299,7 +300,7 @@ Package ChildProcess::receive(const Progress& progress, Blocks blocks) {
 void ChildProcess::fail_contradiction() { fail_damaged("gave a result that contradicts itself"); }
 
 void ChildProcess::request(const LayerRequest& request) {
-  if (getpid() != owner_ || pid_ <= 0) return;  // receive() says so
+  if (getpid() != owner_ || pid_ <= 0) return;  // receive() throws in this case
   send(socket_, &request, sizeof(request), MSG_NOSIGNAL);
 }
 

@@ -269,10 +269,12 @@ void expect_step(std::uint64_t bytes) {
 }
 
 void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildWork& work) noexcept {
+  // isolate this process from the parent
   parent_process = parent;
   reset_signals();
   forbid_core_files();
   allow_large_blocks();
+  // work
   try {
     close_inherited(socket);
     silence();

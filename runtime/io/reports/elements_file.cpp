@@ -156,6 +156,7 @@ void write_hdf5(const Elements<N>& elements, const fs::path& path, const Element
   const H5Quiet quiet;
   PendingPath pending(path);
   H5File file = H5File::create(pending.path(), path);
+  // names and units of columns
   const std::array<int, N> order = order_of<N>(options);
   std::string axes, units, component_units;
   for (int i = 0; i < N; ++i) {
@@ -165,12 +166,14 @@ void write_hdf5(const Elements<N>& elements, const fs::path& path, const Element
     component_units += unit_of_component(elements, order[i]) + end;
   }
   {
+    // attributes of the file
     const H5Handle root = file.open_group("/");
     file.put_text(root.id(), "format", "tegl elements 1");
     file.put_text(root.id(), "axes", axes);
     file.put_text(root.id(), "components",
                   options.components == ElementComponents::covariant ? "covariant" : "contravariant");
     file.put_text(root.id(), "direction", elements.direction == GradientDirection::descent ? "descent" : "ascent");
+    // datasets
     const std::size_t count = elements.centroids.size();
     tick(options.progress, 0.0, path);
     put_numbers(file, root.id(), "centroid", count, N, units,

@@ -83,6 +83,7 @@ class Rows {
  public:
   explicit Rows(const TrackGraph& graph)
       : graph_(graph), above_(graph.tracks.size()), below_(graph.tracks.size()), rows_(graph.tracks.size()) {
+    // attach each track to the one that it splits off from or merges into, without cycles
     std::vector<Index> hosts(graph.tracks.size(), kNone);
     for (Index t = 0; t < hosts.size(); ++t) {
       const TrackEvent& start = graph.events[graph.segments[graph.tracks[t].segments.front()].from];
@@ -94,6 +95,7 @@ class Rows {
       else if (goal != kNone && !leads_to(hosts, goal, t))
         above_[hosts[t] = goal].push_back(t);
     }
+    // place tracks that are not attached, with all that are attached to them
     for (Index t = 0; t < hosts.size(); ++t)
       if (hosts[t] == kNone) place(t);
   }
