@@ -33,9 +33,9 @@ struct ExtractOptions {
   /// Closes the contour at the image border by caps: the high part of the border itself. At missing values inside the
   /// image the contour stays open.
   bool close = false;
-  /// Minimum distance of a vertex from the samples of its edge, as a fraction of the edge, in [0, 0.5). 0: exact
-  /// positions; a sample that equals the isovalue gives simplices of zero size. With any value, four vertices of a
-  /// compact 4D tile may be coplanar.
+  /// Keeps the points on edges at least this share of an edge away from the samples, in [0, 0.5). 0: exact positions; a
+  /// sample that equals the isovalue gives simplices of zero size. With any value, four vertices of a compact 4D tile
+  /// may be coplanar.
   double epsilon = 0.0;
   /// Computes vertex normals: along the image's gradient, on the side of `direction`; of length 1, or 0 if the gradient
   /// is zero. The gradient at a sample follows `gradient`; at the image border and next to missing values one-sided
@@ -63,7 +63,7 @@ struct ExtractStats {
   double close_seconds = 0;        ///< to make caps
 };
 
-/// Extracts the contour {value = isovalue} of an image. It separates high samples (>= isovalue) from low ones.
+/// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
 /// The contour is an oriented manifold whatever the values. It has a boundary only at the image border and at missing
 /// values. If tiles next to missing values share only an edge or a square of the grid, the vertices there are doubled

@@ -131,7 +131,7 @@ struct TrackOptions {
 /// The midpoints of `count` equal intervals of [first, last].
 std::vector<double> even_times(double first, double last, std::size_t count);
 
-/// Tracks the parts (connected components) of the cuts {last coordinate = t} of a contour for increasing t. N = 4:
+/// Follows the parts (connected components) of the cuts {last coordinate = t} of a contour for increasing t. N = 4:
 /// parts of moving surfaces; N = 3: parts of moving lines.
 ///
 /// The result is exactly the Reeb graph of the last coordinate t on the contour. Between two events, each segment is
