@@ -43,11 +43,10 @@ struct ValueStatistics {
   double min = 0;  ///< NaN, with mean and deviation, if there is no finite value
   double max = 0;
   double mean = 0;
-  double deviation = 0;  ///< of the population (divided by n)
-  std::vector<std::pair<double, double>>
-      percentiles;                      ///< (p, value): the smallest sample with >= p % of samples at or below it
-  Histogram histogram;                  ///< at most 65535 bins; integers: one per bin if they fit
-  std::vector<Suggestion> suggestions;  ///< empty if all values are equal
+  double deviation = 0;                                ///< of the population (divided by n)
+  std::vector<std::pair<double, double>> percentiles;  ///< (p, value): smallest sample with >= p % at or below it
+  Histogram histogram;                                 ///< at most 65535 bins; integers: one per bin if they fit
+  std::vector<Suggestion> suggestions;                 ///< empty if all values are equal
 
   [[nodiscard]] std::uint64_t finite() const { return samples - missing - infinite; }
 };

@@ -225,8 +225,7 @@ std::string PageNumbers::packed(const Progress& progress) const {
   bool is_cancelled = false;
   for (std::size_t at = 0; !is_cancelled && at <= bytes_.size(); at += kPiece) {
     const std::size_t count = std::min(kPiece, bytes_.size() - at);
-    stream.next_in =
-        reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data() + at));  // zlib does not write to its input
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes_.data() + at));  // zlib does not write there
     stream.avail_in = static_cast<uInt>(count);
     const int flush = at + kPiece > bytes_.size() ? Z_FINISH : Z_NO_FLUSH;
     do {

@@ -75,8 +75,7 @@ struct SimplifyOptions {
   bool measure = true;
   /// fast: accept non-manifold results.
   bool allow_nonmanifold = false;
-  unsigned threads =
-      0;  ///< number of threads for the bounds; 0: all of the machine. The result is the same, byte by byte.
+  unsigned threads = 0;    ///< for the bounds; 0: all of the machine. The result is the same, byte by byte.
   Progress progress = {};  ///< see Progress
 
  private:

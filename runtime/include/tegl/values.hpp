@@ -65,9 +65,8 @@ class Values {
   Values(detail::ValueVector<T> values) noexcept : held_(std::move(values)) {  ///< moves the samples
     refresh();
   }
-  explicit Values(std::size_t count, T value = T())
-      : Values(std::vector<T>(count, value)) {}                                ///< `count` equal samples
-  Values(std::initializer_list<T> values) : Values(std::vector<T>(values)) {}  ///< these samples
+  explicit Values(std::size_t count, T value = T()) : Values(std::vector<T>(count, value)) {}  ///< equal samples
+  Values(std::initializer_list<T> values) : Values(std::vector<T>(values)) {}                  ///< these samples
   template <std::input_iterator It>
   Values(It first, It last) : Values(std::vector<T>(first, last)) {}             ///< copies a range
   Values(const Values& other) : held_(other.held_) { refresh(); }                ///< a copy

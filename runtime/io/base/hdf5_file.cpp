@@ -210,8 +210,7 @@ H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std
   const std::array<hsize_t, 2> size = {0, columns};
   const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
   const hsize_t most_rows = kChunkBytes / (H5Tget_size(file_type) * std::max<hsize_t>(1, columns));
-  const std::array<hsize_t, 2> chunk = {std::clamp<hsize_t>(expected, 1, most_rows),
-                                        columns};  // chunks are stored whole
+  const std::array<hsize_t, 2> chunk = {std::clamp<hsize_t>(expected, 1, most_rows), columns};  // stored whole
   const H5Handle space = checked(H5Screate_simple(rank, size.data(), most.data()), H5Sclose, "creating a dataset");
   const H5Handle options = timeless(H5P_DATASET_CREATE);
   checked(H5Pset_chunk(options.id(), rank, chunk.data()), "creating a dataset");

@@ -36,8 +36,7 @@ class OutputFile {
   };
   PendingPath pending_;
   std::vector<char> buffer_;
-  std::unique_ptr<std::FILE, CloseFile>
-      file_;  ///< declared after pending_, so it is closed before that removes the file
+  std::unique_ptr<std::FILE, CloseFile> file_;  ///< after pending_: closed before that removes the file
 };
 
 }  // namespace tegl::io_detail

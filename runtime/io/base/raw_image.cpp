@@ -98,8 +98,7 @@ RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd
     grid.linear.col(a) = affine.col(a) / step;
     grid.offset(a) = offset(a);
   }
-  constexpr double kSmallestVolume =
-      1e-9;  // volume of the parallelepiped of unit columns; axes nearly coincide below this
+  constexpr double kSmallestVolume = 1e-9;  // of the parallelepiped of unit columns; below it axes nearly coincide
   if (!(std::abs(grid.linear.determinant()) > kSmallestVolume))
     fail(ErrorCode::MalformedFile, path, "orientation of determinant {}; expected axes in independent directions",
          grid.linear.determinant());

@@ -304,8 +304,7 @@ void require_decodable(DcmFileFormat& format, const fs::path& path) {
   const E_TransferSyntax stored_as = format.getDataset()->getOriginalXfer();
   const DcmXfer syntax(stored_as);
   const std::string told = text_of(*format.getMetaInfo(), DCM_TransferSyntaxUID);
-  const bool known = told.empty() || DcmXfer(told.c_str()).getXfer() !=
-                                         EXS_Unknown;  // DCMTK would read unknown syntaxes as uncompressed
+  const bool known = told.empty() || DcmXfer(told.c_str()).getXfer() != EXS_Unknown;  // else read as plain
   const bool elsewhere = stored_as == EXS_JPIPReferenced || stored_as == EXS_JPIPReferencedDeflate;
   const bool decodable = !syntax.isEncapsulated() ||
                          DcmCodecList::canChangeCoding(stored_as, EXS_LittleEndianExplicit) ||

@@ -227,8 +227,7 @@ class Scan {
 /// The file meta information: elements of group 2, always explicit and little endian.
 struct Meta {
   std::uint64_t start = 0;
-  std::vector<std::uint64_t>
-      data_sets;  ///< possible starts of the data set: the end of group 2, or as its lengths state
+  std::vector<std::uint64_t> data_sets;  ///< possible starts of the data set: end of group 2, or as stated
   bool is_deflated = false;
 };
 

@@ -48,8 +48,7 @@ class HeaderWalk {
     std::uint64_t begin;
     bool record;
   };
-  static constexpr std::uint64_t kLongestName =
-      256;  // NC_MAX_NAME: buffers of the library and its users have this size
+  static constexpr std::uint64_t kLongestName = 256;  // NC_MAX_NAME: the size of buffers in the library and its users
   static constexpr std::uint64_t kMostDimensions = 1024;  // of a variable: NC_MAX_VAR_DIMS
   static constexpr std::uint64_t kMostItems = 65536;      // of a list: a generous limit
 

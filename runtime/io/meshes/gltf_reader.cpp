@@ -291,8 +291,7 @@ class GltfReader {
     std::uint64_t primitives = 0;
     std::uint64_t vertices = 0;
     std::uint64_t corners = 0;
-    std::uint64_t bytes =
-        0;  ///< memory of all of them, with attributes and an allowance for the time of each primitive
+    std::uint64_t bytes = 0;  ///< memory of all, with attributes and a time allowance per primitive
   };
 
   /// Counts the vertices and simplices of all instances, before any are made.

@@ -106,8 +106,8 @@ void* ChildMemory::allocate(std::size_t bytes) noexcept {
     return kept->begin;
   }
   if (in_blocks_ + bytes > allowed_) free_unused(0);
-  if (in_blocks_ + bytes > allowed_)
-    return nullptr;  // the caller then allocates private memory, which the kernel's limit refuses
+  // Without a block the caller allocates private memory, which the kernel's limit refuses.
+  if (in_blocks_ + bytes > allowed_) return nullptr;
   void* begin = nullptr;
   const int file = create_memory_file(bytes, begin);
   if (file < 0) return nullptr;
