@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements output to terminals and other streams.
 #include "base/console.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Maps error codes to exit codes, and formats their table.
 #include "base/exit_codes.hpp"
 
 namespace tegl::cli {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the handling of signals that end the program.
 #include "base/interrupt.hpp"
 
 #include <fcntl.h>
@@ -23,12 +25,12 @@ constexpr int kTimeIsUp = SIGALRM;
 constexpr long kGraceNanoseconds = 250'000'000;
 constexpr long kRetryNanoseconds = 10'000'000;
 
-// A signal handler can reach static storage only; lock-free, so safe inside of it and from any thread.
+// A signal handler can only access static storage. Lock-free atomics are safe in it and in any thread.
 std::atomic<int> first_signal{0};
 std::atomic<int> undivided_steps{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
-// Set before the handlers are, and constant while they are.
+// Set before the handlers are installed, and constant while they are.
 std::string farewell_text;
 pid_t owner = 0;
 timer_t timer{};
@@ -53,8 +55,8 @@ void set_timer(long nanoseconds) noexcept {
 
 extern "C" void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   const int own_errno = errno;
-  if (getpid() != owner) end_by_signal(signal);  // a child process, which has outputs of its own
-  // The system sends SIGPIPE in the writer's own name.
+  if (getpid() != owner) end_by_signal(signal);  // in a child process, which has its own outputs
+  // For a failed write, the sender of SIGPIPE is this process itself.
   const bool of_own_write = signal == SIGPIPE && info->si_pid == owner;
   int none = 0;
   if (!of_own_write) {
@@ -118,7 +120,7 @@ void end_by_signal(int signal) noexcept {
   sigset_t only;
   sigemptyset(&only);
   sigaddset(&only, signal);
-  // To the process, not the thread: a handler may run in any.
+  // to the process and not a thread: a handler may run in any thread
   kill(getpid(), signal);
   pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
   constexpr int kBase = 128;
@@ -128,7 +130,7 @@ void end_by_signal(int signal) noexcept {
 void occupy_closed_streams() noexcept {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) == -1 && errno == EBADF)
-      // The lowest number that is free is this one. Reports must not seem to be written.
+      // open() returns the lowest free descriptor: this one. Standard output is read-only, so writes to it still fail.
       static_cast<void>(open("/dev/null", stream == STDOUT_FILENO ? O_RDONLY : O_WRONLY));
 }
 

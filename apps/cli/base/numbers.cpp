@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements conversion between numbers and text.
 #include "base/numbers.hpp"
 
 #include <fmt/format.h>
@@ -103,7 +105,7 @@ std::string byte_size(std::uint64_t bytes) {
   constexpr std::array<const char*, 4> kUnits = {"kB", "MB", "GB", "TB"};
   double size = static_cast<double>(bytes) / 1000;
   std::size_t unit = 0;
-  // 999.95 would print as "1000.0".
+  // 999.95 would be printed as "1000.0".
   while (size >= 999.95 && unit + 1 < kUnits.size()) {
     size /= 1000;
     ++unit;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
+// Implements escapes for text that must not control the terminal.
+//
 // Based on: The Unicode Standard, version 15, sections 3.9 (well-formed UTF-8, table 3-7) and 23.2 (bidirectional
 // ordering controls).
 #include "base/printable.hpp"
@@ -15,14 +17,14 @@ namespace tegl::cli {
 
 namespace {
 
-/// A character of a text, or a byte that is none.
+/// A character of a text, or an invalid byte.
 struct Character {
   std::uint32_t code = 0;
   std::size_t bytes = 1;
   bool is_valid = true;
 };
 
-/// The character that the text, which is not empty, begins with.
+/// The first character of a non-empty text.
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
   const std::uint32_t lead = byte(0);
@@ -43,7 +45,7 @@ Character first_character(std::string_view text) {
 
 bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
 
-/// Characters without a glyph that change how others are laid out.
+/// Whether a character has no glyph and changes the layout of others.
 bool changes_layout(std::uint32_t code) {
   constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 5> kRanges = {
       {{0x61c, 0x61c}, {0x200e, 0x200f}, {0x2028, 0x2029}, {0x202a, 0x202e}, {0x2066, 0x2069}}};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the progress bar.
 #include "base/progress.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +28,7 @@ Progress ProgressBar::stage(std::string name) {
 void ProgressBar::draw(double fraction) {
   constexpr auto kInterval = std::chrono::milliseconds(50);
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock) return;  // another thread is drawing just now
+  if (!lock) return;  // another thread is drawing
   const auto now = std::chrono::steady_clock::now();
   if (now - last_ < kInterval) return;
   last_ = now;
@@ -38,7 +40,7 @@ std::string ProgressBar::text(double fraction) const {
   constexpr int kMostCells = 60;
   const std::string share = fmt::format("{:3.0f} %", 100 * fraction);
   const std::string name = fmt::format("{:<10}", name_);
-  // A line that is full goes on in the next one, where it stays.
+  // A full line would wrap to the next one and stay there.
   const int room = console_->width() - 1;
   const int cells = std::min(kMostCells, room - static_cast<int>(name.size() + share.size()) - 4);
   if (cells >= 4) {

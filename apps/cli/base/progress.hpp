@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Progress on a terminal: with interrupt.hpp the callback that every long operation takes.
+// Progress bar on a terminal. With interrupt.hpp it is the progress callback of all long operations.
 #pragma once
 
 #include <chrono>
@@ -13,8 +13,8 @@
 
 namespace tegl::cli {
 
-/// A bar on a terminal, one stage of the work after the other; draws nothing elsewhere, nor where a terminal cannot
-/// write over it. In narrow windows it is a number, or nothing.
+/// A progress bar on a terminal, one stage after the other. Draws nothing on other streams, nor on terminals without
+/// cursor movement. In narrow windows it is a number, or nothing.
 class ProgressBar {
  public:
   ProgressBar(const Console& console, bool wanted) : console_(&console), draw_(wanted && console.moves_its_cursor()) {}
@@ -22,9 +22,9 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Starts a stage, and returns the callback for it: draws at most 20 times a second, and returns false
-  /// once an interrupt was requested. Throws Cancelled if one is already. The callback may come from any
-  /// thread and must not outlive the bar.
+  /// Starts a stage and returns its callback, which draws at most 20 times a second and returns false once an interrupt
+  /// is requested. Throws Cancelled if one already is. The callback may be called by any thread and must not outlive
+  /// the bar.
   Progress stage(std::string name);
 
   /// Removes the bar from the terminal.
@@ -42,7 +42,7 @@ class ProgressBar {
   std::mutex mutex_;
 };
 
-/// Seconds since it was made, or since the last lap.
+/// Measures seconds since construction or since the last lap.
 class Stopwatch {
  public:
   double lap();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Computes statistics of values, histograms and suggested isovalues.
 #include "base/statistics.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +27,7 @@ bool is_finite(T value) {
   }
 }
 
-/// Fills the counts and the range.
+/// Computes the counts and the range.
 template <class T>
 void measure_range(std::span<const T> values, ValueStatistics& result) {
   T low = std::numeric_limits<T>::max();
@@ -46,7 +48,7 @@ void measure_range(std::span<const T> values, ValueStatistics& result) {
   result.max = any ? static_cast<double>(high) : kNan;
 }
 
-/// Mean and deviation, from sums around the middle of the range, block by block so that no digits drown.
+/// Computes mean and deviation, from sums relative to the middle of the range, block by block to limit rounding errors.
 template <class T>
 void measure_moments(std::span<const T> values, ValueStatistics& result) {
   constexpr std::size_t kBlock = 4096;
@@ -80,12 +82,12 @@ struct Binning {
 
   [[nodiscard]] std::size_t operator()(double value) const {
     const double at = (value - low) * per_unit;
-    if (!(at > 0)) return 0;  // NaN too: a range that overflows has one bin
+    if (!(at > 0)) return 0;  // also for NaN: a range that overflows has one bin
     return at < static_cast<double>(bins) ? static_cast<std::size_t>(at) : bins - 1;
   }
 };
 
-/// One bin per number for whole numbers if there are not too many, else equal parts of the range.
+/// One bin per integer if there are not too many, else equal parts of the range.
 template <class T>
 Binning make_binning(const ValueStatistics& result) {
   constexpr std::size_t kParts = 4096;
@@ -110,11 +112,12 @@ Histogram make_histogram(std::span<const T> values, const Binning& binning) {
   return histogram;
 }
 
-/// Exact percentiles. The histogram tells the bin that holds each rank; a bin of one whole number is the
-/// answer, otherwise the samples in those bins alone are gathered and partially put in order. Bins grow with
-/// the value, so the samples of all of them together keep their order.
+/// Exact percentiles. The histogram gives the bin of each rank. A bin of one integer is the result itself; otherwise
+/// only the samples in those bins are collected and partially sorted. Values increase with the bin number, so the
+/// collected samples of all bins can be ordered together.
 template <class T>
 void measure_percentiles(std::span<const T> values, const Binning& binning, ValueStatistics& result) {
+  // bin of each rank
   const auto& counts = result.histogram.counts;
   std::vector<bool> wanted(counts.size());
   std::vector<std::pair<std::uint64_t, std::size_t>> targets;  // (rank among the finite samples, its bin)
@@ -127,6 +130,7 @@ void measure_percentiles(std::span<const T> values, const Binning& binning, Valu
     targets.emplace_back(from_zero, bin);
     wanted[bin] = true;
   }
+  // samples in these bins
   std::vector<T> candidates;
   const bool exact_bins = std::is_integral_v<T> && binning.width <= 1;
   if (!exact_bins) {
@@ -134,7 +138,7 @@ void measure_percentiles(std::span<const T> values, const Binning& binning, Valu
       if (is_finite(value) && wanted[binning(static_cast<double>(value))]) candidates.push_back(value);
     }
   }
-  std::uint64_t skipped = 0;  // samples in bins that are not wanted, below the current one
+  std::uint64_t skipped = 0;  // samples in other bins below the current one
   std::size_t done = 0;
   auto ordered_to = candidates.begin();
   for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -151,15 +155,15 @@ void measure_percentiles(std::span<const T> values, const Binning& binning, Valu
   }
 }
 
-/// For each threshold k (bins below k against the others), k in [1, bins): how many grid edges it cuts and the
-/// sum of |V(a) - V(b)| over them.
+/// For each threshold k in [1, bins), which separates bins below k from the others: the number of grid edges that it
+/// cuts, and the sum of |V(a) - V(b)| over them.
 struct Spectrum {
   std::vector<std::int64_t> edges;
   std::vector<double> steps;
 };
 
-/// Adds +1 and +|step| from the edge's lower bin on and takes them back at its upper bin; a running sum over
-/// the bins then gives every threshold's totals. O(1) per edge.
+/// Adds +1 and +|step| at the edge's lower bin and subtracts them at its upper bin; prefix sums over the bins then give
+/// the totals of every threshold. O(1) per edge.
 template <class T>
 Spectrum make_spectrum(std::span<const T> values, std::span<const std::size_t> sizes, const Binning& binning) {
   Spectrum spectrum{std::vector<std::int64_t>(binning.bins + 1), std::vector<double>(binning.bins + 1)};
@@ -190,7 +194,7 @@ Spectrum make_spectrum(std::span<const T> values, std::span<const std::size_t> s
   return spectrum;
 }
 
-/// Otsu's threshold: the k with the greatest between-class variance w0 w1 (m0 - m1)^2.
+/// Otsu's threshold: the k with the maximum between-class variance w0 w1 (m0 - m1)^2.
 std::size_t otsu_threshold(const std::vector<std::uint64_t>& counts) {
   double total = 0;
   double total_sum = 0;
@@ -216,12 +220,12 @@ std::size_t otsu_threshold(const std::vector<std::uint64_t>& counts) {
     }
     if (variance == best) last = k;
   }
-  // Empty bins between the classes make a plateau: its middle is as far from both as can be.
+  // Empty bins between the classes give a plateau; its middle has the greatest distance from both.
   return first + (last - first) / 2;
 }
 
-/// The threshold with the greatest mean step. At most 256 thresholds are tried, so that each has samples
-/// enough for its mean, and the tiny contours of extreme values, all noise, are left out.
+/// The threshold with the maximum mean step. At most 256 thresholds are tested, so that each has enough samples, and
+/// the small contours of extreme values, which are noise, are excluded.
 std::optional<std::size_t> contrast_threshold(const Spectrum& spectrum, std::size_t bins) {
   constexpr std::size_t kTried = 256;
   constexpr double kLeastShare = 0.25;
@@ -243,10 +247,10 @@ std::optional<std::size_t> contrast_threshold(const Spectrum& spectrum, std::siz
   return best;
 }
 
-/// The value as people would type it: a thousandth of the range is sharp enough.
+/// Rounds a value to about a thousandth of the range.
 double rounded(double value, double range) {
   const double unit = std::pow(10.0, std::floor(std::log10(range)) - 3);
-  // Division by the inverse keeps decimal fractions short: 20.1, not 20.1000000003.
+  // Dividing by the inverse keeps decimal fractions short: 20.1, not 20.1000000003.
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
@@ -263,13 +267,13 @@ void suggest(const Binning& binning, const Spectrum& spectrum, ValueStatistics& 
     if (!(value > result.min && value <= result.max)) return;
     const auto same = [&](const Suggestion& other) { return other.value == value; };
     if (std::any_of(result.suggestions.begin(), result.suggestions.end(), same)) return;
-    // Threshold k lies between bin k - 1 and bin k.
+    // Threshold k lies between bins k - 1 and k.
     const std::size_t k =
         std::clamp<std::size_t>(binning(value) + (std::is_integral_v<T> ? 1 : 0), 1, binning.bins - 1);
     if (spectrum.edges[k] <= 0) return;
     result.suggestions.push_back({value, std::move(method), static_cast<std::uint64_t>(spectrum.edges[k])});
   };
-  // Whole numbers: threshold k separates low + k - 1 from low + k; `add` moves to the middle.
+  // Integers: threshold k separates low + k - 1 from low + k; `add` moves it to the middle.
   const auto at = [&](std::size_t k) {
     return binning.low + binning.width * (static_cast<double>(k) - (std::is_integral_v<T> ? 0.5 : 0.0));
   };

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Finds similar words by edit distance, and unknown options.
 #include "base/suggestions.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +12,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// How many letters to insert, leave out, replace or exchange with their neighbour turn one word into the other.
+/// Edit distance: the number of insertions, deletions, replacements and exchanges of adjacent letters.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) rows[i][0] = i;
@@ -30,7 +32,7 @@ std::string_view without_dashes(std::string_view word) {
   return word;
 }
 
-/// "--iso" and "-o" of an option, with their dashes.
+/// The names of an option with their dashes, such as "--iso" and "-o".
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -38,7 +40,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// The option of that name, with its dashes; null if there is none.
+/// The option with this name, including dashes; null if there is none.
 const CLI::Option* option_called(const CLI::App& command, std::string_view name) {
   for (const CLI::Option* const option : command.get_options())
     for (const std::string& own : names_of(*option))
@@ -57,7 +59,7 @@ bool looks_like_option(std::string_view argument) {
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string_view wanted = without_dashes(word);
   std::optional<std::string> nearest;
-  std::size_t least = wanted.size() / 3 + 1;  // beyond what is taken
+  std::size_t least = wanted.size() / 3 + 1;  // first distance that is rejected
   for (const std::string& candidate : candidates) {
     const std::string_view name = without_dashes(candidate);
     if (name.size() < 2) continue;
@@ -81,7 +83,7 @@ std::optional<std::string> unknown_option(const CLI::App& command, const std::ve
     const std::string name = is_long ? argument.substr(0, argument.find('=')) : argument.substr(0, 2);
     const CLI::Option* const option = option_called(command, name);
     if (option == nullptr) return is_long ? name : argument;
-    // Of a short one the value may be joined to it.
+    // The value may be joined to a short option.
     const bool is_joined = is_long ? name.size() < argument.size() : argument.size() > 2;
     if (option->get_items_expected_min() > 0 && !is_joined) ++i;
   }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Formats tables as aligned columns and CSV.
 #include "base/table.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +13,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// Characters of a UTF-8 text.
+/// Number of characters of a UTF-8 text.
 std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));

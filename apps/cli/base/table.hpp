@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables: in columns for people, as CSV for programs.
+// Tables: aligned columns for display, and CSV.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace tegl::cli {
 
-/// A number to its last bit, as short as can be, for files.
+/// A number with the fewest digits that read back as the same double.
 std::string exact_number(double value);
 
 /// Rows of cells under headings.
 struct Table {
   std::vector<std::string> headings;
-  std::vector<std::vector<std::string>> rows;  ///< each as many cells as there are headings
+  std::vector<std::vector<std::string>> rows;  ///< each row has as many cells as there are headings
 
-  /// Columns aligned to the right, two spaces between them, indented by two; the first `most` rows. Cells are made
+  /// The first `most` rows in right-aligned columns, separated by two spaces and indented by two. Cells are made
   /// printable.
   [[nodiscard]] std::string to_text(std::size_t most) const;
-  /// Lines of cells with commas between them (RFC 4180: quotes where a cell needs them), headings first.
+  /// CSV, headings first (RFC 4180: cells are quoted if necessary).
   [[nodiscard]] std::string to_csv() const;
 };
 

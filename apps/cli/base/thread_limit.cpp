@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements ThreadLimit: starts threads to find how many the system allows.
 #include "base/thread_limit.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +18,10 @@ namespace tegl::cli {
 
 namespace {
 
-/// Threads that wait until all are there.
+/// Threads that wait until all have started.
 class Gate {
  public:
-  /// Starts up to `most` threads, waits for their end, and returns how many there were.
+  /// Starts up to `most` threads, waits for their end, and returns their number.
   static std::size_t try_threads(std::size_t most) {
     Gate gate;
     pthread_attr_t small;
@@ -66,7 +68,7 @@ ThreadLimit::ThreadLimit(unsigned threads) {
 ThreadLimit::~ThreadLimit() = default;
 
 bool is_of_threads(const std::exception& error) {
-  // TBB and the standard library say so in words.
+  // TBB and the standard library report the reason only in the text.
   const std::string_view text = error.what();
   return text.find("pthread_create") != std::string_view::npos || text == std::strerror(EAGAIN);
 }

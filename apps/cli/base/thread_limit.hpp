@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Threads where the system limits how many there may be (ulimit -u, control groups).
+// Adapts to system limits of the number of threads (ulimit -u, control groups).
 #pragma once
 
 #include <exception>
@@ -9,16 +9,16 @@
 
 namespace tegl::cli {
 
-/// Keeps the program, as long as it lives, to as many threads as can be started.
+/// While it exists, limits the program to the number of threads that can be started.
 class ThreadLimit {
  public:
-  /// Tries to start so many threads, 0 for all that the machine has. If all of them start, nothing is limited.
+  /// Tries to start `threads` threads, 0 for all of the machine. If all of them start, nothing is limited.
   explicit ThreadLimit(unsigned threads);
   ~ThreadLimit();
   ThreadLimit(const ThreadLimit&) = delete;
   ThreadLimit& operator=(const ThreadLimit&) = delete;
 
-  /// How many threads there are if they are fewer; else empty.
+  /// The number of threads, as text, if they are limited; else empty.
   [[nodiscard]] const std::string& remark() const noexcept { return remark_; }
 
  private:
@@ -27,10 +27,10 @@ class ThreadLimit {
   std::string remark_;
 };
 
-/// Whether an error is one of a thread that could not be started.
+/// Whether an error means that a thread could not be started.
 bool is_of_threads(const std::exception& error);
 
-/// What to say of such an error.
+/// The message for such an error.
 std::string thread_message();
 
 }  // namespace tegl::cli

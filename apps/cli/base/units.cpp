@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Derives units of measures from the units of the axes.
 #include "base/units.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +13,7 @@ namespace {
 
 std::string power(const std::string& unit, std::size_t exponent) {
   if (exponent == 1) return unit;
-  // A unit of several words or signs is one factor all the same.
+  // A unit of several words or signs is still one factor.
   const bool compound = unit.find_first_of(" */^") != std::string::npos;
   return compound ? fmt::format("({})^{}", unit, exponent) : fmt::format("{}^{}", unit, exponent);
 }
@@ -34,7 +36,7 @@ std::optional<std::string> content_unit(const std::vector<std::string>& axis_uni
     const std::string& unit = axis_units[a];
     const auto begin = axis_units.begin();
     if (std::find(begin, begin + static_cast<std::ptrdiff_t>(a), unit) != begin + static_cast<std::ptrdiff_t>(a))
-      continue;  // a factor already
+      continue;  // this unit is already a factor
     const auto times = static_cast<std::size_t>(std::count(axis_units.begin(), axis_units.end(), unit));
     product += (product.empty() ? "" : " ") + power(unit, times);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Units of what is measured, from those of the axes.
+// Units of measures, derived from the units of the axes.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 namespace tegl::cli {
 
 /// The unit of lengths, areas, volumes … in a space whose axes have these units: "mm^2" for dimension 2 and axes in mm;
-/// "" where no axis has a unit; none where they differ, as then Euclid's measure mixes them.
+/// "" if no axis has a unit; nullopt if they differ, because the Euclidean measure then mixes them.
 std::optional<std::string> measure_unit(const std::vector<std::string>& axis_units, int dimension);
 
-/// The unit of what axes of these units enclose: their product, "mm^3 s"; "" where no axis has a unit; none where some
-/// have and some have not.
+/// The unit of enclosed contents: the product of the axes' units, "mm^3 s"; "" if no axis has a unit; nullopt if only
+/// some have one.
 std::optional<std::string> content_unit(const std::vector<std::string>& axis_units);
 
 /// "12.5 mm^2", "12.5".
@@ -23,8 +23,7 @@ std::string with_unit(const std::string& value, const std::optional<std::string>
 /// "area (mm^2)", "area": the heading of a column.
 std::string heading_with_unit(const std::string& name, const std::optional<std::string>& unit);
 
-/// What a measure of this dimension is called in a space: "length", "area", "volume"; "3-volume" in 4-space,
-/// "4-volume".
+/// The name of a measure of this dimension: "length", "area", "volume"; "3-volume" and "4-volume" in 4-space.
 std::string measure_name(int dimension, int space_dim);
 
 }  // namespace tegl::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl check: is a mesh a manifold?
+// tegl check: checks whether a mesh is a manifold.
 #include <fmt/format.h>
 
 #include <optional>
@@ -61,7 +61,7 @@ class CheckCommand final : public Command {
   }
 
  private:
-  /// The mesh may be anyone's: nothing is known of how it was made.
+  /// Texts for a mesh of unknown origin.
   static Wording wording() {
     Wording wording;
     wording.no_size = "of a contour by tegl: where samples equal the isovalue, which --epsilon there avoids";

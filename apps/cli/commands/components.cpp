@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl components: the connected components of a contour, what each is, and files with some of them.
+// tegl components: lists the connected components of a contour with their measures, and writes files with some of them.
 #include "tegl/components.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ constexpr const char* kExamples =
     "AXIS contains NUMBER, AXIS meets LOW..HIGH, AXIS within LOW..HIGH for the range that the component has along an\n"
     "axis; AXIS.min, AXIS.max, AXIS.span, AXIS.centroid; and, or, not, parentheses.";
 
-/// The components without their dimension.
+/// The components, independent of their dimension.
 struct Found {
   std::vector<ComponentFacts> facts;  ///< by label
   std::vector<bool> chosen;
@@ -95,6 +95,7 @@ class ComponentsCommand final : public ContourInputCommand {
   ExitCode run(const Streams& streams) override {
     require_inputs();
     require_outputs();
+    // read, parse conditions, select and write
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
     require_outputs_hold(input.space_dim() - 1);
@@ -102,6 +103,7 @@ class ComponentsCommand final : public ContourInputCommand {
     std::vector<ComponentSelection> conditions;
     for (const std::string& condition : conditions_) conditions.emplace_back(condition, axes_);
     const Found found = std::visit([&](auto& contour) { return work(contour, input, conditions, bar); }, input.contour);
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(document(input, found)));
@@ -145,7 +147,7 @@ class ComponentsCommand final : public ContourInputCommand {
     return name;
   }
 
-  /// Finds, chooses and writes.
+  /// Labels, selects and writes components.
   template <int N>
   Found work(Contour<N, double>& contour, const ContourInput& input, const std::vector<ComponentSelection>& conditions,
              ProgressBar& bar) {
@@ -187,7 +189,7 @@ class ComponentsCommand final : public ContourInputCommand {
     for (std::size_t i = largest_; largest_ > 0 && i < order.size(); ++i) found.chosen[order[i]] = false;
   }
 
-  /// The labels of those chosen, the largest first.
+  /// The labels of the selected components, the largest first.
   static std::vector<std::size_t> by_size(const Found& found) {
     std::vector<std::size_t> order;
     for (std::size_t label = 0; label < found.facts.size(); ++label)
@@ -197,7 +199,7 @@ class ComponentsCommand final : public ContourInputCommand {
     return order;
   }
 
-  /// Returns how many vertices the files do not tell apart.
+  /// Writes a file per component; returns the number of vertices that coincide in the files.
   template <int N>
   LostVertices write_split(const Contour<N, double>& contour, const ContourInput& input, const ComponentLabels& labels,
                            const Found& found, ProgressBar& bar, WrittenFiles& written) const {
@@ -244,7 +246,7 @@ class ComponentsCommand final : public ContourInputCommand {
     return result;
   }
 
-  /// A narrower one: the box as ranges.
+  /// A narrower table, with the box as ranges.
   [[nodiscard]] Table shown_table(const Found& found, int dim) const {
     Table result{{"label", "simplices", measure_name(dim, dim + 1), "enclosed", "Euler"}, {}};
     for (const std::string& axis : axes_) result.headings.push_back(axis);
@@ -341,7 +343,7 @@ class ComponentsCommand final : public ContourInputCommand {
   CompressOption compress_;
   std::size_t rows_ = 20;
   std::vector<std::string> axes_;
-  LostVertices lost_;  ///< in the files
+  LostVertices lost_;  ///< vertices that coincide in the files
   double components_seconds_ = 0;
   double write_seconds_ = 0;
 };

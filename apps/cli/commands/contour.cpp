@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl contour: the contour of an image, in the dimension that the file holds.
+// tegl contour: extracts the contour of an image, in the dimension of the file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ constexpr const char* kExamples =
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2, 3 or 4 dimensions gives segments, triangles or tetrahedra. Cut the latter with 'tegl slice'.";
 
-/// Adds the vertices and simplices of a contour behind others, with the isovalue as an attribute of both.
+/// Appends the vertices and simplices of a contour, with the isovalue as an attribute of both.
 void append_mesh(Mesh& all, Mesh&& one, double isovalue) {
   const auto name = std::string("isovalue");
   const std::size_t vertices =
@@ -112,6 +112,7 @@ class ContourCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     const std::vector<SpelledNumber> isovalues = options_.isovalues();
     if (!index_.empty() && facets_)
       throw Error(ErrorCode::InvalidArgument, "--facets with --index; expected one of the two");
@@ -137,6 +138,7 @@ class ContourCommand final : public Command {
     also_read(attributes_.files());
     attributes_.require_inputs();
 
+    // extract and write
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -149,6 +151,7 @@ class ContourCommand final : public Command {
       stream(options, bar, results);
     else
       contour(options, bar, results);
+    // report
     bar.clear();
     for (const ContourResult& result : results) remark(result.lost.remark(result.output));
     return tell(streams, results);
@@ -170,7 +173,7 @@ class ContourCommand final : public Command {
                                 output_, place));
   }
 
-  /// One object for one isovalue, a list for several.
+  /// Reports one object for one isovalue, a list for several.
   template <class Result>
   ExitCode tell(const Streams& streams, const std::vector<Result>& results) const {
     ExitCode exit = ExitCode::Ok;
@@ -196,13 +199,13 @@ class ContourCommand final : public Command {
       result.image_dim = image_dim(input.image);
       require_contour(input, *result.isovalue, options_.allows_empty());
     }
-    results.front().seconds.read = watch.lap();  // once for all
+    results.front().seconds.read = watch.lap();  // read once for all isovalues
     WrittenFiles written;
     const auto finished = [&](ContourResult& result) {
       if (result.stats) result.seconds.add(*result.stats);
       if (result.mesh.simplices.empty()) remark(remark_without_contour(input.image, *result.isovalue));
       if (one_file_) return;
-      if (&result == &results.back()) input.image = AnyImage();  // its memory is of more use to the check
+      if (&result == &results.back()) input.image = AnyImage();  // frees the image's memory for the check
       check_and_write(result, bar, written);
     };
     if (index_.empty()) {
@@ -223,13 +226,13 @@ class ContourCommand final : public Command {
     write_result(result, bar, written);
   }
 
-  /// Of a mesh that is written what is told of it: others need the memory.
+  /// Replaces a written mesh by its size, for the report, to free memory.
   static void leave_the_sizes(ContourResult& result) {
     result.streamed = result.size();
     result.mesh = Mesh();
   }
 
-  /// The contour of one isovalue, without an index.
+  /// Extracts the contour of one isovalue, without an index.
   void make(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     options.progress = bar.stage("contour");
     if (result.picked) return pick(image, options, bar, result);
@@ -247,7 +250,7 @@ class ContourCommand final : public Command {
                           [&](auto contour) { return with_additions(std::move(contour), options.threads, bar); });
   }
 
-  /// All contours as one, with the isovalue of each vertex and simplex, checked and written.
+  /// Merges all contours into one mesh with the isovalue of each vertex and simplex, and checks and writes it.
   ContourResult merged(std::vector<ContourResult>& results, ProgressBar& bar, WrittenFiles& written) const {
     ContourResult all = results.front();
     all.mesh = Mesh();
@@ -268,8 +271,8 @@ class ContourCommand final : public Command {
     return all;
   }
 
-  /// Whether layers come in and the contour goes out as it comes: if that is requested, and of raw values wherever it
-  /// can be done.
+  /// Whether the image is read by layers and the contour written in parts: if requested, and for raw files whenever
+  /// possible.
   [[nodiscard]] bool is_streamed() const {
     if (stream_ || !images().raw()) return stream_;
     const bool needs_memory = !index_.empty() || facets_ || one_file_ || app().count("--pick") > 0 ||
@@ -278,7 +281,7 @@ class ContourCommand final : public Command {
     return !needs_memory && equal_ignoring_case(std::filesystem::path(output_).extension().string(), ".vtkhdf");
   }
 
-  /// --pick as numbers; none without.
+  /// The numbers of --pick; empty without the option.
   [[nodiscard]] std::vector<double> picked_point() const {
     std::vector<double> point;
     if (app().count("--pick") == 0) return point;
@@ -293,7 +296,7 @@ class ContourCommand final : public Command {
     return point;
   }
 
-  /// The component nearest to the point of --pick.
+  /// Extracts the component nearest to the point of --pick.
   void pick(const AnyImage& image, const ExtractOptions& options, ProgressBar& bar, ContourResult& result) const {
     Stopwatch watch;
     Picked& picked = *result.picked;
@@ -319,7 +322,7 @@ class ContourCommand final : public Command {
     result.seconds.generate += watch.lap();
   }
 
-  /// The contour with what --normals and --attribute add to it.
+  /// The mesh of a contour with the normals and attributes of --normals and --attribute.
   template <class AnyContour>
   Mesh with_additions(AnyContour contour, unsigned threads, ProgressBar& bar) const {
     options_.add_shape_normals(contour);
@@ -327,7 +330,7 @@ class ContourCommand final : public Command {
     return to_mesh(contour);
   }
 
-  /// The contours by --index, which is read once; its reading counts as such.
+  /// Extracts the contours with --index, which is read once; its time counts as reading.
   template <class Finished>
   void by_index(const AnyImage& image, ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results,
                 const Finished& finished) const {
@@ -352,6 +355,7 @@ class ContourCommand final : public Command {
 
   ExitCode run_facets(const Streams& streams, const std::vector<SpelledNumber>& isovalues,
                       const std::vector<std::string>& outputs, const ExtractOptions& options) {
+    // validate options and files
     const auto given = options_.given();
     if (is_streamed() || std::find(given.begin(), given.end(), "--triangulation") != given.end())
       throw Error(ErrorCode::InvalidArgument,
@@ -366,6 +370,7 @@ class ContourCommand final : public Command {
       require_facets_output(output, files());
       compress_.require_known(output, true);
     }
+    // read
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
@@ -380,6 +385,7 @@ class ContourCommand final : public Command {
       require_output_holds_facets(result.output, result.image_dim);
       require_contour(input, result.isovalue, options_.allows_empty());
     }
+    // extract and write
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)
@@ -387,6 +393,7 @@ class ContourCommand final : public Command {
                          {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression()},
                          bar, result, written);
     written.keep();
+    // report
     bar.clear();
     for (const FacetsResult& result : results)
       if (result.facets[0] == 0) remark(remark_without_contour(input.image, result.isovalue));
@@ -394,6 +401,7 @@ class ContourCommand final : public Command {
   }
 
   void stream(ExtractOptions& options, ProgressBar& bar, std::vector<ContourResult>& results) {
+    // validate options and files
     require_open_files(results.size());
     for (const ContourResult& result : results) require_output_grows(result.output);
     if (options_.wants_shape_normals() || attributes_.wanted())
@@ -401,6 +409,7 @@ class ContourCommand final : public Command {
                   fmt::format("{} with a streamed contour, which is never there as a whole; expected {}",
                               attributes_.wanted() ? "--attribute" : "--normals geometric or flat",
                               attributes_.wanted() ? "an image that fits into memory" : "--normals gradient or sobel"));
+    // open, extract and write in one pass
     OpenLayersResult input = open();
     for (ContourResult& result : results) {
       result.input = inputs();

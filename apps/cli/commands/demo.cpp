@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl demo: the surface where the world's ocean is 20 °C warm, through a year: one contour in space and time, its cuts
-// at any time played in the terminal as a map of how deep it lies.
+// tegl demo: extracts the surface where the world's ocean has 20 °C, through a year, as one contour in space and time.
+// Plays its cuts at any time in the terminal, as a map of the surface's depth.
 #include "commands/demo.hpp"
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ constexpr const char* kExamples =
 
 constexpr double kIsovalue = 20;
 
-/// The data that come with the program: ../share/tegl beside it, installed and built.
+/// Finds the data of the program in ../share/tegl beside it, in installations and build trees.
 fs::path find_data() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -56,7 +56,7 @@ fs::path find_data() {
   return data;
 }
 
-/// Whether the terminal's characters are those of Unicode.
+/// Whether the terminal's character set is UTF-8.
 bool knows_unicode() {
   for (const char* const name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     const char* const value = std::getenv(name);
@@ -67,10 +67,10 @@ bool knows_unicode() {
   return false;
 }
 
-/// A picture of the world: for each pixel how deep the surface lies, or what there is instead.
+/// A map of the world: for each pixel the depth of the surface, or a code.
 struct Map {
   static constexpr float kLand = -2;
-  static constexpr float kNone = -1;  ///< water that is colder at the top already
+  static constexpr float kNone = -1;  ///< water that is colder even at the top
   int width = 0;
   int height = 0;
   std::vector<float> depth;
@@ -78,7 +78,7 @@ struct Map {
   [[nodiscard]] float at(int x, int y) const { return depth[static_cast<std::size_t>(y * width + x)]; }
 };
 
-/// Land where the first layer has no value; the rest is water.
+/// A map without a surface: land where the first layer has no value, else water.
 template <class T>
 Map empty_map(const OwnedImage<T, 4>& image, int width, int height) {
   Map map{width, height, {}};
@@ -95,7 +95,8 @@ Map empty_map(const OwnedImage<T, 4>& image, int width, int height) {
   return map;
 }
 
-/// Draws a triangle's depth into the pixels whose middle it covers; the deepest wins: what lies above is warm.
+/// Rasterises a triangle's depth into the pixels whose centre it covers; the maximum depth wins, because the water
+/// above is warm.
 void draw(Map& map, const std::array<std::array<double, 3>, 3>& corners) {
   const auto& [a, b, c] = corners;
   const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -115,7 +116,7 @@ void draw(Map& map, const std::array<std::array<double, 3>, 3>& corners) {
     }
 }
 
-/// Deep red to bright yellow: matplotlib's "inferno", in a few steps.
+/// Colour of a depth, from deep red to bright yellow: matplotlib's "inferno" in a few steps.
 std::array<int, 3> colour_of(float depth) {
   constexpr std::array<std::array<int, 3>, 6> kSteps = {
       {{66, 10, 104}, {147, 38, 103}, {221, 81, 58}, {252, 145, 30}, {246, 215, 70}, {252, 255, 164}}};
@@ -131,7 +132,7 @@ std::array<int, 3> colour_of(float depth) {
   return colour;
 }
 
-/// Two pixels in a character, the upper half and what is behind it.
+/// Formats two pixels per character, with foreground and background colours.
 std::string coloured(const Map& map) {
   std::string text;
   for (int y = 0; y + 1 < map.height; y += 2) {
@@ -145,7 +146,7 @@ std::string coloured(const Map& map) {
   return text;
 }
 
-/// A character for two pixels, the denser the deeper.
+/// Formats two pixels per character, denser for greater depths.
 std::string plain(const Map& map) {
   constexpr std::string_view kShades = ":-=+*#%@";
   constexpr double kDeepest = 280;
@@ -166,7 +167,7 @@ std::string plain(const Map& map) {
   return text;
 }
 
-/// "middle of July" and the like for the months of the data.
+/// A time in months as text, such as "middle of July".
 std::string month_text(double t) {
   constexpr std::array<const char*, 12> kMonths = {"January",   "February", "March",    "April",
                                                    "May",       "June",     "July",     "August",
@@ -192,6 +193,7 @@ class DemoCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
+    // read
     const fs::path data = find_data();
     ProgressBar bar(streams.err, wants_progress());
     const ReadImageResult input = read_image(data, image_options(bar.stage("read")));
@@ -200,12 +202,14 @@ class DemoCommand final : public Command {
     if (image == nullptr)
       throw Error(ErrorCode::UnsupportedData,
                   fmt::format("{}: not the demo's data; expected 4D floats", data.string()));
+    // contour
     Stopwatch watch;
     ExtractOptions options;
     options.triangulation = Triangulation::barycentric;
     options.progress = bar.stage("contour");
     const Contour<4, double> contour = extract<double>(image->view(), kIsovalue, options);
     const double seconds = watch.lap();
+    // animation or report
     bar.clear();
     const bool animated = !json() && !quiet() && !no_animation_ && streams.out.moves_its_cursor() &&
                           map_width(streams.out, true).has_value();
@@ -218,11 +222,11 @@ class DemoCommand final : public Command {
   }
 
  private:
-  static constexpr int kLeastWidth = 16;  ///< of a map; it is a quarter as many lines high
-  static constexpr int kMostWidth = 100;  ///< a pixel for each sample of longitude
+  static constexpr int kLeastWidth = 16;  ///< of a map; its height is a quarter as many lines
+  static constexpr int kMostWidth = 100;  ///< one pixel per sample of longitude
 
-  /// How wide a map there is room for on a console; none: too little. On a terminal no line may be full, and what is
-  /// played must fit into the window, with a line for the time and one for the cursor.
+  /// Map width for a console; nullopt if there is not enough room. Lines of a terminal must not be full, and an
+  /// animation must fit into the window, with a line for the time and one for the cursor.
   [[nodiscard]] static std::optional<int> map_width(const Console& console, bool played) {
     int width = std::min(kMostWidth, console.width() - 1);
     if (!console.is_terminal()) return std::max(width, kLeastWidth);
@@ -245,7 +249,7 @@ class DemoCommand final : public Command {
     return map;
   }
 
-  /// Frame after frame over the one before, some ten in a second. Ctrl-C ends it, and the terminal is as it was.
+  /// Draws frames in place, about ten per second. Ctrl-C ends the animation and restores the terminal.
   void play(const Console& console, const OwnedImage<float, 4>& image, const Contour<4, double>& contour) const {
     struct HiddenCursor {
       explicit HiddenCursor(const Console& on) : console(on) { console.write("\x1b[?25l"); }
@@ -254,6 +258,7 @@ class DemoCommand final : public Command {
       HiddenCursor& operator=(const HiddenCursor&) = delete;
       const Console& console;
     };
+    // play
     const HiddenCursor hidden(console);
     const bool in_colour = console.has_colours() && knows_unicode();
     const Axis& time = image.grid.axes[3];
@@ -261,7 +266,7 @@ class DemoCommand final : public Command {
     for (std::size_t i = 0; i < frames_; ++i) {
       InterruptHandler::throw_if_requested();
       const auto shown = std::chrono::steady_clock::now();
-      const auto width = map_width(console, true);  // windows change
+      const auto width = map_width(console, true);  // the window may have been resized
       if (!width) return;
       const double share = static_cast<double>(i) / static_cast<double>(frames_ - 1);
       const double t = time[0] + share * (time[time.size() - 1] - time[0]);
@@ -275,7 +280,7 @@ class DemoCommand final : public Command {
     }
   }
 
-  /// Each line clears what was there.
+  /// Each line clears its previous contents.
   static std::string plain_lines(const Map& map) {
     std::string text = "\x1b[K";
     for (const char c : plain(map)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl demo: what tegl does, shown on data that come with it.
+// tegl demo: shows the program on example data.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl elements: a contour as points with normal vectors, for codes that integrate over it.
+// tegl elements: writes a contour as points with normal vectors, for codes that integrate over it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -32,7 +32,7 @@ constexpr const char* kExamples =
     "Each element is a line: the centroid, then the normal times the volume (d sigma), then attributes, time first.\n"
     "It is how the surface lies, without a metric: the same for Euclid and for Minkowski.";
 
-/// What a run found, in one type for all dimensions.
+/// Result of a run, in one type for all dimensions.
 struct ElementReport {
   std::size_t count = 0;
   std::vector<std::string> axes;  ///< as in the contour
@@ -87,6 +87,7 @@ class ElementsCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     require_inputs();
     require_element_output();
     also_read(attributes_.files());
@@ -94,10 +95,12 @@ class ElementsCommand final : public ContourInputCommand {
     if (per_ == "cell" && find_mesh_file_format(file()) != nullptr)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--per cell with {}, a saved contour, which knows no cells; expected an image", file()));
+    // read and make elements
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, per_ == "cell");
     ElementReport report;
     std::visit([&](auto& contour) { make(contour, input, report, bar); }, input.contour);
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(to_json(input, report)));
@@ -132,13 +135,16 @@ class ElementsCommand final : public ContourInputCommand {
 
   template <int N>
   void make(Contour<N, double>& contour, const ContourInput& input, ElementReport& report, ProgressBar& bar) const {
+    // attributes
     Stopwatch watch;
     attributes_.sample_to(contour, image_options(), threads(), bar);
     report.attribute_seconds = watch.lap();
+    // elements
     const WorkOptions work{threads(), bar.stage("elements")};
     const Elements<N> all =
         input.image ? elements_by_cell(contour, grid_of<N>(input.image->image), work) : elements(contour, work);
     report.elements_seconds = watch.lap();
+    // sums for the report
     const ElementSum<N> sum = sum_of(all);
     report.count = all.centroids.size();
     report.sum.assign(sum.normal.begin(), sum.normal.end());
@@ -147,6 +153,7 @@ class ElementsCommand final : public ContourInputCommand {
     report.measure = sum.measure;
     for (int a = 0; a < N; ++a) report.axes.push_back(input.axis_name(a));
     for (const Attribute& attribute : all.attributes) report.attributes.push_back(range_of(attribute));
+    // write
     ElementFileOptions options = file_options();
     options.progress = bar.stage("write");
     watch.lap();
@@ -194,7 +201,7 @@ class ElementsCommand final : public ContourInputCommand {
     return json;
   }
 
-  /// Whether the elements close up, as all that a contour encloses does.
+  /// The sum of the normals as text, with a verdict whether the elements are closed.
   [[nodiscard]] static std::string sum_text(const ElementReport& report) {
     std::string sum;
     for (std::size_t a = 0; a < report.axes.size(); ++a)

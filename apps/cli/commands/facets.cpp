@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Extracts, checks, writes and reports contours as facets.
 #include "commands/facets.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +41,7 @@ std::string fault_text(const FacetReport& report) {
   return text;
 }
 
-/// The polyhedra of another Euler characteristic than that of a ball; empty without any.
+/// The polyhedra whose Euler characteristic is not that of a ball, as text; empty if there are none.
 std::string unlike_balls(const FacetReport& report) {
   std::string text;
   const auto add = [&](std::uint64_t count, const char* of) {
@@ -63,7 +65,7 @@ ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, double seconds) {
   return stats;
 }
 
-/// What `use` makes of the facets of an image.
+/// Extracts the facets of an image and passes them to `use`.
 template <class Result, class T, int N, class Use>
 Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const ExtractOptions& options,
                   const Use& use) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours as facets: `tegl contour --facets`, which writes them without triangulation, and contours of 3D images
-// whose polygons are triangulated.
+// Contours as facets: `tegl contour --facets`, which writes them without triangulation, and contours of 3D images with
+// triangulated polygons.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@
 
 namespace tegl::cli {
 
-/// A contour of facets, made and written.
+/// Facets that were extracted and written.
 struct FacetsResult {
   InputFiles input;
   std::string variable;
@@ -38,12 +38,12 @@ struct FacetsResult {
 Json to_json(const FacetsResult& result);
 std::string to_text(const Console& console, const FacetsResult& result);
 
-/// Throws WriteFailed unless facets can be written there: .vtu, or .vtkhdf. As for the dimension of the image, once
-/// that is known.
+/// Throws WriteFailed unless the file can hold facets: .vtu or .vtkhdf. The second function also checks the image's
+/// dimension, once that is known.
 void require_facets_output(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 void require_output_holds_facets(const std::filesystem::path& output, int image_dim);
 
-/// How contours are made and what becomes of them.
+/// How contours are extracted and written.
 struct FacetsWork {
   double isovalue = 0;
   ExtractOptions options;
@@ -52,12 +52,12 @@ struct FacetsWork {
   Compression compression = Compression::none;
 };
 
-/// Makes the facets of an image, checks them and writes them to result.output, one of the files written; fills the rest
-/// of the result.
+/// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of
+/// the result.
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written);
 
-/// The contour of a 3D image from its polygons. Throws InvalidArgument for an image of other dimensions.
+/// The contour of a 3D image, triangulated from its polygons. Throws InvalidArgument for images of other dimensions.
 std::variant<Contour<3, float>, Contour<3, double>> triangulated_polygons(const AnyImage& image, const FacetsWork& work,
                                                                           PolygonTriangulation method, ProgressBar& bar,
                                                                           ExtractStats& stats);

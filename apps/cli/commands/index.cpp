@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl index: an index of the active tiles of an image, for contours at many isovalues.
+// tegl index: builds an index of the active tiles of an image, for contours at many isovalues.
 #include "commands/index.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ constexpr const char* kExamples =
     "An index finds the tiles that a contour passes without looking at all of them. It belongs to one image: the\n"
     "same values, in the same order.";
 
-/// What was built and written.
+/// The result of building and writing.
 struct IndexResult {
   InputFiles input;
   std::string variable, output, method;
@@ -114,6 +114,7 @@ class IndexCommand final : public Command {
     IndexResult result;
     result.output = output_.empty() ? default_output() : output_;
     result.method = method_;
+    // validate options and files
     require_inputs();
     if (method_ != active_method_name(ActiveMethod::seed_set) &&
         (app().count("--seeds") > 0 || app().count("--scan-order") > 0))
@@ -122,6 +123,7 @@ class IndexCommand final : public Command {
     if (!is_index_file(result.output))
       throw Error(ErrorCode::WriteFailed, fmt::format("{}: expected a file named *{}", result.output, kIndexExtension));
     require_text_output(result.output, files());
+    // read and build
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult input = read(bar.stage("read"));
@@ -131,13 +133,14 @@ class IndexCommand final : public Command {
     result.read_seconds = watch.lap();
     std::visit([&](const auto& typed) { std::visit([&](const auto& owned) { build(owned, bar, result); }, typed); },
                input.image);
+    // report
     bar.clear();
     if (!quiet()) streams.out.write(json() ? dump(to_json(result)) : to_text(streams.out, result));
     return ExitCode::Ok;
   }
 
  private:
-  /// FILE with .tindex behind it; of a folder, beside it.
+  /// FILE with .tindex appended; for a folder, a file beside it.
   [[nodiscard]] std::string default_output() const {
     std::string name = file();
     while (name.size() > 1 && name.back() == '/') name.pop_back();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files of indexes: what `tegl info` says of one.
+// The report of `tegl info` about index files.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace tegl::cli {
 
-/// Whether the name is that of an index file.
+/// Whether a file name is that of an index file.
 bool is_index_file(const std::filesystem::path& path);
 
-/// The head of an index file as text or as JSON. Throws MalformedFile, UnsupportedFormat.
+/// The header of an index file, as text or as JSON. Throws MalformedFile, UnsupportedFormat.
 std::string index_info(const Console& console, const std::filesystem::path& path, bool json);
 
 }  // namespace tegl::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl info: what is in a file.
+// tegl info: describes the contents of a file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,12 +47,12 @@ constexpr const char* kTypeName<float> = "float";
 template <>
 constexpr const char* kTypeName<double> = "double";
 
-/// What `info` reports, without the type and dimension in its own type.
+/// The contents of a report, independent of the image's type and dimension.
 struct Description {
   ImageInfo info;
   std::string value_type;
   std::vector<Axis> axes;
-  std::vector<std::vector<double>> linear;  ///< empty where the axes are the world's
+  std::vector<std::vector<double>> linear;  ///< empty if there is no world map
   std::vector<double> offset;
   ValueStatistics values;
   double read_seconds = 0;
@@ -71,7 +71,7 @@ void describe_grid(const OwnedImage<T, N>& image, Description& description) {
   }
 }
 
-/// Where an axis grows to, in a word; empty where the file does not say.
+/// The direction of an axis as a word; empty if unknown.
 std::string_view direction_name(const ImageInfo& info, std::size_t axis) {
   if (axis >= info.axis_directions.size()) return "";
   switch (info.axis_directions[axis]) {
@@ -165,19 +165,19 @@ std::string axis_text(const Description& description, std::size_t at) {
     least = std::min(least, std::abs(axis[i] - axis[i - 1]));
     most = std::max(most, std::abs(axis[i] - axis[i - 1]));
   }
-  // Times in floating point are often uniform but for their last digits.
+  // Floating-point times are often uniform up to their last digits.
   if (number(least) == number(most)) return text + fmt::format(", steps of about {}", number(most));
   return text + fmt::format(", steps {} to {}", number(least), number(most));
 }
 
-/// An entry of a matrix whose largest has this size. What is nothing beside it, as rounding leaves where a 0 is meant,
-/// has one digit: it is there, and of what size is all that can be said of it.
+/// An entry of a matrix with largest entry `largest`. An entry that is probably rounding noise is shown with one digit,
+/// as only its magnitude is meaningful.
 std::string matrix_entry(double value, double largest) {
   constexpr double kRounding = 1e-9;
   return value != 0.0 && std::abs(value) < kRounding * largest ? fmt::format("{:.0e}", value) : number(value);
 }
 
-/// Lines of cells in columns as wide as their widest cell, aligned to the right, with two blanks between them.
+/// Formats cells in right-aligned columns, separated by two blanks.
 std::vector<std::string> aligned(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::string> lines(rows.size());
   for (std::size_t column = 0; column < rows.front().size(); ++column) {
@@ -209,8 +209,8 @@ std::string world_text(const Description& description) {
   return text;
 }
 
-/// Bars as wide as the terminal allows. Their length follows the square root of the count: backgrounds
-/// are often a hundred times as frequent as what is looked for.
+/// A histogram with bars as wide as the terminal allows. Their length is proportional to the square root of the count,
+/// because backgrounds are often a hundred times as frequent as objects.
 std::string histogram_text(const Histogram& fine, int width) {
   const Histogram histogram = fine.coarser(kTextBins);
   const std::uint64_t most = *std::max_element(histogram.counts.begin(), histogram.counts.end());
@@ -220,7 +220,7 @@ std::string histogram_text(const Histogram& fine, int width) {
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     const std::uint64_t count = histogram.counts[i];
     const double share = std::sqrt(static_cast<double>(count) / static_cast<double>(most));
-    // At least one cell: a value that occurs is seen.
+    // At least one cell, so that every occurring value is visible.
     const auto length = count == 0 ? 0 : static_cast<std::size_t>(std::max(1.0, std::round(share * cells)));
     text += fmt::format("  {:>12} {} {}\n", number(histogram.low + static_cast<double>(i) * histogram.width),
                         std::string(length, '#'), grouped(count));
@@ -278,21 +278,21 @@ std::string to_text(const Console& console, const Description& description, cons
                             description.statistics_seconds);
 }
 
-/// "5 x 4 x 3 x 2 x 6 (x, y, z, time, member)", with the names of variables only that are images only if an index of a
-/// dimension is chosen.
+/// Sizes and names of dimensions, "5 x 4 x 3 x 2 x 6 (x, y, z, time, member)"; names only for variables that are images
+/// only after an index of a dimension is chosen.
 std::string variable_shape(const ImageVariable& variable) {
   const std::string sizes = fmt::format("{}", fmt::join(variable.sizes, " x "));
   return variable.sizes.size() > kMostAxes ? fmt::format("{} ({})", sizes, fmt::join(variable.axes, ", ")) : sizes;
 }
 
-/// What is said of a file with several variables, or one of more axes than an image, when none was chosen.
+/// The list of variables, for a file with several, or one with too many axes, if none was selected.
 std::string choice_text(const Console& console, const InputFiles& input, const std::vector<ImageVariable>& variables) {
   const std::string option = ImageOptions::choosing_option(input.names);
   const std::string title = variables.size() == 1  ? fmt::format("a variable of {} axes", variables[0].sizes.size())
                             : option == "--series" ? "several series"
                                                    : "several variables";
   std::string text = fmt::format("{}\n", console.bold(fmt::format("{}: {}", input.text(), title)));
-  std::size_t number = 0;  // what --series takes
+  std::size_t number = 0;  // number for --series
   for (const ImageVariable& variable : variables) {
     const std::string name = option == "--series" ? fmt::format("{:>2}  {}", ++number, variable.name) : variable.name;
     text += report_line(
@@ -337,6 +337,7 @@ class InfoCommand final : public Command {
 
   ExitCode run(const Streams& streams) override {
     require_inputs();
+    // an index file
     if (is_index_file(file())) {
       if (const auto given = images().given(); !given.empty() || files().size() > 1)
         throw Error(ErrorCode::InvalidArgument,
@@ -345,6 +346,7 @@ class InfoCommand final : public Command {
       streams.out.write(index_info(streams.out, file(), json()));
       return ExitCode::Ok;
     }
+    // several variables: a list to choose from
     if (images().variable().empty() && !images().has_fixed()) {
       const std::vector<ImageVariable> variables = images().variables(files());
       if (variables.size() > 1 || (variables.size() == 1 && variables[0].sizes.size() > kMostAxes)) {
@@ -353,6 +355,7 @@ class InfoCommand final : public Command {
         return ExitCode::Ok;
       }
     }
+    // an image: read and describe
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     const ReadImageResult image = read(bar.stage("read"));

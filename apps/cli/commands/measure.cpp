@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl measure: how large a contour is, what it encloses, and how both change along its last axis.
+// tegl measure: measures the size and the enclosed content of a contour, and of its cuts along the last axis.
 #include "tegl/measure.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ constexpr const char* kExamples =
     "  tegl measure ocean.vtkhdf --samples 100 --csv curve.csv\n"
     "What an open contour encloses is not defined; --close closes the contour of an image at its border.";
 
-/// What was measured, without its dimension.
+/// The measures, independent of the dimension.
 struct Found {
   double size = 0;
   std::optional<double> content;
@@ -99,6 +99,7 @@ class MeasureCommand final : public ContourInputCommand {
   template <int N>
   Found measured(const Contour<N, double>& contour, const ContourInput& input, const std::vector<Cut>& cuts,
                  ProgressBar& bar) const {
+    // whole contour
     const Measures<N> whole = tegl::measure(contour, {threads(), bar.stage("measure")});
     Found found{whole.size,
                 whole.content,
@@ -109,6 +110,7 @@ class MeasureCommand final : public ContourInputCommand {
                 whole.open_simplices,
                 {}};
     if constexpr (N >= 3) {
+      // values of --at and --samples
       std::vector<double> at;
       const double first = whole.lowest[N - 1];
       const double last = whole.highest[N - 1];
@@ -121,6 +123,7 @@ class MeasureCommand final : public ContourInputCommand {
                          ? last
                          : first + (last - first) * static_cast<double>(i) / static_cast<double>(samples_ - 1));
       if (at.empty()) return found;
+      // cuts
       const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
                                              contour.vertices.size() * N);
       found.cuts = measure_cuts(contour, meet_vertices(at, vertices, N, N - 1), {threads(), bar.stage("cuts")});
@@ -129,8 +132,8 @@ class MeasureCommand final : public ContourInputCommand {
     return found;
   }
 
-  /// Of an image the cut has to lie within its last axis; of a saved contour within that contour, from `first` to
-  /// `last`, which may come from a file of floats.
+  /// Throws unless the cut is within the last axis of the image, or within a saved contour, from `first` to `last`,
+  /// which may come from a file with floats.
   static void require_within(const Cut& cut, double first, double last, const ContourInput& input) {
     const CutAxis axis = input.last_axis.value_or(CutAxis{input.axis_name(input.space_dim() - 1), first, last});
     const auto single = [](double x) { return static_cast<float>(x); };
@@ -162,7 +165,7 @@ class MeasureCommand final : public ContourInputCommand {
     return text;
   }
 
-  /// A table with its units in a line of their own, as these may be long.
+  /// A table with units on a separate line, as they may be long.
   static std::string cuts_text(const ContourInput& input, const Found& found) {
     Table cuts = table(input, found, &number);
     std::string in;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl project: a 4D contour seen in 3-space, coloured by time.
+// tegl project: projects a 4D contour to 3-space, coloured by time.
 #include "tegl/project.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ constexpr const char* kExamples =
     "outline\n"
     "of a contour that is not closed (--close) is open at the first and the last time.";
 
-/// Colours of rising lightness: viridis, by S. van der Walt and N. Smith, 2015, at eighths.
+/// Colours of increasing lightness: viridis, by S. van der Walt and N. Smith, 2015, at eighths.
 constexpr std::array<std::array<double, 3>, 9> kColors = {{{68, 1, 84},
                                                            {71, 45, 123},
                                                            {59, 82, 139},
@@ -44,7 +44,7 @@ constexpr std::array<std::array<double, 3>, 9> kColors = {{{68, 1, 84},
                                                            {173, 220, 48},
                                                            {253, 231, 37}}};
 
-/// A colour for each of the values, from the least to the greatest; whole 255ths.
+/// Maps values from minimum to maximum to colours, as multiples of 1/255.
 Attribute colors_of(const Attribute& values) {
   Attribute result{"color", "", 3, {}};
   if (values.values.empty()) return result;
@@ -83,7 +83,7 @@ Mesh to_mesh(ProjectedContour<double> projected) {
   return mesh;
 }
 
-/// One mesh after the other. They have the same attributes.
+/// Appends a mesh with the same attributes.
 void append(Mesh& to, const Mesh& more) {
   const auto first = static_cast<Index>(to.coordinates.size() / 3);
   const auto put = [](auto& rows, const auto& others) { rows.insert(rows.end(), others.begin(), others.end()); };
@@ -126,6 +126,7 @@ class ProjectCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     const Projection projection = projection_from_options();
     require_inputs();
     require_output(output_, files());
@@ -134,6 +135,7 @@ class ProjectCommand final : public ContourInputCommand {
     require_output_keeps(output_, normals(), attributes_.wanted());
     also_read(attributes_.files());
     attributes_.require_inputs();
+    // read and project
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar);
     auto* const contour = std::get_if<Contour<4, double>>(&input.contour);
@@ -152,6 +154,7 @@ class ProjectCommand final : public ContourInputCommand {
       throw Error(ErrorCode::EmptyResult,
                   "nothing has an outline along this direction: it stands still; expected "
                   "something that moves (or --as cuts)");
+    // check, write, report
     if (!no_check_ && kind_ != "tetrahedra") check_result(result, bar);
     write_result(result, bar);
     remark(result.lost.remark(output_));
@@ -205,7 +208,7 @@ class ProjectCommand final : public ContourInputCommand {
     return mesh;
   }
 
-  /// Cuts at even distances, the first and the last by half of one from the ends.
+  /// Evenly spaced cuts; the first and the last are half a step from the ends.
   [[nodiscard]] Mesh cuts(const Contour<4, double>& contour, const Projection& projection,
                           const Progress& progress) const {
     const Attribute heights = project(contour, projection).vertex_attributes.back();

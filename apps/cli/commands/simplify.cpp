@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl simplify: the same contour with fewer simplices, and a bound of how far it is from what it was.
+// tegl simplify: reduces the number of simplices of a contour, and bounds the error.
 #include "tegl/simplify.hpp"
 
 #include <fmt/format.h>
@@ -83,11 +83,13 @@ class SimplifyCommand final : public ContourInputCommand {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     require_inputs();
     require_output(output_, files());
     compress_.require_known(output_);
     require_output_keeps(output_, normals(), false);
     require_goal();
+    // read and simplify
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);
     require_output_holds(output_, input.space_dim() - 1);
@@ -98,9 +100,11 @@ class SimplifyCommand final : public ContourInputCommand {
     std::visit([&](const auto& contour) { result.mesh = to_mesh(simplified(contour, input, stats, bar)); },
                input.contour);
     input.contour = AnyContour();
+    // check and write
     if (!no_check_) check_result(result, bar);
     write_result(result, bar);
     remark(result.lost.remark(output_));
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(document(result, stats)));
@@ -139,7 +143,7 @@ class SimplifyCommand final : public ContourInputCommand {
                                                                          : fmt::format("{} to {}", least, most)));
   }
 
-  /// In the words of the command line.
+  /// Simplifies; error messages name the options of the command line.
   template <int N>
   static Contour<N, double> simplify_or_explain(const Contour<N, double>& contour, const SimplifyOptions<N>& options,
                                                 SimplifyStats& stats) {
@@ -178,7 +182,8 @@ class SimplifyCommand final : public ContourInputCommand {
     throw Error(ErrorCode::InvalidArgument, fmt::format("--count is '{}'; expected a whole number, 0 or more", count_));
   }
 
-  /// The border of the image, where the grid is not parallel to the axes (else the contour itself tells).
+  /// The hyperplanes of the image's border, if the grid is not parallel to the axes (otherwise the contour's box gives
+  /// them).
   template <int N>
   static std::vector<Hyperplane<N>> planes(const AnyImage& image) {
     return std::visit(
@@ -230,7 +235,7 @@ class SimplifyCommand final : public ContourInputCommand {
     return "rounds";
   }
 
-  /// Why there are more simplices than were asked for, or as many as there were; empty if there is nothing to say.
+  /// Why the result has more simplices than requested, or as many as before; empty if that is not the case.
   [[nodiscard]] std::string why_not_fewer(const SimplifyStats& stats) const {
     const bool by_count = !ratio_.empty() || !count_.empty();
     if (stats.end == SimplifyEnd::rounds)
@@ -280,7 +285,7 @@ class SimplifyCommand final : public ContourInputCommand {
     const std::string why = why_not_fewer(stats);
     if (!why.empty()) lines += report_line("stopped", fmt::format("at {:.3g} %: {}", 100.0 * share, why));
     if (stats.error()) {
-      // Scaled lengths are in no unit of the axes.
+      // Scaled lengths do not have the unit of the axes.
       const auto unit = scale_.empty() ? measure_unit(result.mesh.axis_units, 1) : std::nullopt;
       lines += report_line("error", fmt::format("at most {} (of the original {}, of the result {})",
                                                 with_unit(number(*stats.error()), unit),

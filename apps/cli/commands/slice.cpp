@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl slice: what the contour of a 4D image, or a saved 4D contour, looks like at one time or several, or along any
-// hyperplane.
+// tegl slice: cuts the contour of an image, or a saved contour, at one or several times, or by any hyperplanes.
 #include "tegl/slice.hpp"
 
 #include <fmt/format.h>
@@ -46,10 +45,10 @@ void require_cuttable(int dim, std::string_view what) {
   throw Error(ErrorCode::UnsupportedData, fmt::format("holds a {}D {}; expected a 4D one (or a 3D one)", dim, what));
 }
 
-/// The hyperplane of a cut where axis a is stretched by factors[a].
+/// The hyperplane of a cut, after axis a is scaled by factors[a].
 template <int N>
 Hyperplane<N> hyperplane_of(const Cut& cut, const std::vector<double>& factors) {
-  // Across an axis by the product that vertices have too, to meet those that lie there.
+  // Across an axis the same product as for vertices, so that the cut meets those at this coordinate.
   if (cut.across)
     return Hyperplane<N>::across(*cut.across,
                                  cut.level.value_or(cut.value) * factors[static_cast<std::size_t>(*cut.across)]);
@@ -60,7 +59,7 @@ Hyperplane<N> hyperplane_of(const Cut& cut, const std::vector<double>& factors) 
   return hyperplane;
 }
 
-/// The frame of a hyperplane, for reports; none across an axis, where the coordinates say it all.
+/// The frame of a hyperplane, for reports; nullopt across an axis, where it is trivial.
 template <int N>
 std::optional<CutFrame> frame_for_report(const Cut& cut, const std::vector<double>& factors) {
   if (cut.across) return std::nullopt;
@@ -76,7 +75,7 @@ void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
   if ((by_axis.array() != 1.0).any()) scale_axes<N, Real>(contour, by_axis);
 }
 
-/// Cuts of a contour whose axes are to be stretched first: those of one direction after the other in one pass.
+/// Cuts a contour after its axes are scaled; all cuts of one direction in one pass.
 template <int N, class Real>
 void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
                     std::vector<ContourResult>& results, ProgressBar& bar) {
@@ -99,13 +98,13 @@ void cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors
       result.mesh = to_mesh(cut);
       result.cut->frame = frame_for_report<N>(*result.cut, factors);
     }
-    // What one of them took of the pass is anyone's guess: an equal part.
+    // The time of a pass is divided equally among its cuts.
     const double seconds = watch.lap() / static_cast<double>(offsets.size());
     for (std::size_t i = first; i < end; ++i) results[i].seconds.slice = seconds;
   }
 }
 
-/// Whether the layers beside a cut across an axis can be contoured alone.
+/// Whether a cut across an axis needs only the layers beside it.
 bool is_apart(const AnyImage& image, int axis) {
   const auto of_owned = [&](const auto& owned) {
     bool apart = true;
@@ -116,7 +115,7 @@ bool is_apart(const AnyImage& image, int axis) {
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
-/// A cut outside of an image, with names and units of its axes.
+/// An empty cut, outside of an image, with names and units of its axes.
 template <int N, class Real>
 Contour<N, Real> empty_cut(const Grid<N + 1>& grid, int across) {
   Contour<N, Real> cut;
@@ -142,13 +141,13 @@ Mesh slice_mesh(const AnyImage& image, double isovalue, const Cut& cut, const st
       own.add_shape_normals(contour);
       return to_mesh(contour);
     } else {
-      throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // require_cuttable was first
+      throw Error(ErrorCode::UnsupportedData, "2D images have no cuts");  // checked before by require_cuttable
     }
   };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
-/// The points of a cut's vertices in the space that was cut.
+/// Appends the vertices of a cut, in the coordinates of the space that was cut.
 template <int N>
 void append_points(const ContourResult& result, const std::vector<double>& factors, Contour<N, double>& points) {
   const HyperplaneFrame<N> frame = frame_of(hyperplane_of<N>(*result.cut, factors));
@@ -161,12 +160,12 @@ void append_points(const ContourResult& result, const std::vector<double>& facto
   }
 }
 
-/// Gives the cuts the values of other images at their vertices.
+/// Adds the values of other images at the vertices of the cuts.
 template <int N>
 void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& reading,
                     const std::vector<double>& factors, unsigned threads, std::vector<ContourResult>& results,
                     ProgressBar& bar) {
-  Contour<N, double> points;  // of all cuts, so that each image is read once
+  Contour<N, double> points;  // the points of all cuts, so that each image is read once
   for (const ContourResult& result : results) append_points<N>(result, factors, points);
   attributes.sample_to(points, reading, threads, bar);
   for (const Attribute& all : points.vertex_attributes) {
@@ -222,6 +221,7 @@ class SliceCommand final : public Command {
   }
 
   ExitCode run(const Streams& streams) override {
+    // validate options and files
     std::vector<Cut> cuts = parse_cuts(at_);
     for (Cut& cut : parse_planes(planes_)) cuts.push_back(std::move(cut));
     if (cuts.empty())
@@ -237,6 +237,7 @@ class SliceCommand final : public Command {
     require_different_outputs(outputs_);
     also_read(attributes_.files());
     attributes_.require_inputs();
+    // cut
     ProgressBar bar(streams.err, wants_progress());
     std::vector<ContourResult> results =
         find_mesh_file_format(file()) != nullptr ? cut_contour(std::move(cuts), bar) : cut_image(std::move(cuts), bar);
@@ -244,6 +245,7 @@ class SliceCommand final : public Command {
       add_attributes<4>(attributes_, image_options(), factors_, options_.threads(), results, bar);
     else if (attributes_.wanted())
       add_attributes<3>(attributes_, image_options(), factors_, options_.threads(), results, bar);
+    // check and write
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].input = inputs();
       results[i].output = outputs_[i];
@@ -253,6 +255,7 @@ class SliceCommand final : public Command {
     write_all(results, bar);
     bar.clear();
     for (const ContourResult& result : results) remark(result.lost.remark(result.output));
+    // report
     if (json()) {
       streams.out.write(dump(document(results)));
     } else if (!quiet()) {
@@ -272,13 +275,13 @@ class SliceCommand final : public Command {
     return list;
   }
 
-  /// Of an image or a contour of this dimension.
+  /// Checks that an input of this dimension can be cut as requested.
   void require_cuts(int dim, std::string_view what) const {
     require_cuttable(dim, what);
     for (const std::string& output : outputs_) require_output_holds(output, dim - 2);
   }
 
-  /// A result for each cut, with what is known before it is made.
+  /// Makes a result for each cut, with the data that is known in advance.
   [[nodiscard]] std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) const {
     std::vector<ContourResult> results;
     for (Cut& cut : resolve(std::move(cuts), space, options_.allows_empty()))
@@ -298,6 +301,7 @@ class SliceCommand final : public Command {
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
     std::vector<std::size_t> places;
+    // cuts across an axis from a slab; the others from the whole contour
     for (std::size_t i = 0; i < results.size(); ++i) {
       ContourResult& result = results[i];
       result.variable = input.info.variable;
@@ -316,7 +320,7 @@ class SliceCommand final : public Command {
     return results;
   }
 
-  /// A cut whose layers alone are contoured.
+  /// Contours only the layers of a cut.
   void cut_slab(const AnyImage& image, ContourResult& result, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.progress = bar.stage("slice");
@@ -327,11 +331,11 @@ class SliceCommand final : public Command {
                       : slice_mesh<double>(image, *result.isovalue, *result.cut, factors_, options_, options, stats);
     const double seconds = watch.lap();
     result.seconds.add(stats);
-    // The slab's extraction is a part of it; what is left is the cut proper.
+    // The slab's extraction is part of the time; the rest is the cut itself.
     result.seconds.slice = std::max(0.0, seconds - (result.seconds.total() - result.seconds.read));
   }
 
-  /// Cuts of the contour of the whole image.
+  /// Cuts the contour of the whole image.
   void cut_whole(const AnyImage& image, std::vector<ContourResult>& results, ProgressBar& bar) const {
     ExtractOptions options = options_.library_options();
     options.progress = bar.stage("contour");
@@ -372,7 +376,7 @@ class SliceCommand final : public Command {
     return results;
   }
 
-  /// All or nothing.
+  /// Writes all files or none.
   static void write_all(std::vector<ContourResult>& results, ProgressBar& bar) {
     WrittenFiles written;
     for (ContourResult& result : results) write_result(result, bar, written);
@@ -382,10 +386,10 @@ class SliceCommand final : public Command {
   ExtractionOptions options_;
   AttributeOptions attributes_;
   CompressOption compress_;
-  std::vector<double> factors_;  ///< of --scale, by axis
+  std::vector<double> factors_;  ///< from --scale, by axis
   std::vector<std::string> at_, planes_, scale_;
   std::string output_;                ///< with placeholders
-  std::vector<std::string> outputs_;  ///< of each cut
+  std::vector<std::string> outputs_;  ///< output of each cut
   bool no_check_ = false;
 };
 

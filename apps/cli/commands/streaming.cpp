@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements streamed extraction of one or several isovalues to files.
 #include "commands/streaming.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// Layers whose values are counted in until samples lie on both sides of every isovalue.
+/// Layers that update the range of values read, until samples are on both sides of every isovalue.
 template <class T, int N>
 class RangedLayers final : public LayerReader<T, N> {
  public:
@@ -43,7 +45,7 @@ class RangedLayers final : public LayerReader<T, N> {
       range_.max = std::fmax(range_.max, value);
     }
   }
-  /// Of the values read so far, complete if an isovalue lies outside of it.
+  /// The range of the values read so far; complete if an isovalue lies outside of it.
   [[nodiscard]] const ValueRange& range() const noexcept { return range_; }
 
  private:
@@ -56,11 +58,13 @@ class RangedLayers final : public LayerReader<T, N> {
 template <int N, class Real, class T>
 std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
                                       std::vector<ContourResult>& results) {
+  // check the axes
   for (int a = 0; a < N; ++a)
     if (source.grid().axes[a].size() < 2)
       throw Error(ErrorCode::EmptyResult,
                   fmt::format("the axis '{}' has 1 sample; a contour needs at least 2 samples along every axis",
                               axis_label(source.grid().axes[a].name, static_cast<std::size_t>(a))));
+  // open the output files
   RangedLayers<T, N> layers(source, results);
   std::vector<std::unique_ptr<ContourFile<N, Real>>> files;
   std::vector<StreamedContour<N, Real>> contours;
@@ -75,6 +79,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
     });
     contours.push_back({*result.isovalue, files.back().get(), {}, {}});
   }
+  // extract, check the range of values, complete the files
   written.with_target_names([&] {
     extract_streamed_several<Real, T, N>(layers, contours, options.extract);
     for (const auto& contour : contours) {
@@ -85,6 +90,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
     for (const auto& file : files) file->commit();
   });
   written.keep();
+  // report
   const double seconds = watch.lap();
   for (std::size_t i = 0; i < results.size(); ++i) {
     results[i].image_dim = N;
@@ -99,7 +105,7 @@ std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::stri
 }  // namespace
 
 void require_open_files(std::size_t contours) {
-  constexpr rlim_t kOthers = 32;  // standard streams, inputs, what libraries have open
+  constexpr rlim_t kOthers = 32;  // standard streams, inputs, files opened by libraries
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
   const rlim_t needed = contours + kOthers;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of images that are larger than memory: read layer by layer, written as they come.
+// Contours of images larger than memory: read layer by layer and written in parts.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace tegl::cli {
 
-/// Throws InvalidArgument if the system does not let the program have a file open for each of so many contours. Where
-/// it lets a program ask for more than it has, it is asked.
+/// Throws InvalidArgument if the system does not allow an open file for each of the contours. Raises the soft limit if
+/// necessary.
 void require_open_files(std::size_t contours);
 
-/// How contours are streamed.
+/// Options of streaming.
 struct StreamOptions {
   ExtractOptions extract;
   bool single_precision = false;
@@ -25,9 +25,9 @@ struct StreamOptions {
   Compression compression = Compression::none;
 };
 
-/// Streams the contours at result.isovalue of each result to its output, in one pass; fills their sizes, counts and
-/// seconds. Throws EmptyResult, and leaves no file, if an isovalue lies outside of the values, unless `allow_empty`.
-/// Returns a remark for each contour that is empty though its isovalue lies within them.
+/// Streams the contours at result.isovalue of each result to its output, in one pass; sets their sizes, counts and
+/// seconds. If an isovalue lies outside of the values, throws EmptyResult and leaves no file, unless `allow_empty`.
+/// Returns a remark for each empty contour whose isovalue lies within the values.
 std::vector<std::string> stream_contours(OpenLayersResult& input, const StreamOptions& options,
                                          std::vector<ContourResult>& results);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl track: what becomes of the parts of a moving contour.
+// tegl track: tracks the parts of a moving contour.
 #include "tegl/track.hpp"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ constexpr const char* kExamples =
     "exact times between the steps. 'begin' and 'end' are at the first and last step of the data, 'enter' and 'leave'\n"
     "at the image's other borders and beside missing values.";
 
-/// Adds to each simplex the track and the segment that it is in when it first appears; -1: in none.
+/// Adds attributes with the track and the segment in which each simplex first appears; -1: none.
 template <int N>
 void add_labels(Contour<N, double>& contour, const TrackGraph& graph) {
   Attribute tracks{"track", "", 1, {}};
@@ -52,7 +52,7 @@ void add_labels(Contour<N, double>& contour, const TrackGraph& graph) {
   }
 }
 
-/// The largest measure that a track has at any sample.
+/// The maximum measure of a track over its samples.
 double largest_measure(const TrackGraph& graph, const Track& track) {
   double largest = 0;
   for (const Index s : track.segments)
@@ -60,7 +60,7 @@ double largest_measure(const TrackGraph& graph, const Track& track) {
   return largest;
 }
 
-/// The tracks in falling order of a key; equal ones in their own order.
+/// The tracks by decreasing key; equal ones keep their order.
 template <class Key>
 std::vector<std::size_t> falling(const TrackGraph& graph, const Key& key) {
   std::vector<double> keys;
@@ -73,7 +73,7 @@ std::vector<std::size_t> falling(const TrackGraph& graph, const Key& key) {
 
 double lifetime(const Track& track) { return track.end - track.start; }
 
-/// How many events there are of each kind, in the order of the kinds; those with none left out.
+/// The number of events of each kind that occurs, in the order of the kinds.
 std::vector<std::pair<std::string, std::size_t>> kinds_of(const TrackGraph& graph) {
   std::vector<std::pair<std::string, std::size_t>> counts;
   for (int k = 0; k <= static_cast<int>(TrackEventKind::exchange); ++k) {
@@ -125,6 +125,7 @@ class TrackCommand final : public ContourInputCommand {
     TrackOptions options;
     options.min_lifetime = parse_finite("--min-lifetime", min_lifetime_);
     require_options(options);
+    // read
     ProgressBar bar(streams.err, wants_progress());
     ContourInput input = read_contour(bar, true);
     if (input.image) {
@@ -133,13 +134,16 @@ class TrackCommand final : public ContourInputCommand {
     }
     for (const std::string& output : outputs_)
       if (!is_track_file(output)) require_output_holds(output, input.space_dim() - 1);
+    // track
     Stopwatch watch;
     TrackGraph graph = std::visit([&](const auto& contour) { return follow(contour, options, bar); }, input.contour);
     const std::size_t all = graph.tracks.size();
     graph = selected(std::move(graph));
     const double track_seconds = watch.lap();
+    // write
     write(input, graph, bar);
     const double write_seconds = watch.lap();
+    // report
     bar.clear();
     if (json())
       streams.out.write(dump(document(input, graph, all, track_seconds, write_seconds)));
@@ -173,7 +177,7 @@ class TrackCommand final : public ContourInputCommand {
     require_different_outputs(written_files());
   }
 
-  /// The contour is written for the track of each simplex.
+  /// Checks the output of the contour with the track of each simplex.
   void require_mesh_output(const std::string& output) const {
     require_output(output, files());
     require_output_keeps(output, normals(), true);
@@ -211,6 +215,7 @@ class TrackCommand final : public ContourInputCommand {
   }
 
   void write(ContourInput& input, const TrackGraph& graph, ProgressBar& bar) {
+    // graph files, and contours with labels
     WrittenFiles written;
     for (const std::string& output : outputs_) {
       const Progress writing = bar.stage("write");
@@ -227,6 +232,7 @@ class TrackCommand final : public ContourInputCommand {
       else
         std::visit(write_labelled, input.contour);
     }
+    // tables
     if (!csv_.empty())
       for (const Csv& table : kTables)
         written.write(csv_ + table.ending, [&](const auto& file) { write_text(table.text(graph), file); });
@@ -285,7 +291,7 @@ class TrackCommand final : public ContourInputCommand {
     return text;
   }
 
-  /// A line for each of the longest tracks.
+  /// A line for each of the longest-lived tracks.
   static std::string longest_text(const TrackGraph& graph, const ContourInput& input) {
     constexpr std::size_t kMost = 8;
     const int last = input.space_dim() - 1;
@@ -330,7 +336,7 @@ class TrackCommand final : public ContourInputCommand {
   CompressOption compress_;
   std::optional<std::size_t> longest_;
   std::optional<std::size_t> largest_;
-  LostVertices lost_;  ///< in the files
+  LostVertices lost_;  ///< vertices that coincide in the files
 };
 
 }  // namespace

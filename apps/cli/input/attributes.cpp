@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements --attribute: parses files and variables, reads the images and interpolates them at the vertices.
 #include "input/attributes.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "salinity" for "data/salinity.nii.gz".
+/// File name without extensions: "salinity" for "data/salinity.nii.gz".
 std::string stem(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.substr(0, std::max<std::size_t>(1, std::min(name.find('.', 1), name.size())));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// --attribute: values of other images on a contour.
+// The option --attribute: values of other images at the vertices of a contour.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,8 +14,8 @@
 
 namespace tegl::cli {
 
-/// A file and one of its variables, which may be empty, as "FILE:VARIABLE" names them. A colon that belongs to the
-/// name of a file that exists is one.
+/// A file and one of its variables (may be empty), parsed from "FILE:VARIABLE". If a file with the whole text as its
+/// name exists, the colon is part of the name.
 struct FileAndVariable {
   std::string file;
   std::string variable;
@@ -24,20 +24,20 @@ FileAndVariable parse_file_and_variable(const std::string& text);
 
 class AttributeOptions {
  public:
-  /// Adds --attribute to a command. This must outlive the parse.
+  /// Adds --attribute to a command. This object must outlive the parse.
   void add_to(CLI::App& app);
 
   [[nodiscard]] bool wanted() const { return !texts_.empty(); }
 
-  /// The files that are read.
+  /// The files to read.
   [[nodiscard]] std::vector<std::string> files() const;
 
-  /// Throws FileNotFound if one of the files is not there: before the long work.
+  /// Throws FileNotFound if a file is missing, before the long work.
   void require_inputs() const;
 
-  /// The images' values at the vertices: by the names of the variables, or of the files without their extensions.
-  /// `reading`: how the files are read. Throws InvalidArgument if two have the same name, UnsupportedData for an image
-  /// of another dimension, and what the readers throw.
+  /// Interpolates the images at the vertices, as attributes named after the variables, or after the files without
+  /// extensions. `reading`: how the files are read. Throws InvalidArgument if two have the same name, UnsupportedData
+  /// for an image of another dimension, and errors of the readers.
   template <int N, class Real>
   void sample_to(Contour<N, Real>& contour, ReadImageOptions reading, unsigned threads, ProgressBar& bar) const;
 

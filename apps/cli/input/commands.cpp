@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the base class of the commands: FILE, common options, and reading of the input.
 #include "input/commands.hpp"
 
 #include <algorithm>
@@ -10,7 +12,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// How a file is read, as an image or a mesh.
+/// Options to read a file as an image or a mesh.
 template <class Options>
 Options reading_options(const ImageOptions& given, Progress progress) {
   Options options;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The commands of the program. Each adds its options to the command line, and runs when it was named.
+// Base class of the commands, and their factories. A command adds its options to the command line, and runs if it is
+// named.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,7 +20,7 @@
 
 namespace tegl::cli {
 
-/// The two streams of the program.
+/// The output streams of the program.
 struct Streams {
   Console out{stdout};
   Console err{stderr};
@@ -28,7 +29,8 @@ struct Streams {
 /// A command of the program: `tegl NAME FILE ...`.
 class Command {
  public:
-  /// What FILE stands for: one file; one image, in a file or several; or several, which are worked on one by one.
+  /// Meaning of FILE. one: one file; image: one image, from one or several files; each: several files, processed one by
+  /// one.
   enum class Files { one, image, each };
 
   /// Adds the command with its FILE argument and --json to the command line.
@@ -38,22 +40,22 @@ class Command {
   Command(const Command&) = delete;
   Command& operator=(const Command&) = delete;
 
-  /// Does the work. Throws tegl::Error.
+  /// Runs the command. Throws tegl::Error.
   virtual ExitCode run(const Streams& streams) = 0;
 
-  /// Whether this is the command that was named.
+  /// Whether the command line names this command.
   [[nodiscard]] bool named() const { return app_->parsed(); }
-  /// FILE; where there are several, the (first) one that is worked on.
+  /// The current FILE; the first one if there are several.
   [[nodiscard]] const std::string& file() const { return worked_on_.front(); }
-  /// What is worked on: FILE, or all that are one image.
+  /// The current input: FILE, or all files of one image.
   [[nodiscard]] InputFiles inputs() const { return {worked_on_}; }
   [[nodiscard]] bool json() const { return json_; }
   [[nodiscard]] bool quiet() const { return quiet_; }
-  /// Files that are read besides.
+  /// Other files that are read.
   [[nodiscard]] const std::vector<std::string>& other_inputs() const { return other_inputs_; }
-  /// --threads; 0 for all that the machine has, and without that option.
+  /// Value of --threads; 0 for all of the machine, and for commands without the option.
   [[nodiscard]] unsigned threads_wanted() const;
-  /// What there is to say of the images that were read and of what was written, unless silence is asked for.
+  /// Remarks about the images read and files written; none with --quiet.
   [[nodiscard]] std::vector<std::string> remarks() const {
     if (quiet_) return {};
     std::vector<std::string> all = images_.remarks();
@@ -64,37 +66,36 @@ class Command {
  protected:
   [[nodiscard]] CLI::App& app() { return *app_; }
   [[nodiscard]] const CLI::App& app() const { return *app_; }
-  /// Progress bars are for people who wait.
+  /// Progress bars are for interactive use.
   [[nodiscard]] bool wants_progress() const { return !json_ && !quiet_; }
-  /// The files that are worked on: FILE, or all that are one image.
+  /// The current files: FILE, or all files of one image.
   [[nodiscard]] const std::vector<std::string>& files() const { return worked_on_; }
-  /// All of FILE...
+  /// All files of the command line.
   [[nodiscard]] const std::vector<std::string>& all_files() const { return files_; }
-  /// Turns to the file of this place among them.
+  /// Makes one file current.
   void turn_to_file(std::size_t place) { worked_on_ = {files_.at(place)}; }
-  /// Turns to all of them, as one image.
+  /// Makes all files current, as one image.
   void turn_to_all_files() { worked_on_ = files_; }
   /// Adds --quiet.
   void add_quiet();
-  /// Adds the options that say how FILE is read as an image.
+  /// Adds the options to read FILE as an image.
   void add_image_options() { images_.add_to(*app_); }
   [[nodiscard]] const ImageOptions& images() const { return images_; }
-  /// How a file beside FILE is read as an image, with --allow-outside-paths and --in-process.
+  /// Options to read another file as an image, with --allow-outside-paths and --in-process.
   [[nodiscard]] ReadImageOptions image_options(Progress progress = {}) const;
-  /// How FILE is read as a mesh, with --allow-outside-paths and --in-process.
+  /// Options to read FILE as a mesh, with --allow-outside-paths and --in-process.
   [[nodiscard]] ReadMeshOptions mesh_options(Progress progress) const;
-  /// Reads the image that FILE and these options name. From then on the files that are worked on stand in the order in
-  /// which they follow each other.
+  /// Reads the image of FILE and these options. Then the current files are in the order of the series.
   [[nodiscard]] ReadImageResult read(const Progress& progress);
-  /// The same to be read layer by layer.
+  /// Opens the image to be read layer by layer.
   [[nodiscard]] OpenLayersResult open();
-  /// Throws FileNotFound unless the files that are worked on can be read.
+  /// Throws FileNotFound unless the current files are readable.
   void require_inputs() const;
-  /// Errors that name one of these files are not taken for errors of FILE.
+  /// Adds other input files; errors that name one of them are not attributed to FILE.
   void also_read(const std::vector<std::string>& files) {
     other_inputs_.insert(other_inputs_.end(), files.begin(), files.end());
   }
-  /// Keeps a remark for the end; an empty one is none.
+  /// Adds a remark to be printed at the end, unless it is empty.
   void remark(std::string text) {
     if (!text.empty()) remarks_.push_back(std::move(text));
   }
@@ -125,7 +126,7 @@ std::unique_ptr<Command> make_components_command(CLI::App& program);
 std::unique_ptr<Command> make_measure_command(CLI::App& program);
 std::unique_ptr<Command> make_track_command(CLI::App& program);
 std::unique_ptr<Command> make_simplify_command(CLI::App& program);
-/// `version`: of the program, which pages name.
+/// `version`: version of the program, for the pages.
 std::unique_ptr<Command> make_view_command(CLI::App& program, std::string version);
 
 }  // namespace tegl::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A parser by recursive descent: a function for each rule of the grammar, each giving a test of components.
+// A recursive-descent parser: one function per grammar rule, each returning a predicate on components.
 #include "input/component_selection.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ using Quantity = std::function<std::optional<double>(const ComponentFacts&)>;
 
 constexpr std::string_view kQuantities = "label, rank, vertices, simplices, size, content, euler, boundary";
 
-/// A word, a number, or signs, and where it begins.
+/// A word, a number or an operator, and its position.
 struct Token {
   std::string_view text;  ///< empty at the end
   std::size_t at = 0;
@@ -43,7 +43,7 @@ class Parser {
   }
 
  private:
-  /// Throws, with what was found at this token and what should have been there.
+  /// Throws an error with the current token and the expected one.
   [[noreturn]] void fail(const std::string& expected) const {
     const std::string found = now().text.empty() ? "ends" : fmt::format("has '{}' at {}", now().text, now().at + 1);
     throw Error(ErrorCode::InvalidArgument, fmt::format("--select '{}' {}; {}", condition_, found, expected));
@@ -79,7 +79,7 @@ class Parser {
     return true;
   }
 
-  // Parentheses and `not` nest no deeper than a person would write, so that no condition exhausts the stack.
+  // Limits the nesting of parentheses and `not`, so that no condition exhausts the stack.
   Test nested(Test (Parser::*rule)()) {
     constexpr int kDeepest = 100;
     if (++depth_ > kDeepest) fail("expected no more than 100 levels of parentheses and 'not'");

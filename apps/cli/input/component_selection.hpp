@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The conditions of --select: which components of a contour are meant.
+// Conditions of --select, which choose components of a contour.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace tegl::cli {
 
-/// What a condition may ask of a component.
+/// The properties of a component that a condition can use.
 struct ComponentFacts {
   double label = 0;
   double rank = 0;  ///< 1 for the largest by size
   double vertices = 0;
   double simplices = 0;
   double size = 0;
-  std::optional<double> content;  ///< none where it is open: comparisons with it are false
+  std::optional<double> content;  ///< none for an open component: comparisons with it are false
   double euler = 0;
   double boundary = 0;
   std::vector<double> lowest;  ///< by axis
@@ -35,11 +35,11 @@ struct ComponentFacts {
 ///               AXIS.min AXIS.max AXIS.span AXIS.centroid
 ///   axis        AXIS contains NUMBER | AXIS meets LOW..HIGH | AXIS within LOW..HIGH
 ///
-/// An axis goes by its own name or its letter x, y, z, t; `length`, `area` or `volume` may be said for `size`.
+/// An axis is given by its own name or its letter x, y, z, t; `length`, `area` or `volume` are synonyms of `size`.
 class ComponentSelection {
  public:
-  /// `axes`: the axes' own names, where they have any, or letters. Throws InvalidArgument, quoting the condition and
-  /// the place in it, for one that does not follow these rules.
+  /// `axes`: names of the axes, or letters for unnamed ones. Throws InvalidArgument, with the condition and the
+  /// position in it, for a condition outside of this grammar.
   ComponentSelection(const std::string& condition, const std::vector<std::string>& axes);
 
   [[nodiscard]] bool operator()(const ComponentFacts& facts) const { return test_(facts); }

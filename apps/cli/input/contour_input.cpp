@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Reads the contour of commands whose FILE is an image or a saved contour.
 #include "input/contour_input.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// The contour with coordinates in double.
+/// Converts the coordinates to double.
 template <int N, class Real>
 Contour<N, double> widened(Contour<N, Real> contour) {
   if constexpr (std::is_same_v<Real, double>) {
@@ -50,7 +52,7 @@ Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
   throw Error(ErrorCode::MalformedFile,
               fmt::format("a coordinate of vertex {} is {} ({} others like that); expected finite ones",
                           (first - mesh.coordinates.begin()) / mesh.space_dim,
-                          std::isnan(*first) ? std::abs(*first) : *first, others));  // the sign of nan means nothing
+                          std::isnan(*first) ? std::abs(*first) : *first, others));  // NaN is printed without its sign
 }
 
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty) {
@@ -62,7 +64,7 @@ Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options,
 }
 
 AnyContour to_any_contour(const Mesh& mesh) {
-  // Segments of a planar mesh come back from some formats with a third coordinate, 0.
+  // Some formats return segments of a planar mesh with a third coordinate, 0.
   const int dim = mesh.dim == 1 ? 2 : mesh.space_dim;
   if (dim == 2) return to_contour<2>(mesh);
   if (dim == 3) return to_contour<3>(mesh);
@@ -153,6 +155,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   ContourInput result;
   result.file = inputs();
   Stopwatch watch;
+  // a saved contour
   if (find_mesh_file_format(file()) != nullptr) {
     std::vector<std::string> given = options_.given();
     std::erase(given, "--threads");
@@ -163,6 +166,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
     result.seconds.read = watch.lap();
     return result;
   }
+  // an image to be contoured
   result.isovalue = options_.isovalue();
   ExtractOptions options = options_.library_options();
   ReadImageResult input = read(bar.stage("read"));

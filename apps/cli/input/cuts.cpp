@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Parses --at, --plane and --scale, matches cuts with the axes of their space, and names output files.
 #include "input/cuts.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// "NAME=VALUES", in two.
+/// Splits "NAME=VALUES".
 std::pair<std::string, std::string_view> halves(std::string_view option, const std::string& argument,
                                                 std::string_view expected) {
   const std::size_t equals = argument.find('=');
@@ -25,14 +27,15 @@ std::pair<std::string, std::string_view> halves(std::string_view option, const s
   return {argument.substr(0, equals), std::string_view(argument).substr(equals + 1)};
 }
 
-/// `count` numbers from `first` to `last`, these two as they are. Those between them that are meant to have few digits,
-/// such as 0.3 or 5, have them: a last bit more or less would be another side of the samples that equal the isovalue.
+/// `count` numbers from `first` to `last`; both ends are exact. Numbers between that are intended to have few digits,
+/// such as 0.3 or 5, are rounded to them: an error in the last bit would put the cut on another side of samples that
+/// equal the isovalue.
 std::vector<double> even_numbers(double first, double last, std::size_t count) {
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(first), std::abs(last));
   std::vector<double> numbers = {first};
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count - 1);
-    const double value = first * (1 - along) + last * along;  // their difference may be beyond the largest number
+    const double value = first * (1 - along) + last * along;  // first - last could overflow
     const double meant = std::abs(value) <= rounding ? 0.0 : *parse_number(fmt::format("{:.12g}", value));
     numbers.push_back(std::abs(meant - value) <= rounding ? meant : value);
   }
@@ -40,8 +43,8 @@ std::vector<double> even_numbers(double first, double last, std::size_t count) {
   return numbers;
 }
 
-/// Evenly spaced numbers as number() spells them, or with as many digits more as it takes to be off by a thousandth of
-/// the step at most: files are named after them.
+/// Evenly spaced numbers with their texts: as number() formats them, or with more digits so that the error is at most a
+/// thousandth of the step, as files are named after them.
 std::vector<SpelledNumber> spell_apart(const std::vector<double>& range) {
   const double most = std::abs(range[1] - range[0]) / 1000;
   const auto is_near = [&](const SpelledNumber& spelled) {
@@ -56,7 +59,7 @@ std::vector<SpelledNumber> spell_apart(const std::vector<double>& range) {
   return result;
 }
 
-/// "1,2.5" and "FIRST:LAST:COUNT": each number, and how it is spelled.
+/// Parses "1,2.5" and "FIRST:LAST:COUNT": each number and its text.
 std::vector<SpelledNumber> numbers_of(const std::string& option, std::string_view values) {
   std::vector<SpelledNumber> result;
   for (const std::string_view text : split(values, ',')) {
@@ -78,7 +81,7 @@ std::vector<SpelledNumber> numbers_of(const std::string& option, std::string_vie
   return result;
 }
 
-/// True if there was any.
+/// Replaces a placeholder; returns true if there was one.
 bool replace_all(std::string& output, const std::string& placeholder, const std::string& text) {
   bool any = false;
   for (auto at = output.find(placeholder); at != std::string::npos; at = output.find(placeholder, at)) {
@@ -89,13 +92,13 @@ bool replace_all(std::string& output, const std::string& placeholder, const std:
   return any;
 }
 
-/// Puts the place in its row, 1 for the first, where "{n}" stands: as many digits for all, so that names sort. True if
-/// there was any.
+/// Replaces "{n}" by the position in the list, from 1, with as many digits for all, so that names sort. Returns true if
+/// there was one.
 bool replace_place(std::string& output, std::size_t place, std::size_t count) {
   return replace_all(output, "{n}", fmt::format("{:0{}}", place, std::to_string(count).size()));
 }
 
-/// "x + 2 t", of a normal.
+/// A normal as text, such as "x + 2 t".
 std::string formula(const std::vector<double>& normal, const CutSpace& space) {
   std::string text;
   for (std::size_t a = 0; a < normal.size(); ++a) {
@@ -107,7 +110,7 @@ std::string formula(const std::vector<double>& normal, const CutSpace& space) {
   return text;
 }
 
-/// What a cut is of, along its normal: the values from the lowest to the highest corner of the space's box.
+/// The range of values along a cut's normal: from the lowest to the highest corner of the space's box.
 CutAxis range_of(const Cut& cut, const CutSpace& space) {
   CutAxis range{cut.axis, 0.0, 0.0};
   for (std::size_t a = 0; a < space.axes.size(); ++a) {
@@ -125,7 +128,7 @@ std::vector<std::string> labels_of(const CutSpace& space) {
   return labels;
 }
 
-/// Tells cuts across axes of a saved contour where the vertices are that they mean.
+/// Sets Cut::level of cuts across axes of a saved contour that are meant to pass through its vertices.
 void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
   for (std::size_t axis = 0; axis < space.axes.size(); ++axis) {
     const auto is_across = [&](const Cut& cut) { return cut.across && static_cast<std::size_t>(*cut.across) == axis; };

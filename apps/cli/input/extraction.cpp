@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the options of extraction, the checks before it, and checking and writing of its result.
 #include "input/extraction.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +16,7 @@
 namespace tegl::cli {
 
 void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
-  // All are known everywhere, to say who takes them; help shows those that will do.
+  // Every command knows all values, for error messages about wrong ones; help lists the valid ones.
   CLI::Validator triangulations =
       CLI::IsMember({"compact", "barycentric", "fan", "zigzag", "halving-chord", "halving-kink"});
   if (!of_images_alone) triangulations.description("{compact,barycentric}");

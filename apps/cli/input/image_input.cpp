@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the options to read an image from one or several files.
 #include "input/image_input.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// "64x64x64x400" as numbers.
+/// Parses "64x64x64x400".
 std::vector<std::size_t> parse_sizes(const std::string& text) {
   std::vector<std::size_t> sizes;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -34,7 +36,7 @@ std::vector<std::size_t> parse_sizes(const std::string& text) {
   return sizes;
 }
 
-/// "member=3", "depth=0" as dimensions and indices. Names may have an equals sign in them.
+/// Parses "member=3", "depth=0" as dimensions and indices. Names may contain an equals sign.
 std::vector<FixedIndex> parse_fixed(const std::vector<std::string>& texts) {
   std::vector<FixedIndex> fixed;
   for (const std::string& text : texts) {
@@ -58,8 +60,8 @@ std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& file
   return {files.begin(), files.end()};
 }
 
-/// What --var is for is said where it is missing, and which options contradict each other where files do not follow
-/// each other.
+/// Adds hints to errors: about --var if a variable is missing, and about conflicting options if files are not in
+/// monotone order.
 template <class Read>
 auto with_hint(const std::string& variable, const std::vector<std::string>& files, const SeriesOptions& options,
                const Read& read) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The image that FILE names, for all commands alike: one file, or several that are one image, and the options that say
-// how to read them.
+// Reads the image of FILE, for all commands: one file, or several files of one image, and the options to read them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,53 +13,53 @@
 
 namespace tegl::cli {
 
-/// The message of an error of the library's readers with the names of the program's options.
+/// Replaces names of library options in an error message by those of the program.
 std::string with_option_names(std::string message);
 
 /// --var, --series, --times, --time-step, --time-unit, --sort, --fix, --raw and the options of its layout.
 class ImageOptions {
  public:
-  /// Adds the options to a command. This must outlive the parse.
+  /// Adds the options to a command. This object must outlive the parse.
   void add_to(CLI::App& app);
-  /// Adds --in-process, which commands without images have, too.
+  /// Adds --in-process, which commands without images have too.
   void add_in_process_to(CLI::App& app);
-  /// Whether files are read in a child process where that is of use: always, unless --in-process is given.
+  /// Whether files that may crash a library are read in a child process: always, unless --in-process is given.
   [[nodiscard]] bool separate_process() const { return !in_process_; }
 
-  /// Of --allow-outside-paths, which every command has, for meshes too: Command adds it.
+  /// Value of --allow-outside-paths, which every command has, also for meshes; added by Command.
   [[nodiscard]] bool& allow_outside_paths() { return allow_outside_paths_; }
   [[nodiscard]] bool allow_outside_paths() const { return allow_outside_paths_; }
 
-  /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that contradict each other
-  /// or the files, and for files in an order that only a shell would choose.
+  /// Reads the files as one image. Errors: those of read_series; InvalidArgument for options that conflict with each
+  /// other or the files, and for files in the order of a shell.
   [[nodiscard]] ReadSeriesResult read(const std::vector<std::string>& files, const Progress& progress) const;
 
-  /// The same to be read layer by layer.
+  /// Opens the files as one image to be read layer by layer.
   [[nodiscard]] OpenSeriesResult open(const std::vector<std::string>& files) const;
 
-  /// The variables of the files, as list_image_variables has them; none of raw ones.
+  /// The variables of the files, as from list_image_variables; empty for raw files.
   [[nodiscard]] std::vector<ImageVariable> variables(const std::vector<std::string>& files) const;
 
-  /// The variable or DICOM series that is chosen; may be empty.
+  /// The selected variable or DICOM series; may be empty.
   [[nodiscard]] const std::string& variable() const { return series_.empty() ? variable_ : series_; }
-  /// The option that chooses among what these files hold.
+  /// The option that selects among the contents of these files.
   [[nodiscard]] static std::string choosing_option(const std::vector<std::string>& files);
-  /// What the readers said of the files read so far: what they left out, what is uneven.
+  /// The readers' remarks about the files read so far: skipped files, uneven distances.
   [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
   [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
-  /// Whether the index of a dimension is given.
+  /// Whether --fix is given.
   [[nodiscard]] bool has_fixed() const { return !fixed_.empty(); }
-  /// The names of those that are given.
+  /// The names of the options that were given.
   [[nodiscard]] std::vector<std::string> given() const;
 
  private:
-  /// --var is not for DICOM, nor --series for anything else.
+  /// Throws if --var is given for DICOM, or --series for other formats.
   void require_fitting_choice(const std::vector<std::string>& files) const;
   [[nodiscard]] SeriesOptions series_options(const std::vector<std::string>& files) const;
   void add_raw_to(CLI::App& app);
-  /// Throws InvalidArgument.
+  /// Parses the layout options. Throws InvalidArgument.
   [[nodiscard]] RawLayout raw_layout() const;
-  /// Keeps the remarks on what was read.
+  /// Stores the remarks of a result.
   template <class Result>
   Result remembered(Result result) const {
     remarks_.insert(remarks_.end(), result.info.remarks.begin(), result.info.remarks.end());

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Counts vertices that coincide in single precision or without vertex numbers.
 #include "output/lost_vertices.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +15,7 @@ namespace tegl::cli {
 
 namespace {
 
-/// How many places there are among the vertices that are used, with coordinates of a precision.
+/// Number of distinct positions of the used vertices, with coordinates converted to `Real`.
 template <class Real>
 std::uint64_t places(const Mesh& mesh, const std::vector<bool>& used) {
   const auto n = static_cast<std::size_t>(mesh.space_dim);

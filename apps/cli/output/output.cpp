@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements checks of input and output files, and writing of several files together.
 #include "output/output.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +26,7 @@ namespace fs = std::filesystem;
   throw Error(ErrorCode::WriteFailed, fmt::format("{}: {}", output.string(), why));
 }
 
-/// Notes a target by its place. Throws InvalidArgument if another one is there.
+/// Registers a target by its path. Throws InvalidArgument if another target has the same path.
 void require_new(std::map<fs::path, fs::path>& targets, const fs::path& place, const fs::path& target) {
   const auto [other, is_new] = targets.emplace(place, target);
   if (is_new) return;
@@ -97,7 +99,7 @@ void require_output_keeps(const fs::path& output, std::string_view normals, bool
   if (attributes)
     fail(output,
          fmt::format("'{}' has no place for attributes; expected .vtkhdf, .ply, .gltf or .glb", format->extension));
-  // The facets' own normals are what STL has anyway; other programs make them of OBJ themselves.
+  // STL stores normals of triangles anyway; programs compute them for OBJ themselves.
   if (normals.empty() || (normals == "flat") == (format->extension == ".stl")) return;
   fail(output, fmt::format("'{}' has no place for normals of {}; expected .vtkhdf, .ply{} with --normals {}",
                            format->extension, normals == "flat" ? "triangles" : "vertices",
@@ -130,7 +132,7 @@ std::uint64_t write_file(const fs::path& output, const std::function<void()>& wr
   try {
     write();
   } catch (const Error& error) {
-    // Whatever is wrong here is wrong with the output: scripts tell the two files apart by the exit code.
+    // All errors here concern the output: scripts distinguish input and output by the exit code.
     if (error.code() == ErrorCode::Cancelled) throw;
     const std::string message = error.what();
     const bool named = message.find(output.string()) != std::string::npos;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Formats reports as text and JSON.
 #include "output/result.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +39,7 @@ std::string seconds_text(const StageSeconds& seconds) {
   return text;
 }
 
-/// What is wrong, in words; empty when nothing is.
+/// The faults as text; empty if there are none.
 std::string fault_text(const MeshReport& report) {
   std::string text;
   const auto add = [&](std::uint64_t count, std::string_view singular, std::string_view plural) {
@@ -154,6 +156,7 @@ void StageSeconds::add(const ExtractStats& stats) {
 }
 
 Json to_json(const ContourResult& result) {
+  // input and request
   Json json;
   json["input"] = result.input.json();
   json["variable"] = result.variable.empty() ? Json(nullptr) : Json(result.variable);
@@ -161,6 +164,7 @@ Json to_json(const ContourResult& result) {
   json["image_dim"] = result.image_dim;
   json["isovalue"] = result.isovalue ? Json(*result.isovalue) : Json(nullptr);
   if (!result.isovalues.empty()) json["isovalues"] = result.isovalues;
+  // cut and pick
   json["at"] = nullptr;
   if (result.cut) {
     json["at"] = {{"axis", result.cut->axis}, {"value", result.cut->value}};
@@ -176,6 +180,7 @@ Json to_json(const ContourResult& result) {
                     {"distance", result.picked->distance},
                     {"tiles", result.picked->tiles},
                     {"components", result.picked->components}};
+  // mesh and times
   add_check_keys(json, result.size(), result.report);
   json["vertices_together"] = result.lost.count();
   json["tiles"] = result.stats ? Json(result.stats->tiles) : Json(nullptr);
@@ -187,6 +192,7 @@ Json to_json(const ContourResult& result) {
 }
 
 std::string to_text(const Console& console, const ContourResult& result) {
+  // heading
   std::string what = result.cut ? fmt::format("Cut at {} = {}", result.cut->axis, number(result.cut->value))
                                 : fmt::format("Contour in {}D", result.image_dim);
   if (!result.wording.heading.empty()) what = result.wording.heading;
@@ -197,6 +203,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
     what += " of the isovalues " + all;
   }
   std::string text = fmt::format("{}\n", console.bold(what));
+  // input and pick
   text += input_line(result.input, result.variable);
   if (result.picked) {
     const Picked& picked = *result.picked;
@@ -210,6 +217,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
     text += report_line(
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));
   }
+  // mesh, times, output
   text += check_text(console, result.size(), result.report, result.wording);
   if (result.lost.count() > 0) text += report_line("in the file", console.red(result.lost.text()));
   text += report_line("seconds", seconds_text(result.seconds));

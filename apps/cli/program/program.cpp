@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Assembles the command line of the program: its description, its help and all commands.
 #include "program/program.hpp"
 
 #include "commands/demo.hpp"

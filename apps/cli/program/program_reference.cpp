@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The manual page and the completion scripts, written from the options themselves.
+// Generates the manual page and the completion scripts from the option definitions.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,7 +16,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& program) {
   return program.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// The options with a name to type, in the order of --help.
+/// The options with a name, in the order of --help.
 std::vector<const CLI::Option*> options_of(const CLI::App& app) {
   std::vector<const CLI::Option*> result;
   for (const CLI::Option* option : app.get_options())
@@ -26,7 +26,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app) {
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-/// The words that an option may be given, where these are known: "{a,b}" in its description of the type.
+/// The allowed values of an option, if they are listed as "{a,b}" in its type description.
 std::vector<std::string> words_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
@@ -62,7 +62,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 
 // --- the manual page
 
-/// Text for troff: hyphens that can be copied, no escape and no control line by chance.
+/// Escapes text for troff: hyphens stay copyable, and no text becomes an escape or a control line.
 std::string roff(const std::string& text) {
   std::string result = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   result = replaced(replaced(result, "'", "\\(aq"), "`", "\\(ga");
@@ -77,17 +77,17 @@ std::string roff(const std::string& text) {
   return lines;
 }
 
-/// A block that keeps its lines. Empty ones become none: troff takes them for paragraphs.
+/// A block without line filling. Empty lines are removed, because troff reads them as paragraphs.
 std::string verbatim(const std::string& text) {
   std::string result = ".nf\n" + roff(text);
   while (!result.empty() && result.back() == '\n') result.pop_back();
   return replaced(result, "\n\n", "\n.sp\n") + "\n.fi\n";
 }
 
-/// Lines that a page 80 columns wide has room for: commands go on behind a backslash, their comments and other lines
-/// below, indented.
+/// Wraps a line to the width of an 80-column page: commands continue after a backslash, comments and other lines are
+/// continued indented.
 std::string wrapped(std::string line) {
-  constexpr std::size_t kWidth = 71;  // beside the page's indentation and margin
+  constexpr std::size_t kWidth = 71;  // without the page's indentation and margin
   const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
   const bool is_command = std::string_view(line).substr(indent).starts_with("tegl ");
   std::string comment;
@@ -97,7 +97,7 @@ std::string wrapped(std::string line) {
   }
   std::string text;
   while (line.size() > kWidth) {
-    std::size_t at = indent;  // of the last blank that is not within quotes, of a command before an option
+    std::size_t at = indent;  // last blank outside of quotes; for commands, before an option
     std::size_t before_option = indent;
     bool quoted = false;
     for (std::size_t i = indent; i < kWidth - 2; ++i) {
@@ -114,7 +114,7 @@ std::string wrapped(std::string line) {
   return text + line + comment;
 }
 
-/// A command's examples as they are typed; and what is said of them as a paragraph.
+/// A command's examples: commands as a verbatim block, explanations as paragraphs.
 std::string man_examples(const std::string& footer) {
   std::string text;
   std::string block;
@@ -145,7 +145,7 @@ std::string man_option(const CLI::Option& option) {
   std::string text = fmt::format(".TP\n{}", fmt::join(names, ", "));
   const std::vector<std::string> words = words_of(option);
   if (!words.empty())
-    text += " " + replaced(roff(fmt::format("{}", fmt::join(words, "|"))), "|", "|\\:");  // lines may break there
+    text += " " + replaced(roff(fmt::format("{}", fmt::join(words, "|"))), "|", "|\\:");  // lines may break at |
   else if (takes_value(option))
     text += fmt::format(" \\fI{}\\fR", roff(option.get_type_name()));
   text += "\n" + roff(option.get_description());
@@ -186,15 +186,15 @@ namespace {
 
 // --- completion
 
-/// In single quotes, for any of the shells.
+/// Quotes a text in single quotes, for all shells.
 std::string single_quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
 
-/// The first clause of a description: menus are narrow.
+/// The first clause of a description, because menus are narrow.
 std::string brief(const std::string& description) {
   constexpr std::size_t kShort = 60;
   std::string text = replaced(description, "\n", " ");
   if (text.size() > kShort) {
-    // "netCDF: the variable to read": what comes before a colon may say little by itself.
+    // "netCDF: the variable to read": the text before an early colon is too short.
     std::size_t end = std::min(text.find(';'), text.size());
     if (const std::size_t colon = text.find(": ", kShort / 2); colon < end) end = colon;
     text.resize(end);
@@ -219,7 +219,7 @@ std::string bash_script(const CLI::App& program) {
     }
     options += fmt::format("      {}) words='{}' ;;\n", command->get_name(), fmt::join(words, " "));
   }
-  // "--name=value" is three words where '=' breaks them, as it does unless the user says otherwise.
+  // bash splits "--name=value" into three words at '=' by default.
   return fmt::format(
       "# bash completion of tegl, made by 'tegl --completion bash'\n"
       "_tegl() {{\n"
@@ -269,7 +269,7 @@ std::string zsh_script(const CLI::App& program) {
     cases += fmt::format("    {})\n      _arguments -s \\\n", command->get_name());
     for (const CLI::Option* option : options_of(*command))
       for (const std::string& name : names_of(*option)) {
-        // "--name=" takes its value behind it or as the next word.
+        // "--name=" accepts its value after '=' or as the next word.
         std::string spec = fmt::format("*{}{}[{}]", name, takes_value(*option) && name.starts_with("--") ? "=" : "",
                                        escaped(brief(option->get_description())));
         const char* const colon = option->get_items_expected_min() == 0 ? "::" : ":";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Parses the command line, runs the command that it names, and turns what goes wrong into one message and an exit code.
+// Parses the command line, runs the named command, and turns errors into one message and an exit code.
 #include "program/run.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ using tegl::cli::Command;
 using tegl::cli::ExitCode;
 using tegl::cli::Streams;
 
-/// The one message of a failed run, as text or as JSON.
+/// The error message of a failed run, as text or as JSON.
 std::string error_text(const Streams& streams, bool json, ExitCode exit, std::string_view code,
                        std::string_view message) {
   if (!json) return fmt::format("{} {}\n", streams.err.red("tegl:").text, tegl::cli::printable(message));
@@ -39,7 +39,7 @@ std::string error_text(const Streams& streams, bool json, ExitCode exit, std::st
   return tegl::cli::dump(document);
 }
 
-/// Writes it to standard error.
+/// Writes the error message to standard error; returns `exit`.
 ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_view code, std::string_view message) {
   streams.err.write(error_text(streams, json, exit, code, message));
   return exit;
@@ -47,7 +47,7 @@ ExitCode report(const Streams& streams, bool json, ExitCode exit, std::string_vi
 
 constexpr std::string_view kCancelled = "cancelled";
 
-/// The message, with the input's name in front if the library did not know it.
+/// The message of an error, preceded by the input's name if it does not contain it.
 std::string with_file(const tegl::Error& error, const Command& command) {
   using tegl::ErrorCode;
   constexpr std::array kAboutInput = {
@@ -65,13 +65,13 @@ std::string with_file(const tegl::Error& error, const Command& command) {
   return !about_input || is_named ? message : fmt::format("{}: {}", input.text(), message);
 }
 
-/// Runs the command with signals handled, and reports its error.
+/// Runs the command with signal handling, and reports its error.
 ExitCode run(Command& command, const Streams& streams) {
   const auto text = [&](ExitCode exit, std::string_view code, std::string_view message) {
     return error_text(streams, command.json(), exit, code, message);
   };
   const auto fail = [&](ExitCode exit, std::string_view code, std::string_view message) {
-    // Whatever a cancelled stage failed with, the reason is the signal.
+    // If a signal arrived, it is the reason, whatever error the cancelled stage had.
     if (tegl::cli::InterruptHandler::requested()) {
       exit = ExitCode::Cancelled;
       code = tegl::error_name(tegl::ErrorCode::Cancelled);
@@ -80,7 +80,7 @@ ExitCode run(Command& command, const Streams& streams) {
     streams.err.write(text(exit, code, message));
     return exit;
   };
-  // What a progress bar, or the film of the demo, leaves on a terminal.
+  // Removes a progress bar, or the demo's picture, from the terminal.
   const std::string cleared = streams.err.moves_its_cursor() ? "\r\x1b[0m\x1b[K\x1b[?25h" : "";
   const tegl::cli::InterruptHandler handler(
       cleared + text(ExitCode::Cancelled, tegl::error_name(tegl::ErrorCode::Cancelled), kCancelled));
@@ -109,20 +109,22 @@ std::string unknown_normals(std::string_view kind) {
   return fmt::format("--normals {}: expected gradient, sobel, geometric or flat", kind);
 }
 
-/// A command line that CLI11 refused, or a request for help.
-/// `normals_of`: what follows --normals, if it is neither a kind of normals nor an option.
+/// Handles a command line that CLI11 refused, or a request for help. `normals_of`: the argument after --normals, if it
+/// is neither a kind of normals nor an option.
 ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Streams& streams, bool json,
                 const std::vector<std::string>& arguments, std::string_view normals_of) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
     program.exit(error);  // prints the help or the version to standard output
     return ExitCode::Ok;
   }
+  // the command, for the hint at --help
   std::string help = "tegl";
   const CLI::App* named = &program;
   for (const CLI::App* command : program.get_subcommands()) {
     help += " " + command->get_name();
     named = command;
   }
+  // the message
   std::string what = error.what();
   if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
     what = what.substr(0, what.find(':')) + " is given more than once; expected it once";
@@ -141,8 +143,8 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
 
 constexpr std::array<std::string_view, 4> kNormals = {"gradient", "sobel", "geometric", "flat"};
 
-/// The arguments, last first, as CLI11 takes them. What --normals may be followed by is joined to it: an option whose
-/// value may be left out would take the next argument, whatever it is, for one.
+/// The arguments in reverse order, as CLI11 expects them. A kind of normals after --normals is joined to it, because
+/// CLI11 would take any next argument as the value of an option with an optional value.
 std::vector<std::string> joined_arguments(int argc, char** argv) {
   std::vector<std::string> arguments;
   for (const std::string_view argument : std::vector<std::string_view>(argv + std::min(1, argc), argv + argc)) {
@@ -156,7 +158,7 @@ std::vector<std::string> joined_arguments(int argc, char** argv) {
   return arguments;
 }
 
-/// What follows --normals, if it is neither a kind of normals nor an option: FILE, or a kind that there is not.
+/// The argument after --normals, if it is neither a kind of normals nor an option: FILE, or an invalid kind.
 std::string_view after_normals(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; ++i)
     if (const std::string_view next = argv[i + 1]; std::string_view(argv[i]) == "--normals" && !next.starts_with("-") &&
@@ -165,7 +167,7 @@ std::string_view after_normals(int argc, char** argv) {
   return {};
 }
 
-/// What `tegl --man` and `tegl --completion SHELL` write; nothing for other command lines.
+/// Handles `tegl --man` and `tegl --completion SHELL`; nullopt for other command lines.
 std::optional<ExitCode> write_reference(const CLI::App& program, int argc, char** argv,
                                         const tegl::cli::Release& release, const Streams& streams) {
   std::vector<std::string_view> words(argv + std::min(1, argc), argv + argc);
@@ -196,11 +198,11 @@ namespace tegl::cli {
 
 int run_program(int argc, char** argv, const Release& release) {
   tegl::cli::occupy_closed_streams();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond its limit is a failed write, which leaves nothing behind
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit becomes a failed write, which leaves no file
   const Streams streams;
   CLI::App program("", "tegl");
   const std::vector<std::unique_ptr<Command>> commands = tegl::cli::add_commands(program, release.version);
-  // Before anything is parsed, too, whoever asks for JSON wants errors in JSON.
+  // With --json, errors of parsing are reported as JSON too.
   const bool asks_for_json =
       std::any_of(argv, argv + argc, [](std::string_view argument) { return argument == "--json"; });
   if (const auto exit = write_reference(program, argc, argv, release, streams)) return static_cast<int>(*exit);
@@ -210,7 +212,7 @@ int run_program(int argc, char** argv, const Release& release) {
     const std::vector<std::string> arguments(argv + std::min(1, argc), argv + argc);
     return static_cast<int>(refuse(program, error, streams, asks_for_json, arguments, after_normals(argc, argv)));
   }
-  // FILE may be several, so that what is meant as a kind of normals is one of them.
+  // FILE accepts several values, so an invalid kind of normals would be read as one of them.
   std::error_code ignored;
   if (const std::string_view kind = after_normals(argc, argv); !kind.empty() && !std::filesystem::exists(kind, ignored))
     return static_cast<int>(report(streams, asks_for_json, ExitCode::Usage, "InvalidArgument",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl view: contours as a page for any browser, in which the GPU cuts them at the time of a slider.
+// tegl view: writes contours as an HTML page, in which the GPU cuts them at the time of a slider.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -38,7 +38,7 @@ constexpr const char* kExamples =
     "and\n"
     "3D contours can be turned and looked at. In the page, '?' lists the keys.";
 
-/// What a page got of one file.
+/// The contents of a page from one file.
 struct Shown {
   std::string input_text;
   Json keys;
@@ -84,6 +84,7 @@ class ViewCommand final : public ContourInputCommand {
 
   ExitCode run(const Streams& streams) override {
     require_page();
+    // add a layer for each file
     ProgressBar bar(streams.err, wants_progress());
     Stopwatch watch;
     PageNumbers numbers;
@@ -100,10 +101,12 @@ class ViewCommand final : public ContourInputCommand {
       scene["layers"].push_back(add_file(numbers, bar, shown));
       require_one_space(shown);
     }
+    // assemble and write the page
     const std::string packed = numbers.packed(bar.stage("pack"));
     const std::string page = make_page(scene, scene["title"].get<std::string>(), packed);
     bar.stage("write")(0);
     const std::uint64_t bytes = write_file(output_, [&] { write_text(page, output_); });
+    // report
     const double seconds = watch.lap();
     bar.clear();
     if (json())
@@ -132,7 +135,7 @@ class ViewCommand final : public ContourInputCommand {
                               output_));
   }
 
-  /// Contours in the plane are not shown with others.
+  /// Throws if planar contours are combined with others.
   void require_one_space(const std::vector<Shown>& shown) const {
     if ((shown.front().dim == 2) == (shown.back().dim == 2)) return;
     throw Error(ErrorCode::UnsupportedData,
@@ -172,8 +175,8 @@ class ViewCommand final : public ContourInputCommand {
     return layer;
   }
 
-  /// Of each axis in space whether it points down; null where nothing says so. Throws InvalidArgument if --down asks
-  /// for an axis that there is not.
+  /// For each spatial axis whether it points down; null if unknown. Throws InvalidArgument if --down names an unknown
+  /// axis.
   [[nodiscard]] Json axes_down(const ContourInput& input, const ImageInfo& info) const {
     std::vector<std::string> labels;
     for (int a = 0; a < std::min(input.space_dim(), 3); ++a) labels.push_back(input.axis_name(a));
@@ -194,7 +197,7 @@ class ViewCommand final : public ContourInputCommand {
     return down;
   }
 
-  /// Whether it is one letter each of right or left, anterior or posterior, superior or inferior, in this order.
+  /// Whether the text is one letter each of right or left, anterior or posterior, superior or inferior, in this order.
   [[nodiscard]] static bool is_world(std::string_view letters) {
     constexpr std::array<std::string_view, 3> kSides = {"RL", "AP", "SI"};
     if (letters.size() != kSides.size()) return false;
@@ -203,8 +206,7 @@ class ViewCommand final : public ContourInputCommand {
     return true;
   }
 
-  /// The patient's world that a contour in space lies in; empty where nothing says one. Throws InvalidArgument if
-  /// --world is none.
+  /// The anatomical frame of a contour in space; empty if unknown. Throws InvalidArgument for an invalid --world.
   [[nodiscard]] std::string world_of(const ContourInput& input, const ImageInfo& info) const {
     if (world_) {
       std::string letters = *world_;
@@ -214,13 +216,13 @@ class ViewCommand final : public ContourInputCommand {
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--world {}; expected R or L, A or P, S or I, as in RAS or LPS, or none", *world_));
     }
-    // Of axes without a unit in common one is not of space, such as the time of a slice.
+    // If the axes have different units, one of them is not spatial, such as the time of a slice.
     const bool in_space =
         input.space_dim() >= 3 && input.axis_unit(0) == input.axis_unit(1) && input.axis_unit(0) == input.axis_unit(2);
     return in_space && is_world(info.world_frame) ? info.world_frame : "";
   }
 
-  /// Whether a name says that it is of depths.
+  /// Whether a name refers to depth.
   [[nodiscard]] static bool has_depth(std::string_view name) {
     constexpr std::string_view kDepth = "depth";
     const auto is_alike = [](char a, char b) { return equal_ignoring_case({&a, 1}, {&b, 1}); };
@@ -233,7 +235,7 @@ class ViewCommand final : public ContourInputCommand {
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
-  /// What a page does not show of a file; empty if it shows all.
+  /// The parts of a contour that a page leaves out; empty if there are none.
   [[nodiscard]] std::string left_out(const Shown& shown) const {
     if (!shown.thinned.left_out()) return "";
     const Thinned& thinned = shown.thinned;
@@ -243,13 +245,13 @@ class ViewCommand final : public ContourInputCommand {
                        grouped(limit_));
   }
 
-  /// Without --limit a contour that is one large component is shown, with a remark, as far as browsers hold it.
+  /// Without --limit, a contour that is one large component is shown up to the browsers' limit, with a remark.
   [[nodiscard]] ViewLimit view_limit() const {
     const bool is_given = app().count("--limit") > 0;
     return {limit_, is_given ? limit_ : kMostByDefault};
   }
 
-  /// That a page may be slow, and what makes it faster.
+  /// Adds a remark that a page may be slow, with advice.
   void remark_on_size(const Shown& shown) {
     if (limit_ == 0 || shown.thinned.simplices <= limit_) return;
     remark(

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the packing of contours as numbers and JSON, and the assembly of the page.
 #include "view/view_page.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +27,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "pages hold numbers as this machine has them");
 
-/// Small whole numbers of either sign as small ones without.
+/// Zigzag encoding: maps small signed numbers to small unsigned numbers.
 std::uint32_t zigzag(std::uint32_t difference) {
   return (difference << 1) ^ static_cast<std::uint32_t>(static_cast<std::int32_t>(difference) >> 31);
 }
@@ -50,7 +52,7 @@ Box<N> box_of(const Contour<N, double>& contour) {
   return box;
 }
 
-/// Coordinates in space, in float from the middle of the box.
+/// Spatial coordinates as float, relative to the centre of the box.
 template <int N>
 std::vector<float> places(const Contour<N, double>& contour, const std::vector<double>& center) {
   std::vector<float> result;
@@ -60,8 +62,8 @@ std::vector<float> places(const Contour<N, double>& contour, const std::vector<d
   return result;
 }
 
-/// The times of the vertices, ascending and each once, and the place of each vertex among them: by these the page cuts
-/// as exactly as the library does.
+/// The distinct times of the vertices, ascending, and the index of each vertex's time among them. With these the page's
+/// cuts are as exact as the library's.
 std::pair<std::vector<double>, std::vector<std::uint32_t>> ranked_times(const Contour<4, double>& contour) {
   std::vector<double> times;
   times.reserve(contour.vertices.size());
@@ -76,7 +78,7 @@ std::pair<std::vector<double>, std::vector<std::uint32_t>> ranked_times(const Co
   return {std::move(times), std::move(ranks)};
 }
 
-/// What of the normals lies in space, of length 127 in whole numbers, or 0 where nothing is left.
+/// The spatial part of the normals, scaled to length 127 and rounded to integers, or 0 if it is zero.
 template <int N>
 std::vector<std::int8_t> normals_in_space(const Contour<N, double>& contour, const WorkOptions& options) {
   Buffer<std::array<double, N>> made;
@@ -92,7 +94,7 @@ std::vector<std::int8_t> normals_in_space(const Contour<N, double>& contour, con
   return result;
 }
 
-/// The label of each vertex's component, counted from the largest (by simplices) on.
+/// The label of each vertex's component; components are numbered by decreasing number of simplices.
 template <int N>
 std::vector<std::uint32_t> components_by_size(const ComponentLabels& labels) {
   std::vector<std::uint64_t> sizes(labels.count, 0);
@@ -108,7 +110,7 @@ std::vector<std::uint32_t> components_by_size(const ComponentLabels& labels) {
   return result;
 }
 
-/// Attributes as single numbers: those of several as their length.
+/// Attributes as scalars: those of several numbers are replaced by their length.
 Json describe_attributes(const std::vector<Attribute>& attributes, PageNumbers& numbers) {
   Json list = Json::array();
   for (const Attribute& attribute : attributes) {
@@ -127,7 +129,7 @@ Json describe_attributes(const std::vector<Attribute>& attributes, PageNumbers& 
       lowest = std::min(lowest, value);
       highest = std::max(highest, value);
     }
-    if (!(lowest <= highest)) continue;  // no number to colour by
+    if (!(lowest <= highest)) continue;  // no finite value for a colour scale
     Json& one = list.emplace_back();
     one["name"] = width > 1 ? fmt::format("|{}|", attribute.name) : attribute.name;
     one["unit"] = attribute.unit;
@@ -151,7 +153,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// The same document with all strings printable: names and units of files may hold anything.
+/// Makes all strings of a document printable: names and units from files may contain anything.
 Json with_printable_strings(Json json) {
   if (json.is_string()) return printable(json.get_ref<const std::string&>());
   if (json.is_structured())
@@ -159,7 +161,7 @@ Json with_printable_strings(Json json) {
   return json;
 }
 
-/// JSON that may stand in a <script>: without "<".
+/// Formats JSON for a <script> element: without "<".
 std::string script_json(const Json& json) {
   std::string result;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
@@ -171,7 +173,7 @@ std::string script_json(const Json& json) {
   return result;
 }
 
-/// The graph of the tracks that are shown; its events also have the numbers of parts in the graph of all tracks.
+/// The graph of the shown tracks; events also have the numbers of parts in the graph of all tracks.
 Json graph_of(const PageTracks& tracks) {
   Json graph = Json::parse(track_json(tracks.graph));
   for (std::size_t i = 0; i < tracks.event_parts.size(); ++i) {
@@ -244,6 +246,7 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
   const ComponentLabels labels = label_components(contour, options);
   Thinned result{labels.count, labels.count, contour.simplices.size(), contour.simplices.size()};
   if (limit.of_all == 0 || result.simplices <= limit.of_all) return result;
+  // order components by size
   std::vector<std::uint64_t> sizes(labels.count, 0);
   for (const Index label : labels.simplices) ++sizes[label];
   std::vector<Index> order(labels.count);
@@ -255,6 +258,7 @@ Thinned thin(Contour<N, double>& contour, const ViewLimit& limit, const WorkOpti
                             "--count {}' makes a smaller one",
                             counted_simplices(N - 1, sizes[order[0]]), grouped(limit.of_largest), sizes[order[0]],
                             limit.of_all));
+  // keep the largest ones within the limit
   std::vector<bool> keep(labels.count, false);
   result.components = result.simplices = 0;
   for (const Index label : order) {
@@ -271,6 +275,7 @@ template <int N>
 Json describe_layer(const Contour<N, double>& contour, const ContourInput& input, const Thinned& thinned,
                     const std::optional<PageTracks>& tracks, PageNumbers& numbers, const WorkOptions& options) {
   constexpr std::size_t kSpace = N == 2 ? 2 : 3;
+  // description
   const Box<N> box = box_of(contour);
   std::vector<double> center;
   for (std::size_t a = 0; a < kSpace; ++a) center.push_back((box.lower[a] + box.upper[a]) / 2);
@@ -291,6 +296,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   json["components"] = thinned.components;
   json["of_components"] = thinned.of_components;
   json["of_simplices"] = thinned.of_simplices;
+  // vertices
   Json& arrays = json["arrays"];
   arrays["places"] = numbers.add(std::span<const float>(places(contour, center)), kSpace);
   if constexpr (N == 4) {
@@ -300,6 +306,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
   }
   if constexpr (N > 2)
     arrays["normals"] = numbers.add(std::span<const std::int8_t>(normals_in_space(contour, options)), 3);
+  // simplices and components
   arrays["simplices"] = numbers.add_simplices(
       {contour.simplices.empty() ? nullptr : contour.simplices.data()->data(), N * contour.simplices.size()}, N);
   arrays["component"] =
@@ -312,6 +319,7 @@ Json describe_layer(const Contour<N, double>& contour, const ContourInput& input
     arrays["segment_next"] = numbers.add(std::span<const std::uint32_t>(tracks->next), 1);
     arrays["segment_tracks"] = numbers.add(std::span<const std::uint32_t>(tracks->tracks), 1);
   }
+  // attributes and tracks
   json["vertex_attributes"] = describe_attributes(contour.vertex_attributes, numbers);
   json["simplex_attributes"] = describe_attributes(contour.simplex_attributes, numbers);
   json["tracks_found"] = tracks ? tracks->found : 0;
@@ -333,8 +341,8 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-/// What says so when a page was cut off on its way: it stands before all that could be missing, and looks when the
-/// browser has come to the end. A browser that cannot run the program reads the page up to its end nevertheless.
+/// A script that reports a truncated page. It is placed before all parts that could be missing, and runs when the
+/// browser has reached the end. It also reports a browser that cannot run the program.
 constexpr std::string_view kEndCheck = R"(<script>
 addEventListener('DOMContentLoaded', function () {
   if (window.teglStarted) return;
@@ -356,7 +364,7 @@ std::string make_page(const Json& scene, const std::string& title, std::string_v
   page.reserve(kViewerProgram.size() + packed.size() / 3 * 4 + (std::size_t{1} << 20));
   page += "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  // Nothing is fetched, whatever the file says: the page is all there is.
+  // The policy forbids all requests: the page contains everything it needs.
   page +=
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
       "style-src 'unsafe-inline'; img-src data: blob:\">\n";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tracks of a page, and what its colours need of them: which part of the cut a simplex is in at any time. The graph
-// says in which segment a simplex first appears. Where that merges, what follows is clear; where it splits, the
-// simplices that reach beyond the split are told apart by what they are connected to just after it.
+// Computes the tracks of a page, and the part of the cut that contains each simplex at any time, for colours. The graph
+// gives the segment in which a simplex first appears. After a merge the next segment is unique. After a split, the
+// simplices that extend beyond it are assigned to parts by their connectivity just after it.
 #include <algorithm>
 #include <numeric>
 #include <tuple>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Index kNone = TrackGraph::kNoSegment;
 
-/// The segment that a part goes on as after this one ends: the only one, or that of the same track.
+/// The segment that continues a part after this segment: the only one, or that of the same track.
 Index next_segment(const TrackGraph& graph, const TrackSegment& segment) {
   const std::vector<Index>& out = graph.events[segment.to].out;
   if (out.size() == 1) return out.front();
@@ -30,7 +30,7 @@ class Splits {
   Splits(const Contour<4, double>& contour, const TrackGraph& graph)
       : contour_(contour), graph_(graph), first_at_(contour.vertices.size(), kNone) {}
 
-  /// #S: the segment that each simplex is in after the first split that it passes; kNone if it passes none.
+  /// #S: the segment of each simplex after the first split that it passes; kNone if it passes none.
   std::vector<Index> after() {
     std::vector<std::vector<Index>> passing(graph_.events.size());
     for (std::size_t s = 0; s < contour_.simplices.size(); ++s) {
@@ -52,7 +52,7 @@ class Splits {
  private:
   [[nodiscard]] double time(Index v) const { return contour_.vertices[v][3]; }
 
-  /// The first split of a part, from this segment on, before a time; kNone if there is none.
+  /// The first split of a part from this segment on, before time `until`; kNone if there is none.
   [[nodiscard]] Index first_split(Index segment, double until) const {
     while (graph_.segments[segment].end < until) {
       const Index event = graph_.segments[segment].to;
@@ -64,12 +64,13 @@ class Splits {
     return kNone;
   }
 
-  /// Simplices that pass a split are in one part after it if the cut then goes through an edge that they share.
+  /// Assigns simplices that pass a split to the parts after it: two are in one part if the cut just after it crosses an
+  /// edge that they share.
   void tell_apart(Index event, const std::vector<Index>& simplices, std::vector<Index>& result) {
     const double at = graph_.events[event].time;
     struct Crossed {
       Index low, high;
-      std::size_t simplex;  // its place in `simplices`
+      std::size_t simplex;  // its index in `simplices`
     };
     std::vector<Crossed> crossed;
     for (std::size_t i = 0; i < simplices.size(); ++i)
@@ -84,7 +85,8 @@ class Splits {
     for (std::size_t i = 1; i < crossed.size(); ++i)
       if (crossed[i].low == crossed[i - 1].low && crossed[i].high == crossed[i - 1].high)
         parents_[root(crossed[i].simplex)] = root(crossed[i - 1].simplex);
-    // What appears next at a vertex above is in the part that the vertex is in: the earliest that tells decides.
+    // The next simplex that appears at an edge's upper vertex is in the same part as that vertex; the earliest one with
+    // a known segment decides.
     std::vector<Index> parts(simplices.size(), kNone);
     for (const Crossed& edge : crossed) {
       Index& part = parts[root(edge.simplex)];
@@ -99,7 +101,7 @@ class Splits {
     return i;
   }
 
-  /// Which of the segments that start at the event this one is, or comes from without merges; kNone if that is unclear.
+  /// The segment starting at the event that leads to this segment without merges; kNone if it is not unique.
   [[nodiscard]] Index out_of(Index event, Index segment) const {
     while (segment != kNone && graph_.segments[segment].from != event) {
       const std::vector<Index>& in = graph_.events[graph_.segments[segment].from].in;
@@ -111,7 +113,7 @@ class Splits {
 
   const Contour<4, double>& contour_;
   const TrackGraph& graph_;
-  std::vector<Index> first_at_;  ///< #V: a simplex that has the vertex as its lowest
+  std::vector<Index> first_at_;  ///< #V: a simplex whose lowest vertex this is
   std::vector<std::size_t> parents_;
 };
 
@@ -119,6 +121,7 @@ class Splits {
 
 PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> first, std::optional<double> last,
                        std::size_t most, const WorkOptions& options) {
+  // track
   TrackOptions wanted;
   wanted.first = first;
   wanted.last = last;
@@ -127,6 +130,7 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
   wanted.threads = options.threads;
   wanted.progress = options.progress;
   const TrackGraph graph = track(contour, wanted);
+  // order tracks by lifetime
   PageTracks result;
   result.found = graph.tracks.size();
   std::vector<std::size_t> order(graph.tracks.size());
@@ -139,6 +143,7 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
     place[order[i]] = static_cast<std::uint32_t>(i);
     keep[order[i]] = i < most;
   }
+  // data for colours
   result.simplex_segments = graph.simplex_segments;
   result.simplex_after = Splits(contour, graph).after();
   for (const TrackSegment& segment : graph.segments) {
@@ -147,9 +152,10 @@ PageTracks page_tracks(const Contour<4, double>& contour, std::optional<double> 
     result.next.push_back(next_segment(graph, segment));
     result.tracks.push_back(place[segment.track]);
   }
+  // events of the shown tracks
   result.events_found = graph.events.size();
   const auto is_shown = [&](Index s) { return static_cast<bool>(keep[graph.segments[s].track]); };
-  for (const TrackEvent& event : graph.events)  // those that select_tracks keeps, in its order
+  for (const TrackEvent& event : graph.events)  // the events that select_tracks keeps, in its order
     if (std::any_of(event.in.begin(), event.in.end(), is_shown) ||
         std::any_of(event.out.begin(), event.out.end(), is_shown))
       result.event_parts.push_back({event.in.size(), event.out.size()});

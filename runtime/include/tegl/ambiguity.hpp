@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How the ambiguous faces of tiles are resolved: the same way everywhere, or from the data.
+// Ambiguous faces of tiles, and how they are resolved: by a fixed rule or from the data.
 //
 // Based on: M. Liversage, thesis, 1994, sections 6.3 and 7.3 (the consistent method; the estimation method, for squares
 // and for cubes with two opposite corners); G. M. Nielson and B. Hamann, "The asymptotic decider", 1991.
@@ -15,62 +15,64 @@
 
 namespace tegl {
 
-/// A square with two high corners across from each other is ambiguous: are they joined in it, or apart? So is a cube in
-/// which the contour has several loops on the boundary (does a tunnel join them?), and so on upwards. However it is
-/// resolved, tiles agree in shared faces: the contour is a manifold, open only at the image's border and missing data.
-/// - low, high: the consistent method, by table. low keeps high corners apart that meet only across a diagonal, high
+/// How ambiguous faces are resolved. A square with two diagonally opposite high corners is ambiguous: they are either
+/// joined or separate. A cube is ambiguous if the contour has several loops on its boundary, which a tunnel may join;
+/// higher dimensions are analogous. With every rule, tiles agree in shared faces: the contour is a manifold, open only
+/// at the image border and at missing values.
+/// - low, high: the consistent method, by table. low separates high corners that meet only across a diagonal, high
 ///   joins them. Loops in a cube are never joined.
 /// - mean: the thesis's estimation method (6.3.5, 7.3.10), extended to all faces. The centre of an ambiguous face is
-///   high if the mean of its corners is at or above the isovalue, else low; all parts of its sign are connected in the
-///   face. Exact, except if the sum of the corners overflows a double, or one is infinite: then the sum of the corners
-///   divided by 1024, rounded, is compared; with infinities of both signs the centre is high.
-/// - saddle: as the multilinear interpolant has it, exactly in squares and cubes (tegl/saddle.hpp). In faces of higher
-///   dimension, by the sign of their centre as `mean`.
-/// - custom: as ExtractOptions::estimator says.
+///   high if the mean of its corners is at or above the isovalue, else low; all parts of the centre's sign are
+///   connected in the face. Exact, except if the sum of the corners overflows a double or a corner is infinite: then
+///   the rounded sum of the corners divided by 1024 is compared; with infinities of both signs the centre is high.
+/// - saddle: the exact topology of the multilinear interpolant in squares and cubes (tegl/saddle.hpp). Faces of higher
+///   dimension use the sign of their centre, as `mean` does.
+/// - custom: by ExtractOptions::estimator.
 ///
-/// Faces that are not ambiguous come from the tables in any case. Where few faces are ambiguous, as in smooth images,
-/// all of them cost about the same; in noise, mean and saddle look at samples again (docs/ambiguity.md), and `count`,
-/// which otherwise looks at bits alone, takes many times as long as with low.
+/// Unambiguous faces always come from the tables. If few faces are ambiguous, as in smooth images, all rules cost about
+/// the same. In noise, mean and saddle read the samples again (docs/ambiguity.md), and `count`, which otherwise reads
+/// bits only, takes many times as long as with low.
 enum class Ambiguity { low, high, mean, saddle, custom };
 
-/// An ambiguous face of the image's grid, as an estimator sees it. Valid during the call only.
+/// An ambiguous face of the image's grid, as passed to an estimator. Valid only during the call.
 class AmbiguousFace {
  public:
-  /// Reads sample `index` of `image`, for `sample`.
+  /// Reads the sample of `image` at `index`; used by `sample`.
   using Reader = double (*)(const void* image, const std::ptrdiff_t* index);
 
-  /// Called by extractions. `origin`: the place in the image of sample 0 of what is read; `first`, `end`: the samples
-  /// that there are along each axis, counted from there.
+  /// Samples that a face can read. Filled by extractions. `origin` is the image index of local sample 0; `first` and
+  /// `end` bound the available samples along each axis, in local indices.
   struct Surroundings {
-    const void* image = nullptr;             ///< as Reader takes it
+    const void* image = nullptr;             ///< passed to Reader
     Reader read = nullptr;                   ///< reads one sample
-    std::array<std::ptrdiff_t, 5> origin{};  ///< by axis, see above
-    std::array<std::ptrdiff_t, 5> first{};   ///< likewise
-    std::array<std::ptrdiff_t, 5> end{};     ///< likewise
+    std::array<std::ptrdiff_t, 5> origin{};  ///< by axis: image index of local sample 0
+    std::array<std::ptrdiff_t, 5> first{};   ///< by axis: first available sample, in local indices
+    std::array<std::ptrdiff_t, 5> end{};     ///< by axis: end of the available samples, in local indices
   };
-  /// Called by extractions: a face by its first corner, axes and corners' values. What it refers to must outlive it.
+  /// Used by extractions: a face by its first corner, its axes and the values of its corners. `values` and `around` are
+  /// not copied and must outlive the face.
   AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
                 const Surroundings& around);
-  /// Deleted: the surroundings are not copied.
+  /// Deleted: `around` is kept by reference and must not be a temporary.
   AmbiguousFace(std::span<const std::size_t> base, unsigned axes, std::span<const double> values, double isovalue,
                 const Surroundings&& around) = delete;
 
-  /// Dimensions of the image, and of the face: 2 or more.
+  /// Number of dimensions of the image.
   [[nodiscard]] int image_dim() const noexcept { return image_dim_; }
-  [[nodiscard]] int dim() const noexcept { return dim_; }  ///< of the face: 2 or more
+  [[nodiscard]] int dim() const noexcept { return dim_; }  ///< number of dimensions of the face, at least 2
   /// Bit a: whether the face extends along axis a.
   [[nodiscard]] unsigned axes() const noexcept { return axes_; }
-  /// The index of its first corner in the image, by axis: the face goes from there to the next sample along its axes.
+  /// Image index of the face's first corner, by axis. The face extends from there to the next sample along its axes.
   [[nodiscard]] std::span<const std::size_t> base() const& noexcept {
     return {base_.data(), static_cast<std::size_t>(image_dim_)};
   }
-  /// Deleted: the index lies in the face itself.
+  /// Deleted: the span would refer to a temporary.
   std::span<const std::size_t> base() const&& = delete;
-  /// At its 2^dim corners; corner v is one step along the j-th of its axes where bit j of v is set.
+  /// Values of the 2^dim corners. Corner v is one step along the face's j-th axis if bit j of v is set.
   [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
   [[nodiscard]] double isovalue() const noexcept { return isovalue_; }  ///< the isovalue of the contour
-  /// The value at `base` + `steps`, steps by axis of the image; beyond the image's border that of the nearest sample
-  /// inside. NaN where it is missing. How far it may go: Estimator::reach.
+  /// The value at `base` + `steps`, with steps along each axis of the image. Beyond the image border, the value of the
+  /// nearest sample inside. NaN for missing samples. The range of `steps` is limited by Estimator::reach.
   [[nodiscard]] double sample(std::span<const std::ptrdiff_t> steps) const noexcept;
 
  private:
@@ -82,20 +84,20 @@ class AmbiguousFace {
   const Surroundings* around_;
 };
 
-/// A caller's own way to resolve ambiguous faces, from their values and from what is around them.
+/// A user-defined rule for ambiguous faces, based on their values and the samples around them.
 struct Estimator {
-  /// Asked for ambiguous squares, for cubes whose boundary the contour meets in several loops, and for faces of four
-  /// and five dimensions where one is ambiguous in them or where what the contour has on their boundary is of several
-  /// parts or not a sphere; in what order, how often and by which threads is not defined, and several ask at the same
-  /// time. The answer has to depend on the face alone, not on who asks or when: a face is asked for by each tile around
-  /// it, and where counts come first (4D, missing values) once more. Where a row of tiles then has another number of
-  /// vertices or simplices than was counted, or tiles around a cube another filling of it, the extraction throws
-  /// InvalidArgument; answers that change and are not found out give tiles that do not fit together. Nothing is written
-  /// outside of the contour in either case. For a square, `separate` is as `low`. What it throws ends the extraction
-  /// and reaches the caller.
+  /// Called for ambiguous squares; for cubes whose boundary the contour meets in several loops; and for 4D and 5D faces
+  /// that contain an ambiguous face, or whose boundary part of the contour has several components or is not a sphere.
+  /// Order, number of calls and calling threads are unspecified; calls are concurrent.
+  ///
+  /// The result must depend on the face only. A face is passed once by each tile that has it, and again by a counting
+  /// pass (4D, missing values). InvalidArgument is thrown if results change so that a row of tiles has another number
+  /// of vertices or simplices than was counted, or tiles around a cube get different fillings of it. Changes that are
+  /// not detected give tiles that do not match. In neither case is memory outside of the contour written. For a square,
+  /// `separate` means `low`. Exceptions end the extraction and reach its caller.
   std::function<facets::Choice(const AmbiguousFace& face)> choose = {};
-  /// How many samples beyond the face `choose` looks at, along any axis, through AmbiguousFace::sample. Layers of
-  /// streamed images are kept for so long; beyond them nothing is known there.
+  /// How many samples beyond the face, along any axis, `choose` may read with AmbiguousFace::sample. Streaming keeps as
+  /// many layers as this requires; samples farther away are unavailable.
   std::size_t reach = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Is it a manifold? The invariants of a simplicial complex, counted.
+// Checks whether a simplicial complex is a manifold, by counting its invariants.
 #pragma once
 
 #include <cstdint>
@@ -11,41 +11,42 @@
 
 namespace tegl {
 
-/// What `check` found. An oriented manifold without degenerate simplices has zeros in the last five members and in
-/// `unused_vertices`; a closed one in `boundary_simplices`, too. Simplices that repeat a vertex ("collapsed") are
-/// counted in `simplices` and `degenerate_simplices` and left out of all other counts.
+/// The result of `check`. An oriented manifold without degenerate simplices has 0 in `unused_vertices`,
+/// `nonmanifold_simplices`, `bad_links`, `orientation_conflicts`, `degenerate_simplices` and `nonfinite_vertices`; a
+/// closed one also in `boundary_simplices`. Simplices that repeat a vertex ("collapsed") are counted only in
+/// `simplices` and `degenerate_simplices`.
 struct MeshReport {
   int dim = 0;                              ///< dimension d of the simplices (2 for triangles)
   std::uint64_t vertices = 0;               ///< vertices used by at least one simplex that is not collapsed
-  std::uint64_t unused_vertices = 0;        ///< vertices that no simplex has, or collapsed ones alone
-  std::uint64_t simplices = 0;              ///< as listed; one listed twice counts twice, here and in `euler`
+  std::uint64_t unused_vertices = 0;        ///< vertices of no simplex, or of collapsed simplices only
+  std::uint64_t simplices = 0;              ///< number of simplices; one listed twice counts twice, here and in `euler`
   std::uint64_t components = 0;             ///< connected components of the used vertices
   std::int64_t euler = 0;                   ///< Euler characteristic: the alternating sum of the numbers of k-faces
   std::uint64_t boundary_simplices = 0;     ///< (d-1)-faces in exactly one simplex
   std::uint64_t nonmanifold_simplices = 0;  ///< (d-1)-faces in more than two simplices
   std::uint64_t bad_links = 0;              ///< vertices whose link is neither a (d-1)-sphere nor a (d-1)-ball
-  std::uint64_t orientation_conflicts = 0;  ///< (d-1)-faces that exactly two simplices run through the same way
-  std::uint64_t degenerate_simplices = 0;   ///< collapsed, of measure zero, or with a coordinate that is not finite
-  std::uint64_t nonfinite_vertices = 0;     ///< with a coordinate that is infinite or no number, used or not
+  std::uint64_t orientation_conflicts = 0;  ///< (d-1)-faces that their two simplices induce the same orientation on
+  std::uint64_t degenerate_simplices = 0;   ///< collapsed, of measure zero, or with a non-finite coordinate
+  std::uint64_t nonfinite_vertices = 0;     ///< vertices with an infinite or NaN coordinate, used or not
 };
 
-/// Counts the invariants of a complex of d-simplices (d = 1, 2, 3, 4) with d + 1 vertex numbers each in
-/// `simplices` (#S x (d+1), row = simplex); coordinates #V x space_dim, row = vertex, in any unit.
+/// Counts the invariants of a complex of d-simplices, d = 1, 2, 3, 4. `simplices`: #S x (d+1) vertex numbers, row =
+/// simplex. `coordinates`: #V x space_dim, row = vertex, in any unit.
 ///
-/// A link is tested whole: no face of it in more than two of its simplices, no pinched vertex, connected, and the Euler
-/// characteristic of a sphere (closed) or a ball. For d = 3 that decides sphere and disc by the classification of
-/// surfaces. For d = 4 the link is shown to be a sphere or ball by a shelling or else by collapsing it
-/// (facets::shape_of); one that cannot be shown to be either counts as bad, and so does one of 65 535 vertices or more.
-/// A simplex has measure zero when one of its heights is at most 1e-14 of its longest edge: differences of coordinates
-/// and the orthogonalisation carry a rounding error of a few 1e-16 of that edge, while simplices that are merely thin
-/// are, for coordinates of float precision, orders of magnitude thicker.
+/// A link is tested as a whole: no face in more than two of its simplices, no pinched vertex, connected, and the Euler
+/// characteristic of a sphere (closed) or a ball. For d = 3 this decides between sphere and disc by the classification
+/// of surfaces. For d = 4 the link is shown to be a sphere or ball by a shelling, else by collapsing it
+/// (facets::shape_of); a link for which both fail counts as bad, and so does one of 65 535 vertices or more. A simplex
+/// has measure zero if one of its heights is at most 1e-14 of its longest edge: differences of coordinates and the
+/// orthogonalisation carry a rounding error of a few 1e-16 of that edge, and simplices that are merely thin are thicker
+/// by orders of magnitude if coordinates have float precision.
 ///
 /// Errors: InvalidArgument (d, space_dim, array sizes; a vertex number out of range, named with its limit), Cancelled.
-/// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input; no state, so thread-safe.
+/// An empty complex gives zeros. O(S log S) time, O(S + V) memory beside the input. Thread-safe.
 MeshReport check(int d, std::span<const Index> simplices, int space_dim, std::span<const double> coordinates,
                  const Progress& progress = {});
 
-/// The same for a contour: d = N - 1, space_dim = N; N = 2 to 5. Real: float or double.
+/// Checks a contour: d = N - 1, space_dim = N; N = 2 to 5. Real: float or double.
 template <int N, class Real>
 MeshReport check(const Contour<N, Real>& contour, const Progress& progress = {});
 

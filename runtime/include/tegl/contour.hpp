@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The result of contouring: an indexed simplicial complex.
+// The result of contouring: an indexed simplicial complex (segments, triangles, tetrahedra or 4-simplices).
 #pragma once
 
 #include <array>
@@ -18,14 +18,13 @@
 namespace tegl {
 
 namespace detail {
-/// Blocks of this size and more come from the system as huge pages, where it has them.
+/// Blocks of at least this many bytes (2 MiB) are allocated as huge pages, if the system has them.
 inline constexpr std::size_t kLargeBlock = std::size_t{1} << 21;
-/// Memory that is not touched before it is used: asking for more than is needed costs address space alone. Throws
-/// std::bad_alloc.
+/// Allocates memory without touching it: pages that are never written cost address space only. Throws std::bad_alloc.
 void* allocate_large_block(std::size_t bytes);
 void free_large_block(void* block, std::size_t bytes) noexcept;
 
-/// Leaves trivial elements uninitialised on resize: outputs are written once, not twice.
+/// Leaves trivial elements uninitialised on resize, so outputs are written once and not twice.
 template <class T>
 struct DefaultInitAllocator {
   using value_type = T;
@@ -57,7 +56,7 @@ struct DefaultInitAllocator {
 };
 }  // namespace detail
 
-/// A vector that leaves new numbers unset when it grows: what is written to once is not cleared first.
+/// A std::vector whose new elements are uninitialised after `resize`.
 template <class T>
 using Buffer = std::vector<T, detail::DefaultInitAllocator<T>>;
 
@@ -68,7 +67,7 @@ using Index = std::uint32_t;
 struct ContourSize {
   std::uint64_t vertices = 0;                           ///< how many points
   std::uint64_t simplices = 0;                          ///< how many segments, triangles, tetrahedra or 4-simplices
-  bool operator==(const ContourSize&) const = default;  ///< both numbers alike
+  bool operator==(const ContourSize&) const = default;  ///< equal if both counts are equal
 };
 
 /// Named numbers of every vertex, or of every simplex.
@@ -79,7 +78,7 @@ struct Attribute {
   Buffer<double> values = {};  ///< #V (or #S) x width, row = vertex (or simplex)
 };
 
-/// Which way the orientation of a contour points: normals towards low (descent), or towards high (ascent).
+/// The side that the oriented contour and its normals face: low samples (descent) or high samples (ascent).
 enum class GradientDirection { descent, ascent };
 
 /// The contour of an N-dimensional image: an (N-1)-dimensional simplicial complex in N-space.
@@ -95,26 +94,26 @@ struct Contour {
 
   Buffer<Vertex> vertices = {};    ///< #V x N world coordinates, row = vertex; for time-varying images t is last
   Buffer<Simplex> simplices = {};  ///< #S x N vertex numbers, row = simplex, consistently oriented
-  Buffer<Vertex> normals = {};     ///< #V x N of length 1, if asked for (ExtractOptions::normals); else empty
+  Buffer<Vertex> normals = {};     ///< #V x N, of length 1 or 0, if requested (ExtractOptions::normals); else empty
   std::array<std::string, N> axis_names = {};                ///< taken from the grid
-  std::array<std::string, N> axis_units = {};                ///< likewise; such as "mm"
+  std::array<std::string, N> axis_units = {};                ///< taken from the grid; such as "mm"
   GradientDirection direction = GradientDirection::descent;  ///< which side simplices and normals face
-  std::vector<Attribute> vertex_attributes = {};             ///< `extract` makes none
-  std::vector<Attribute> simplex_attributes = {};            ///< likewise
+  std::vector<Attribute> vertex_attributes = {};             ///< empty after `extract`
+  std::vector<Attribute> simplex_attributes = {};            ///< empty after `extract`
 
-  /// The vertices as an Eigen matrix without a copy; valid while `vertices` is unchanged.
+  /// The vertices as an Eigen matrix, without a copy; valid until `vertices` changes.
   [[nodiscard]] auto vertex_matrix() const& {
     return Eigen::Map<const VertexMatrix>(vertices.empty() ? nullptr : vertices.data()->data(),
                                           static_cast<Eigen::Index>(vertices.size()), N);
   }
-  /// Deleted: the matrix of a temporary would refer to vertices that are gone.
+  /// Deleted: the matrix of a temporary would dangle.
   void vertex_matrix() const&& = delete;
-  /// The simplices as an Eigen matrix without a copy; valid while `simplices` is unchanged.
+  /// The simplices as an Eigen matrix, without a copy; valid until `simplices` changes.
   [[nodiscard]] auto simplex_matrix() const& {
     return Eigen::Map<const SimplexMatrix>(simplices.empty() ? nullptr : simplices.data()->data(),
                                            static_cast<Eigen::Index>(simplices.size()), N);
   }
-  /// Deleted: the matrix of a temporary would refer to simplices that are gone.
+  /// Deleted: the matrix of a temporary would dangle.
   void simplex_matrix() const&& = delete;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far apart are two contours? Bounds that hold, not samples.
+// The distance of two contours: guaranteed bounds, not samples.
 #pragma once
 
 #include <array>
@@ -11,15 +11,16 @@
 
 namespace tegl {
 
-/// How distances are measured.
+/// Options of `deviation`.
 template <int N>
 requires DimensionBetween<N, 2, 4>
 struct DeviationOptions {
-  /// Distances are taken after coordinates were multiplied by these: what makes axes of different units comparable.
+  /// Coordinates are multiplied by these factors before distances are measured, to make axes of different units
+  /// comparable.
   std::array<double, N> scale = all_one();
-  /// No bound of a simplex has to be less than that: where it is, closer ones cost time. They hold all the same.
+  /// Bounds below this are not refined further, which saves time. All bounds stay valid.
   double enough = 0.0;
-  unsigned threads = 0;    ///< 0: all that the machine has. The result is the same, byte by byte.
+  unsigned threads = 0;    ///< number of threads; 0: all of the machine. The result is the same, byte by byte.
   Progress progress = {};  ///< see Progress
 
  private:
@@ -30,30 +31,32 @@ struct DeviationOptions {
   }
 };
 
-/// Bounds of the distance of every point of one contour from another.
+/// Bounds of the distance of the points of one contour from another contour.
 struct Deviation {
-  double bound = 0;  ///< no point of `from` is farther than this from `to` (infinite if only one of them is empty)
-  double least = 0;  ///< and some point of it is as far as this: the truth lies in between
-  std::vector<double> of_from = {};  ///< #S of `from`: the bound for each of its simplices
-  std::vector<double> of_to = {};    ///< #S of `to`: the largest distance of what was matched with it; 0 if nothing was
+  double bound = 0;  ///< upper bound of the maximum distance (infinite if exactly one contour is empty)
+  double least = 0;  ///< lower bound of the maximum distance: some point of `from` is this far from `to`
+  std::vector<double> of_from = {};  ///< #S of `from`: upper bound for each simplex
+  std::vector<double> of_to = {};    ///< #S of `to`: upper bound for the points matched with it; 0 if none
 };
 
-/// One half of the Hausdorff distance; call it both ways for the whole. N = 2, 3, 4; Real: float or double.
+/// The one-sided Hausdorff distance; call it in both directions for the symmetric one. N = 2, 3, 4; Real: float or
+/// double.
 ///
-/// Over each simplex of `from`, along its normal, the simplices of `to` are told apart into sheets by their heights. A
-/// sheet that has no border there and passes over one point of the simplex passes over all of it (that is topology, not
-/// a comparison of sizes), so no point is farther than the sheet is high. Where no sheet does (next to borders, say),
-/// the distances of the corners from one simplex of `to` bound those of all points between, as that distance is convex.
-/// A simplex for which that tells too little is halved, up to 24 times, and those with the largest bounds up to 400
-/// times. So the bound holds up to the rounding of coordinates, whatever the gaps, folds or flat simplices; 1e-11 of an
-/// edge is added where the rim of a simplex has to be left out. It is at most 1.25 times the distance of some point of
-/// its simplex, or half of `least` (or `enough`), or a fiftieth of the longest edge, unless the parts did not suffice:
-/// that is so in contours that are rough as finely as they are divided. Sheets are seen where orientations are
-/// consistent; vertices at the same place count as one.
+/// Method. Above each simplex of `from`, along its normal, the simplices of `to` are separated into sheets by height. A
+/// sheet without a border there that covers one point of the simplex covers all of it (by topology, without comparing
+/// sizes), so the sheet's height bounds the distance. If there is no such sheet, for instance next to borders, the
+/// distances of the corners from one simplex of `to` bound those of all points between, because this distance is
+/// convex. A simplex with a loose bound is halved, up to 24 times; those with the largest bounds up to 400 times.
+///
+/// So the bound holds up to the rounding of coordinates, with any gaps, folds or flat simplices; 1e-11 of an edge is
+/// added if the rim of a simplex has to be excluded. It is at most 1.25 times the distance of some point of its
+/// simplex, or half of `least` (or `enough`), or a fiftieth of the longest edge, unless the limit of halvings was
+/// reached: that happens for contours that are rough at the scale of their simplices. Sheets are recognised if
+/// orientations are consistent; coincident vertices count as one.
 ///
 /// Errors: InvalidArgument (a scale that is not positive, a vertex number out of range, a coordinate that is not
 /// finite), Cancelled. Time: about O(S log S) for contours that are close to each other. Memory: about 300 bytes for
-/// each simplex of either.
+/// each simplex of both.
 template <int N, class Real>
 requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& from, const Contour<N, Real>& to,
                                                        const DeviationOptions<N>& options = {});

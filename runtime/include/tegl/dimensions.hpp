@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The dimensions and coordinate types that the library is compiled for, as constraints: a template argument outside of
-// them is an error of the compiler that names the constraint, not one of the linker.
+// Constraints for the dimensions and coordinate types that the library is compiled for. A template argument outside of
+// them is a compile error that names the constraint, and not a linker error.
 #pragma once
 
 #include <type_traits>
 
 namespace tegl {
 
-/// The dimensions kLeast to kMost. Types and functions that do not exist in all dimensions are constrained by it.
+/// True for dimensions kLeast to kMost. Constrains types and functions that do not exist in all dimensions.
 template <int N, int kLeast, int kMost>
 concept DimensionBetween = (N >= kLeast) && (N <= kMost);
 
-/// The types that coordinates of contours have: float or double.
+/// The types of contour coordinates: float or double.
 template <class R>
 concept Coordinate = std::is_same_v<R, float> || std::is_same_v<R, double>;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Errors and progress, the same for every part of the library.
+// Error codes, the exception type, and options for progress and threads that all parts of the library share.
 #pragma once
 
 #include <functional>
@@ -9,45 +9,45 @@
 
 namespace tegl {
 
-/// What went wrong, of which kind.
+/// Kinds of errors.
 enum class ErrorCode {
-  InvalidArgument,    ///< an option or parameter outside of what it may be
-  InvalidGrid,        ///< sizes, strides or axes that make no grid
+  InvalidArgument,    ///< an option or parameter is out of its range
+  InvalidGrid,        ///< sizes, strides or axes that do not form a grid
   InvalidIsovalue,    ///< NaN or infinite
-  EmptyResult,        ///< nothing at this isovalue or cut (raised by programs, not by `extract`)
-  FileNotFound,       ///< no such file, or not readable
+  EmptyResult,        ///< no contour at this isovalue or cut (raised by programs, not by `extract`)
+  FileNotFound,       ///< the file does not exist or is not readable
   MalformedFile,      ///< the file is damaged or contradicts itself
-  UnsupportedFormat,  ///< a format, or an extension, that nothing here reads or writes
-  UnsupportedData,    ///< a sound file whose content (dimension, value type) does not fit
-  VariableNotFound,   ///< a file with several variables (or DICOM series), and none by that name
+  UnsupportedFormat,  ///< a format or extension that is not supported
+  UnsupportedData,    ///< a valid file whose content (dimension, value type) is not supported
+  VariableNotFound,   ///< the file has several variables (or DICOM series), none of this name
   WriteFailed,        ///< the output could not be written; nothing is left behind
-  TooLarge,           ///< more vertices than the index type can number
-  Cancelled,          ///< the progress callback said stop
+  TooLarge,           ///< a size beyond a limit, such as more vertices than the index type can number
+  Cancelled,          ///< the progress callback returned false
 };
 
 /// The name of a code as in the enumeration, for messages and JSON.
 const char* error_name(ErrorCode code) noexcept;
 
-/// The one exception type of the library. `what()` says the actual and the expected value. Where memory runs out,
-/// std::bad_alloc passes through it: nothing is lost then, and no half-written file is left.
+/// The exception type of the library. `what()` contains the actual and the expected value. If memory runs out,
+/// std::bad_alloc is thrown instead; the library stays usable and leaves no partial file.
 class Error : public std::runtime_error {
  public:
-  /// `message`: the actual and the expected value, and the file or option by name.
+  /// `message`: the actual and the expected value, and the name of the file or option.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  [[nodiscard]] ErrorCode code() const noexcept { return code_; }  ///< of which kind
+  [[nodiscard]] ErrorCode code() const noexcept { return code_; }  ///< the kind of error
 
  private:
   ErrorCode code_;
 };
 
-/// Called with a fraction in [0, 1] now and then by every long operation; returning false stops it,
-/// and the operation throws `Error{Cancelled}`.
+/// Called by long operations from time to time with a fraction in [0, 1]. Returning false stops the operation, which
+/// throws `Error{Cancelled}`.
 using Progress = std::function<bool(double fraction)>;
 
-/// What every long operation on contours takes.
+/// Options of every long operation on contours.
 struct WorkOptions {
-  unsigned threads = 0;    ///< how many work; 0: all that the machine has. The result is the same, byte by byte.
-  Progress progress = {};  ///< called now and then
+  unsigned threads = 0;    ///< number of threads; 0: all of the machine. The result is the same, byte by byte.
+  Progress progress = {};  ///< called from time to time
 };
 
 }  // namespace tegl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of 2D, 3D, 4D and 5D images.
+// Extraction of contours (isolines, isosurfaces and their higher-dimensional counterparts) from 2D to 5D images.
 #pragma once
 
 #include <array>
@@ -14,100 +14,102 @@
 
 namespace tegl {
 
-/// How facets become simplices: compact, with few of them (for intersections in 4D and biased volumes see
-/// docs/limits.md), or coned from barycentres, with more and evener ones. In 5D both names mean barycentric.
+/// How a tile's facets are divided into simplices. compact: few simplices; see docs/limits.md for intersections in 4D
+/// and biased volumes. barycentric: cones from barycentres, with more simplices of better shape. In 5D both values mean
+/// barycentric.
 enum class Triangulation { compact, barycentric };
 
-/// How the gradient at a sample is made, which normals follow. differences: the mean of the difference quotients
-/// forward and backward; sobel: the mean of those of all lines of samples beside it, itself among them, weighted by
-/// their nearness (docs/normals.md): noise is damped, at ten times the cost.
+/// How the gradient at a sample is computed, from which normals follow. differences: the mean of the forward and the
+/// backward difference quotient. sobel: a mean of these over the sample's own line and the neighbouring lines of
+/// samples, weighted by nearness (docs/normals.md); damps noise and takes ten times as long.
 enum class GradientKind { differences, sobel };
 
-/// What a contour is made of, and how.
+/// Options of `extract`, `count` and the streamed functions.
 struct ExtractOptions {
-  Triangulation triangulation = Triangulation::compact;      ///< how facets become simplices
+  Triangulation triangulation = Triangulation::compact;      ///< how facets are divided into simplices
   Ambiguity ambiguity = Ambiguity::low;                      ///< how ambiguous faces are resolved
-  Estimator estimator = {};                                  ///< for Ambiguity::custom, else not looked at
-  GradientDirection direction = GradientDirection::descent;  ///< which side it faces
-  /// Close the contour at the image's border by the high part of the border itself. Where the border
-  /// of the *data* lies inside the image (missing values), the contour stays open.
+  Estimator estimator = {};                                  ///< for Ambiguity::custom; ignored otherwise
+  GradientDirection direction = GradientDirection::descent;  ///< the side that the contour faces
+  /// Closes the contour at the image border by caps: the high part of the border itself. At missing values inside the
+  /// image the contour stays open.
   bool close = false;
-  /// Keeps the points on edges at least this share of an edge away from the samples, in [0, 0.5).
-  /// 0: exact positions; where a sample equals the isovalue, simplices of zero size arise. (Whatever it is, four points
-  /// of a compact 4D tile may lie in one plane.)
+  /// Keeps the points on edges at least this share of an edge away from the samples, in [0, 0.5). 0: exact positions; a
+  /// sample that equals the isovalue gives simplices of zero size. With any value, four vertices of a compact 4D tile
+  /// may be coplanar.
   double epsilon = 0.0;
-  /// Whether vertices get normals: in the contour's `direction`, along the image's gradient there; of length 1, or 0
-  /// where it vanishes. At samples it is the mean of the difference quotients forward and backward, at
-  /// the image's border and next to missing values the one that there is; between samples it is interpolated (linearly
-  /// along edges). Normals of a vertex are as exact as its type allows. Where a 4D contour is taken apart next to
-  /// missing values, vertices put in the middle between two have the mean of their normals, of length 1.
+  /// Computes vertex normals: along the image's gradient, on the side of `direction`; of length 1, or 0 if the gradient
+  /// is zero. The gradient at a sample follows `gradient`; at the image border and next to missing values one-sided
+  /// differences are used. It is interpolated between samples, linearly along edges. Normals have the precision of the
+  /// vertex type. If a 4D contour is separated next to missing values, a vertex added midway between two others gets
+  /// the mean of their normals, of length 1.
   bool normals = false;
-  GradientKind gradient = GradientKind::differences;  ///< what normals are made of
-  /// How many threads work; 0, or more than there are: all that the machine has. The result is the same, byte by byte.
+  GradientKind gradient = GradientKind::differences;  ///< how the gradient of normals is computed
+  /// Number of threads; 0, or more than the machine has: all of the machine. The result is the same, byte by byte.
   unsigned threads = 0;
-  /// Called by the thread that asks for the contour and by no other, for every slab (between two layers of the last
-  /// axis) at least once, and within large ones, with fractions that do not fall; how often depends on the threads'
-  /// pace. It may use threads (TBB) itself: while it waits for them, it is not called again.
+  /// Called only by the thread that called the extraction, at least once for each slab (the tiles between two layers of
+  /// the last axis) and several times within large slabs. Fractions never decrease. The number of calls depends on the
+  /// threads' speed. The callback may itself use threads (TBB): it is not called again while it waits for them.
   Progress progress = {};
 };
 
-/// What an extraction did, for reports.
+/// Counts and times of one extraction.
 struct ExtractStats {
-  std::uint64_t tiles = 0;         ///< of the image
-  std::uint64_t active_tiles = 0;  ///< those with high and low corners
-  double read_seconds = 0;         ///< layers, where they come one by one (tegl/stream.hpp)
-  double classify_seconds = 0;     ///< samples against the isovalue
-  double find_seconds = 0;         ///< active tiles, counts, places in the output
-  double generate_seconds = 0;     ///< vertices and simplices
-  double close_seconds = 0;        ///< caps
+  std::uint64_t tiles = 0;         ///< tiles of the image
+  std::uint64_t active_tiles = 0;  ///< tiles with both high and low corners
+  double read_seconds = 0;         ///< to read layers, if the image is streamed (tegl/stream.hpp)
+  double classify_seconds = 0;     ///< to compare samples with the isovalue
+  double find_seconds = 0;         ///< to find active tiles, count, and compute output offsets
+  double generate_seconds = 0;     ///< to write vertices and simplices
+  double close_seconds = 0;        ///< to make caps
 };
 
-/// The contour {value = isovalue} of an image: separates samples >= isovalue (high) from the others.
+/// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
-/// Closed (away from the image's border and from missing values), a manifold and oriented, whatever
-/// the values. Where tiles next to missing values meet in an edge or a square of the grid alone, the vertices there are
-/// doubled, in the same place, so that the contour is a manifold there too. Points of a 4D contour between two layers
-/// of the last axis are kept off the layers by the least that Real can show, so that `slice` finds the contour of a
-/// layer in it even where samples equal the isovalue. An image with an axis of one sample has no tiles, hence an empty
-/// contour. Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for
-/// 5D images with missing values. Cost: one pass over the samples plus the output. Memory beside both, up to 4D: 1/16
-/// of an image of float, or 128 KiB where that is more; and at least one slab's bits and lists (docs/cost.md). Real:
-/// float or double.
+/// The contour is an oriented manifold whatever the values. It has a boundary only at the image border and at missing
+/// values. If tiles next to missing values share only an edge or a square of the grid, the vertices there are doubled
+/// at the same position, so the contour is a manifold there too. Vertices of a 4D contour between two layers of the
+/// last axis are kept off the layers by the smallest step of Real, so `slice` at a layer's coordinate gives that
+/// layer's contour even if samples equal the isovalue. An image with an axis of one sample has no tiles and an empty
+/// contour.
 ///
-/// 5D: no tables; a tile is built when its signature is first met, up to symmetry: 0.1 to 0.3 ms for each where the
-/// image is smooth, 3 ms in noise. That is little for smooth images, which have few kinds of tiles, and nearly all for
-/// noise. Up to 256 MiB of built tiles and of their faces are kept for the next ones, whatever the number of threads;
-/// beside them, in memory, are the tiles of two slabs. Closed at the border, a 5D contour may have simplices of zero
-/// size there.
+/// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for 5D images
+/// with missing values. Time: one pass over the samples, plus the output. Working memory up to 4D: 1/16 of the size of
+/// a float image, or 128 KiB if that is more, and at least the bits and lists of one slab (docs/cost.md). Real: float
+/// or double.
+///
+/// 5D has no tables. A tile is built when its signature first occurs, up to symmetry: 0.1 to 0.3 ms each for smooth
+/// images, 3 ms for noise. Smooth images have few kinds of tiles and spend little time on this; noise spends nearly all
+/// of it there. Up to 256 MiB of built tiles and faces are cached, whatever the number of threads; the tiles of two
+/// slabs are held in memory besides. With `close`, a 5D contour may have simplices of zero size at the border.
 template <class Real = float, Value T, int N>
 Contour<N, Real> extract(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                          ExtractStats* stats = nullptr);
 
-/// The size of the contour that `extract` with these options would make, exactly. Needs little memory, and less time
-/// than `extract`: nothing is written (but where the border is closed or samples are missing, all but the writing is
-/// done). Errors: those of `extract`, but TooLarge.
+/// Counts the vertices and simplices that `extract` would make with these options, exactly. Takes little memory, and
+/// less time than `extract` because nothing is written; with `close` or missing values everything except writing is
+/// done. Errors: those of `extract` except TooLarge.
 template <Value T, int N>
 ContourSize count(const Image<T, N>& image, double isovalue, const ExtractOptions& options = {},
                   ExtractStats* stats = nullptr);
 
-/// A type that vertices can be numbered by.
+/// The types of vertex numbers.
 template <class I>
 concept VertexNumber = std::is_same_v<I, std::uint32_t> || std::is_same_v<I, std::uint64_t>;
 
-/// Memory of the caller's for a contour.
+/// Buffers of the caller that a contour is written to.
 template <int N, Coordinate Real, VertexNumber I = Index>
 requires DimensionBetween<N, 2, 4>
 struct ContourRoom {
-  std::span<std::array<Real, N>> vertices = {};  ///< at least as many as `count` says
-  std::span<std::array<I, N>> simplices = {};    ///< likewise
-  std::span<std::array<Real, N>> normals = {};   ///< used with ExtractOptions::normals alone: as many as vertices
+  std::span<std::array<Real, N>> vertices = {};  ///< #V x N; at least ContourSize::vertices rows, see `count`
+  std::span<std::array<I, N>> simplices = {};    ///< #S x N; at least ContourSize::simplices rows
+  std::span<std::array<Real, N>> normals = {};   ///< #V x N; used only with ExtractOptions::normals
 };
 
-/// As `extract`, into memory of the caller's, which has to have room for the contour's size (`count` tells it) or more;
-/// returns that size. With numbers of 64 bits a contour may have any number of vertices. Vertices, normals and
-/// simplices are the same, byte by byte but for the width of the numbers. Images with missing values are gone through
-/// twice. Errors: those of `extract`; InvalidArgument if there is no room; what the memory holds then, or after any
-/// error, is not defined.
+/// As `extract`, but writes to the caller's memory and returns the contour's size. `room` must hold at least that many
+/// rows; `count` returns the size. With 64-bit numbers a contour may have any number of vertices. Vertices, normals and
+/// simplices equal those of `extract` byte by byte, except for the width of the numbers. Images with missing values are
+/// processed twice. Errors: those of `extract`; InvalidArgument if `room` is too small. After an error the contents of
+/// the memory are undefined.
 template <Value T, int N, class Real, VertexNumber I>
 requires DimensionBetween<N, 2, 4> ContourSize extract_into(const Image<T, N>& image, double isovalue,
                                                             const ContourRoom<N, Real, I>& room,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The coordinate function of an image: one axis per dimension (uniform or rectilinear), then an affine
-// map to the world.
+// The coordinates of an image: one axis per dimension (uniform or rectilinear), then an affine map to the world.
 #pragma once
 
 #include <array>
@@ -28,12 +27,12 @@ class Axis {
   /// Samples at the given coordinates. Throws InvalidGrid unless they are finite and strictly monotone.
   static Axis rectilinear(std::vector<double> coordinates);
 
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }                ///< samples
-  [[nodiscard]] bool is_uniform() const noexcept { return coordinates_.empty(); }  ///< one step for all
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }                ///< number of samples
+  [[nodiscard]] bool is_uniform() const noexcept { return coordinates_.empty(); }  ///< whether all steps are equal
   [[nodiscard]] double origin() const noexcept { return (*this)[0]; }              ///< coordinate of sample 0
-  /// Uniform axes: the step. Rectilinear axes: the mean step.
+  /// The step of a uniform axis; the mean step of a rectilinear one.
   [[nodiscard]] double step() const noexcept;
-  /// True when coordinates fall with the index.
+  /// True if coordinates decrease with the index.
   [[nodiscard]] bool is_descending() const noexcept { return step() < 0; }
 
   /// Coordinate of sample i < size().
@@ -41,7 +40,7 @@ class Axis {
     return coordinates_.empty() ? origin_ + static_cast<double>(i) * step_ : coordinates_[i];
   }
 
-  /// Samples [first, first + count), with exactly the coordinates that they have here.
+  /// The samples [first, first + count), with identical coordinates.
   [[nodiscard]] Axis part(std::size_t first, std::size_t count) const;
 
   std::string name = {};  ///< such as "lon", "t"; may be empty
@@ -54,28 +53,28 @@ class Axis {
   std::vector<double> coordinates_;
 };
 
-/// An N-dimensional grid: axis 0 runs fastest in memory by convention of the readers, time is last.
-/// World position of index i: linear * (axes[0][i_0], ..., axes[N-1][i_{N-1}]) + offset.
+/// An N-dimensional grid. Readers put the axis that is fastest in memory first and time last. World position of index
+/// i: linear * (axes[0][i_0], ..., axes[N-1][i_{N-1}]) + offset.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 struct Grid {
   std::array<Axis, N> axes = {};                                                 ///< axis 0 first; time last
-  Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();  ///< the world map's matrix
-  Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();      ///< and what it adds
+  Eigen::Matrix<double, N, N> linear = Eigen::Matrix<double, N, N>::Identity();  ///< matrix of the world map
+  Eigen::Matrix<double, N, 1> offset = Eigen::Matrix<double, N, 1>::Zero();      ///< its translation
 
-  /// A uniform grid of step 1 from the origin.
+  /// A uniform grid with origin 0 and step 1.
   static Grid unit(const std::array<std::size_t, N>& sizes) {
     Grid grid;
     for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a]);
     return grid;
   }
-  /// Samples along each axis.
+  /// Number of samples along each axis.
   [[nodiscard]] std::array<std::size_t, N> sizes() const {
     std::array<std::size_t, N> result;
     for (int a = 0; a < N; ++a) result[a] = axes[a].size();
     return result;
   }
-  /// True unless `linear` is the identity and `offset` zero.
+  /// True unless `linear` is the identity and `offset` is zero.
   [[nodiscard]] bool has_world_map() const { return !linear.isIdentity(0.0) || !offset.isZero(0.0); }
 };
 

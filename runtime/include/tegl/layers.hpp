@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images that come in layer after layer along their last axis: those larger than memory.
+// Images that are read layer by layer along their last axis, for images larger than memory.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace tegl {
 
-/// The layers of an image along its last axis, from wherever they come.
+/// A source of the layers of an image along its last axis.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 class LayerReader {
@@ -22,25 +22,25 @@ class LayerReader {
   LayerReader& operator=(const LayerReader&) = delete;
   virtual ~LayerReader() = default;
 
-  /// Coordinates of the whole image.
+  /// The grid of the whole image.
   [[nodiscard]] virtual const Grid<N>& grid() const noexcept = 0;
 
-  /// Writes layer `k` to `to`, dense, axis 0 fastest: as many values as the other axes have samples. NaN is a missing
-  /// value. Layers are asked for in ascending order, each one once, always by the thread that called for the
-  /// extraction. What it throws ends the extraction and reaches its caller.
+  /// Writes layer `k` to `to`: dense, axis 0 fastest, the product of the other axes' sizes in values. NaN is a missing
+  /// value. The extraction requests each layer once, in ascending order, from the thread that called it. Exceptions end
+  /// the extraction and reach its caller.
   virtual void read(std::size_t k, T* to) = 0;
 };
 
-/// Layers that a function fills in.
+/// Layers computed by a function.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 class FunctionLayers final : public LayerReader<T, N> {
  public:
   using Function = std::function<void(std::size_t k, T* to)>;  ///< writes layer `k` to `to`, as LayerReader::read
-  /// Layers of an image on `grid`, as `function` writes them.
+  /// Layers of an image on `grid`, written by `function`.
   FunctionLayers(Grid<N> grid, Function function) : grid_(std::move(grid)), function_(std::move(function)) {}
-  [[nodiscard]] const Grid<N>& grid() const noexcept override { return grid_; }  ///< coordinates of the whole image
-  void read(std::size_t k, T* to) override { function_(k, to); }                 ///< asks the function
+  [[nodiscard]] const Grid<N>& grid() const noexcept override { return grid_; }  ///< the grid of the whole image
+  void read(std::size_t k, T* to) override { function_(k, to); }                 ///< calls the function
 
  private:
   Grid<N> grid_;

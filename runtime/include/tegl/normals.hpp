@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Normals of contours that are there: from their own shape, or from an image's gradient.
+// Normals of existing contours: from their geometry, or from the gradient of an image.
 #pragma once
 
 #include "tegl/contour.hpp"
@@ -8,22 +8,22 @@
 
 namespace tegl {
 
-/// What a simplex counts for in the normal of one of its vertices: its area (length, volume); its angle there (N = 4:
-/// solid angle), which does not depend on how a flat facet is divided into simplices; or as much as any other, which is
-/// the thesis's plain mean. In 2D all angles are alike.
+/// The weight of a simplex in the normal of one of its vertices. area: length, area or volume of the simplex. angle:
+/// its angle at the vertex (N = 4: solid angle), which does not depend on how a flat facet is divided into simplices.
+/// equal: 1, the thesis's plain mean. In 2D all angles are equal.
 enum class NormalWeights { area, angle, equal };
 
-/// The unit normal of every simplex, #S x N, to the side that its orientation faces; 0 for one of zero size. N = 2, 3,
-/// 4. Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S) time; thread-safe. Source: M. Liversage,
-/// thesis, 1994, section 8.2.4.
+/// The unit normal of every simplex, #S x N, on the side that its orientation faces; 0 for simplices of zero size. N =
+/// 2, 3, 4. Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S) time; thread-safe. Source: M.
+/// Liversage, thesis, 1994, section 8.2.4.
 template <int N, class Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> flat_normals(
     const Contour<N, Real>& contour, const WorkOptions& options = {});
 
-/// The unit normal of every vertex from the simplices around it, #V x N, as Contour::normals has them: the mean of
-/// their unit normals by `weights`; 0 where that vanishes and for vertices in no simplex. Simplices of zero size count
-/// for nothing. It needs no image and follows the surface as it is, with its corners; where an image is at hand its
-/// gradient is an order more exact (docs/normals.md). N = 2, 3, 4.
+/// The unit normal of every vertex from its simplices, #V x N, as in Contour::normals: their weighted mean unit normal;
+/// 0 if that vanishes and for vertices without simplices. Simplices of zero size have no weight. Needs no image and
+/// follows the surface with its corners. If an image is available, gradient normals are more accurate by one order
+/// (docs/normals.md). N = 2, 3, 4.
 ///
 /// Errors: InvalidArgument (a vertex number out of range); Cancelled. O(#S + #V) time, one thread for the sums; 8 N
 /// bytes per vertex and simplex. Thread-safe. Sources: M. Liversage, thesis, 1994, section 8.2.5; angles: G. Thuermer
@@ -33,10 +33,10 @@ template <int N, class Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> geometric_normals(
     const Contour<N, Real>& contour, NormalWeights weights = NormalWeights::angle, const WorkOptions& options = {});
 
-/// The normal of every vertex from an image, #V x N: what `extract` with ExtractOptions::normals gives, but for any
-/// contour in the image's world, such as a saved or a simplified one; the gradients at the samples of the vertex's
-/// cell, interpolated multilinearly, in the contour's `direction`, of length 1. 0 where the gradient vanishes and
-/// outside of the grid (by more than a thousandth of a step). N = 2, 3, 4.
+/// The normal of every vertex from an image, #V x N, as `extract` with ExtractOptions::normals computes it. Works for
+/// any contour in the image's world coordinates, such as a loaded or a simplified one. The gradients at the samples of
+/// the vertex's cell are interpolated multilinearly, on the side of the contour's `direction`, and scaled to length 1.
+/// 0 if the gradient is zero and outside of the grid (by more than a thousandth of a step). N = 2, 3, 4.
 /// Errors: Cancelled. O(#V 4^N) time. Thread-safe. Source: M. Liversage, thesis, 1994, sections 8.2.6 to 8.2.15.
 template <Value T, int N, class Real>
 requires DimensionBetween<N, 2, 4> Buffer<typename Contour<N, Real>::Vertex> gradient_normals(

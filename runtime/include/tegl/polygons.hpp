@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From polygons to triangles, in several ways.
+// Triangulation of polygons, by several methods.
 //
-// Based on: M. Liversage, thesis, 1994, section 8.1, whose Methods 1 to 4 these are. The names are ours.
+// Based on: M. Liversage, thesis, 1994, section 8.1, Methods 1 to 4. The names are ours.
 #pragma once
 
 #include <array>
@@ -16,50 +16,50 @@
 
 namespace tegl {
 
-/// How a polygon becomes triangles.
+/// How a polygon is triangulated.
 enum class PolygonTriangulation {
   fan,            ///< Method 1: chords from one point to all others (8.1.4)
-  zigzag,         ///< Method 2: chords to and fro across the polygon (8.1.6)
-  halving_chord,  ///< Method 3: halves, by the shortest chord that halves the polygon, and so on (8.1.9, 8.1.13)
-  halving_kink,   ///< Method 3, by the chord along which the polygon is bent least (8.1.9, 8.1.14)
-  barycentric,    ///< Method 4: a new point, the barycentre, joined to all others; triangles stay (8.1.18, 8.1.23)
+  zigzag,         ///< Method 2: alternating chords across the polygon (8.1.6)
+  halving_chord,  ///< Method 3: recursive halving by the shortest halving chord (8.1.9, 8.1.13)
+  halving_kink,   ///< Method 3: recursive halving by the chord with the smallest bend (8.1.9, 8.1.14)
+  barycentric,    ///< Method 4: the barycentre is joined to all points; triangles stay (8.1.18, 8.1.23)
 };
 
 /// Two points of a polygon, by number.
 using Chord = std::array<Index, 2>;
 
-/// The triangles of a polygon, as rows of three numbers of its points, each oriented as the polygon. They are as many
-/// as the points less two; with a barycentre, which is point number #points then, as many as the points.
+/// The triangles of a polygon, as rows of three point numbers, each oriented as the polygon. There are #points - 2
+/// triangles; with a barycentre, which gets number #points, there are #points triangles.
 ///
-/// `points`: one after the other around the polygon, which need not be plane. Two points may be in one place.
-/// `forbidden`: chords that no triangulation may have. (Where several polygons meet, a chord that two of them draw
-/// would have four triangles.)
+/// `points`: in order around the polygon, which need not be planar; points may coincide. `forbidden`: chords that no
+/// triangulation may use. (If two polygons that share both ends of a chord used it, four triangles would meet in it.)
 ///
-/// A fan begins, and a zigzag, at the first point from which it has no forbidden chord. Halving takes parts of m points
-/// in turn: of the chords that leave as many points on either side (or one more, if m is odd), the one of least weight,
-/// the first of several; if all of these are forbidden, or leave a part that has only forbidden chords, of those that
-/// leave one point less on one side, and so on. The weight of a kink is 1 - angle / pi, the mean of both ends of the
-/// chord: there, the edges of the part that meet are projected along the chord, and the angle is between the
-/// projections (0 if one of them vanishes). Where there is no fan or zigzag without forbidden chords, the polygon is
-/// halved by the shortest chords; where there are no triangles at all without them, it gets a barycentre.
+/// A fan or a zigzag starts at the first point from which it has no forbidden chord. Halving splits each part of m
+/// points recursively. Candidates are the chords with equally many points on both sides (one more on one side if m is
+/// odd); the one of smallest weight is taken, the first of several. If all candidates are forbidden, or leave a part
+/// that has only forbidden chords, the chords with one point less on one side are tried, and so on. The weight of
+/// halving_kink is 1 - angle / pi, averaged over both ends of the chord: at each end, the part's edges that meet there
+/// are projected along the chord, and the angle is between the projections (0 if one is zero). If every fan or zigzag
+/// has a forbidden chord, the polygon is halved by the shortest chords; if no triangulation avoids forbidden chords, it
+/// gets a barycentre.
 ///
-/// Errors: InvalidArgument for fewer than 3 points, or numbers in `forbidden` beyond them. O(#points) for fan and
-/// zigzag, O(#points log #points) for halving; with forbidden chords a power of it that is meant for small polygons.
+/// Errors: InvalidArgument for fewer than 3 points, or for numbers in `forbidden` out of range. O(#points) for fan and
+/// zigzag, O(#points log #points) for halving; with forbidden chords a higher power, intended for small polygons.
 template <int N>
 requires DimensionBetween<N, 2, 4> std::vector<std::array<Index, 3>> triangulate_polygon(
     std::span<const std::array<double, N>> points, PolygonTriangulation method, std::span<const Chord> forbidden = {});
 
-/// The mean of the middles of a polygon's edges, weighted by their length; of points that are all in one place, that.
+/// The mean of the midpoints of a polygon's edges, weighted by edge length; if all points coincide, that point.
 /// `points`: at least one.
 template <int N>
 requires DimensionBetween<N, 2, 4> std::array<double, N> polygon_barycentre(
     std::span<const std::array<double, N>> points);
 
-/// The contour of a 3D image from its polygons. A manifold, as the polygons are, whatever the method: chords that join
-/// two points of one square of the grid, which the cube on the other side might draw too, are forbidden.
+/// Triangulates the polygons of a 3D contour. The result is a manifold with every method: chords between two points of
+/// one square of the grid are forbidden, as the cube on the other side might use them too.
 ///
-/// The points of `facets` keep their numbers; barycentres come last, with the mean of their polygon's normals, if there
-/// are any. Triangles come polygon by polygon. Errors: TooLarge, Cancelled. O(size).
+/// The points of `facets` keep their numbers. Barycentres come last, with the mean of their polygon's normals if there
+/// are normals. Triangles come polygon by polygon. Errors: TooLarge, Cancelled. O(size).
 template <class Real>
 Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
                              const WorkOptions& options = {});

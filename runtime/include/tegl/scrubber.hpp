@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An index of a contour by time, for cuts at any time without looking at the whole contour: to wind a 4D contour
-// forwards and backwards as one would a film, but a continuous one.
+// An index of a contour by time: cuts at any time without a pass over the whole contour, for instance for a time
+// slider.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace tegl {
 
-/// Cuts of an N-dimensional contour (N = 3, 4) by parallel hyperplanes, those of constant time if nothing else is said.
+/// Cuts of an N-dimensional contour (N = 3, 4) by parallel hyperplanes; by default those of constant time.
 ///
-/// Each cut is what `slice` makes, bit by bit, in time that depends on the cut's size and not on the contour's: an
-/// interval tree holds the range of heights of every simplex. O(s log s) time to build for s simplices, 16 bytes for
-/// each and up to 12 for each node of the tree (mostly far fewer nodes than simplices; `memory` says how much in all).
+/// Each cut equals that of `slice` bit by bit, in time that depends on the size of the cut and not of the contour: an
+/// interval tree holds the height range of every simplex. Building takes O(s log s) time for s simplices. Memory: 16
+/// bytes per simplex and up to 12 for each node of the tree (usually far fewer nodes than simplices; see `memory`).
 ///
-/// The contour is not copied: it has to outlive the scrubber, unchanged. Cuts may be asked for by several threads at a
+/// The contour is not copied: it must outlive the scrubber, unchanged. Thread-safe: several threads may cut at the same
 /// time.
 ///
 /// Based on: H. Edelsbrunner, Dynamic data structures for orthogonal intersection queries, 1980 (interval trees);
@@ -32,35 +32,34 @@ class Scrubber {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;  ///< components by axis
 
-  /// `normal`: of the hyperplanes. Throws InvalidArgument if it is 0 or not finite, or a coordinate of the contour is
-  /// not finite, a vertex number out of range, or attributes or normals are of another number; Cancelled.
+  /// `normal`: the normal of the hyperplanes. Throws InvalidArgument if it is 0 or not finite, a coordinate of the
+  /// contour is not finite, a vertex number is out of range, or attributes or normals are of another number; Cancelled.
   explicit Scrubber(const Contour<N, Real>& contour, const Vector& normal = Vector::Unit(N - 1),
                     const WorkOptions& options = {});
   explicit Scrubber(const Contour<N, Real>&&, const Vector& = Vector::Unit(N - 1), const WorkOptions& = {}) = delete;
 
-  /// slice(contour, Hyperplane<N>{normal, offset}). O(c + log s) for c simplices that touch the hyperplane, of which
-  /// there are few more than the cut has; where vertices lie on it, O(c log c).
-  /// Throws InvalidArgument if the offset is not finite.
+  /// Returns slice(contour, Hyperplane<N>{normal, offset}). O(c + log s) for c simplices that touch the hyperplane, few
+  /// more than the cut has; O(c log c) if vertices lie on it. Throws InvalidArgument if the offset is not finite.
   [[nodiscard]] Contour<N - 1, Real> cut(double offset) const;
 
-  /// The simplices that have vertices at or on both sides of the hyperplane, ascending. O(c + log s).
+  /// The simplices with vertices on the hyperplane or on both sides of it, in ascending order. O(c + log s).
   [[nodiscard]] std::vector<Index> touching(double offset) const;
 
-  /// The least and the largest offset of hyperplanes that meet the contour; {0, 0} for an empty one.
+  /// Minimum and maximum offset of the hyperplanes that meet the contour; {0, 0} for an empty contour.
   [[nodiscard]] std::pair<double, double> range() const noexcept { return range_; }
 
-  /// Bytes that the index takes, beside the contour.
+  /// Size of the index in bytes, without the contour.
   [[nodiscard]] std::size_t memory() const noexcept;
 
  private:
-  /// A simplex at a node, by one end of its range.
+  /// A simplex of a node, with one end of its range.
   struct Entry {
     std::uint32_t end;
     Index simplex;
   };
   struct Node {
-    std::uint32_t middle;  ///< that all ranges of the node contain
-    std::uint64_t first;   ///< entry
+    std::uint32_t middle;  ///< contained in all ranges of the node
+    std::uint64_t first;   ///< index of the node's first entry
   };
 
   [[nodiscard]] std::uint32_t place(double height) const noexcept;
@@ -70,9 +69,9 @@ class Scrubber {
   Vector normal_;
   double lowest_ = 0.0;
   std::pair<double, double> range_{0.0, 0.0};
-  std::vector<Node> nodes_;      ///< by middle, and one more for the end
-  std::vector<Entry> by_least_;  ///< by node, ascending from there
-  std::vector<Entry> by_most_;   ///< by node, descending from there
+  std::vector<Node> nodes_;      ///< by `middle`, plus a sentinel
+  std::vector<Entry> by_least_;  ///< by node, in ascending order of the lower ends
+  std::vector<Entry> by_most_;   ///< by node, in descending order of the upper ends
 };
 
 }  // namespace tegl

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of a contour by hyperplanes: what a 4D contour looks like at time t, or along any other hyperplane.
+// Cuts of contours by hyperplanes: a 4D contour at a time t, or in any other hyperplane.
 #pragma once
 
 #include <span>
@@ -11,84 +11,88 @@
 
 namespace tegl {
 
-/// The cut of an N-dimensional contour (N = 3, 4) by x_{N-1} = at: a contour in one dimension less, with the last
-/// coordinate left out. N = 4: triangles at time `at`; N = 3: segments. Names, units and direction are taken over; the
-/// cut's orientation points to the same side, low or high, as the contour's. Normals of the contour's vertices, if it
-/// has any, become those of the cut's: interpolated like the points, without their last component, of length 1, or 0
-/// where nothing is left. Vertex attributes are interpolated like the points; simplex attributes are those of the
-/// simplex that each of the cut's lies in.
+/// Cuts an N-dimensional contour (N = 3, 4) by x_{N-1} = at. The result has one dimension less, without the last
+/// coordinate: triangles for N = 4, segments for N = 3. Names, units and direction are kept; the cut faces the same
+/// side, low or high, as the contour. Normals, if the contour has any, are interpolated like the vertices, lose their
+/// last component, and get length 1, or 0 if nothing remains. Vertex attributes are interpolated like the vertices. A
+/// simplex of the cut gets the attributes of the simplex that it lies in.
 ///
-/// Points. The cut's vertices lie on the edges between a vertex below and one above the hyperplane, interpolated in
-/// double from the one below. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above, or as
-/// below where the contour does not come up to it from below, and is itself the point of every cut edge that ends in
-/// it; simplices that collapse thereby are dropped. Parts of the contour's boundary that lie in the hyperplane belong
-/// to the cut where only their upper side has a contour. So
-///  - at a sample's coordinate t = k the cut is the contour of layer k of the image, bit by bit: both have the same
-///    vertices and the same oriented simplices, compared by the bits of their coordinates; numbers, and the vertex that
-///    a simplex begins with, may differ. This holds for the contours that `extract` makes with any options: also at the
-///    first and the last layer, and, N = 4, where samples equal the isovalue. (N = 3: not in this case. There pieces of
-///    the surface may lie flat in the layer, and the cut is the limit from below; a positive ExtractOptions::epsilon at
-///    the extraction keeps them out of it.) Conditions: Real has numbers between the coordinates of the layers; an
-///    estimator of the caller's answers alike for a face of the image and for the same face of the layer. Where samples
-///    are missing, the contour has no more of the layer than what belongs to a tile, and it may be divided otherwise.
-///  - at any other t the cut of a closed manifold is a closed manifold, oriented alike. That holds for every t: where
-///    drawing points together would pinch the cut, they are left apart at the same place.
+/// Vertices of the cut lie on edges between a vertex below and a vertex above the hyperplane; they are interpolated in
+/// double, from the lower one. `at` is rounded to Real first. A vertex exactly on the hyperplane counts as above; if
+/// the contour does not reach it from below, it counts as below. It is itself the vertex of every cut edge that ends in
+/// it; simplices that collapse are dropped. Parts of the contour's boundary in the hyperplane belong to the cut if the
+/// contour is only on their upper side. Consequences:
+/// - At a sample's coordinate t = k the cut is the contour of layer k of the image, bit by bit: the same vertices and
+///   the same oriented simplices, compared by the bits of their coordinates. Numbers, and the vertex that a simplex
+///   begins with, may differ. This holds for contours that `extract` makes with any options, also at the first and the
+///   last layer, and for N = 4 also if samples equal the isovalue. (Not for N = 3 then: parts of the surface may lie
+///   flat in the layer, and the cut is the limit from below. A positive ExtractOptions::epsilon keeps them out of the
+///   layer.) Conditions: Real has numbers between the coordinates of the layers, and a user's estimator returns the
+///   same for a face of the image and for this face of the layer. If samples are missing, the contour has only the part
+///   of the layer that belongs to tiles, and it may be triangulated differently.
+/// - The cut of a closed manifold is a closed manifold with the same orientation, for every t. If merging vertices
+///   would pinch the cut, they stay separate at the same position.
 ///
-/// Quadrilaterals are split by the shorter diagonal. The result's order depends on the contour's alone.
-/// Errors: InvalidArgument (`at` or a coordinate not finite, a vertex number out of range, attributes or normals of
-/// another number). An `at` beyond the contour gives an empty cut. O(#S + #V) time plus O(c log c) for a cut of c
-/// simplices; #V bytes and O(c) of memory. Thread-safe.
+/// Quadrilaterals are split by the shorter diagonal. The order of the result depends only on the order of the contour.
+/// Errors: InvalidArgument (`at` or a coordinate is not finite, a vertex number out of range, attributes or normals of
+/// another number). If `at` is beyond the contour, the cut is empty. O(#S + #V) time, plus O(c log c) for a cut of c
+/// simplices; #V bytes plus O(c) memory. Thread-safe.
 template <int N, class Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour, double at);
 
-/// The cut by any hyperplane, in the coordinates of `frame_of(hyperplane)`: along x of a 4D contour a surface in y, z
-/// and t. "Above" is the side that the hyperplane's normal points to; along the last axis it is the cut above. Whatever
-/// it meets, the cut of a manifold is a manifold, oriented alike, and closed if the contour is. It is the limit from
-/// below, or from above around vertices that the contour does not come up to from below. Of the contour's boundary,
-/// parts in the hyperplane whose upper side alone has a contour belong to cuts across an axis, unless they may lie in a
-/// side of the image along another axis too, and never to oblique ones. So at a sample's coordinate on any axis the cut
-/// is the contour of that layer, if no sample equals the isovalue. Where samples do, that is so on the last axis alone,
-/// where `extract` keeps the points between layers out of these. On others such points lie in the layer as well, at the
-/// same places as points of the layer itself, and nothing in a contour tells one from the other: there the limit may
-/// have other pieces than the layer's contour, flat in it or along samples of the isovalue. `slice_image_across` has
-/// the image to go by, and gives the layer's contour. Vertices lie on the hyperplane if <normal, x> equals the offset
-/// as computed in double, and if the normal is a multiple of an axis, if the coordinate equals the quotient in Real.
-/// Orientation: the cut's positive side in the frame's coordinates is that of the contour, also where the frame is
-/// left-handed. Names and units of axes are kept where the frame's axis is one of the contour's, and empty elsewhere.
-/// Errors: those of `frame_of`, and as above. Cost: as above.
+/// Cuts a contour by any hyperplane, in the coordinates of `frame_of(hyperplane)`: across x, a 4D contour gives a
+/// surface in y, z and t. "Above" is the side of the hyperplane's normal. Across the last axis the result is that of
+/// the function above.
+///
+/// The cut of a manifold is a manifold with the same orientation, and closed if the contour is closed. The cut is the
+/// limit from below; around vertices that the contour does not reach from below, the limit from above. Boundary parts
+/// that lie in the hyperplane, with the contour only on their upper side, belong to cuts across an axis, unless they
+/// may also lie in a side of the image along another axis. They never belong to oblique cuts.
+///
+/// At a sample's coordinate on any axis, the cut is the contour of that layer if no sample equals the isovalue. If
+/// samples do, this holds only for the last axis, where `extract` keeps vertices between layers out of the layers. On
+/// other axes such vertices lie in the layer, at the same positions as vertices of the layer itself, and the contour
+/// does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer or lie
+/// along samples of the isovalue. `slice_image_across` reads the image and gives the layer's contour.
+///
+/// A vertex lies on the hyperplane if <normal, x> equals the offset as computed in double; if the normal is a multiple
+/// of an axis, if the coordinate equals the quotient in Real. Orientation: the cut faces the same side as the contour
+/// in the frame's coordinates, also if the frame is left-handed. Names and units of axes are kept if a frame axis is an
+/// axis of the contour, and empty otherwise. Errors: those of `frame_of` and of the function above. Cost: that of the
+/// function above.
 template <int N, class Real>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice(const Contour<N, Real>& contour,
                                                               const Hyperplane<N>& hyperplane);
 
-/// The cuts by parallel hyperplanes <normal, x> = offsets[i], all found in one pass over the contour: each the same,
-/// bit by bit, as `slice` gives it. The offsets may come in any order; as many cuts are made at a time as
-/// there are threads. Errors: those of `slice`; Cancelled. O(#S log k + #V) plus the cuts' own cost; 8 #V bytes,
-/// and memory for all cuts.
+/// Cuts a contour by parallel hyperplanes <normal, x> = offsets[i], in one pass over the contour. Each cut equals that
+/// of `slice` bit by bit. Offsets may be in any order; as many cuts are made at a time as there are threads. Errors:
+/// those of `slice`; Cancelled. O(#S log k + #V) for k offsets, plus the cost of the cuts; 8 #V bytes plus the memory
+/// of all cuts.
 template <int N, class Real>
 requires DimensionBetween<N, 3, 4> std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, const Eigen::Matrix<double, N, 1>& normal, std::span<const double> offsets,
     const WorkOptions& options = {});
 
-/// The same cut straight from the image: reads just the slab of tiles that the hyperplane passes; at a sample's
-/// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis.
-/// At a sample's coordinate it is the contour of the layer, bit by bit, also where samples equal the isovalue (N = 3,
-/// 4). Elsewhere it equals slice(extract<Real>(image, isovalue, options), at) up to the numbering, bit by bit; where
-/// values are missing at some times and not at others, up to how the same surface is divided into triangles.
-/// `options.close` closes the cut at the borders of the other axes, as the cut of the closed contour is.
+/// Makes the cut directly from the image: reads only the slab of tiles that the hyperplane passes, or, at a sample's
+/// coordinate, the two slabs that meet there. `at` is a world coordinate of the last axis. At a sample's coordinate the
+/// result is the contour of that layer, bit by bit, also if samples equal the isovalue (N = 3, 4). Elsewhere it equals
+/// slice(extract<Real>(image, isovalue, options), at) bit by bit, up to the numbering; if values are missing at some
+/// times only, up to the triangulation of the same surface. `options.close` closes the cut at the borders of the other
+/// axes, as in the cut of the closed contour.
 ///
-/// An image with one sample along the last axis has no tiles, hence an empty cut, at the one `at` that lies inside.
-/// Errors: those of `extract`; InvalidArgument when `at` is not finite or outside of the last axis, and when
-/// the grid's world map mixes the last axis with others, so that "last world coordinate = at" is not a layer.
-/// Cost: that of extracting one or two slabs, whatever the length of the last axis.
+/// An image with one sample along the last axis has no tiles, hence an empty cut, at its only valid `at`. Errors: those
+/// of `extract`; InvalidArgument if `at` is not finite or outside of the last axis, or if the world map mixes the last
+/// axis with others, so that "last world coordinate = at" is not a layer. Cost: that of extracting one or two slabs,
+/// independent of the length of the last axis.
 template <class Real = float, Value T, int N>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image(const Image<T, N>& image, double isovalue,
                                                                     double at, const ExtractOptions& options = {},
                                                                     ExtractStats* stats = nullptr);
 
-/// The same across any axis: the cut by x_axis = at, in the other coordinates. Only a slab of layers of that axis is
-/// contoured (for normals, the layers beside it too). All that is said of the last axis holds for this one, except that
-/// normals are the same up to rounding: at a sample's coordinate the cut is the contour of that layer, also where
-/// samples equal the isovalue and cuts of the whole contour may differ from it.
+/// As `slice_image`, but across any axis: the cut by x_axis = at, in the other coordinates. Contours only a slab of
+/// layers of that axis (for normals, also the adjacent layers). All guarantees for the last axis hold, except that
+/// normals agree up to rounding only. At a sample's coordinate the cut is the contour of that layer, also if samples
+/// equal the isovalue, where cuts of the whole contour may differ from it.
 template <class Real = float, Value T, int N>
 requires DimensionBetween<N, 3, 4> Contour<N - 1, Real> slice_image_across(const Image<T, N>& image, double isovalue,
                                                                            int axis, double at,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of images that are larger than memory: layer after layer along the last axis comes in, the contour goes out
-// in parts.
+// Contours of images larger than memory: layers along the last axis are read one by one, and the contour is written in
+// parts.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace tegl {
 
-/// Takes a contour in parts, in the order of its numbers. What it throws ends the extraction and reaches its caller.
+/// Receives a contour in parts, in the order of vertex and simplex numbers. Its exceptions end the extraction and reach
+/// the caller.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 class ContourSink {
@@ -26,28 +27,26 @@ class ContourSink {
   ContourSink& operator=(const ContourSink&) = delete;
   virtual ~ContourSink() = default;
 
-  /// The next vertices. The first one of all has the number 0.
+  /// Receives the next vertices. The first vertex has number 0.
   virtual void add_vertices(std::span<const Vertex> vertices) = 0;
-  /// With ExtractOptions::normals: the normals of the vertices that were just added. A sink that does not expect any
-  /// throws InvalidArgument.
+  /// With ExtractOptions::normals: receives the normals of the vertices just added. By default throws InvalidArgument.
   virtual void add_normals(std::span<const Vertex> /*normals*/) {
     throw Error(ErrorCode::InvalidArgument, "normals for a sink that takes none; expected one with add_normals");
   }
-  /// The next simplices, of vertices that were added before or will be.
+  /// Receives the next simplices. Their vertices may be added later.
   virtual void add_simplices(std::span<const Simplex> simplices) = 0;
-  /// Another vertex for a corner of a simplex that was added before (next to missing values, where sheets that touch
-  /// are taken apart).
+  /// Replaces a vertex number of a simplex that was added before: next to missing values, sheets that touch are
+  /// separated.
   virtual void replace_corner(std::uint64_t simplex, int corner, std::uint64_t vertex) = 0;
 };
 
-/// How large a streamed contour became.
+/// Size of a streamed contour.
 using StreamedSize = ContourSize;
 
-/// As `extract`, for an image that comes in by layers and a contour that goes out in parts: the same vertices, normals
-/// and simplices with the same numbers, but with 64 bits to number them. Memory: three layers of samples (four with
-/// normals; more where they are small), the contour between two of them, and what takes part in missing values' borders
-/// or the closing of the image's border. Errors: those of `extract`, but TooLarge, and what the reader and the sink
-/// throw.
+/// As `extract`, for an image read by layers and a contour written in parts: the same vertices, normals and simplices
+/// with the same numbers, but numbered by 64 bits. Memory: three layers of samples (four with normals, more if layers
+/// are small), the contour between two layers, and the data to separate sheets at missing values or to close the
+/// contour at the image border. Errors: those of `extract` except TooLarge, and exceptions of the reader and the sink.
 template <class Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4> StreamedSize extract_streamed(LayerReader<T, N>& layers, double isovalue,
                                                                  const ExtractOptions& options,

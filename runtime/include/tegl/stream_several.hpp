@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of several isovalues of an image that is larger than memory, in one pass over it.
+// Contours of several isovalues of an image larger than memory, in one pass over the image.
 #pragma once
 
 #include <span>
@@ -9,22 +9,22 @@
 
 namespace tegl {
 
-/// One of the contours of extract_streamed_several: its isovalue, where it goes, and how large it became.
+/// One of the contours of extract_streamed_several: isovalue, destination, and size.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 4>
 struct StreamedContour {
   double isovalue = 0;                   ///< finite
-  ContourSink<N, Real>* sink = nullptr;  ///< where the contour goes; not owned
+  ContourSink<N, Real>* sink = nullptr;  ///< receives the contour; not owned
   StreamedSize size = {};                ///< set by the extraction
-  ExtractStats stats = {};               ///< likewise
+  ExtractStats stats = {};               ///< set by the extraction
 };
 
-/// What extract_streamed gives for each isovalue, each with the same vertices, normals and simplices in the same order;
-/// the layers are read once. All contours are at the same layers, each a task of its own for the threads of `options`,
-/// which are no more however many contours there are. The reader is called by the thread of the caller; sinks by others
-/// as well, but never two of them, nor one and the reader, at the same time. Memory: the layers of extract_streamed
-/// once, and the rest of it for each isovalue. Errors: those of extract_streamed, of the first contour that had any;
-/// InvalidArgument for a sink that is null. The contours of the others are then unfinished.
+/// As extract_streamed for each isovalue: the same vertices, normals and simplices in the same order. Layers are read
+/// once. All contours advance together, layer by layer; each is a task of its own for the threads of `options`, whose
+/// number does not grow with the number of contours. The reader is called by the calling thread. Sinks are called by
+/// any thread, but never concurrently with each other or with the reader. Memory: the layers of extract_streamed once,
+/// the rest of its memory for each isovalue. Errors: those of extract_streamed, from the first contour that fails;
+/// InvalidArgument for a null sink. The other contours are then incomplete.
 template <class Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 void extract_streamed_several(LayerReader<T, N>& layers, std::span<StreamedContour<N, Real>> contours,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The samples that an image owns: in a std::vector, or in memory that another process has filled.
+// The container of an image's samples: memory of a std::vector, or memory that a child process has filled.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 namespace tegl {
 
 namespace detail {
-/// Memory for samples, aligned to 64 bytes from 2 MiB on. Throws std::bad_alloc.
+/// Allocates memory for samples; blocks of 2 MiB or more are aligned to 64 bytes. Throws std::bad_alloc.
 void* allocate_values(std::size_t bytes);
 void free_values(void* block, std::size_t bytes) noexcept;
 
-/// Leaves new samples unset, and takes large blocks from where `allocate_values` does.
+/// Leaves new samples uninitialised and allocates with `allocate_values`.
 template <class T>
 struct ValueAllocator {
   using value_type = T;
@@ -41,41 +41,41 @@ struct ValueAllocator {
   friend bool operator==(const ValueAllocator&, const ValueAllocator&) noexcept { return true; }
 };
 
-/// A vector of samples that leaves new ones unset.
+/// A std::vector whose new samples are uninitialised.
 template <class T>
 using ValueVector = std::vector<T, ValueAllocator<T>>;
 }  // namespace detail
 
-/// Samples in one block of memory, with the functions of a std::vector. Made from a std::vector without a copy. New
-/// samples are 0.
+/// Samples in one contiguous block of memory, with the functions of a std::vector. Converts from a std::vector without
+/// a copy. New samples are 0.
 template <class T>
 class Values {
  public:
   using value_type = T;                                                ///< the type of a sample
   using size_type = std::size_t;                                       ///< a number of samples
-  using difference_type = std::ptrdiff_t;                              ///< a distance of two samples
+  using difference_type = std::ptrdiff_t;                              ///< a distance between two samples
   using reference = T&;                                                ///< a sample
-  using const_reference = const T&;                                    ///< a sample that is not changed
-  using iterator = T*;                                                 ///< in the order of memory
-  using const_iterator = const T*;                                     ///< in the order of memory
+  using const_reference = const T&;                                    ///< a constant sample
+  using iterator = T*;                                                 ///< in memory order
+  using const_iterator = const T*;                                     ///< in memory order
   Values() noexcept = default;                                         ///< no samples
-  Values(std::vector<T> values) noexcept : held_(std::move(values)) {  ///< these samples
+  Values(std::vector<T> values) noexcept : held_(std::move(values)) {  ///< moves the samples
     refresh();
   }
-  Values(detail::ValueVector<T> values) noexcept : held_(std::move(values)) {  ///< these samples
+  Values(detail::ValueVector<T> values) noexcept : held_(std::move(values)) {  ///< moves the samples
     refresh();
   }
   explicit Values(std::size_t count, T value = T()) : Values(std::vector<T>(count, value)) {}  ///< equal samples
   Values(std::initializer_list<T> values) : Values(std::vector<T>(values)) {}                  ///< these samples
   template <std::input_iterator It>
-  Values(It first, It last) : Values(std::vector<T>(first, last)) {}             ///< a range's samples
+  Values(It first, It last) : Values(std::vector<T>(first, last)) {}             ///< copies a range
   Values(const Values& other) : held_(other.held_) { refresh(); }                ///< a copy
-  Values(Values&& other) noexcept : held_(std::exchange(other.held_, Held())) {  ///< leaves no samples
+  Values(Values&& other) noexcept : held_(std::exchange(other.held_, Held())) {  ///< `other` becomes empty
     refresh();
     other.refresh();
   }
   Values& operator=(const Values& other) { return *this = Values(other); }  ///< a copy
-  Values& operator=(Values&& other) noexcept {                              ///< leaves no samples
+  Values& operator=(Values&& other) noexcept {                              ///< `other` becomes empty
     held_ = std::exchange(other.held_, Held());
     refresh();
     other.refresh();
@@ -85,43 +85,44 @@ class Values {
 
   [[nodiscard]] T* data() noexcept { return data_; }                                    ///< the first sample
   [[nodiscard]] const T* data() const noexcept { return data_; }                        ///< the first sample
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }                     ///< how many there are
-  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }                      ///< whether there are none
-  [[nodiscard]] T* begin() noexcept { return data_; }                                   ///< at the first sample
-  [[nodiscard]] const T* begin() const noexcept { return data_; }                       ///< at the first sample
-  [[nodiscard]] T* end() noexcept { return data_ + size_; }                             ///< behind the last sample
-  [[nodiscard]] const T* end() const noexcept { return data_ + size_; }                 ///< behind the last sample
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }                     ///< number of samples
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }                      ///< whether size() is 0
+  [[nodiscard]] T* begin() noexcept { return data_; }                                   ///< to the first sample
+  [[nodiscard]] const T* begin() const noexcept { return data_; }                       ///< to the first sample
+  [[nodiscard]] T* end() noexcept { return data_ + size_; }                             ///< past the last sample
+  [[nodiscard]] const T* end() const noexcept { return data_ + size_; }                 ///< past the last sample
   [[nodiscard]] T& operator[](std::size_t i) noexcept { return data_[i]; }              ///< sample i < size()
   [[nodiscard]] const T& operator[](std::size_t i) const noexcept { return data_[i]; }  ///< sample i < size()
-  [[nodiscard]] T& front() noexcept { return data_[0]; }                                ///< there has to be one
-  [[nodiscard]] const T& front() const noexcept { return data_[0]; }                    ///< there has to be one
-  [[nodiscard]] T& back() noexcept { return data_[size_ - 1]; }                         ///< there has to be one
-  [[nodiscard]] const T& back() const noexcept { return data_[size_ - 1]; }             ///< there has to be one
+  [[nodiscard]] T& front() noexcept { return data_[0]; }                                ///< precondition: not empty
+  [[nodiscard]] const T& front() const noexcept { return data_[0]; }                    ///< precondition: not empty
+  [[nodiscard]] T& back() noexcept { return data_[size_ - 1]; }                         ///< precondition: not empty
+  [[nodiscard]] const T& back() const noexcept { return data_[size_ - 1]; }             ///< precondition: not empty
 
-  /// As those of std::vector; pointers to samples become invalid.
+  /// These functions are those of std::vector. They invalidate pointers to samples.
   void resize(std::size_t count, T value = T()) {
     change([&](auto& held) { held.resize(count, value); });
   }
-  void reserve(std::size_t count) {  ///< room for so many
+  void reserve(std::size_t count) {  ///< allocates room for `count` samples
     change([&](auto& held) { held.reserve(count); });
   }
-  void push_back(T value) {  ///< adds a sample at the end
+  void push_back(T value) {  ///< appends a sample
     change([&](auto& held) { held.push_back(value); });
   }
-  void assign(std::size_t count, T value) {  ///< equal samples
+  void assign(std::size_t count, T value) {  ///< `count` equal samples
     change([&](auto& held) { held.assign(count, value); });
   }
   template <std::input_iterator It>
-  void assign(It first, It last) {  ///< a range's samples
+  void assign(It first, It last) {  ///< copies a range
     change([&](auto& held) { held.assign(first, last); });
   }
-  void clear() noexcept {  ///< leaves no samples
+  void clear() noexcept {  ///< removes all samples
     change([](auto& held) { held.clear(); });
   }
 
-  /// A std::vector of the samples: a copy, or without one from a temporary that was made from a std::vector.
+  /// Converts to a std::vector. Copies, except from a temporary that was made from a std::vector: its samples are
+  /// moved.
   operator std::vector<T>() const& { return {begin(), end()}; }
-  operator std::vector<T>() && {  ///< leaves no samples
+  operator std::vector<T>() && {  ///< becomes empty
     auto* const held = std::get_if<std::vector<T>>(&held_);
     std::vector<T> result = held != nullptr ? std::move(*held) : std::vector<T>(begin(), end());
     clear();
@@ -159,7 +160,7 @@ class Values {
   }
 
   Held held_;
-  T* data_ = nullptr;  ///< of `held_`
+  T* data_ = nullptr;  ///< the first sample in `held_`
   std::size_t size_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rows of vertices and simplices into a file, a block at a time.
+// Writes rows of vertices and simplices to a file in blocks.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 
 namespace tegl::io_detail {
 
-/// Gathers what is put for some ten thousand rows, writes it, and tells the progress. The file and `progress` must
-/// outlive this.
+/// Collects the bytes of 65 536 rows, writes them, and reports progress. The file and `progress` must outlive this
+/// object.
 class BlockWriter {
  public:
   BlockWriter(OutputFile& file, const Progress& progress) : file_(file), progress_(progress) {}
 
-  /// Calls put(row) for all rows; the progress goes from `first` to `last`. Throws Cancelled.
+  /// Calls put(row) for all rows; reports progress from `first` to `last`. Throws Cancelled.
   template <class Put>
   void write_rows(std::size_t rows, double first, double last, const Put& put) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
@@ -31,7 +31,7 @@ class BlockWriter {
     }
   }
 
-  /// Values as they are in memory.
+  /// Appends values in their memory representation.
   template <class T>
   void put(const T* values, std::size_t count) {
     const auto* const bytes = reinterpret_cast<const char*>(values);

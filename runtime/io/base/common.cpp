@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Errors, progress and file basics of the readers and writers.
+// Implements errors, progress and basic file access of the readers and writers.
 #include "base/common.hpp"
 
 #include <algorithm>
@@ -115,7 +115,7 @@ std::string_view without_plus(std::string_view text) {
 }
 
 bool parse_number(std::string_view text, double& value) {
-  // Headers of the wild write NaN and infinities in any case; from_chars reads them too.
+  // from_chars also accepts NaN and infinities in any case, as they occur in headers.
   return parse_with_from_chars(text, value);
 }
 bool parse_number(std::string_view text, std::uint64_t& value) { return parse_with_from_chars(text, value); }

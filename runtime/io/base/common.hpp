@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What every reader and writer of this folder uses: errors that name the file, progress, and file basics.
+// Shared functions of all readers and writers: errors that name the file, progress, and basic file access.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace tegl::io_detail {
 
-/// What to say of files with more axes than an image read from a file may have.
+/// Part of messages about files with more axes than read_image supports.
 inline constexpr const char* kMoreAxes = "5 only in memory, by tegl::extract";
 
 /// Throws Error{code, "path: message"}.
@@ -28,28 +28,28 @@ template <class... Args>
   throw Error(code, path.string() + ": " + fmt::format(format, std::forward<Args>(args)...));
 }
 
-/// Calls `progress`, if there is one, and throws Cancelled where it says stop.
+/// Calls `progress`, if there is one, and throws Cancelled if it returns false.
 void tick(const Progress& progress, double fraction, const std::filesystem::path& path);
 
 /// Throws FileNotFound unless `path` is a file that can be opened, MalformedFile if it is empty.
 void require_readable_file(const std::filesystem::path& path);
 
-/// Size of a file in bytes; FileNotFound if it cannot be asked.
+/// Size of a file in bytes. Errors: FileNotFound.
 std::uint64_t size_of_file(const std::filesystem::path& path);
 
 /// Up to `count` bytes from `offset`; fewer only at the end of the file.
 std::vector<unsigned char> read_bytes(const std::filesystem::path& path, std::uint64_t offset, std::size_t count);
 
-/// The name of the last component in lower case: extensions are compared without regard to case.
+/// The last component of a path in lower case; extensions are compared without case.
 std::string lower_name(const std::filesystem::path& path);
 std::string lower(std::string_view text);
 std::string_view trim(std::string_view text);
 
-/// Printable form of bytes found where something else was expected, at most 16 of them.
+/// Printable form of unexpected bytes for messages, at most 16 of them.
 std::string shown(std::span<const unsigned char> bytes);
 std::string shown(std::string_view text);
 
-/// Product of sizes; TooLarge where it (times `item` bytes) does not fit 63 bits.
+/// The product of sizes and `item` in bytes; TooLarge if it exceeds 2^62.
 std::uint64_t checked_bytes(std::span<const std::uint64_t> sizes, std::uint64_t item,
                             const std::filesystem::path& path);
 
@@ -59,14 +59,14 @@ std::string shape_text(const Range& sizes) {
   return fmt::format("{}", fmt::join(sizes, " x "));
 }
 
-/// A number's text without its plus sign, which std::from_chars does not take; nothing if two signs follow each other.
+/// A number without its plus sign, which std::from_chars does not accept; empty if another sign follows.
 std::string_view without_plus(std::string_view text);
-/// Parses a whole text as a number, independent of the locale; false if anything is left over.
+/// Parses a whole text as a number, independent of the locale; false if characters remain.
 bool parse_number(std::string_view text, double& value);
 bool parse_number(std::string_view text, std::uint64_t& value);
 bool parse_number(std::string_view text, std::int64_t& value);
 
-/// Words between blanks.
+/// Splits a text at blanks.
 std::vector<std::string_view> words(std::string_view text);
 
 }  // namespace tegl::io_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A driver for files that are created, written and closed by one process: pwrite and pread.
+// Implements an HDF5 file driver with pwrite and pread, for files that one process creates, writes and closes.
 //
 // Based on: The HDF Group, HDF5 1.10 Virtual File Layer (H5FDpublic.h).
 #include "base/hdf5_driver.hpp"
@@ -25,7 +25,7 @@ struct DriverInfo {
 };
 
 struct PendingFile {
-  H5FD_t base;  ///< HDF5 takes a pointer to this for one to the whole: it has to come first
+  H5FD_t base;  ///< must be the first member: HDF5 casts pointers to it
   int descriptor;
   H5WriteStatus* status;
   haddr_t allocated;
@@ -43,7 +43,7 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t access, haddr_t) {
     info->status->error = errno;
     return nullptr;
   }
-  // Nothing may be thrown through HDF5.
+  // Exceptions must not pass through HDF5.
   auto* const file = new (std::nothrow) PendingFile{{}, descriptor, info->status, 0, 0};
   if (file == nullptr) {
     ::close(descriptor);
@@ -74,7 +74,7 @@ herr_t set_allocated(H5FD_t* file, H5FD_mem_t, haddr_t address) {
 
 haddr_t get_end(const H5FD_t* file, H5FD_mem_t) { return as_pending(file).end; }
 
-/// Past the end, and of what was never written, zeros.
+/// Reads zeros past the end and for bytes that were never written.
 herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, void* to) {
   auto* bytes = static_cast<unsigned char*>(to);
   while (size > 0) {
@@ -150,7 +150,7 @@ bool use_pending_file_driver(hid_t access, H5WriteStatus& status) {
   const hid_t driver = H5FDregister(&kClass);
   if (driver < 0) return false;
   const bool done = H5Pset_driver(access, driver, &info) >= 0;
-  H5FDunregister(driver);  // property lists and files keep what they use
+  H5FDunregister(driver);  // property lists and files keep a reference to it
   return done;
 }
 

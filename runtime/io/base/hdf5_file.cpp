@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// HDF5 groups, attributes and datasets.
+// Reading and writing of HDF5 groups, attributes and datasets.
 //
 // Based on: The HDF Group, HDF5 1.10 C API.
 #include "base/hdf5_file.hpp"
@@ -22,9 +22,9 @@ namespace {
 
 using Reason = std::array<char, 256>;
 
-/// Nothing may be thrown through HDF5, so what is kept has room beforehand.
+/// Callback of H5Ewalk2. Exceptions must not pass through HDF5, so the text is stored in a fixed array.
 herr_t keep_innermost(unsigned, const H5E_error2_t* error, void* out) {
-  // The walk starts at the innermost call: the first entry with a text is the reason.
+  // H5Ewalk2 starts at the innermost call: the first entry with a text is the reason.
   auto& reason = *static_cast<Reason*>(out);
   if (reason[0] == '\0' && error->desc != nullptr) std::strncpy(reason.data(), error->desc, reason.size() - 1);
   return 0;
@@ -53,12 +53,12 @@ std::string innermost_reason() {
   return reason[0] == '\0' ? "no reason given" : reason.data();
 }
 
-/// The driver takes what it cannot write without complaint.
+/// Throws if the driver stored an error: it reports write errors only in `status`.
 void require_written(const H5WriteStatus& status, const fs::path& path) {
   if (status.error != 0) fail(ErrorCode::WriteFailed, path, "cannot be written ({})", std::strerror(status.error));
 }
 
-/// Properties of something to be created. Without the time of its creation: equal contents make equal files.
+/// Properties for objects to be created, without their creation time: equal contents give equal files.
 H5Handle timeless(hid_t kind) {
   H5Handle properties(H5Pcreate(kind), H5Pclose);
   H5Pset_obj_track_times(properties.id(), false);
@@ -68,8 +68,8 @@ H5Handle timeless(hid_t kind) {
 }  // namespace
 
 H5File H5File::create(const fs::path& where, const fs::path& path) {
-  // The format of HDF5 1.8 has checksums on all metadata, which the default, older one has not: readers then notice
-  // damage instead of following it.
+  // The format of HDF5 1.8 has checksums for all metadata; the default, older format has none. Readers then detect
+  // damage.
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
   auto status = std::make_shared<H5WriteStatus>();
@@ -129,7 +129,7 @@ H5Handle H5File::open_dataset(hid_t group, const char* name) const {
 }
 
 std::vector<std::string> H5File::number_datasets(hid_t group) const {
-  // One pass: HDF5 finds a name by its place in linear time.
+  // One pass over all links: H5Lget_name_by_idx takes linear time for each.
   Names links;
   if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &links) < 0) {
     if (links.out_of_memory) throw std::bad_alloc();
@@ -148,7 +148,7 @@ std::vector<std::string> H5File::number_datasets(hid_t group) const {
 }
 
 void H5File::put_text(hid_t object, const char* name, const std::string& text) const {
-  // Fixed length and null-padded: what VTK compares the grid's type with.
+  // Fixed length and null-padded: the form that VTK expects for the grid's type.
   const H5Handle type = checked(H5Tcopy(H5T_C_S1), H5Tclose, "writing an attribute");
   checked(H5Tset_size(type.id(), std::max<std::size_t>(1, text.size())), "writing an attribute");
   checked(H5Tset_strpad(type.id(), H5T_STR_NULLPAD), "writing an attribute");
@@ -180,7 +180,7 @@ std::string H5File::get_text(hid_t object, const char* name) const {
     H5free_memory(text);
     return result;
   }
-  constexpr std::size_t kLongest = std::size_t{1} << 16;  // HDF5's own limit of an attribute
+  constexpr std::size_t kLongest = std::size_t{1} << 16;  // HDF5's own limit for attributes
   const std::size_t size = H5Tget_size(type.id());
   if (size > kLongest) fail(code_, path_, "attribute '{}' of {} bytes; expected at most {}", name, size, kLongest);
   std::string text(size, '\0');
@@ -205,7 +205,7 @@ std::vector<std::int64_t> H5File::get_numbers(hid_t object, const char* name) co
 H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std::uint64_t columns,
                              std::uint64_t expected, Compression compression) const {
   const int rank = columns == 0 ? 1 : 2;
-  // A chunk fits the cache that HDF5 keeps per dataset (1 MiB), so that a partly filled one stays in memory.
+  // A chunk fits the cache that HDF5 has per dataset (1 MiB), so a partly filled chunk stays in memory.
   constexpr hsize_t kChunkBytes = hsize_t{1} << 19;
   const std::array<hsize_t, 2> size = {0, columns};
   const std::array<hsize_t, 2> most = {H5S_UNLIMITED, columns};
@@ -215,7 +215,7 @@ H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std
   const H5Handle options = timeless(H5P_DATASET_CREATE);
   checked(H5Pset_chunk(options.id(), rank, chunk.data()), "creating a dataset");
   if (compression == Compression::deflate) {
-    // Bytes of one significance side by side: the high ones of neighbouring numbers are mostly equal.
+    // Shuffle puts bytes of equal significance side by side: the high bytes of adjacent numbers are mostly equal.
     constexpr unsigned kLevel = 4;
     checked(H5Pset_shuffle(options.id()), "creating a dataset");
     checked(H5Pset_deflate(options.id(), kLevel), "creating a dataset");
@@ -265,17 +265,17 @@ std::uint64_t most_expansion_by(H5Z_filter_t filter) {
 
 namespace {
 
-/// What a dataset is, and how the file holds it.
+/// Sizes and storage of a dataset.
 struct Stored {
   std::vector<std::uint64_t> sizes;
-  std::uint64_t bytes = 0;        ///< of all values, as in the file
-  std::uint64_t stored = 0;       ///< of these, in the file
-  std::uint64_t ratio = 1;        ///< filters make at most so many bytes of one
-  std::uint64_t chunk_bytes = 0;  ///< that are decompressed at a time; 0: none
+  std::uint64_t bytes = 0;        ///< size of all values with the file's type
+  std::uint64_t stored = 0;       ///< bytes of them in the file
+  std::uint64_t ratio = 1;        ///< maximum expansion ratio of the filters
+  std::uint64_t chunk_bytes = 0;  ///< size of a compressed chunk when decompressed; 0: none
   bool is_virtual = false;        ///< a view of other datasets
 };
 
-/// How many bytes the filters of a dataset make of one at most.
+/// Maximum expansion ratio of the filters of a dataset.
 std::uint64_t most_expansion(hid_t properties) {
   std::uint64_t ratio = 1;
   for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
@@ -286,7 +286,7 @@ std::uint64_t most_expansion(hid_t properties) {
   return ratio;
 }
 
-/// The bytes of one chunk; 0 if its sizes are damaged.
+/// Size of a chunk in bytes; 0 if its sizes are damaged.
 std::uint64_t bytes_of_chunk(hid_t properties, std::size_t rank, std::uint64_t item, const fs::path& path) {
   std::array<hsize_t, 2> chunk{};
   if (H5Pget_chunk(properties, static_cast<int>(rank), chunk.data()) != static_cast<int>(rank)) return 0;
@@ -295,7 +295,7 @@ std::uint64_t bytes_of_chunk(hid_t properties, std::size_t rank, std::uint64_t i
 }
 
 void require_stored(const Stored& dataset, const char* name, const fs::path& path) {
-  // A dataset that is stored in part has zeros for the rest: meshes are written whole.
+  // Partly stored datasets would read as zeros for the rest; meshes are always written completely.
   if (dataset.bytes / dataset.ratio > dataset.stored)
     fail(ErrorCode::MalformedFile, path,
          "dataset '{}' of {} values takes {} bytes, of which the file stores {}; expected {} or more", name,
@@ -305,7 +305,7 @@ void require_stored(const Stored& dataset, const char* name, const fs::path& pat
          name, dataset.bytes, dataset.chunk_bytes, std::max(kMostChunkBytes, 2 * dataset.bytes));
 }
 
-/// `all_bytes`: of the file and those that it leads to.
+/// `all_bytes`: size of the file and those that it refers to.
 Stored stored_of(hid_t dataset, const std::array<hsize_t, 2>& size, std::size_t rank, std::uint64_t all_bytes,
                  const char* name, const fs::path& path) {
   Stored result;
@@ -330,7 +330,7 @@ Stored stored_of(hid_t dataset, const std::array<hsize_t, 2>& size, std::size_t 
   } else if (layout == H5D_VIRTUAL) {
     result.is_virtual = true;
     result.stored = all_bytes;
-    result.ratio = kMostExpansion;  // its sources may be compressed
+    result.ratio = kMostExpansion;  // source datasets may be compressed
   }
   result.stored = std::min(result.stored, all_bytes);
   return result;
@@ -374,7 +374,7 @@ void H5File::read(hid_t group, const char* name, hid_t memory_type, void* to,
   const auto rank = static_cast<int>(size.size());
   const std::uint64_t row_bytes =
       checked_bytes(std::array{rank == 2 ? std::max<std::uint64_t>(1, size[1]) : 1}, H5Tget_size(memory_type), path_);
-  // Whole chunks: a part of one would be inflated anew for each part.
+  // Reads whole chunks, because each partial read of a chunk decompresses it again.
   const H5Handle layout = checked(H5Dget_create_plist(dataset.id()), H5Pclose, "opening a dataset");
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_layout(layout.id()) == H5D_CHUNKED)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
+// Implements H5Handle and H5Quiet.
+//
 // Based on: The HDF Group, HDF5 1.10 C API.
 #include "base/hdf5_handle.hpp"
 

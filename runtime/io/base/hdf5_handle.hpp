@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Handles of the HDF5 C library that close themselves, and its own messages switched off.
+// RAII handles of the HDF5 C library, and suppression of its own error output.
 #pragma once
 
 #include <hdf5.h>
 
 namespace tegl::io_detail {
 
-/// Closes what it holds; ids below 0 hold nothing.
+/// Closes its id on destruction; negative ids are empty.
 class H5Handle {
  public:
   using Closer = herr_t (*)(hid_t);
@@ -20,7 +20,7 @@ class H5Handle {
     if (id_ >= 0) closer_(id_);
   }
   [[nodiscard]] hid_t id() const noexcept { return id_; }
-  /// Closes now and says whether that went well.
+  /// Closes now; returns whether this succeeded.
   bool close() noexcept;
 
  private:
@@ -28,7 +28,7 @@ class H5Handle {
   Closer closer_;
 };
 
-/// Keeps HDF5 from printing its errors for its lifetime.
+/// Suppresses HDF5's error output while it exists.
 class H5Quiet {
  public:
   H5Quiet();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A walk over the objects of an HDF5 file, group by group without recursion: links first, then the objects behind hard
-// links, each once by its address.
+// Traverses the objects of an HDF5 file group by group, without recursion: first the links of a group, then the objects
+// of its hard links, each once by address.
 #include "base/hdf5_links.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// HDF5 opens bytes in memory by a driver that takes a copy. These callbacks give it the bytes themselves.
+/// HDF5's driver for files in memory copies the bytes. These callbacks share the caller's bytes instead.
 struct SharedImage {
   void* bytes;
   static void* allocate(std::size_t, H5FD_file_image_op_t, void* data) {
@@ -39,7 +39,7 @@ struct SharedImage {
 H5Handle open_file(const fs::path& path, std::span<const unsigned char> content, SharedImage& image) {
   const H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (!content.empty()) {
-    image.bytes = const_cast<unsigned char*>(content.data());  // opened for reading
+    image.bytes = const_cast<unsigned char*>(content.data());  // the file is opened read-only
     H5FD_file_image_callbacks_t callbacks{SharedImage::allocate,     SharedImage::copy,      SharedImage::reallocate,
                                           SharedImage::release,      SharedImage::copy_data, SharedImage::release_data,
                                           static_cast<void*>(&image)};
@@ -47,7 +47,7 @@ H5Handle open_file(const fs::path& path, std::span<const unsigned char> content,
     H5Pset_file_image_callbacks(access.id(), &callbacks);
     H5Pset_file_image(access.id(), image.bytes, content.size());
   }
-  // The driver of bytes in memory refuses the name of a file that exists.
+  // The memory driver refuses the name of an existing file.
   const std::string name = content.empty() ? path.string() : path.string() + ".in-memory";
   return {H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose};
 }
@@ -55,12 +55,12 @@ H5Handle open_file(const fs::path& path, std::span<const unsigned char> content,
 /// The links of one group.
 struct Links {
   std::vector<haddr_t> hard;
-  std::vector<haddr_t> soft;          ///< objects that soft links lead to
-  std::vector<std::string> external;  ///< names of files
+  std::vector<haddr_t> soft;          ///< targets of soft links
+  std::vector<std::string> external;  ///< file names
   bool out_of_memory = false;
 };
 
-/// Nothing may be thrown through HDF5.
+/// Callback of H5Literate. Exceptions must not pass through HDF5.
 herr_t add_link(hid_t group, const char* name, const H5L_info_t* info, void* to) {
   auto& links = *static_cast<Links*>(to);
   try {
@@ -127,7 +127,7 @@ class LinkChecker {
       const Object object = open.back();
       open.pop_back();
       const H5Handle opened(H5Oopen_by_addr(handle.id(), object.address), H5Oclose);
-      if (opened.id() < 0) continue;  // readers of it get the same failure
+      if (opened.id() < 0) continue;  // readers get the same failure
       const H5I_type_t type = H5Iget_type(opened.id());
       if (type == H5I_GROUP) list(file, opened.id(), object.depth, seen, open);
       if (type == H5I_DATASET) check_dataset(file, opened.id());
@@ -155,7 +155,7 @@ class LinkChecker {
     for (const haddr_t address : links.soft) require_no_group(file, group, address);
   }
 
-  /// netCDF-C reads groups as a tree: one with two names twice, and one within itself without end.
+  /// netCDF-C reads groups as a tree: a group with two links would be read twice, and a group inside itself endlessly.
   void require_no_group(const fs::path& file, hid_t group, haddr_t address) const {
     const H5Handle object(H5Oopen_by_addr(group, address), H5Oclose);
     if (object.id() >= 0 && H5Iget_type(object.id()) == H5I_GROUP)
@@ -180,7 +180,7 @@ class LinkChecker {
       H5Pget_virtual_filename(properties.id(), i, name.data(), name.size());
       name.pop_back();
       if (name == "." || name == last) continue;  // "." is the file itself
-      // HDF5 puts numbers of blocks for %b.
+      // HDF5 replaces %b by block numbers.
       if (!allow_outside_ && name.find('%') != std::string::npos)
         fail(ErrorCode::UnsupportedData, file,
              "a virtual dataset of the files '{}'; expected names without '%', or the option allow_outside_paths "
@@ -202,16 +202,16 @@ class LinkChecker {
     if (named_.insert(target).second && fs::is_regular_file(target)) bytes_ += size_of_file(target);
   }
 
-  /// HDF5 would wait for ever at a pipe.
+  /// HDF5 would block forever at a pipe.
   static void require_no_device(const fs::path& file, const fs::path& target) {
     std::error_code error;
     if (fs::exists(target, error) && !fs::is_regular_file(target, error))
       fail(ErrorCode::UnsupportedData, file, "names '{}', which is no regular file; expected one", target.string());
   }
 
-  /// A file whose datasets or groups HDF5 opens.
+  /// Checks a file whose datasets or groups HDF5 opens.
   void check_name(const fs::path& file, const std::string& name, const char* what) {
-    // A file in memory is opened without its folder.
+    // HDF5 does not know the folder of a file in memory.
     const fs::path folder = in_memory_ && file == path_ ? fs::current_path() : fs::absolute(file).parent_path();
     const fs::path target = named_path(path_, (folder / name).string(), allow_outside_);
     require_no_device(file, target);
@@ -231,9 +231,9 @@ class LinkChecker {
   bool allow_outside_;
   bool in_memory_ = false;
   std::uint64_t bytes_ = 0;
-  std::uint64_t objects_ = 0;    ///< by their links
-  std::set<fs::path> named_;     ///< files that were met, to be counted once
-  std::vector<fs::path> files_;  ///< HDF5 files to be checked
+  std::uint64_t objects_ = 0;    ///< number of links
+  std::set<fs::path> named_;     ///< files already counted
+  std::vector<fs::path> files_;  ///< HDF5 files still to be checked
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// gzip and zlib streams through zlib's inflate.
+// Decompression of gzip and zlib streams, by zlib's inflate.
 //
 // Based on: RFC 1950 and 1952; zlib's manual, inflateInit2.
 #include "base/inflate.hpp"
@@ -26,7 +26,7 @@ constexpr std::size_t kBlock = std::size_t{1} << 18;
 
 }  // namespace
 
-/// A z_stream that tells gzip from zlib by the header, and the input file behind it.
+/// A z_stream that detects gzip or zlib by the header, and its input file.
 class InflateStream::Inflater {
  public:
   Inflater(const fs::path& path, std::uint64_t offset, std::uint64_t length)
@@ -56,7 +56,7 @@ class InflateStream::Inflater {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
 
-  /// One call of inflate.
+  /// Calls inflate once; returns the number of bytes written.
   std::size_t step(std::span<unsigned char> to) {
     const std::uint64_t sofar = position_;
     if (!refill())
@@ -70,17 +70,17 @@ class InflateStream::Inflater {
       fail(ErrorCode::MalformedFile, path_, "compressed data is damaged after {} decompressed bytes ({})", sofar,
            stream_.msg != nullptr ? stream_.msg : "not a gzip or zlib stream");
     if (status == Z_STREAM_END) {
-      // Another gzip member follows directly; anything else after the end is padding.
+      // If another gzip member follows directly, decompression continues; other bytes after the end are padding.
       ended_ = !refill() || stream_.avail_in < 2 || stream_.next_in[0] != 0x1f || stream_.next_in[1] != 0x8b ||
                inflateReset(&stream_) != Z_OK;
     }
     return room - stream_.avail_out;
   }
 
-  /// Makes sure that there is input; false at the end of the file.
+  /// Ensures that there is input; false at the end of the file.
   bool refill() {
     if (stream_.avail_in > 1) return true;
-    // A lone byte left is kept in front: the test for a next member looks at two.
+    // A single remaining byte is kept in front, because the test for a next member reads two.
     const std::size_t kept = stream_.avail_in;
     if (kept == 1) input_[0] = *stream_.next_in;
     const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(input_.size() - kept, left_));
@@ -143,14 +143,14 @@ std::vector<unsigned char> inflate_to_memory(const fs::path& path, const BytesNe
     }
     return true;
   };
+  // header: most headers are some kilobytes
   try {
     std::uint64_t wanted = 0;
-    // Headers are mostly some kilobytes.
     for (std::size_t size = std::size_t{1} << 16; wanted == 0; size *= 4) {
       if (!grow_to(size)) return bytes;
       wanted = needed(bytes);
     }
-    // Pages of what is reserved are taken only as bytes come: a header that lies costs nothing.
+    // Reserved pages are only used as bytes arrive, so a false size in a header costs no memory.
     bytes.reserve(static_cast<std::size_t>(wanted) + kInflateSpare);
     if (!grow_to(wanted)) return bytes;
     bytes.resize(static_cast<std::size_t>(wanted));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Compressed streams (gzip and zlib), inflated as far as their reader needs and no further.
+// Compressed streams (gzip and zlib), decompressed only as far as their reader needs.
 #pragma once
 
 #include <cstdint>
@@ -14,33 +14,33 @@
 
 namespace tegl::io_detail {
 
-/// Deflate makes at most so many bytes of one.
+/// Maximum expansion ratio of deflate.
 inline constexpr std::uint64_t kMostInflation = 1032;
-/// What other compressions are taken to make of one byte at most.
+/// Assumed maximum expansion ratio of other compressions.
 inline constexpr std::uint64_t kMostExpansion = 4096;
 
-/// The decompressed bytes of the gzip (any number of members) or zlib stream that starts at byte `offset` of a file, in
-/// order. Bytes after the stream are ignored. Keeps the file open.
+/// Decompresses the gzip (any number of members) or zlib stream that starts at byte `offset` of a file. Ignores bytes
+/// after the stream. Keeps the file open.
 class InflateStream {
  public:
-  /// `length`: bytes of the compressed stream; 0: up to the end of the file. Errors: FileNotFound.
+  /// `length`: size of the compressed stream; 0: up to the end of the file. Errors: FileNotFound.
   InflateStream(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t length = 0);
   ~InflateStream();
   InflateStream(InflateStream&&) noexcept;
   InflateStream& operator=(InflateStream&&) noexcept;
 
-  /// Fills `to`; returns how many bytes there were, which is fewer only at the end of the stream. Errors: MalformedFile
-  /// if the stream is damaged, fails its checksum or ends early.
+  /// Fills `to` and returns the number of bytes, fewer only at the end of the stream. Errors: MalformedFile if the
+  /// stream is damaged, fails its checksum or ends early.
   std::size_t read(std::span<unsigned char> to);
 
-  /// Leaves out bytes; returns how many there were, as read() does.
+  /// Skips bytes; returns their number, as read() does.
   std::uint64_t skip(std::uint64_t count);
 
-  /// For a reader that needs no more bytes: inflates up to 1 MiB more, so that the checksum of a stream that ends there
-  /// is compared, and a stream of any length beyond costs nothing. Errors: those of read().
+  /// Verifies the checksum if the stream ends within the next 1 MiB, which it decompresses. The limit bounds the time
+  /// for longer streams. Errors: those of read().
   void check_end();
 
-  /// Bytes that read() and skip() gave.
+  /// Number of bytes read or skipped so far.
   [[nodiscard]] std::uint64_t position() const noexcept;
 
  private:
@@ -48,12 +48,12 @@ class InflateStream {
   std::unique_ptr<Inflater> inflater_;
 };
 
-/// Takes the first bytes of a stream and returns how many of its bytes a reader needs, at most what memory addresses; 0
-/// if more bytes are needed to know that.
+/// Takes the first bytes of a stream and returns the number of bytes that a reader needs, at most the address space; 0
+/// if it must see more bytes first.
 using BytesNeeded = std::function<std::uint64_t(std::span<const unsigned char>)>;
 
-/// The decompressed bytes of a gzip file, as many as `needed` says, or fewer if the stream ends before. So many bytes
-/// more fit into the result without a copy. TooLarge when memory runs out.
+/// Decompresses a gzip file up to the number of bytes that `needed` returns, or to its end. The result has capacity for
+/// kInflateSpare more bytes, to append without a copy. TooLarge if memory runs out.
 inline constexpr std::size_t kInflateSpare = 8192;
 std::vector<unsigned char> inflate_to_memory(const std::filesystem::path& path, const BytesNeeded& needed,
                                              const Progress& progress);

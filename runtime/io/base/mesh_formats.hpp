@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The readers and writers of the single mesh formats, and what they share.
+// Declares the readers and writers of the mesh formats, and functions that they share.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace tegl::io_detail {
 
-/// How much of a mesh's file has been read.
+/// Progress of reading a mesh file.
 class ReadProgress {
  public:
-  /// Tells 0. `progress` and `path` must outlive this.
+  /// Reports 0. `progress` and `path` must outlive this object.
   ReadProgress(const Progress& progress, const std::filesystem::path& path);
 
-  /// So many more bytes of the file have become part of the mesh: told for every megabyte. Throws Cancelled.
+  /// Adds `bytes` processed bytes of the file; reports every megabyte. Throws Cancelled.
   void add(std::uint64_t bytes);
-  /// The same for a loop over rows that take so many bytes each, now and then: for its row `i`, after which it goes on.
+  /// For loops over rows of `row_bytes` bytes: call after row `i`; calls add() once in 4096 rows.
   void add_rows(std::size_t i, std::size_t row_bytes) {
     constexpr std::size_t kEvery = 4096;
     if (i % kEvery == kEvery - 1) add(kEvery * row_bytes);
@@ -47,15 +47,15 @@ void write_vtkhdf(const Mesh& mesh, const std::filesystem::path& path, const Pro
 Mesh read_vtkhdf(const std::filesystem::path& path, ReadProgress& progress, bool allow_outside_paths);
 
 void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
-/// The number as the file has it; TooLarge beyond 2^32 - 1.
+/// Converts the count to the 32-bit field of the file; TooLarge beyond 2^32 - 1.
 std::uint32_t stl_triangle_count(std::uint64_t triangles, const std::filesystem::path& path);
 
 void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress);
 
-/// Vertices are joined where their coordinates, which are float, are equal.
+/// Merges vertices with equal (float) coordinates.
 Mesh read_stl(const std::filesystem::path& path, ReadProgress& progress);
 
-/// Name or unit of an axis; "" where the mesh has none.
+/// Name or unit of an axis; "" if the mesh has none.
 inline const std::string& axis_text(const std::vector<std::string>& texts, int axis) {
   static const std::string kNone;
   return static_cast<std::size_t>(axis) < texts.size() ? texts[static_cast<std::size_t>(axis)] : kNone;
@@ -68,7 +68,7 @@ inline std::size_t simplex_count(const Mesh& mesh) {
   return mesh.simplices.size() / (static_cast<std::size_t>(mesh.dim) + 1);
 }
 
-/// x, y, z of a vertex, or of its normal; z = 0 in the plane.
+/// x, y, z of a vertex or normal; z = 0 in the plane.
 inline std::array<double, 3> row_of(const Buffer<double>& rows, const Mesh& mesh, std::size_t vertex) {
   std::array<double, 3> result{};
   const auto n = static_cast<std::size_t>(mesh.space_dim);
@@ -80,21 +80,21 @@ inline std::array<double, 3> position(const Mesh& mesh, std::size_t vertex) {
 }
 inline std::array<double, 3> normal(const Mesh& mesh, std::size_t vertex) { return row_of(mesh.normals, mesh, vertex); }
 
-/// The position as float; UnsupportedData for what float cannot hold.
+/// The position as float; UnsupportedData if float cannot represent it.
 std::array<float, 3> float_position(const Mesh& mesh, std::size_t vertex, const std::filesystem::path& path);
 
-/// Makes a mesh that was read with space_dim 3 planar, as the file says that it was written from the plane (`space_dim`
-/// 2); MalformedFile if it is not in the plane z = 0.
+/// Makes a mesh planar that was read with space_dim 3, if its file was written with `space_dim` 2. MalformedFile unless
+/// all z = 0.
 void flatten(Mesh& mesh, const std::filesystem::path& path);
 
-/// Limits how much memory the copies of a file's numbers take: instances of a mesh, attributes repeated for the
-/// triangles of a polygon. A small file can ask for any number of them.
+/// Limits the memory of copies of a file's numbers: instances of a mesh, and attributes repeated for the triangles of a
+/// polygon. A small file can request any number of copies.
 class CopyLimit {
  public:
-  /// For a file of so many bytes, with those of the buffers it names.
+  /// `file_bytes`: size of the file and its buffers.
   CopyLimit(const std::filesystem::path& path, std::uint64_t file_bytes)
       : path_(path), most_((std::uint64_t{1} << 26) + 64 * std::min(file_bytes, std::uint64_t{1} << 50)) {}
-  /// `count` more copies of `bytes` each. Throws TooLarge: so many bytes for `what`, and the limit.
+  /// Adds `count` copies of `bytes` each. Throws TooLarge with the size, `what` and the limit.
   void add(std::uint64_t count, std::uint64_t bytes, std::string_view what);
 
  private:
@@ -103,7 +103,7 @@ class CopyLimit {
   std::uint64_t taken_ = 0;
 };
 
-/// Throws MalformedFile if a simplex names a vertex that does not exist.
+/// Throws MalformedFile if a simplex refers to a missing vertex.
 void check_indices(const Mesh& mesh, const std::filesystem::path& path);
 
 }  // namespace tegl::io_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Resolves paths that files name, and keeps them in the folder of the file.
+// Resolves paths that files name, and checks that they stay in the folder of the file.
 #include "base/named_path.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files that appear whole or not at all.
+// Implements PendingPath and OutputFile: files that appear complete or not at all.
 #include "base/output_file.hpp"
 
 #include <fcntl.h>
@@ -29,7 +29,7 @@ namespace {
   io_detail::fail(ErrorCode::WriteFailed, path, "cannot be {} ({})", step, std::strerror(reason));
 }
 
-/// Exchanges what two names lead to. False where the file system cannot.
+/// Atomically exchanges two files. Returns false if the file system does not support it.
 bool exchange(const fs::path& a, const fs::path& b) noexcept {
 #ifdef RENAME_EXCHANGE
   return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
@@ -38,9 +38,8 @@ bool exchange(const fs::path& a, const fs::path& b) noexcept {
 #endif
 }
 
-// The list of pending files, as remove_pending_files() needs it in a signal handler, which must not wait for a lock
-// that the interrupted thread holds. So whoever changes the list blocks all signals of its thread while it has the
-// lock.
+// The list of pending files. remove_pending_files() reads it in a signal handler, which must not wait for a lock that
+// the interrupted thread holds. So a thread that changes the list blocks all its signals while it holds the lock.
 std::atomic_flag list_locked = ATOMIC_FLAG_INIT;
 PendingPath* first_pending = nullptr;
 
@@ -48,8 +47,8 @@ void lock_list() noexcept {
   while (list_locked.test_and_set(std::memory_order_acquire)) sched_yield();
 }
 
-/// How many listed files are being created. The lock is not held meanwhile, and no signal is blocked: a disk or a
-/// network may take its time.
+/// Number of listed files being created. During creation no lock is held and no signal is blocked, because a disk or
+/// network may be slow.
 std::atomic<int> creations{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -82,7 +81,7 @@ void PendingPath::enlist() noexcept {
 }
 
 int PendingPath::create(unsigned mode) noexcept {
-  enlist();  // first, so that no signal finds a file that is not in the list
+  enlist();  // first, so a signal handler finds every file in the list
   creations.fetch_add(1);
   const int file = open(pending_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
   const int reason = errno;
@@ -101,14 +100,14 @@ void PendingPath::delist() noexcept {
 }
 
 void remove_pending_files() noexcept {
-  lock_list();  // for good: nobody changes the list of a process that ends
+  lock_list();  // never unlocked: the process ends, and no other thread may change the list
   const auto remove_all = [] {
     for (const PendingPath* each = first_pending; each != nullptr; each = each->after_) unlink(each->pending_.c_str());
   };
   remove_all();
   if (creations.load() == 0) return;
-  // Another thread may create its file after that; a creation that takes longer, or that this handler interrupts, is
-  // not waited for.
+  // Another thread may create its file after this pass, so wait up to a second for running creations. Slower ones, and
+  // one that this handler interrupted, are not awaited longer.
   constexpr int kMilliseconds = 1000;
   constexpr timespec kMillisecond = {0, 1'000'000};
   for (int i = 0; i < kMilliseconds && creations.load() > 0; ++i) nanosleep(&kMillisecond, nullptr);
@@ -116,7 +115,7 @@ void remove_pending_files() noexcept {
 }
 
 fs::path place_of(const fs::path& path) {
-  constexpr int kMostLinks = 40;  // as the kernel has it
+  constexpr int kMostLinks = 40;  // the limit of Linux
   std::error_code error;
   fs::path place = path;
   for (int links = 0; links < kMostLinks && fs::is_symlink(place, error); ++links) {
@@ -124,7 +123,7 @@ fs::path place_of(const fs::path& path) {
     if (error) break;
     place = place.parent_path() / to;  // `to` itself if it is absolute
   }
-  // Canonical names of whole paths stop at links that lead to no file; those of folders do not.
+  // fs::canonical of a whole path fails at links to missing files; of the folder it does not.
   const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
   const fs::path known = fs::canonical(folder, error);
   return error ? place : known / place.filename();
@@ -138,16 +137,16 @@ PendingPath::PendingPath(const fs::path& target) : named_(target), place_(place_
                     fs::is_directory(status) ? "a directory" : "not a regular file");
   if (fs::is_symlink(place_, error)) write_failed(named_, "overwritten", ELOOP);
   if (fs::exists(status) && access(place_.c_str(), W_OK) != 0) write_failed(named_, "overwritten", errno);
-  // One's own file is to be written, whoever may write to another's that it takes the place of.
+  // The owner can always write the new file, even if the target's permissions do not allow it.
   const auto mode = fs::exists(status) ? static_cast<mode_t>(status.permissions() & fs::perms::all) | 0600U : 0666U;
   constexpr int kAttempts = 1000;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    // With the target's extension, by which formats are chosen.
+    // Keeps the target's extension, which selects the format.
     pending_ = place_.parent_path() /
                fmt::format(".{}-{}.{}", static_cast<long>(getpid()), attempt, place_.filename().string());
     const int file = create(mode);
     if (file >= 0) {
-      // The umask has its say on new files alone.
+      // The umask applies to new targets only.
       if (fs::exists(status)) static_cast<void>(fchmod(file, mode));
       close(file);
       return;
@@ -207,7 +206,7 @@ void OutputFile::write(const void* data, std::size_t bytes) {
 }
 
 void OutputFile::commit() {
-  // Full disks and quotas may show only now.
+  // Full disks and quotas may only be reported here.
   if (std::fclose(file_.release()) != 0) write_failed(target(), "written", errno);
   pending_.commit();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Buffered output to files that appear whole or not at all.
+// Buffered output to files that appear complete or not at all.
 #pragma once
 
 #include <cstdio>
@@ -15,7 +15,7 @@
 
 namespace tegl::io_detail {
 
-/// A pending file with buffered output.
+/// A PendingPath with buffered output.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& target);
@@ -26,7 +26,7 @@ class OutputFile {
   void write_range(std::span<const T> values) {
     write(values.data(), values.size_bytes());
   }
-  /// Flushes, closes and moves the file to its target.
+  /// Flushes, closes and renames the file to its target.
   void commit();
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return pending_.target(); }
 
@@ -36,7 +36,7 @@ class OutputFile {
   };
   PendingPath pending_;
   std::vector<char> buffer_;
-  std::unique_ptr<std::FILE, CloseFile> file_;  ///< closed before the path is removed, hence declared after it
+  std::unique_ptr<std::FILE, CloseFile> file_;  ///< after pending_: closed before that removes the file
 };
 
 }  // namespace tegl::io_detail

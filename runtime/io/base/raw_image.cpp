@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From what a reader found to an image of the library's value types and dimensions.
+// Converts the result of a reader to an image of the library's value types and dimensions.
 #include "base/raw_image.hpp"
 
 #include <algorithm>
@@ -54,14 +54,14 @@ AnyImageN<N> with_dimension(RawImage&& image) {
       image.values);
 }
 
-/// True if axis a neither moves along other coordinates nor is moved along by other axes.
+/// Whether axis a is not coupled with other axes: its row and column are zero off the diagonal.
 bool is_decoupled(const Eigen::MatrixXd& matrix, Eigen::Index a) {
   for (Eigen::Index i = 0; i < matrix.rows(); ++i)
     if (i != a && (matrix(i, a) != 0.0 || matrix(a, i) != 0.0)) return false;
   return true;
 }
 
-/// Throws unless every sample of the grid lies at finite coordinates, along its axes and in the world.
+/// Throws unless all samples have finite coordinates, along the axes and in the world.
 void require_finite_samples(const RawGrid& grid, const std::filesystem::path& path) {
   const auto n = static_cast<Eigen::Index>(grid.axes.size());
   Eigen::VectorXd farthest(n);
@@ -98,7 +98,7 @@ RawGrid affine_grid(const std::vector<std::size_t>& sizes, const Eigen::MatrixXd
     grid.linear.col(a) = affine.col(a) / step;
     grid.offset(a) = offset(a);
   }
-  constexpr double kSmallestVolume = 1e-9;  // of the parallelepiped of unit columns: below, axes coincide
+  constexpr double kSmallestVolume = 1e-9;  // of the parallelepiped of unit columns; below it axes nearly coincide
   if (!(std::abs(grid.linear.determinant()) > kSmallestVolume))
     fail(ErrorCode::MalformedFile, path, "orientation of determinant {}; expected axes in independent directions",
          grid.linear.determinant());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What readers report while they read. In a child process this sets the limits that end it on a damaged file; in any
-// other process nothing happens.
+// Reports of readers to the process that runs them. In a child process they set the limits that end it on a damaged
+// file; in any other process they do nothing.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace tegl::io_detail {
 
-/// This file is read from now on: messages name it, and memory for its headers and tables may be used.
+/// Starts the file `path`: messages name it, and memory for its headers and tables is allowed.
 void now_reading(const std::filesystem::path& path);
 
-/// So much more memory is needed for values that the file is large enough for.
+/// Allows `bytes` more memory for values, whose size was checked against the file.
 void expect_memory(std::uint64_t bytes);
 
-/// So many variables, groups and types of a file will be opened, each with memory and time for its tables.
+/// Allows memory and time for the tables of `count` more variables, groups and types to be opened.
 void expect_objects(std::uint64_t count);
 
-/// So many bytes of values are read in one step, which may take the time for that.
+/// Allows the time to read `bytes` bytes of values in one step.
 void expect_step(std::uint64_t bytes);
 
-/// Bytes that values of a file take until they are those of an image: as they are stored, converted, and in another
-/// order of the axes, each of up to 8 bytes.
+/// Memory per value of a file until it is part of an image: as stored, converted, and with reordered axes, at most 8
+/// bytes each.
 inline constexpr std::uint64_t kBytesPerValue = 24;
 
 }  // namespace tegl::io_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Samples as bytes, compressed bytes, numbers in text, and hexadecimal digits.
+// Reads samples stored as raw bytes, compressed bytes, decimal text, and hexadecimal digits.
 #include "base/sample_reader.hpp"
 
 #include <fcntl.h>
@@ -38,7 +38,7 @@ void swap_bytes(ValueVector<T>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) std::reverse(bytes + i * sizeof(T), bytes + (i + 1) * sizeof(T));
 }
 
-/// An open file that is read at any place.
+/// An open file for reads at any offset.
 class PlacedFile {
  public:
   explicit PlacedFile(const fs::path& path) : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -48,7 +48,7 @@ class PlacedFile {
   PlacedFile(const PlacedFile&) = delete;
   PlacedFile& operator=(const PlacedFile&) = delete;
 
-  /// Fills `to` from byte `offset` on; false if the file ends before.
+  /// Fills `to` from byte `offset`; returns false if the file ends before.
   bool read(std::uint64_t offset, std::span<unsigned char> to) const {
     while (!to.empty()) {
       const ssize_t count = pread(descriptor_, to.data(), to.size(), static_cast<off_t>(offset));
@@ -66,7 +66,7 @@ class PlacedFile {
   int descriptor_;
 };
 
-/// The characters of a file, one after the other, and words between blanks.
+/// Reads the characters and blank-separated words of a file in order.
 class TextFile {
  public:
   TextFile(const fs::path& path, std::uint64_t offset) : path_(path), file_(path, std::ios::binary) {
@@ -74,16 +74,16 @@ class TextFile {
     if (!file_) fail(ErrorCode::FileNotFound, path, "cannot be opened ({})", std::strerror(errno));
   }
 
-  /// The next character that is no blank; nullopt at the end of the file.
+  /// The next non-blank character; nullopt at the end of the file.
   std::optional<char> next_character() {
     for (int c = file_.get(); c != std::char_traits<char>::eof(); c = file_.get())
       if (!is_blank(static_cast<char>(c))) return static_cast<char>(c);
     return std::nullopt;
   }
 
-  /// The next word, without a comma at its end; empty at the end of the file. Valid until the next call.
+  /// The next word, without a trailing comma; empty at the end of the file. Valid until the next call.
   std::string_view next_word() {
-    constexpr std::size_t kLongest = 1000;  // all digits of any double, written out, are fewer
+    constexpr std::size_t kLongest = 1000;  // all decimal digits of any double are fewer
     do {
       word_.clear();
       const std::optional<char> first = next_character();
@@ -109,8 +109,8 @@ class TextFile {
   std::string word_;
 };
 
-/// The number that a whole word is, if the type holds it; whole ones may be written with a point or an exponent.
-/// Smaller than the smallest of a floating type is 0.
+/// Parses a whole word as T. Integers may be written with a decimal point or an exponent. Floating-point numbers below
+/// the smallest of T become 0.
 template <class T>
 bool parse_sample(std::string_view word, T& value) {
   word = without_plus(word);
@@ -121,7 +121,7 @@ bool parse_sample(std::string_view word, T& value) {
   if constexpr (std::is_integral_v<T>) {
     double number = 0;
     if (!is_whole(std::from_chars(word.data(), end, number)) || number != std::trunc(number)) return false;
-    // One beyond the largest is a power of two, which double holds whatever the type.
+    // max + 1 is a power of two, so double represents it exactly for every type.
     const double beyond = std::ldexp(1.0, std::numeric_limits<T>::digits);
     if (!(number >= static_cast<double>(std::numeric_limits<T>::lowest()) && number < beyond)) return false;
     value = static_cast<T>(number);
@@ -188,7 +188,7 @@ class SampleReader::Source {
     if (samples_.encoding != Encoding::raw && !in_order) restart();
     try {
       read_encoded(first, count, values, progress);
-    } catch (...) {  // the stream is somewhere between two samples
+    } catch (...) {  // the stream position is undefined after an error
       inflater_.reset();
       text_.reset();
       throw;
@@ -294,12 +294,12 @@ class SampleReader::Source {
     });
   }
 
-  /// Lets `fill` fill some more values, after those that there are already, until there are `count`. A file that has
-  /// fewer than its header says costs no more memory than those it has.
+  /// Grows `values` to `count` in blocks; `fill(before)` writes the values from index `before` on. A file with fewer
+  /// values than its header states costs no more memory than it has values.
   template <class T, class Fill>
   void grow(ValueVector<T>& values, std::uint64_t count, const Progress& progress, const Fill& fill) {
     constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
-    // Pages are taken only as values come. A sample takes at least two characters, or a 1032nd of its bytes.
+    // Reserved pages are only used as values arrive. A sample takes at least two characters, or 1/1032 of its bytes.
     const std::uint64_t possible = samples_.encoding == Encoding::deflate ? count : left_ / 2 + 1;
     values.reserve(static_cast<std::size_t>(std::min(count, possible)));
     while (values.size() < count) {
@@ -334,8 +334,8 @@ class SampleReader::Source {
   StoredSamples samples_;
   std::uint64_t item_;
   std::uint64_t total_ = 0;
-  std::uint64_t left_ = 0;  ///< bytes of the file from the offset on
-  std::uint64_t next_ = 0;  ///< sample that comes next from inflater_ or text_
+  std::uint64_t left_ = 0;  ///< bytes of the file from the offset to its end
+  std::uint64_t next_ = 0;  ///< next sample of inflater_ or text_
   std::optional<PlacedFile> file_;
   std::optional<InflateStream> inflater_;
   std::optional<TextFile> text_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Samples that lie in a file one after the other: as bytes, compressed or not, or as text. Whole, or some at a time.
+// Reads contiguous samples of a file, stored as bytes, compressed bytes or text: all of them or ranges.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +14,31 @@
 
 namespace tegl::io_detail {
 
-/// How samples are written down.
+/// The encoding of samples.
 enum class Encoding {
   raw,      ///< bytes
   deflate,  ///< bytes, as a gzip or zlib stream
   text,     ///< decimal numbers between blanks or commas
-  hex,      ///< bytes, as two hexadecimal digits each
+  hex,      ///< two hexadecimal digits per byte
 };
 
-/// Where and how the samples of an image are stored.
+/// Location and encoding of an image's samples.
 struct StoredSamples {
   std::filesystem::path path;
   Encoding encoding = Encoding::raw;
-  std::uint64_t offset = 0;            ///< in the file, of the first sample or of the compressed stream
+  std::uint64_t offset = 0;            ///< of the first sample, or of the compressed stream, in the file
   std::uint64_t skip = 0;              ///< decompressed bytes before the first sample; deflate only
   std::uint64_t compressed_bytes = 0;  ///< of the stream; 0: to the end of the file
-  std::string_view type;               ///< "uint8", ... as type_name gives it
-  std::vector<std::uint64_t> sizes;    ///< of the axes, the one that runs fastest first
-  bool swapped = false;                ///< in the other byte order than this machine's
+  std::string_view type;               ///< "uint8", ... as type_name returns it
+  std::vector<std::uint64_t> sizes;    ///< of the axes, fastest first
+  bool swapped = false;                ///< not in this machine's byte order
 };
 
-/// Bytes of a sample of a type.
+/// Size of a sample of a type in bytes.
 std::uint64_t bytes_of_type(std::string_view type);
 
-/// Reads samples. All that the file's size can contradict is checked before memory is taken, and memory grows with the
-/// samples that are really there. Keeps the file open.
+/// Reads samples. Sizes are checked against the file size before memory is allocated, and memory grows with the samples
+/// that are present. Keeps the file open.
 class SampleReader {
  public:
   /// Errors: FileNotFound; MalformedFile if the file is too short for the samples; TooLarge.
@@ -47,14 +47,13 @@ class SampleReader {
   SampleReader(SampleReader&&) noexcept;
   SampleReader& operator=(SampleReader&&) noexcept;
 
-  /// The samples with numbers [first, first + count). Of encodings other than raw, samples in ascending order cost one
-  /// pass over the file; others start a new one. Once the last sample is read, the end is checked: of a compressed
-  /// stream the checksum, of text that no further number follows. Errors: MalformedFile for fewer samples, damaged
-  /// compressed data, and words that are no number of the type's range; Cancelled. Memory that runs out is
-  /// std::bad_alloc.
+  /// Reads the samples [first, first + count). Encodings other than raw need one pass over the file if samples are read
+  /// in ascending order; other orders start a new pass. After the last sample the end is checked: the checksum of a
+  /// compressed stream, or that no further number follows in text. Errors: MalformedFile for missing samples, damaged
+  /// compressed data, and words that are not numbers in the type's range; Cancelled; std::bad_alloc if memory runs out.
   ValueArray read(std::uint64_t first, std::uint64_t count, const Progress& progress);
 
-  /// What a sample's file, place and encoding are.
+  /// Location and encoding, as given to the constructor.
   [[nodiscard]] const StoredSamples& samples() const noexcept;
 
  private:

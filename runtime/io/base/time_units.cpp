@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Parses units of time and converts times between them.
 #include "base/time_units.hpp"
 
 #include <algorithm>
@@ -13,7 +15,7 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// How many seconds a unit has, by its name; 0 of others. (Months and years differ in length.)
+/// Seconds of a unit, by its name; 0 for unknown units. (Months and years vary in length.)
 double seconds_of(std::string_view name) {
   struct Unit {
     double seconds;
@@ -31,7 +33,7 @@ double seconds_of(std::string_view name) {
   return 0;
 }
 
-/// Seconds from 1970-01-01 UTC to the moment that a unit counts from.
+/// Seconds from 1970-01-01 UTC to the reference time of a unit; nullopt for other forms and dates before 1582-10-15.
 std::optional<double> moment(const std::string& since) {
   static const std::regex kForm(
       R"((\d{1,6})-(\d{1,2})-(\d{1,2})(?:[T\s]\s*(\d{1,2})(?::(\d{1,2})(?::(\d{1,2}(?:\.\d*)?))?)?)?\s*)"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// DICOM series as images: which files belong together, in which order their planes lie in space and time, and the
-// values, plane after plane.
+// Reads DICOM series as images: groups the files by series, orders their planes by position and time, and reads the
+// values plane by plane.
 //
 // Based on: NEMA PS3.3, C.7.6.2.1.1 (Image Position and Image Orientation).
 #include <algorithm>
@@ -25,29 +25,30 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A frame of a file of a series.
+/// A frame of one of a series' files.
 struct Plane {
   std::size_t file = 0;
   std::size_t frame = 0;
-  double along = 0;  ///< the normal, mm
+  double along = 0;  ///< position along the normal, mm
 };
 
-/// A series, its planes in the order of the image: by time, then by place.
+/// A series with its planes in the image's order: by time, then by position.
 struct Volume {
   std::vector<DicomFile> files;
   std::vector<Plane> planes;
   std::size_t places = 1;
   std::size_t times = 1;
-  Axis time;  ///< where there are several
+  Axis time;  ///< if there are several times
 
   [[nodiscard]] const DicomFrame& frame(const Plane& plane) const { return files[plane.file].frames[plane.frame]; }
   [[nodiscard]] const fs::path& path(const Plane& plane) const { return files[plane.file].path; }
 };
 
-/// Whether macOS put a file there, beside the one whose name follows.
+/// Whether macOS created the file, as companion of the file whose name follows the prefix.
 bool is_of_finder(const fs::path& path) { return path.filename().string().starts_with("._"); }
 
-/// The files below a folder, by name; those of a DICOMDIR; or the file itself, which may be empty among others.
+/// The files in a folder and below, by name; those of a DICOMDIR; or the file itself, which may be empty if there are
+/// others.
 std::vector<fs::path> candidates(const fs::path& path, bool among_others) {
   if (!fs::is_directory(path)) {
     std::error_code error;
@@ -68,15 +69,15 @@ std::vector<fs::path> candidates(const fs::path& path, bool among_others) {
   return files;
 }
 
-/// What was found: the files that hold images, series by series in the order of their numbers, and what to say of
-/// others.
+/// The files with images by series, in the order of series numbers, and remarks about other files.
 struct Found {
   std::vector<std::vector<DicomFile>> series;
   std::vector<std::string> remarks;
-  std::vector<Error> damaged;  ///< files that do not even say of which series they are
+  std::vector<Error> damaged;  ///< files whose series cannot be read
 };
 
-/// Series of colours and the like (screenshots beside a scan) are left out, unless there are no others.
+/// Removes series of colours and other unsupported values (screenshots beside a scan), unless all series are
+/// unsupported.
 void leave_out_unsupported(Found& found) {
   const auto is_unsupported = [](const std::vector<DicomFile>& series) {
     return std::all_of(series.begin(), series.end(), [](const DicomFile& file) {
@@ -92,14 +93,14 @@ void leave_out_unsupported(Found& found) {
   std::erase_if(found.series, is_unsupported);
 }
 
-/// The header of a file in a folder or among others; none if it holds no image. What is no DICOM goes to `strangers`,
-/// what is damaged to `damaged`.
+/// Reads the header of a file among others; nullopt if it contains no image. Adds files that are not DICOM to
+/// `strangers`, and damaged ones to `damaged`.
 std::optional<DicomFile> read_header_among_others(const fs::path& path, std::vector<fs::path>& strangers,
                                                   std::vector<Error>& damaged) {
   const bool is_stranger = !begins_as_dicom(path);
   std::optional<DicomFile> header;
   try {
-    header = read_dicom_header(path);  // DCMTK knows kinds of old whose first bytes say nothing
+    header = read_dicom_header(path);  // DCMTK reads old formats that the first bytes do not identify
   } catch (const Error& error) {
     if (error.code() != ErrorCode::MalformedFile) throw;
     if (!is_stranger) damaged.push_back(error);
@@ -108,7 +109,7 @@ std::optional<DicomFile> read_header_among_others(const fs::path& path, std::vec
   return header;
 }
 
-/// The series, without a file whose values cannot be read. Throws what is wrong with the first one.
+/// Returns the series if the values of all its files can be read. Throws the first fault.
 std::vector<DicomFile> sound(std::vector<DicomFile>&& series) {
   for (const DicomFile& file : series)
     if (file.fault) throw *file.fault;
@@ -155,7 +156,7 @@ std::string listing(const std::vector<std::vector<DicomFile>>& all) {
   return text;
 }
 
-/// The series of that UID, number in the list, or description.
+/// Selects the series by UID, number in the list, or description.
 std::vector<DicomFile> choose(std::vector<std::vector<DicomFile>>&& all, const std::string& wanted,
                               const fs::path& path) {
   if (wanted.empty() && all.size() == 1) return sound(std::move(all.front()));
@@ -174,7 +175,7 @@ std::vector<DicomFile> choose(std::vector<std::vector<DicomFile>>&& all, const s
   return sound(std::move(all[found.front()]));
 }
 
-/// Throws unless all files have planes of the same size, type, directions and spacing.
+/// Throws unless all files have planes of equal size, type, directions and spacing.
 void require_alike(const Volume& volume) {
   constexpr double kTolerance = 1e-4;
   const DicomFile& first = volume.files.front();
@@ -211,20 +212,20 @@ bool is_placed(const Volume& volume) {
 
 Eigen::Vector3d normal_of(const DicomFrame& frame) { return frame.directions->col(0).cross(frame.directions->col(1)); }
 
-/// What may tell planes at one place apart in time.
+/// A header field that may distinguish the times of planes at one position.
 struct TimeKey {
   std::optional<double> DicomFrame::*member;
   const char* unit;
-  bool from_zero;  ///< moments of the clock: counted from the first
+  bool from_zero;  ///< clock times, counted from the first one
 };
 constexpr std::array<TimeKey, 3> kTimeKeys = {{{&DicomFrame::trigger_time, "ms", false},
                                                {&DicomFrame::temporal_position, "", false},
                                                {&DicomFrame::acquisition_time, "s", true}}};
 
-/// Sorts the planes of each place by this key; true if it tells all of them apart, and its means over the places
-/// ascend.
+/// Sorts the planes of each position by this key. Returns true if the key is different for all of them, and its means
+/// over the positions are ascending.
 bool sort_by_time(Volume& volume, const TimeKey& key) {
-  std::vector<Plane> sorted = volume.planes;  // place after place
+  std::vector<Plane> sorted = volume.planes;  // position by position
   std::vector<double> times(volume.times, 0.0);
   for (std::size_t p = 0; p < volume.places; ++p) {
     const auto begin = sorted.begin() + static_cast<std::ptrdiff_t>(p * volume.times);
@@ -239,7 +240,7 @@ bool sort_by_time(Volume& volume, const TimeKey& key) {
     }
   }
   const double first = key.from_zero ? times[0] : 0.0;
-  constexpr double kResolution = 1e6;  // DICOM's times have no more digits
+  constexpr double kResolution = 1e6;  // the resolution of DICOM's times
   for (double& time : times) time = std::round((time - first) * kResolution) / kResolution;
   if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end()) return false;
   volume.time = axis_of(times);
@@ -252,7 +253,7 @@ bool sort_by_time(Volume& volume, const TimeKey& key) {
   return true;
 }
 
-/// The count that occurs most often; the larger one of two.
+/// The most frequent count; of equally frequent ones the larger.
 std::size_t usual_of(const std::vector<std::size_t>& counts) {
   std::map<std::size_t, std::size_t> times;
   for (const std::size_t count : counts) ++times[count];
@@ -262,15 +263,17 @@ std::size_t usual_of(const std::vector<std::size_t>& counts) {
   return usual->first;
 }
 
-/// Sorts the planes by place and time. Throws unless there are as many times at each place, and something says which is
-/// which.
+/// Sorts the planes by position and time. Throws unless every position has the same number of times, and a key
+/// distinguishes them.
 void sort_planes(Volume& volume) {
   const Eigen::Vector3d normal = normal_of(volume.files.front().frames.front());
+  // sort by position along the normal
   for (Plane& plane : volume.planes) plane.along = normal.dot(*volume.frame(plane).position);
   std::stable_sort(volume.planes.begin(), volume.planes.end(),
                    [](const Plane& a, const Plane& b) { return a.along < b.along; });
   const auto& spacing = volume.files.front().frames.front().spacing;
   const double same = 0.01 * (spacing ? spacing->minCoeff() : 1.0);
+  // count planes per position
   std::vector<std::size_t> counts = {0};
   for (std::size_t i = 0; i < volume.planes.size(); ++i) {
     if (i > 0 && volume.planes[i].along - volume.planes[i - 1].along > same) counts.push_back(0);
@@ -285,6 +288,7 @@ void sort_planes(Volume& volume) {
            counts[p], volume.planes[first].along, volume.times,
            counts[p] == 1 ? "" : fmt::format(": see also {}", volume.path(volume.planes[first]).string()),
            counts[p] > volume.times ? "twice there" : "missing");
+  // sort by time
   if (volume.times == 1) return;
   for (const TimeKey& key : kTimeKeys)
     if (sort_by_time(volume, key)) return;
@@ -295,17 +299,17 @@ void sort_planes(Volume& volume) {
        volume.path(volume.planes[0]).string(), volume.times);
 }
 
-/// Where the places lie: on a line, in steps from the first.
+/// The positions of the planes: on a line, in steps from the first.
 struct Stack {
-  Eigen::Vector3d step;       ///< the mean one from place to place
-  std::vector<double> steps;  ///< of this length, from the first place to each; 0, 1, 2 ... where they lie evenly
+  Eigen::Vector3d step;       ///< mean step between positions
+  std::vector<double> steps;  ///< position of each plane in units of `step`; 0, 1, 2 ... if even
   bool even = true;
 };
 
-constexpr double kLarger = 1.5;    // than the distance beside it: slices may be missing
-constexpr std::size_t kMeant = 3;  // so many alike, one after the other, are no accident
+constexpr double kLarger = 1.5;    // times the adjacent distance: larger gaps suggest missing slices
+constexpr std::size_t kMeant = 3;  // this many equal gaps in sequence are intended
 
-/// The smaller of the distances on either side of one, and itself.
+/// Minimum of a distance and its two neighbours.
 double least_around(const std::vector<double>& gaps, std::size_t g) {
   double least = gaps[g];
   if (g > 0) least = std::min(least, gaps[g - 1]);
@@ -313,7 +317,7 @@ double least_around(const std::vector<double>& gaps, std::size_t g) {
   return least;
 }
 
-/// Whether a distance is one of several alike: some protocols change it on the way.
+/// Whether a distance is one of several equal ones: some protocols change the distance within a series.
 bool is_meant(const std::vector<double>& gaps, std::size_t g) {
   constexpr double kSame = 0.1;
   const auto alike = [&](std::size_t other) { return std::abs(gaps[other] - gaps[g]) <= kSame * gaps[g]; };
@@ -324,7 +328,7 @@ bool is_meant(const std::vector<double>& gaps, std::size_t g) {
   return last - first + 1 >= kMeant;
 }
 
-/// Throws where a distance is so much larger than a neighbour that slices seem to be missing, naming the largest.
+/// Throws if a distance is so much larger than its neighbours that slices are probably missing; names the largest.
 void require_none_missing(const Volume& volume, const Stack& stack) {
   std::vector<double> gaps;
   for (std::size_t p = 1; p < stack.steps.size(); ++p)
@@ -341,7 +345,8 @@ void require_none_missing(const Volume& volume, const Stack& stack) {
       gaps[*worst], volume.path(volume.planes[*worst]).string(), least_around(gaps, *worst), kLarger, kMeant);
 }
 
-/// The line through the places. Throws unless all planes lie on it, at all times, and none seems to be missing.
+/// Fits the line through the positions. Throws unless all planes lie on it, at all times, and no slice seems to be
+/// missing.
 Stack stack_of(const Volume& volume) {
   const std::size_t n = volume.places;
   const Eigen::Vector3d normal = normal_of(volume.files.front().frames.front());
@@ -365,7 +370,7 @@ Stack stack_of(const Volume& volume) {
   return stack;
 }
 
-/// What to say of slices that lie unevenly.
+/// The remark about slices at uneven distances.
 std::string uneven_text(const Stack& stack) {
   double least = stack.steps[1] - stack.steps[0];
   double most = least;
@@ -377,8 +382,9 @@ std::string uneven_text(const Stack& stack) {
                      least * stack.step.norm(), most * stack.step.norm());
 }
 
-/// The grid of the planes in space: x, y, and z where there are several.
+/// The spatial grid of the planes: x, y, and z if there are several positions.
 RawImage spatial_grid(const Volume& volume) {
+  // matrix and origin
   const DicomFile& first = volume.files.front();
   const DicomFrame& frame = volume.frame(volume.planes.front());
   const Eigen::Vector2d spacing = frame.spacing.value_or(Eigen::Vector2d(1, 1));
@@ -395,6 +401,7 @@ RawImage spatial_grid(const Volume& volume) {
     offset = *frame.position;
     image.info.world_frame = "LPS";
   }
+  // grid; a rectilinear axis for uneven distances
   image.grid = affine_grid({first.columns, first.rows, volume.places}, affine, offset, first.path);
   if (!stack.even) {
     Axis& along = image.grid.axes[2];
@@ -403,6 +410,7 @@ RawImage spatial_grid(const Volume& volume) {
     along = Axis::rectilinear(std::move(coordinates));
     image.info.remarks.push_back(uneven_text(stack));
   }
+  // units and names
   for (Axis& axis : image.grid.axes) axis.unit = frame.spacing ? "mm" : "";
   if (!is_placed(volume)) image.grid.axes[2].unit.clear();
   name_axes(image.grid);
@@ -410,7 +418,7 @@ RawImage spatial_grid(const Volume& volume) {
   return image;
 }
 
-/// Planes without places: the frames of one file, in its order, moments if it says so.
+/// Arranges planes without positions: the frames of one file, in its order; they are times if the file defines that.
 void arrange_unplaced(Volume& volume) {
   const DicomFile& file = volume.files.front();
   volume.places = volume.planes.size();
@@ -438,14 +446,14 @@ Volume arrange(std::vector<DicomFile> files) {
   return volume;
 }
 
-/// How stored values become those of the image.
+/// The conversion of stored values to those of the image.
 struct Rescaling {
   std::string type;  ///< of the result
   bool any = false;
 };
 
-/// As stored where nothing is to be done; integers where slopes and intercepts are whole and the same for all, as CT
-/// has them; else float, or double for values of 32 bits.
+/// Selects the value type: the stored type without rescaling; integers if slopes and intercepts are integers and equal
+/// for all frames, as in CT; else float, or double for 32-bit values.
 Rescaling rescaling_of(const Volume& volume) {
   const DicomFile& first = volume.files.front();
   const double slope = first.frames.front().slope;
@@ -472,7 +480,7 @@ Rescaling rescaling_of(const Volume& volume) {
   return {first.type.ends_with("32") ? "double" : "float", true};
 }
 
-/// The planes' values one after the other; keeps the file that it decoded last, which may have many of them.
+/// Reads the values of planes in order; caches the last decoded file, which may have many planes.
 class PlaneReader {
  public:
   PlaneReader(Volume volume, Rescaling rescaling) : volume_(std::move(volume)), rescaling_(std::move(rescaling)) {}
@@ -484,7 +492,7 @@ class PlaneReader {
       const Plane& plane = volume_.planes[i];
       tick(progress, static_cast<double>(i - first) / static_cast<double>(count), volume_.path(plane));
       decode(plane.file);
-      // A file that promises too much has failed by now.
+      // values too large for the file were refused in decode()
       if (i == first) {
         expect_memory(kBytesPerValue * size * count);
         std::visit([&](auto& all) { all.reserve(size * count); }, values);
@@ -538,22 +546,26 @@ bool is_dicom(const fs::path& path) {
 }
 
 RawLayers open_dicom(std::span<const fs::path> paths, const std::string& series, const Progress& progress) {
+  // select and arrange the series
   Found found = read_all_series(paths, progress);
   if (series.empty() && found.series.size() == 1 && !found.damaged.empty()) throw found.damaged.front();
-  for (const Error& error : found.damaged)  // of that series or of another: a gap within it would be found
+  for (const Error& error : found.damaged)  // they may belong to this series; a missing slice would be detected
     found.remarks.push_back(fmt::format("left out: {}; it does not say of which series it is", error.what()));
   Volume volume = arrange(choose(std::move(found.series), series, paths.front()));
   RawImage spatial = spatial_grid(volume);
+  // metadata
   RawLayers result;
   result.info = info_of(volume);
   result.info.remarks = std::move(found.remarks);
   result.info.remarks.insert(result.info.remarks.end(), spatial.info.remarks.begin(), spatial.info.remarks.end());
   result.info.world_frame = spatial.info.world_frame;
+  // grid
   const bool moves = volume.times > 1;
   const std::size_t per_layer = moves ? volume.places : 1;
   const bool flat = volume.planes.size() == 1;
   const std::size_t columns = volume.files.front().columns;
   result.grid = moves ? with_last_axis(spatial.grid, volume.time) : std::move(spatial.grid);
+  // reader of layers
   Rescaling rescaling = rescaling_of(volume);
   const auto reader = std::make_shared<PlaneReader>(std::move(volume), std::move(rescaling));
   result.read = [reader, per_layer, flat, columns, progress](std::size_t first, std::size_t count) {

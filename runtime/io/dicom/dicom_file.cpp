@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers and values of single DICOM files, by DCMTK, which decompresses what it knows: JPEG, JPEG-LS, RLE, deflate.
-// JPEG 2000 is OpenJPEG's. (GDCM knows both, but as Debian builds it a file that is cut short ends the whole program.)
+// Reads headers and values of single DICOM files through DCMTK, which decompresses JPEG, JPEG-LS, RLE and deflate.
+// OpenJPEG decompresses JPEG 2000. (GDCM supports both, but Debian's build of it aborts the program on a truncated
+// file.)
 //
 // Based on: NEMA PS3.3 (DICOM Information Object Definitions), C.7.6.2 (image plane), C.7.6.16 (functional groups of
 // enhanced multi-frame images), C.11.1 (modality LUT).
@@ -42,19 +43,19 @@ namespace {
 
 using Tag = DcmTagKey;
 
-/// DCMTK tells of what it finds odd, and knows no codec unless told. All this is of the whole process.
+/// Silences DCMTK's log and registers its codecs. Both are global to the process.
 void prepare_dcmtk() {
   static std::once_flag once;
   std::call_once(once, [] {
     OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-    dcmEnableUnknownVRConversion.set(OFTrue);  // some archives forget the types of what they do not know, as of doses
+    dcmEnableUnknownVRConversion.set(OFTrue);  // some archives omit the types of private elements, as in doses
     DJDecoderRegistration::registerCodecs();
     DJLSDecoderRegistration::registerCodecs();
     DcmRLEDecoderRegistration::registerCodecs();
   });
 }
 
-/// How many bytes a character of UTF-8 has that begins here; 0 where none does.
+/// Length of the UTF-8 character at the start of the text; 0 if it is invalid.
 std::size_t utf8_length(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
   const std::size_t length = first < 0x80   ? 1
@@ -66,14 +67,14 @@ std::size_t utf8_length(std::string_view text) {
   if (length > text.size()) return 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return 0;
-  // Neither longer than need be, nor halves of pairs, nor beyond the last character.
+  // Rejects overlong forms, surrogates, and code points beyond the last character.
   const auto second = length > 1 ? static_cast<unsigned char>(text[1]) : 0;
   const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
                      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
   return wrong ? 0 : length;
 }
 
-/// The text as UTF-8: DCMTK has converted what says which characters it has; other bytes are taken as Latin-1.
+/// Converts a text to UTF-8: DCMTK has converted texts with a declared character set; other bytes are read as Latin-1.
 std::string as_utf8(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -96,7 +97,7 @@ std::string text_of(DcmItem& data, const Tag& tag) {
   return as_utf8(trim(std::string_view(text.c_str(), text.size())));
 }
 
-/// Numbers written as text with backslashes between them; empty if one is none.
+/// Parses numbers separated by backslashes; empty if one of them is invalid.
 std::vector<double> numbers_of(DcmItem& data, const Tag& tag) {
   const std::string text = text_of(data, tag);
   std::vector<double> numbers;
@@ -115,14 +116,14 @@ std::optional<double> number_of(DcmItem& data, const Tag& tag) {
   return numbers.empty() ? std::optional<double>() : numbers.front();
 }
 
-/// What `use` makes of item `index` (from 0) of a sequence; nothing if there is none.
+/// Calls `use` with item `index` (from 0) of a sequence, if it exists.
 template <class Use>
 void with_item(DcmItem& data, const Tag& tag, std::size_t index, const Use& use) {
   DcmItem* item = nullptr;
   if (data.findAndGetSequenceItem(tag, item, static_cast<long>(index)).good() && item != nullptr) use(*item);
 }
 
-/// "HHMMSS.ffffff" in seconds.
+/// Seconds of "HHMMSS.ffffff".
 std::optional<double> seconds_of(std::string_view text) {
   if (text.size() < 2) return {};
   double hours = 0, minutes = 0, seconds = 0;
@@ -132,7 +133,7 @@ std::optional<double> seconds_of(std::string_view text) {
   return 3600 * hours + 60 * minutes + seconds;
 }
 
-/// Days of "YYYYMMDD" since 1970; 0 for anything else.
+/// Days from 1970 to "YYYYMMDD"; 0 for other texts.
 double days_of(std::string_view text) {
   double year = 0, month = 0, day = 0;
   if (text.size() < 8 || !parse_number(text.substr(0, 4), year) || !parse_number(text.substr(4, 2), month) ||
@@ -149,7 +150,7 @@ double days_of(std::string_view text) {
 
 constexpr double kDay = 86400;
 
-/// "YYYYMMDDHHMMSS.ffffff" in seconds.
+/// Seconds from 1970 to "YYYYMMDDHHMMSS.ffffff".
 std::optional<double> moment_of(std::string_view text) {
   if (text.size() < 10) return {};
   text = text.substr(0, text.find_first_of("+-"));
@@ -157,7 +158,7 @@ std::optional<double> moment_of(std::string_view text) {
   return seconds ? std::optional(kDay * days_of(text) + *seconds) : std::nullopt;
 }
 
-/// What a data set says of a plane: of the file itself, or of a functional group.
+/// Reads the fields of a plane from a data set: that of the file, or of a functional group.
 void read_plane(DcmItem& data, DicomFrame& frame) {
   const std::vector<double> position = numbers_of(data, Tag(0x0020, 0x0032));
   if (position.size() == 3) frame.position = Eigen::Vector3d(position[0], position[1], position[2]);
@@ -168,7 +169,7 @@ void read_plane(DcmItem& data, DicomFrame& frame) {
     if (directions.col(0).cross(directions.col(1)).norm() > 0.5) frame.directions = directions.colwise().normalized();
   }
   for (const Tag& tag : {Tag(0x0028, 0x0030), Tag(0x0018, 0x1164)}) {
-    const std::vector<double> spacing = numbers_of(data, tag);  // between rows first
+    const std::vector<double> spacing = numbers_of(data, tag);  // distance between rows comes first
     if (frame.spacing || spacing.size() != 2 || !(spacing[0] > 0 && spacing[1] > 0)) continue;
     frame.spacing = Eigen::Vector2d(spacing[1], spacing[0]);
   }
@@ -185,7 +186,7 @@ void read_times(DcmItem& data, DicomFrame& frame) {
     frame.acquisition_time = kDay * days_of(text_of(data, Tag(0x0008, 0x0022))) + *seconds;
 }
 
-/// What a functional group, shared or a frame's own, says of a frame.
+/// Reads a functional group, shared or of one frame.
 void read_group(DcmItem& group, DicomFrame& frame) {
   const auto plane = [&](DcmItem& data) { read_plane(data, frame); };
   for (const Tag& tag : {Tag(0x0020, 0x9113), Tag(0x0020, 0x9116), Tag(0x0028, 0x9145)})
@@ -203,7 +204,8 @@ void read_group(DcmItem& group, DicomFrame& frame) {
   });
 }
 
-/// Planes of multi-frame files that have no groups: doses and nuclear medicine, whose frames are a distance apart.
+/// Computes positions of frames in multi-frame files without functional groups: doses and nuclear medicine, with a
+/// fixed distance between frames.
 void place_frames(DcmItem& data, DicomFile& file) {
   file.frame_time = number_of(data, Tag(0x0018, 0x1063));
   const DicomFrame first = file.frames.front();
@@ -215,7 +217,7 @@ void place_frames(DcmItem& data, DicomFile& file) {
     const double along =
         offsets.size() == file.frames.size() ? offsets[i] - offsets[0] : static_cast<double>(i) * step.value_or(0.0);
     file.frames[i].position = *first.position + along * normal;
-    if (offsets.empty() && !step) file.frames[i].position.reset();  // who knows where
+    if (offsets.empty() && !step) file.frames[i].position.reset();  // unknown position
   }
 }
 
@@ -263,10 +265,10 @@ void read_type(DcmItem& data, DicomFile& file) {
   file.most = std::exp2(is_signed ? stored - 1 : stored) - 1;
 }
 
-constexpr Uint32 kSmallElement = 4096;  // larger ones stay in the file until they are asked for
+constexpr Uint32 kSmallElement = 4096;  // larger elements stay in the file until they are accessed
 
-/// Reads a file, with its large elements or without; what is wrong with it, if anything is: then what came before that
-/// may have been read.
+/// Reads a file, with elements up to `largest` bytes. Returns an error if the file is damaged; elements before the
+/// damage may have been read.
 std::optional<Error> try_to_load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
   if (auto fault = nesting_fault(path)) return fault;
   prepare_dcmtk();
@@ -282,10 +284,10 @@ void load(DcmFileFormat& file, const fs::path& path, Uint32 largest) {
 
 bool is_jpeg2000(E_TransferSyntax syntax) { return syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000; }
 
-/// The name of a transfer syntax that came after this DCMTK.
+/// The name of a transfer syntax that is newer than this DCMTK.
 std::string_view name_of_later_syntax(std::string_view uid) {
   struct Name {
-    std::string_view uid;  ///< or how it begins
+    std::string_view uid;  ///< UID or prefix of UIDs
     std::string_view name;
   };
   constexpr std::array<Name, 6> kNames = {{{"1.2.840.10008.1.2.4.20", "High-Throughput JPEG 2000 (HTJ2K)"},
@@ -297,12 +299,12 @@ std::string_view name_of_later_syntax(std::string_view uid) {
   return std::find_if(kNames.begin(), kNames.end(), [&](const Name& name) { return uid.starts_with(name.uid); })->name;
 }
 
-/// Throws unless pixels can be decompressed if they are stored as the file says.
+/// Throws unless the pixels can be decompressed.
 void require_decodable(DcmFileFormat& format, const fs::path& path) {
   const E_TransferSyntax stored_as = format.getDataset()->getOriginalXfer();
   const DcmXfer syntax(stored_as);
   const std::string told = text_of(*format.getMetaInfo(), DCM_TransferSyntaxUID);
-  const bool known = told.empty() || DcmXfer(told.c_str()).getXfer() != EXS_Unknown;  // or DCMTK takes it for plain
+  const bool known = told.empty() || DcmXfer(told.c_str()).getXfer() != EXS_Unknown;  // else read as plain
   const bool elsewhere = stored_as == EXS_JPIPReferenced || stored_as == EXS_JPIPReferencedDeflate;
   const bool decodable = !syntax.isEncapsulated() ||
                          DcmCodecList::canChangeCoding(stored_as, EXS_LittleEndianExplicit) ||
@@ -314,8 +316,8 @@ void require_decodable(DcmFileFormat& format, const fs::path& path) {
        has_jpeg2000() ? "" : " (that in builds with OpenJPEG, libopenjp2-7-dev)");
 }
 
-/// Throws if a file is too short for the values that its header promises, before these get memory. (How long compressed
-/// ones are shows as they are decompressed.)
+/// Throws if a file is too short for the values in its header, before memory is allocated. (The size of compressed
+/// values is checked during decompression.)
 void require_bytes(const DicomFile& file, E_TransferSyntax stored_as) {
   const DcmXfer syntax(stored_as);
   if (syntax.isEncapsulated() || syntax.getStreamCompression() != ESC_none) return;
@@ -327,7 +329,7 @@ void require_bytes(const DicomFile& file, E_TransferSyntax stored_as) {
          needed, shape_text(sizes), file.type);
 }
 
-/// Memory and time for the pixels, as many as compression can make of the file.
+/// Requests memory and time for the pixels, limited by the maximum compression of the file.
 void expect_pixels(const DicomFile& file) {
   const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
   const std::uint64_t count = std::min(checked_bytes(sizes, 1, file.path), kMostExpansion * size_of_file(file.path));
@@ -335,7 +337,7 @@ void expect_pixels(const DicomFile& file) {
   expect_step(4 * count);
 }
 
-/// Moves the stored bits of each value down and extends its sign: what is above and below them is anyone's.
+/// Shifts the stored bits of each value down and extends the sign: other bits of the cell are undefined.
 template <class T>
 void keep_stored_bits(ValueVector<T>& values, const DicomFile& file) {
   using Unsigned = std::make_unsigned_t<T>;
@@ -349,7 +351,7 @@ void keep_stored_bits(ValueVector<T>& values, const DicomFile& file) {
 }  // namespace
 
 void load_dicom_dictionary() {
-  dcmDataDict.rdlock();  // loads it at the first call
+  dcmDataDict.rdlock();  // loads the dictionary at the first call
   dcmDataDict.rdunlock();
 }
 
@@ -371,19 +373,21 @@ bool begins_as_dicom(const fs::path& path) {
   constexpr std::size_t kPreamble = 128;
   const auto bytes = read_bytes(path, 0, kPreamble + 4);
   if (bytes.size() == kPreamble + 4 && std::memcmp(bytes.data() + kPreamble, "DICM", 4) == 0) return true;
-  // Without a preamble: the tag of the first element, of group 2 or 8, in little endian.
+  // No preamble: the first element's tag has group 2 or 8, in little endian.
   return bytes.size() >= 4 && (bytes[0] == 2 || bytes[0] == 8) && bytes[1] == 0 && bytes[3] == 0;
 }
 
 std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   now_reading(path);
+  // load
   DcmFileFormat format;
   const auto damage = try_to_load(format, path, kSmallElement);
   if (damage && (format.getDataset() == nullptr || !format.getDataset()->tagExists(DCM_SeriesInstanceUID)))
     throw *damage;
   DcmItem& data = *format.getDataset();
   if (!damage && (!data.tagExists(DCM_Rows) || !data.tagExists(DCM_BitsAllocated))) return {};
-  format.getDataset()->convertToUTF8();  // as far as it says what it is in, and that is known
+  format.getDataset()->convertToUTF8();  // if the character set is declared and known
+  // series and sizes
   DicomFile file;
   file.path = path;
   file.series = text_of(data, DCM_SeriesInstanceUID);
@@ -395,8 +399,9 @@ std::optional<DicomFile> read_dicom_header(const fs::path& path) {
   file.series_number = number_of(data, DCM_SeriesNumber).value_or(0);
   file.rows = static_cast<std::size_t>(number_of(data, DCM_Rows).value_or(0));
   file.columns = static_cast<std::size_t>(number_of(data, DCM_Columns).value_or(0));
+  // pixels; errors are stored
   try {
-    file.frames.resize(1);  // at least
+    file.frames.resize(1);  // at least one frame
     if (damage) throw *damage;
     if (file.rows == 0 || file.columns == 0)
       fail(ErrorCode::MalformedFile, path, "{} x {} samples; expected at least one", file.columns, file.rows);
@@ -417,6 +422,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
   load(format, file.path, DCM_MaxReadLength);
   DcmDataset& data = *format.getDataset();
   const std::vector<std::uint64_t> sizes = {file.columns, file.rows, file.frames.size()};
+  // decompress
   if (is_jpeg2000(data.getOriginalXfer())) return read_jpeg2000_frames(data, file);
   if (data.getOriginalXfer() == EXS_RLELossless) require_whole_rle(data, file);
   const DcmXfer syntax(data.getOriginalXfer());
@@ -424,12 +430,13 @@ ValueArray read_dicom_values(const DicomFile& file) {
       !data.canWriteXfer(EXS_LittleEndianExplicit, data.getOriginalXfer()))
     fail(ErrorCode::MalformedFile, file.path, "pixels that cannot be decompressed; expected sound ones as {}",
          syntax.getXferName());
+  // copy the values
   ValueArray values = array_of_type(file.type);
   std::visit(
       [&]<class T>(ValueVector<T>& all) {
         const std::uint64_t needed = checked_bytes(sizes, sizeof(T), file.path);
         const void* bytes = nullptr;
-        unsigned long count = 0;  // of bytes, or of pairs of them
+        unsigned long count = 0;  // of bytes or of 16-bit words
         OFCondition status;
         if constexpr (sizeof(T) == 1) {
           const Uint8* found = nullptr;
@@ -441,7 +448,7 @@ ValueArray read_dicom_values(const DicomFile& file) {
           bytes = found;
         }
         const std::uint64_t there = sizeof(T) == 1 ? count : 2 * std::uint64_t{count};
-        if (status.bad() || bytes == nullptr || there < needed)  // an odd number of bytes is padded
+        if (status.bad() || bytes == nullptr || there < needed)  // odd sizes are padded
           fail(ErrorCode::MalformedFile, file.path, "{} bytes of pixels; expected {} for {} of type {}",
                status.bad() ? 0 : there, needed, shape_text(sizes), file.type);
         if constexpr (std::is_integral_v<T> && sizeof(T) <= 4) {
@@ -456,7 +463,8 @@ ValueArray read_dicom_values(const DicomFile& file) {
 
 namespace {
 
-/// A file that a DICOMDIR names, which lies beside it or below (PS3.10, section 8.5): no option allows others.
+/// The path of a file in a DICOMDIR. It must lie beside the DICOMDIR or below (PS3.10, section 8.5); no option allows
+/// other places.
 fs::path path_in_directory(const fs::path& directory, const std::string& name) {
   try {
     return named_path(directory, name, false);
@@ -480,7 +488,7 @@ std::vector<fs::path> read_dicomdir(const fs::path& path) {
     std::string name = text_of(*record, DCM_ReferencedFileID);
     if (name.empty()) continue;
     std::replace(name.begin(), name.end(), '\\', '/');
-    // Discs have names in capitals; copies of them often have small letters.
+    // Names on discs are in capitals; copies of them are often in lower case.
     std::error_code error;
     const bool as_is = fs::exists(path.parent_path() / name, error);
     files.push_back(path_in_directory(path, as_is ? name : lower(name)));

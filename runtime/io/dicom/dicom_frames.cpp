@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Encapsulated pixels: which fragments are whose frame's, and what the samples of its code stream are as stored values.
+// Reads encapsulated pixels: assigns fragments to frames, and converts the decoded samples of JPEG 2000 to stored
+// values.
 //
 // Based on: NEMA PS3.5, A.4 (encapsulated transfer syntaxes, offset tables), 8.2.4 (JPEG 2000), annex G (RLE).
 #include "dicom/dicom_frames.hpp"
@@ -33,10 +34,10 @@ namespace {
 
 using Bytes = std::span<const unsigned char>;
 
-/// The fragments behind the offset table, and the table.
+/// The offset table, and the fragments after it.
 struct Fragments {
   std::vector<Bytes> parts;
-  std::vector<std::uint64_t> offsets;  ///< of frames, from the first fragment's tag; may be empty
+  std::vector<std::uint64_t> offsets;  ///< start of each frame, relative to the tag of the first fragment; may be empty
 };
 
 Bytes bytes_of(DcmPixelItem& item, const DicomFile& file) {
@@ -72,7 +73,7 @@ Fragments fragments_of(DcmDataset& data, const DicomFile& file) {
   return result;
 }
 
-/// The first fragment of each frame by the offset table; empty if that does not tell.
+/// The first fragment of each frame by the offset table; empty if the table does not define it.
 std::vector<std::size_t> firsts_by_table(const Fragments& fragments) {
   constexpr std::uint64_t kBeforeBytes = 8;  // tag and length of a fragment
   std::vector<std::size_t> firsts;
@@ -84,7 +85,8 @@ std::vector<std::size_t> firsts_by_table(const Fragments& fragments) {
   return firsts.size() == fragments.offsets.size() ? firsts : std::vector<std::size_t>();
 }
 
-/// The first fragment of each frame: there is one for each, or the offset table tells, or how they begin.
+/// The first fragment of each frame: by a fragment count equal to the frame count, by the offset table, or by the first
+/// bytes of fragments.
 std::vector<std::size_t> first_fragments(const Fragments& fragments, const DicomFile& file) {
   const std::size_t frames = file.frames.size();
   std::vector<std::size_t> firsts(frames);
@@ -102,9 +104,9 @@ std::vector<std::size_t> first_fragments(const Fragments& fragments, const Dicom
   return firsts;
 }
 
-/// Adds the samples of a frame as stored values. A code stream of no more bits than are stored has these at its lower
-/// end, wherever the header says that they lie; whether it calls them signed is often not what the header says, which
-/// is right. A longer one has all bits of the cell.
+/// Appends the samples of a frame as stored values. If the code stream has at most as many bits as are stored, its
+/// values are in the low bits, whatever the header's high bit is. The header's signedness is used, as that of the code
+/// stream is often wrong. A code stream with more bits has all bits of the cell.
 template <class T>
 void append(const Jpeg2000Image& image, const DicomFile& file, ValueVector<T>& values) {
   using Unsigned = std::make_unsigned_t<T>;
@@ -118,7 +120,7 @@ void append(const Jpeg2000Image& image, const DicomFile& file, ValueVector<T>& v
   });
 }
 
-/// How many bytes a segment of run lengths becomes, at least up to `enough` if it has as many.
+/// Decompressed size of an RLE segment; stops counting at `enough`.
 std::size_t unpacked_size(Bytes segment, std::size_t enough) {
   constexpr std::size_t kNothing = 128;
   std::size_t size = 0;
@@ -135,7 +137,7 @@ std::size_t unpacked_size(Bytes segment, std::size_t enough) {
   return size;
 }
 
-/// Throws unless each segment of a frame (the highest bytes of all samples, then the next ones) is whole.
+/// Throws unless each segment of a frame is complete (the highest bytes of all samples, then the next ones).
 void require_whole_segments(Bytes frame, const DicomFile& file, std::size_t number) {
   constexpr std::size_t kHeader = 64;
   const auto word = [&](std::size_t i) {

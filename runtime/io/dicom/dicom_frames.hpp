@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Compressed frames as DCMTK hands them over: JPEG 2000, which it does not decompress, and RLE, of which it takes what
-// is cut short for whole.
+// Compressed frames that DCMTK does not handle completely: it does not decompress JPEG 2000, and it accepts truncated
+// RLE.
 #pragma once
 
 #include "base/value_array.hpp"
@@ -11,10 +11,10 @@ class DcmDataset;
 
 namespace tegl::io_detail {
 
-/// The stored values of all frames of a data set whose pixels are JPEG 2000. Errors: MalformedFile, UnsupportedData.
+/// Decodes all frames of a data set with JPEG 2000 pixels to stored values. Errors: MalformedFile, UnsupportedData.
 ValueArray read_jpeg2000_frames(DcmDataset& data, const DicomFile& file);
 
-/// Throws MalformedFile unless the frames of a data set whose pixels are RLE are whole.
+/// Throws MalformedFile if a frame of a data set with RLE pixels is truncated.
 void require_whole_rle(DcmDataset& data, const DicomFile& file);
 
 }  // namespace tegl::io_detail

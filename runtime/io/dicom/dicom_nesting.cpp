@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A scan of the elements of a DICOM file with the levels that are open on a list. Where a value may be a sequence or
-// not, by a dictionary that the scan does not have, it is taken for one if it begins with an item.
+// Scans the elements of a DICOM file with an explicit stack of open levels. Without a dictionary the scan does not know
+// all types: an element that may be a sequence counts as one if its value begins with an item.
 //
 // Based on: NEMA PS3.5 (DICOM Data Structures and Encoding), sections 6.2.2 and 7.1 to 7.5; PS3.10, section 7.1.
 #include "dicom/dicom_nesting.hpp"
@@ -28,9 +28,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kWindow = std::size_t{1} << 16;
-constexpr std::size_t kLongestHeader = 16;  // of an element: tag, type, length, and the tag of an item behind it
+constexpr std::size_t kLongestHeader = 16;  // of an element: tag, type, length, and the tag of an item after it
 
-/// Bytes of a file from some offset on, as they are or inflated. Positions that are asked for only grow.
+/// Bytes of a file from an offset, plain or inflated. Requested positions must not decrease.
 class Bytes {
  public:
   Bytes(const fs::path& path, std::uint64_t offset, bool deflated) : file_(std::fopen(path.c_str(), "rb")) {
@@ -41,7 +41,7 @@ class Bytes {
     if (inflateInit2(inflater_.get(), -MAX_WBITS) != Z_OK) throw std::bad_alloc();
   }
 
-  /// Up to `count` bytes at a position: fewer at the end.
+  /// Up to `count` bytes at a position; fewer at the end.
   std::span<const unsigned char> at(std::uint64_t position, std::size_t count) {
     if (position + count > start_ + window_.size()) fill(position);
     if (position < start_ || position - start_ >= window_.size()) return {};
@@ -58,7 +58,7 @@ class Bytes {
     }
   };
 
-  /// Makes the window begin at a position.
+  /// Moves the start of the window to a position.
   void fill(std::uint64_t position) {
     if (!file_) return;
     if (!inflater_) {
@@ -67,7 +67,7 @@ class Bytes {
       window_.resize(read(file_at_ + position, window_));
       return;
     }
-    // What is left of the window, or what follows it, as far as it lies before the position, is not needed any more.
+    // Discards bytes before the position, in the window and after it.
     while (start_ + window_.size() < position + kLongestHeader) {
       const std::uint64_t keep = std::min<std::uint64_t>(position - start_, window_.size());
       window_.erase(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(keep));
@@ -102,7 +102,7 @@ class Bytes {
   std::array<unsigned char, kWindow> input_{};
   std::vector<unsigned char> window_;
   std::uint64_t start_ = 0;    ///< position of the window's first byte
-  std::uint64_t file_at_ = 0;  ///< offset of position 0, or of the next bytes to be inflated
+  std::uint64_t file_at_ = 0;  ///< file offset of position 0, or of the next bytes to inflate
 };
 
 struct Encoding {
@@ -120,22 +120,22 @@ constexpr std::uint32_t kUndefined = 0xffffffff;
 constexpr std::uint32_t kItem = 0xfffee000;
 constexpr std::uint32_t kItemEnd = 0xfffee00d;
 constexpr std::uint32_t kSequenceEnd = 0xfffee0dd;
-constexpr std::uint32_t kPixels = 0x7fe00000;  // group of pixel data, whose items are fragments of a compressed stream
+constexpr std::uint32_t kPixels = 0x7fe00000;  // group of pixel data; its items are fragments of a compressed stream
 
-/// The header of an element, of an item, or of the end of one of them.
+/// The header of an element, of an item, or of an end mark.
 struct Header {
   std::uint32_t tag = 0;
   std::uint32_t length = 0;
   std::size_t bytes = 8;
-  bool may_be_sequence = false;  ///< if its value begins with an item
-  bool is_unknown = false;       ///< type UN, whose value is implicit and little endian if it is a sequence
+  bool may_be_sequence = false;  ///< it is one if its value begins with an item
+  bool is_unknown = false;       ///< type UN: as a sequence, its value is implicit and little endian
 };
 
 class Scan {
  public:
   Scan(Bytes& bytes, std::uint64_t start, Encoding encoding) : bytes_(bytes), position_(start), encoding_(encoding) {}
 
-  /// Whether sequences are nested deeper than is read.
+  /// Whether sequences are nested deeper than the limit.
   bool is_too_deep() {
     for (;;) {
       while (!levels_.empty() && levels_.back().end && position_ >= *levels_.back().end) levels_.pop_back();
@@ -149,7 +149,7 @@ class Scan {
 
  private:
   struct Level {
-    std::optional<std::uint64_t> end;  ///< none: up to its end mark
+    std::optional<std::uint64_t> end;  ///< nullopt: ended by a mark
     bool is_item = false;
     bool is_pixels = false;
     Encoding encoding;
@@ -182,7 +182,7 @@ class Scan {
     const std::string_view type(reinterpret_cast<const char*>(bytes.data()) + 4, 2);
     constexpr std::string_view kShort = "AE AS AT CS DA DS DT FD FL IS LO LT PN SH SL SS ST TM UI UL US";
     const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
-    // Types to come have long lengths; what is no type has a short one.
+    // Unknown types have long lengths; invalid types have short ones.
     const bool is_short = kShort.find(type) != std::string_view::npos || !is_capital(type[0]) || !is_capital(type[1]);
     header.is_unknown = type == "UN";
     header.may_be_sequence = type == "SQ" || type == "UN";
@@ -209,7 +209,7 @@ class Scan {
     position_ = end.value_or(value);
   }
 
-  /// Closes the innermost item, or sequence and all in it, that is open up to its end mark.
+  /// Closes the innermost item or sequence that is ended by a mark, and all levels in it.
   void close(bool item) {
     for (std::size_t i = levels_.size(); i > 0 && !levels_[i - 1].end; --i) {
       if (levels_[i - 1].is_item != item) continue;
@@ -224,10 +224,10 @@ class Scan {
   std::vector<Level> levels_;
 };
 
-/// What the first elements of a file say: those of group 2, which are always explicit and little endian.
+/// The file meta information: elements of group 2, always explicit and little endian.
 struct Meta {
   std::uint64_t start = 0;
-  std::vector<std::uint64_t> data_sets;  ///< where the data set may begin: after the last of them, or as they promise
+  std::vector<std::uint64_t> data_sets;  ///< possible starts of the data set: end of group 2, or as stated
   bool is_deflated = false;
 };
 
@@ -246,7 +246,7 @@ Meta read_meta(Bytes& bytes) {
     const std::uint32_t length = is_long ? number(header.subspan(8, 4), false) : number(header.subspan(6, 2), false);
     const std::uint32_t element = number(header.subspan(2, 2), false);
     const std::uint64_t value = position + (is_long ? 12 : 8);
-    // Sound files have one length of the group.
+    // Valid files have one group length.
     if (element == 0 && length == 4 && meta.data_sets.size() < kMostPromises)
       meta.data_sets.push_back(value + 4 + number(header.subspan(8, 4), false));
     constexpr std::uint32_t kLongestUid = 64;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// DICOM in builds without DCMTK: an error that says so.
+// DICOM functions for builds without DCMTK: they throw an error.
 #include "base/common.hpp"
 #include "base/readers.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// JPEG 2000 by OpenJPEG. Its functions in C call ours, which must not throw: what they are told is kept, and said
+// Decodes JPEG 2000 through OpenJPEG. Its C functions call ours, which must not throw: messages are stored and thrown
 // later.
 //
 // Based on: ISO/IEC 15444-1, annexes A (code stream) and I (JP2).
@@ -21,7 +21,7 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// Bytes in memory as a stream to read.
+/// A stream over bytes in memory.
 struct Source {
   std::span<const unsigned char> bytes;
   std::size_t at = 0;
@@ -30,7 +30,7 @@ struct Source {
 OPJ_SIZE_T read_some(void* to, OPJ_SIZE_T count, void* data) {
   auto& source = *static_cast<Source*>(data);
   const std::size_t some = std::min(count, source.bytes.size() - source.at);
-  if (some == 0) return static_cast<OPJ_SIZE_T>(-1);  // the end
+  if (some == 0) return static_cast<OPJ_SIZE_T>(-1);  // end of stream
   std::memcpy(to, source.bytes.data() + source.at, some);
   source.at += some;
   return some;
@@ -51,7 +51,7 @@ OPJ_BOOL seek_to(OPJ_OFF_T place, void* data) {
   return OPJ_TRUE;
 }
 
-/// The first thing that OpenJPEG found wrong.
+/// The first error message of OpenJPEG.
 using Complaint = std::array<char, 200>;
 
 void keep_complaint(const char* message, void* data) {
@@ -79,7 +79,7 @@ bool begins_with(std::span<const unsigned char> bytes, const std::array<unsigned
   return bytes.size() >= N && std::equal(beginning.begin(), beginning.end(), bytes.begin());
 }
 
-/// One run of OpenJPEG.
+/// One decoding by OpenJPEG.
 class Decoder {
  public:
   Decoder(std::span<const unsigned char> bytes, const std::string& label)
@@ -98,7 +98,7 @@ class Decoder {
     opj_stream_set_user_data_length(stream_.get(), bytes.size());
   }
 
-  /// The samples, if the image is a grey one of this size: which is known before they get memory.
+  /// Decodes the image if it is grey and has this size; checked before memory for samples is allocated.
   Jpeg2000Image decode(std::size_t columns, std::size_t rows) {
     opj_dparameters_t parameters;
     opj_set_default_decoder_parameters(&parameters);
@@ -112,7 +112,7 @@ class Decoder {
     if (opj_decode(codec_.get(), stream_.get(), image.get()) != OPJ_TRUE ||
         opj_end_decompress(codec_.get(), stream_.get()) != OPJ_TRUE)
       fail_by_complaint("that is damaged or cut short");
-    require_grey(*image, columns, rows);  // once more: palettes of JP2 change it
+    require_grey(*image, columns, rows);  // again: a palette in JP2 changes the components
     const opj_image_comp_t& grey = image->comps[0];
     if (grey.data == nullptr) fail_by_complaint("without samples");
     return {{grey.data, grey.data + columns * rows}, static_cast<int>(grey.prec)};
@@ -132,7 +132,8 @@ class Decoder {
     const opj_image_comp_t& grey = image.comps[0];
     const std::size_t width = image.x1 - image.x0;
     const std::size_t height = image.y1 - image.y0;
-    // OpenJPEG works in 32 bits, some of which wavelets and its encoder take: beyond, its own streams come back wrong.
+    // OpenJPEG computes in 32 bits, some of which wavelets and its encoder need: beyond 24 bits, decoding its own
+    // streams gives wrong values.
     constexpr OPJ_UINT32 kMost = 24;
     if (width != columns || height != rows || grey.dx != 1 || grey.dy != 1 || (grey.w != 0 && grey.w != columns) ||
         (grey.h != 0 && grey.h != rows))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The samples of grey JPEG 2000 code streams, through OpenJPEG.
+// Decodes grey JPEG 2000 code streams through OpenJPEG.
 #pragma once
 
 #include <cstddef>
@@ -20,11 +20,11 @@ struct Jpeg2000Image {
 /// Whether this build has OpenJPEG.
 bool has_jpeg2000() noexcept;
 
-/// What a code stream, bare or in a JP2 file, begins with.
+/// Whether the bytes begin like a code stream, bare or in a JP2 file.
 bool begins_jpeg2000(std::span<const unsigned char> bytes) noexcept;
 
-/// The samples of a code stream, bare or in a JP2 file. `label` begins the messages: the file and the frame. Errors:
-/// MalformedFile (damaged, cut short, or of another size), UnsupportedData (several components, more than 24 bits),
+/// Decodes a code stream, bare or in a JP2 file. `label`, the file and the frame, begins messages. Errors:
+/// MalformedFile (damaged, truncated, or of another size), UnsupportedData (several components, more than 24 bits),
 /// UnsupportedFormat (a build without OpenJPEG).
 Jpeg2000Image decode_jpeg2000(std::span<const unsigned char> bytes, std::size_t columns, std::size_t rows,
                               const std::string& label);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// JPEG 2000 in builds without OpenJPEG: an error that says so.
+// JPEG 2000 functions for builds without OpenJPEG: they throw an error.
 #include "dicom/jpeg2000.hpp"
 #include "tegl/error.hpp"
 

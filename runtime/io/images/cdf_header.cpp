@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Walks the header of a classic netCDF file. Every count is checked against what is left of the file before it is used.
+// Parses the header of a classic netCDF file. Every count is checked against the remaining bytes before it is used.
 //
 // Based on: Unidata, "The NetCDF Classic Format Specification" (CDF-1, CDF-2, CDF-5).
 #include "images/cdf_header.hpp"
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Thrown when the header goes on after the bytes at hand; never leaves this file.
+/// Thrown if the header is longer than the available bytes; caught in this file.
 struct EndOfBytes {};
 
 class HeaderWalk {
@@ -27,7 +27,7 @@ class HeaderWalk {
   HeaderWalk(std::span<const unsigned char> bytes, std::uint64_t file_bytes, const fs::path& path)
       : bytes_(bytes), file_bytes_(file_bytes), path_(path) {}
 
-  /// Returns the bytes that header and variables take.
+  /// Returns the size of header and variables in bytes.
   std::uint64_t run() {
     take(3);
     version_ = take(1)[0];
@@ -44,13 +44,13 @@ class HeaderWalk {
  private:
   struct Variable {
     std::string name;
-    std::uint64_t bytes;  ///< of one record, or of all
+    std::uint64_t bytes;  ///< of one record, or of the whole variable
     std::uint64_t begin;
     bool record;
   };
-  static constexpr std::uint64_t kLongestName = 256;      // NC_MAX_NAME: the room that the library and its users have
+  static constexpr std::uint64_t kLongestName = 256;  // NC_MAX_NAME: the size of buffers in the library and its users
   static constexpr std::uint64_t kMostDimensions = 1024;  // of a variable: NC_MAX_VAR_DIMS
-  static constexpr std::uint64_t kMostItems = 65536;      // of a list: far more than any program writes
+  static constexpr std::uint64_t kMostItems = 65536;      // of a list: a generous limit
 
   std::span<const unsigned char> take(std::uint64_t count) {
     if (count > bytes_.size() - at_) {
@@ -81,8 +81,8 @@ class HeaderWalk {
     return {reinterpret_cast<const char*>(bytes.data()), static_cast<std::size_t>(length)};
   }
 
-  /// The number of elements of a list that carries `tag`; an absent list has neither tag nor elements. Each element
-  /// takes at least 8 bytes, so that a count cannot be larger than the file.
+  /// The number of elements of a list with `tag`; an absent list has zeros instead of both. Each element takes at least
+  /// 8 bytes, so the count is limited by the file size.
   std::uint64_t list(std::uint64_t tag, std::string_view what) {
     const std::uint64_t found = big_endian(4);
     const std::uint64_t count = count_field();
@@ -155,14 +155,15 @@ class HeaderWalk {
       }
       attributes();
       variable.bytes = checked_bytes(shape, type_bytes(), path_);
-      count_field();  // vsize: redundant, and too small for large variables
+      count_field();  // vsize: redundant, and too small a field for large variables
       variable.begin = big_endian(version_ == 1 ? 4 : 8);
       variables_.push_back(variable);
     }
   }
 
-  /// Throws unless all variables lie behind the header and within the file. Returns where the last one ends.
+  /// Throws unless all variables lie after the header and within the file. Returns the end of the last one.
   [[nodiscard]] std::uint64_t check_extents() const {
+    // size of a record
     std::uint64_t record_bytes = 0;
     const auto count = std::count_if(variables_.begin(), variables_.end(), [](const Variable& v) { return v.record; });
     // A single record variable is not padded to 4 bytes.
@@ -173,6 +174,7 @@ class HeaderWalk {
         fail(ErrorCode::MalformedFile, path_, "records up to variable '{}' take more than 2^64 bytes; expected fewer",
              variable.name);
     }
+    // extent of each variable
     std::uint64_t last = at_;
     for (const Variable& variable : variables_) {
       std::uint64_t end = variable.bytes;
@@ -222,7 +224,7 @@ std::uint64_t bytes_of_classic_netcdf(std::span<const unsigned char> bytes, std:
 
 void check_classic_netcdf(const fs::path& path) {
   const std::uint64_t size = size_of_file(path);
-  // Headers are mostly some kilobytes; the rare long one is read again in larger pieces.
+  // Most headers are some kilobytes; a longer one is read again with a larger block.
   for (std::size_t piece = std::size_t{1} << 16;; piece *= 16) {
     const std::vector<unsigned char> bytes = read_bytes(path, 0, piece);
     if (bytes_of_classic_netcdf(bytes, size, path) != 0) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images that are read layer by layer.
+// Readers of images layer by layer, and of headerless raw files.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -22,10 +22,10 @@ namespace {
 
 using namespace io_detail;
 
-/// Shows the values that `read` gives, and keeps them until the next call.
+/// Wraps `read`: returns a view of the values, which are kept until the next call.
 std::function<ValueView(std::size_t, std::size_t)> keeping(std::function<ValueArray(std::size_t, std::size_t)> read) {
   return [read = std::move(read), kept = std::make_shared<ValueArray>()](std::size_t first, std::size_t count) {
-    *kept = ValueArray();  // one block at a time
+    *kept = ValueArray();  // frees the previous block first
     *kept = read(first, count);
     return std::visit(
         []<class Stored>(const ValueVector<Stored>& values) -> ValueView { return std::span<const Stored>(values); },
@@ -33,7 +33,7 @@ std::function<ValueView(std::size_t, std::size_t)> keeping(std::function<ValueAr
   };
 }
 
-/// Reads in blocks of the file, so that none is decompressed once per layer; holds one.
+/// Reads whole blocks of the file, so no block is decompressed once per layer. Holds one block.
 template <Value T, int N>
 class BlockLayers final : public LayerReader<T, N> {
  public:
@@ -83,7 +83,7 @@ class BlockLayers final : public LayerReader<T, N> {
   std::size_t first_ = kNone;
 };
 
-/// Bytes of a block beyond which layers are read one by one.
+/// Larger blocks are read layer by layer.
 constexpr std::uint64_t kMostBlockBytes = std::uint64_t{1} << 28;
 
 template <int N>
@@ -109,14 +109,15 @@ std::string_view stored_name(const RawLayout& layout, const fs::path& path) {
   return *found;
 }
 
-/// A list of a layout that has an item for each axis, or none.
+/// The item of an axis in a list of a layout; `other` if the list is empty.
 template <class Item>
 const Item& item_of(const std::vector<Item>& items, std::size_t axis, const Item& other) {
   return items.empty() ? other : items[axis];
 }
 
-/// The axes of a layout. Throws InvalidArgument.
+/// Converts a layout to axes. Throws InvalidArgument.
 std::vector<Axis> raw_axes(const RawLayout& layout, const fs::path& path) {
+  // check list lengths
   const auto require_count = [&](std::size_t count, const char* what) {
     if (count != 0 && count != layout.sizes.size())
       fail(ErrorCode::InvalidArgument, path, "{} of {} axes, and sizes of {}; expected one for each axis", what, count,
@@ -126,6 +127,7 @@ std::vector<Axis> raw_axes(const RawLayout& layout, const fs::path& path) {
   require_count(layout.origin.size(), "origins");
   require_count(layout.axis_names.size(), "names");
   require_count(layout.axis_units.size(), "units");
+  // check and make each axis
   std::vector<Axis> axes;
   for (std::size_t a = 0; a < layout.sizes.size(); ++a) {
     const std::size_t size = layout.sizes[a];
@@ -164,7 +166,7 @@ OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& p
 }
 
 OpenLayersResult open_layers(const fs::path& path, const ReadImageOptions& options) {
-  ReadImageOptions silent = options;  // what opens takes no time, and a child must not call the caller's functions
+  ReadImageOptions silent = options;  // opening is fast, and a child process must not call the caller's functions
   silent.progress = nullptr;
   const auto open = [&] { return LayersOfFiles{open_any_layers(path, silent), {path}}; };
   const bool separate = options.separate_process && needs_separate_process(path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers of MetaImage files (.mha, and .mhd with the data beside). MetaIO, the format's own library, keeps keys and
-// values in buffers that a longer one overflows: what does not fit there is no MetaImage.
+// Reads headers of MetaImage files (.mha, and .mhd with a separate data file). MetaIO, the reference library, copies
+// keys and values to fixed buffers that longer ones overflow; such files are refused as malformed.
 //
 // Based on: S. Aylward, "MetaIO: Introduction and Documentation" (ITK wiki).
 #include <algorithm>
@@ -26,7 +26,7 @@ struct StoredType {
   const char* name;
 };
 
-// MET_LONG is 4 bytes in the format's definition, and 8 in files that ITK wrote on 64-bit machines: ambiguous.
+// MET_LONG is left out: it has 4 bytes in the format's definition, and 8 in files that ITK wrote on 64-bit machines.
 constexpr std::array<StoredType, 10> kTypes = {{{"MET_CHAR", "int8"},
                                                 {"MET_UCHAR", "uint8"},
                                                 {"MET_SHORT", "int16"},
@@ -49,7 +49,7 @@ class Fields {
     if (found == values_.end()) fail(ErrorCode::MalformedFile, path_, "header without the field '{}'", name);
     return found->second;
   }
-  /// The first of several spellings that is there; empty if none is.
+  /// The first spelling that is present; empty if none is.
   [[nodiscard]] std::string first_of(std::initializer_list<std::string_view> names) const {
     for (const std::string_view name : names)
       if (has(name)) return text(name);
@@ -93,7 +93,7 @@ struct Header {
   StoredSamples samples;
 };
 
-/// Fields of numbers, which MetaIO does not keep as text.
+/// Whether a field is numeric; MetaIO does not store these as text.
 bool holds_numbers(std::string_view key) {
   constexpr std::array<std::string_view, 9> kKeys = {"TransformMatrix", "Rotation", "Orientation",
                                                      "Offset",          "Position", "Origin",
@@ -103,7 +103,7 @@ bool holds_numbers(std::string_view key) {
 
 void require_room(std::string_view key, std::string_view value, const fs::path& path) {
   constexpr std::size_t kLongest = 254;
-  constexpr std::size_t kLongestNumbers = 4096;  // 10 x 10 of them
+  constexpr std::size_t kLongestNumbers = 4096;  // 10 x 10 numbers
   if (key.size() > kLongest)
     fail(ErrorCode::MalformedFile, path, "header field {} has a name of {} bytes; expected at most {}", shown(key),
          key.size(), kLongest);
@@ -113,7 +113,7 @@ void require_room(std::string_view key, std::string_view value, const fs::path& 
          shown(value), value.size(), longest);
 }
 
-/// "Key = value" lines up to and with ElementDataFile, which by definition is the last.
+/// Parses "Key = value" lines up to ElementDataFile, which by definition is the last one.
 Fields read_fields(const fs::path& path, std::uint64_t& end) {
   constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
   const auto bytes = read_bytes(path, 0, kLongestHeader);
@@ -139,14 +139,14 @@ Fields read_fields(const fs::path& path, std::uint64_t& end) {
 }
 
 std::vector<std::uint64_t> read_sizes(const Fields& fields, const fs::path& path) {
-  constexpr std::uint64_t kMostAxes = 10;  // what MetaIO has room for
+  constexpr std::uint64_t kMostAxes = 10;  // the capacity of MetaIO
   const auto dimension = fields.number<std::uint64_t>("NDims", 0);
   if (dimension < 1 || dimension > kMostAxes)
     fail(ErrorCode::MalformedFile, path, "NDims is {}; expected 1 to {}", fields.text("NDims"), kMostAxes);
   std::vector<std::uint64_t> sizes;
   for (const std::string_view word : words(fields.text("DimSize"))) {
     std::uint64_t size = 0;
-    constexpr std::uint64_t kLargest = 0x7fffffff;  // MetaIO keeps sizes as int
+    constexpr std::uint64_t kLargest = 0x7fffffff;  // MetaIO stores sizes as int
     if (!parse_number(word, size) || size == 0 || size > kLargest)
       fail(ErrorCode::MalformedFile, path, "DimSize with {}; expected 1 to {}", shown(word), kLargest);
     sizes.push_back(size);
@@ -179,7 +179,7 @@ Encoding read_encoding(const Fields& fields, const fs::path& path) {
   return text ? Encoding::text : compressed ? Encoding::deflate : Encoding::raw;
 }
 
-/// Whether bytes of samples come in the other order than this machine's.
+/// Whether samples are not in this machine's byte order.
 bool read_byte_order(const Fields& fields, const fs::path& path) {
   constexpr bool kBig = std::endian::native == std::endian::big;
   const bool big = fields.flag("BinaryDataByteOrderMSB", fields.flag("ElementByteOrderMSB", kBig));
@@ -189,12 +189,12 @@ bool read_byte_order(const Fields& fields, const fs::path& path) {
   return big != kBig;
 }
 
-/// Where samples begin in a file of their own.
+/// Offset of the samples in a separate file.
 std::uint64_t read_header_size(const Fields& fields, const StoredSamples& samples, const fs::path& path) {
   const auto skip = fields.number<std::int64_t>("HeaderSize", 0);
   if (skip < -1) fail(ErrorCode::MalformedFile, path, "HeaderSize is {}; expected -1 or more", skip);
   if (skip >= 0) return static_cast<std::uint64_t>(skip);
-  // The samples are the end of the file.
+  // -1: the samples end at the end of the file.
   if (samples.encoding != Encoding::raw)
     fail(ErrorCode::MalformedFile, path, "HeaderSize is -1 for compressed samples or text; expected 0 or more");
   const std::uint64_t size = size_of_file(samples.path);
@@ -232,9 +232,10 @@ Header parse_header(const Fields& fields, std::uint64_t header_end, bool allow_o
   return header;
 }
 
-/// The matrix has a row per axis: the direction, in the world, of a step along it.
+/// The matrix has one row per axis: the world direction of a step along it.
 RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& path) {
   const std::size_t n = header.sizes.size();
+  // directions
   Eigen::MatrixXd affine = Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   const std::string matrix = fields.first_of({"TransformMatrix", "Rotation", "Orientation"});
@@ -242,11 +243,13 @@ RawGrid make_grid(const Fields& fields, const Header& header, const fs::path& pa
     const auto numbers = fields.numbers("TransformMatrix", matrix, n * n);
     affine = Eigen::Map<const Eigen::MatrixXd>(numbers.data(), affine.rows(), affine.cols());
   }
+  // origin
   const std::string origin = fields.first_of({"Offset", "Position", "Origin"});
   if (!origin.empty()) {
     const auto numbers = fields.numbers("Offset", origin, n);
     offset = Eigen::Map<const Eigen::VectorXd>(numbers.data(), offset.size());
   }
+  // spacing
   const std::string spacing = fields.first_of({"ElementSpacing", "ElementSize"});
   if (!spacing.empty()) {
     const auto numbers = fields.numbers("ElementSpacing", spacing, n);
@@ -261,10 +264,12 @@ StoredImage open_metaimage(const fs::path& path, bool allow_outside_paths) {
   std::uint64_t header_end = 0;
   const Fields fields = read_fields(path, header_end);
   Header header = parse_header(fields, header_end, allow_outside_paths, path);
+  // grid
   StoredImage image;
   image.grid = make_grid(fields, header, path);
   image.info.format = "MetaImage";
   image.info.stored_type = header.type.name;
+  // frame and units
   const std::string anatomy = fields.first_of({"AnatomicalOrientation"});
   const bool anatomical = !anatomy.empty() && anatomy.find('?') == std::string::npos;
   if (anatomical) image.info.world_frame = "LPS";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// netCDF variables as images: which variable, its coordinate variables as axes, packing and missing values.
+// Reads netCDF variables as images: selects the variable, reads coordinate variables as axes, applies packing and
+// missing values.
 //
 // Based on: "NetCDF Climate and Forecast (CF) Metadata Conventions" 1.10, sections 2.5, 4, 5 and 8; the attribute
 // conventions of the NetCDF Users' Guide.
@@ -27,12 +28,12 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// How stored values become numbers: v * scale + offset, missing where the attributes say so.
+/// The conversion of stored values: v * scale + offset, or missing.
 struct Packing {
   double scale = 1;
   double offset = 0;
   bool scaled = false;
-  std::vector<double> missing;  ///< stored values that mean "none"
+  std::vector<double> missing;  ///< stored values that stand for missing values
   double least = -std::numeric_limits<double>::infinity();
   double greatest = std::numeric_limits<double>::infinity();
   bool any_attribute = false;
@@ -57,7 +58,7 @@ Packing read_packing(const NcFile& file, const NcVariable& variable) {
   };
   limit("valid_min", 0, packing.least);
   limit("valid_max", 1, packing.greatest);
-  // Without a fill value of their own, floats that were never written have the library's.
+  // Floats without a _FillValue attribute have the library's default fill value where they were never written.
   if (fill.empty() && variable.type == NC_FLOAT) packing.missing.push_back(NC_FILL_FLOAT);
   if (fill.empty() && variable.type == NC_DOUBLE) packing.missing.push_back(NC_FILL_DOUBLE);
   return packing;
@@ -65,7 +66,7 @@ Packing read_packing(const NcFile& file, const NcVariable& variable) {
 
 template <class Real, class T>
 Real unpack_one(T stored, const Packing& packing) {
-  // Attributes are compared in the variable's own type: a fill value of -1e34 is not the same number as a float.
+  // Attributes are compared in the variable's own type: as a float, a fill value of -1e34 is another number.
   for (const double value : packing.missing)
     if (stored == static_cast<T>(value)) return std::numeric_limits<Real>::quiet_NaN();
   const auto value = static_cast<double>(stored);
@@ -81,11 +82,11 @@ ValueVector<Real> unpack_all(const ValueVector<T>& stored, const Packing& packin
   return result;
 }
 
-/// Float for what float holds exactly, integers of up to 16 bits included; double for the others.
+/// Unpacks to float if it is exact, including integers of up to 16 bits; else to double.
 ValueArray unpack(ValueArray&& values, Packing packing) {
   return std::visit(
       [&]<class T>(ValueVector<T>& stored) -> ValueArray {
-        // A value that the type cannot hold is never met, and casting it would be undefined.
+        // Values outside of the type's range never occur, and casting them is undefined behaviour.
         std::erase_if(packing.missing, [](double value) {
           constexpr auto kLowest = static_cast<double>(std::numeric_limits<T>::lowest());
           constexpr auto kHighest = static_cast<double>(std::numeric_limits<T>::max());
@@ -110,7 +111,7 @@ std::size_t rank(const std::vector<std::size_t>& sizes) {
 
 bool is_image_rank(std::size_t axes) { return axes >= 2 && axes <= 4; }
 
-/// Names and sizes of the dimensions longer than 1, the one that runs fastest first.
+/// Names and sizes of the dimensions longer than 1, fastest first.
 ImageVariable describe(const NcFile& file, const NcVariable& variable) {
   ImageVariable result;
   result.name = variable.name;
@@ -122,7 +123,7 @@ ImageVariable describe(const NcFile& file, const NcVariable& variable) {
   return result;
 }
 
-/// The samples of a variable at the fixed indices of its dimensions. Dimensions that it does not have are left aside.
+/// The samples of a variable at fixed indices. Fixed dimensions that the variable does not have are ignored.
 NcSlab slab_of(const NcFile& file, const NcVariable& variable, const std::vector<FixedIndex>& fixed) {
   NcSlab slab = whole(variable);
   for (std::size_t d = 0; d < variable.sizes.size() && !fixed.empty(); ++d) {
@@ -139,7 +140,7 @@ NcSlab slab_of(const NcFile& file, const NcVariable& variable, const std::vector
   return slab;
 }
 
-/// Throws unless the variable has the dimensions that are fixed, each once.
+/// Throws unless the variable has each fixed dimension, and each is given once.
 void require_dimensions(const NcFile& file, const NcVariable& variable, const std::vector<FixedIndex>& fixed) {
   std::vector<std::string> names;
   for (std::size_t d = 0; d < variable.sizes.size(); ++d) names.push_back(file.dimension_name(variable, d));
@@ -155,9 +156,9 @@ void require_dimensions(const NcFile& file, const NcVariable& variable, const st
   }
 }
 
-/// Variables that are images, or are with some of their dimensions fixed.
+/// The variables that are images, possibly after fixing some dimensions.
 std::vector<NcVariable> image_variables(const NcFile& file, const std::vector<NcVariable>& all) {
-  std::set<std::string, std::less<>> auxiliary;  // named by others as their bounds or coordinates
+  std::set<std::string, std::less<>> auxiliary;  // bounds or coordinates of other variables
   for (const NcVariable& variable : all)
     for (const char* attribute : {"bounds", "climatology", "coordinates", "cell_measures", "grid_mapping"}) {
       const std::string names = file.text(variable, attribute);
@@ -173,7 +174,7 @@ std::vector<NcVariable> image_variables(const NcFile& file, const std::vector<Nc
   return result;
 }
 
-/// Sizes of all dimensions, the one that runs fastest first, as of an image.
+/// Sizes of all dimensions, fastest first.
 std::string image_shape(const NcVariable& variable) {
   return shape_text(std::vector<std::size_t>(variable.sizes.rbegin(), variable.sizes.rend()));
 }
@@ -206,7 +207,7 @@ NcVariable choose(const NcFile& file, const std::vector<NcVariable>& all, const 
        listing(candidates));
 }
 
-/// Uniform if, and only if, that gives the same coordinates bit by bit.
+/// Uniform only if that gives the same coordinates bit by bit.
 Axis make_axis(std::vector<double> coordinates) {
   const std::size_t size = coordinates.size();
   if (size >= 2)
@@ -221,8 +222,8 @@ Axis make_axis(std::vector<double> coordinates) {
   return Axis::rectilinear(std::move(coordinates));
 }
 
-/// By the attribute "positive" of a vertical coordinate; without it, pressures grow downwards (CF conventions, section
-/// 4.3).
+/// From the attribute "positive" of a vertical coordinate. Without it, pressures increase downwards (CF conventions,
+/// section 4.3).
 AxisDirection direction_of(const NcFile& file, const NcVariable& coordinate) {
   static constexpr std::array<std::string_view, 21> kPressures = {
       "pa",         "pascal",      "pascals", "hpa",  "hectopascal", "hectopascals", "kpa",
@@ -235,7 +236,8 @@ AxisDirection direction_of(const NcFile& file, const NcVariable& coordinate) {
   return std::ranges::find(kPressures, unit) != kPressures.end() ? AxisDirection::down : AxisDirection::unknown;
 }
 
-/// Whether "days since 1-1-1" counts from before 1582-10-15, until when the standard calendar is the Julian one.
+/// Whether a time unit's reference date is before 1582-10-15, when the standard calendar changes from Julian to
+/// Gregorian.
 bool starts_before_the_reform(const std::string& unit) {
   int year = 0;
   int month = 1;
@@ -246,9 +248,8 @@ bool starts_before_the_reform(const std::string& unit) {
   return std::tuple(year, month, day) < std::tuple(1582, 10, 15);
 }
 
-/// With the calendar, where time is counted in one that is not everybody's (CF conventions, section 4.4.1): nobody may
-/// take "days since 2000-01-01 (noleap)" for a date, nor "days since 0001-01-01 (proleptic_gregorian)" for a Julian
-/// one.
+/// The unit, with the calendar appended if it is not the standard one (CF conventions, section 4.4.1): "days since
+/// 2000-01-01 (noleap)" must not be read as a date, nor "days since 0001-01-01 (proleptic_gregorian)" as a Julian one.
 std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
   const std::string unit = file.text(coordinate, "units");
   const std::string calendar = file.text(coordinate, "calendar");
@@ -258,7 +259,7 @@ std::string unit_of(const NcFile& file, const NcVariable& coordinate) {
   return is_common || unit.find(" since ") == std::string::npos ? unit : fmt::format("{} ({})", unit, calendar);
 }
 
-/// An axis, and what the file says of it.
+/// An axis with its direction in the file.
 struct AxisOfFile {
   Axis axis;
   AxisDirection direction = AxisDirection::unknown;
@@ -292,8 +293,8 @@ AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t
   return {std::move(axis), direction, is_time};
 }
 
-/// Where the samples lie along a dimension of which one index is read, times first. Whatever is wrong with its
-/// coordinate is none of the image's business.
+/// Adds the coordinate of a dimension of which one index is read; times come first. Errors of its coordinate variable
+/// are ignored.
 void add_single(const NcFile& file, const NcVariable& variable, std::size_t dimension, std::size_t index,
                 std::vector<SingleAxis>& singles) {
   try {
@@ -307,20 +308,21 @@ void add_single(const NcFile& file, const NcVariable& variable, std::size_t dime
   }
 }
 
-/// The grid of a variable, and which of its dimensions is the image's last axis: time, else the slowest one.
+/// The grid of a variable, and the dimension that becomes the image's last axis: time, else the slowest one.
 struct VariableGrid {
   RawGrid grid;
   std::vector<AxisDirection> directions;  ///< of the grid's axes
   std::size_t last_dimension = 0;
-  std::size_t time_axis = 0;  ///< where the last axis lies in the file, counted from the fastest
+  std::size_t time_axis = 0;  ///< index of the last axis in the file, from the fastest
 };
 
 VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
   VariableGrid result;
+  // axes in the order of the file, from the fastest
   std::vector<Axis>& axes = result.grid.axes;
   std::vector<bool> is_time;
   std::vector<std::size_t> dimension_of;
-  for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // the last dimension runs fastest
+  for (std::size_t d = variable.sizes.size(); d-- > 0;) {  // from the fastest dimension
     if (slab.count[d] == 1) {
       add_single(file, variable, d, slab.start[d], result.grid.single);
       continue;
@@ -331,6 +333,7 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcS
     is_time.push_back(read.is_time);
     dimension_of.push_back(d);
   }
+  // move time, or else the slowest axis, to the end
   const auto found = is_time.back() ? is_time.end() - 1 : std::find(is_time.begin(), is_time.end(), true);
   const std::ptrdiff_t last = found == is_time.end() ? std::ssize(axes) - 1 : found - is_time.begin();
   const auto move_last = [&](auto& list) { std::rotate(list.begin() + last, list.begin() + last + 1, list.end()); };
@@ -344,7 +347,7 @@ VariableGrid read_grid(const NcFile& file, const NcVariable& variable, const NcS
   return result;
 }
 
-/// Values as the file has them, `count` along the grid's last axis, with that axis behind the others.
+/// Moves the grid's last axis to the end; the values have the file's order and `count` samples along that axis.
 ValueArray in_order(ValueArray&& values, const VariableGrid& grid, std::size_t count) {
   const std::vector<Axis>& axes = grid.grid.axes;
   std::size_t inner = 1;
@@ -359,7 +362,7 @@ struct Found {
   ImageInfo info;
 };
 
-/// Throws unless the chosen samples of a variable are an image.
+/// Throws unless the selected samples of a variable form an image.
 void require_image(const NcFile& file, const NcVariable& variable, const NcSlab& slab) {
   if (std::find(variable.sizes.begin(), variable.sizes.end(), 0U) != variable.sizes.end())
     fail(ErrorCode::UnsupportedData, file.path(), "variable '{}' is {}; expected at least one sample", variable.name,
@@ -381,7 +384,7 @@ void require_image(const NcFile& file, const NcVariable& variable, const NcSlab&
        described.axes.back());
 }
 
-/// The variable that is asked for, if it can be an image.
+/// Finds the requested variable, and checks that it can be an image.
 Found find_variable(const NcFile& file, const ReadImageOptions& options) {
   const auto all = file.variables();
   const auto candidates = image_variables(file, all);
@@ -400,7 +403,7 @@ Found find_variable(const NcFile& file, const ReadImageOptions& options) {
   return {variable, slab, info};
 }
 
-/// `count` layers of the samples along a dimension, from number `first` on.
+/// Restricts a slab to `count` layers along a dimension, from layer `first`.
 NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::size_t count) {
   slab.start[dimension] = first;
   slab.count[dimension] = count;
@@ -410,10 +413,12 @@ NcSlab layers_of(NcSlab slab, std::size_t dimension, std::size_t first, std::siz
 }  // namespace
 
 RawImage read_netcdf(const std::filesystem::path& path, Extent extent, const ReadImageOptions& options) {
+  // header
   const NcFile file(path, options.progress, options.allow_outside_paths);
   Found found = find_variable(file, options);
   VariableGrid grid = read_grid(file, found.variable, found.slab);
   found.info.axis_directions = std::move(grid.directions);
+  // values
   RawImage image;
   const Packing packing = read_packing(file, found.variable);
   const NcSlab slab = extent == Extent::header ? layers_of(found.slab, grid.last_dimension, 0, 0) : found.slab;

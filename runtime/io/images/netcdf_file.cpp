@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The netCDF-C library behind C++ values.
+// Wraps the netCDF-C library.
 //
 // Based on: Unidata, netCDF-C 4.9 API.
 #include "images/netcdf_file.hpp"
@@ -32,14 +32,14 @@ bool is_hdf5(std::span<const unsigned char> prefix) {
   return prefix.size() >= kHdf5Magic.size() && std::equal(kHdf5Magic.begin(), kHdf5Magic.end(), prefix.begin());
 }
 
-/// How many bytes an HDF5 file takes, from its superblock; 0 if that does not lie in the first bytes.
+/// Size of an HDF5 file in bytes, from its superblock; 0 if that is not in the first bytes.
 ///
 /// Based on: The HDF Group, "HDF5 File Format Specification", section II.A.
 std::uint64_t bytes_of_hdf5(std::span<const unsigned char> bytes, const fs::path& path) {
   constexpr std::size_t kVersion = 8;
   if (bytes.size() < 96) return 0;
   const unsigned version = bytes[kVersion];
-  // Three addresses, of which the third is the end: base, free space or extension, end.
+  // Addresses in the superblock: base, free space or extension, end. The third one is the end of the file.
   const std::size_t item = bytes[version < 2 ? 13 : 9];
   const std::size_t first = version == 0 ? 24 : version == 1 ? 28 : 12;
   if (version > 3 || (item != 2 && item != 4 && item != 8))
@@ -55,7 +55,7 @@ std::uint64_t bytes_of_hdf5(std::span<const unsigned char> bytes, const fs::path
   return end;
 }
 
-/// The decompressed content of a gzipped netCDF file, as far as header and variables go.
+/// Decompresses a gzipped netCDF file up to the end of its header and variables.
 std::vector<unsigned char> inflate_netcdf(const fs::path& path, const Progress& progress) {
   const std::uint64_t most = size_of_file(path) * kMostInflation;
   const auto needed = [&](std::span<const unsigned char> bytes) -> std::uint64_t {
@@ -66,16 +66,16 @@ std::vector<unsigned char> inflate_netcdf(const fs::path& path, const Progress& 
   std::vector<unsigned char> content = inflate_to_memory(path, needed, progress);
   if (!is_classic_netcdf(content)) return content;
   bytes_of_classic_netcdf(content, content.size(), path);
-  // The library reads headers in blocks, and memory that ends within one is an error to it.
+  // The library reads headers in blocks, and reports an error if the memory ends within a block.
   content.resize(content.size() + kInflateSpare);
   return content;
 }
 
-/// A name that `get` writes into a buffer without saying how long it is: netCDF promises NC_MAX_NAME bytes, and takes
-/// names of damaged files as they come.
+/// Reads a name that `get` writes to a buffer of unknown size: netCDF promises at most NC_MAX_NAME bytes, but copies
+/// longer names of damaged files.
 template <class Get>
 std::pair<int, std::string> name_from(const Get& get) {
-  constexpr std::size_t kRoom = std::size_t{1} << 16;  // the longest name of HDF5's old format
+  constexpr std::size_t kRoom = std::size_t{1} << 16;  // the longest name in HDF5's old format
   const auto buffer = std::make_unique_for_overwrite<char[]>(kRoom + 1);
   buffer[0] = buffer[kRoom] = '\0';
   const int status = get(buffer.get());
@@ -125,6 +125,7 @@ bool is_numeric(nc_type type) noexcept { return type >= NC_BYTE && type <= NC_UI
 
 NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outside_paths) : path_(path) {
   now_reading(path);
+  // check the file before the library opens it
   if (is_gzip(path)) content_ = inflate_netcdf(path, progress);
   const std::vector<unsigned char> start = content_.empty() ? read_bytes(path, 0, 8) : std::vector<unsigned char>();
   const auto all = std::span<const unsigned char>(content_.empty() ? start : content_);
@@ -138,7 +139,7 @@ NcFile::NcFile(const fs::path& path, const Progress& progress, bool allow_outsid
   bytes_ = is_hdf5(prefix)    ? check_hdf5_links(path, content_, Hdf5Reader::netcdf, allow_outside_paths)
            : content_.empty() ? size_of_file(path)
                               : content_.size();
-  // An absolute path cannot be taken for the address of a server.
+  // An absolute path is never taken for a server's URL.
   const int status = content_.empty()
                          ? nc_open(fs::absolute(path).c_str(), NC_NOWRITE, &id_)
                          : nc_open_mem(path.filename().c_str(), NC_NOWRITE, content_.size(), content_.data(), &id_);
@@ -258,7 +259,7 @@ void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::si
                          const Progress& progress) const {
   const std::size_t rank = slab.count.size();
   if (rank == 0) return check(nc_get_var(variable.group, variable.id, to), "reading " + variable.name);
-  // Blocks along the slowest dimension of more than one sample: they lie one after the other in memory.
+  // Reads blocks along the slowest dimension with more than one sample: such blocks are contiguous in memory.
   std::size_t along = 0;
   while (along + 1 < rank && slab.count[along] == 1) ++along;
   std::size_t layer_bytes = item;
@@ -267,12 +268,13 @@ void NcFile::read_blocks(const NcVariable& variable, const NcSlab& slab, std::si
     layer_bytes *= slab.count[d];
     layer_chunks *= slab.count[d] / block_length(variable, d) + 1;
   }
-  // Blocks of whole chunks, so that none is decompressed twice. HDF5 takes some 3 KiB for each chunk of a block.
+  // Blocks consist of whole chunks, so no chunk is decompressed twice. HDF5 takes some 3 KiB for each chunk of a block.
   constexpr std::size_t kBlockBytes = std::size_t{1} << 24;
   constexpr std::size_t kBlockChunks = std::size_t{1} << 12;
   const std::size_t block = block_length(variable, along);
   std::size_t step = std::min(kBlockBytes / std::max<std::size_t>(1, layer_bytes), kBlockChunks / layer_chunks * block);
   step = std::max<std::size_t>(1, (step + block - 1) / block) * block;
+  // read
   NcSlab part = slab;
   const std::size_t layers = slab.count[along];
   for (std::size_t first = 0; first < layers; first += step) {
@@ -310,7 +312,7 @@ ValueArray NcFile::numeric_array(const NcVariable& variable) const {
 
 namespace {
 
-/// How many times its bytes in the file a variable may take.
+/// Maximum expansion ratio of a variable's storage.
 std::uint64_t most_expansion(const NcVariable& variable) {
   std::uint64_t ratio = kMostInflation;
   std::size_t count = 0;
@@ -325,13 +327,13 @@ std::uint64_t most_expansion(const NcVariable& variable) {
 
 void NcFile::require_stored(const NcVariable& variable, std::span<const std::uint64_t> sizes, std::size_t item) const {
   const std::uint64_t bytes = checked_bytes(sizes, item, path_);
-  // More is a damaged header, not data.
+  // A larger size means a damaged header.
   const std::uint64_t ratio = most_expansion(variable);
   if (bytes / ratio > bytes_)
     fail(ErrorCode::MalformedFile, path_,
          "variable '{}' of {} samples takes {} bytes in a file of {}; expected at most {} times as many", variable.name,
          shape_text(sizes), bytes, bytes_, ratio);
-  // A chunk is decompressed whole, whatever part of it is read.
+  // A chunk is always decompressed as a whole.
   int storage = NC_CONTIGUOUS;
   std::vector<std::size_t> chunks(std::max<std::size_t>(1, variable.sizes.size()), 1);
   if (nc_inq_var_chunking(variable.group, variable.id, &storage, chunks.data()) != NC_NOERR || storage != NC_CHUNKED)
@@ -341,7 +343,7 @@ void NcFile::require_stored(const NcVariable& variable, std::span<const std::uin
   if (const std::uint64_t whole = checked_bytes(all, item, path_); is_chunk_too_large(of_chunk, whole))
     fail(ErrorCode::MalformedFile, path_, "variable '{}' of {} bytes in chunks of {} ({} bytes); expected at most {}",
          variable.name, whole, shape_text(chunks), of_chunk, std::max(kMostChunkBytes, 2 * whole));
-  // A chunk that is stored takes 16 bytes or more, with its entry in the index.
+  // A stored chunk takes at least 16 bytes, including its index entry.
   constexpr std::uint64_t kFewChunks = 4096;
   const std::uint64_t most_chunks = std::max(kFewChunks, bytes_ / 16);
   std::uint64_t count = 1;

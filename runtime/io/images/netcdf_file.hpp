@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An open netCDF file: its variables, attributes and values, as C++ values and with the library's errors as
-// tegl::Error.
+// An open netCDF file: its variables, attributes and values as C++ types, with errors as tegl::Error.
 #pragma once
 
 #include <cstddef>
@@ -17,53 +16,53 @@
 
 namespace tegl::io_detail {
 
-/// A variable and where it is.
+/// A variable and its location.
 struct NcVariable {
   int group = 0;
   int id = 0;
-  std::string name;  ///< with its groups: "x", or "/group/x"
+  std::string name;  ///< with its groups: "x" or "/group/x"
   nc_type type = NC_NAT;
   std::vector<int> dimensions;     ///< ids, slowest first
   std::vector<std::size_t> sizes;  ///< slowest first
 };
 
-/// Some of the samples of a variable: `count` of them along each dimension, from `start` on.
+/// A range of samples of a variable: `count` along each dimension, from `start`.
 struct NcSlab {
   std::vector<std::size_t> start;
   std::vector<std::size_t> count;
 };
-/// All samples.
+/// The range of all samples.
 NcSlab whole(const NcVariable& variable);
 
 class NcFile {
  public:
-  /// Opens classic and netCDF-4 files, gzipped as a whole too (then in memory). HDF5 files are refused if they lead to
-  /// others outside of their folder, unless `allow_outside_paths` (see hdf5_links.hpp). Errors: MalformedFile,
-  /// UnsupportedData.
+  /// Opens classic and netCDF-4 files; files gzipped as a whole are decompressed in memory. HDF5 files are refused if
+  /// they refer to files outside of their folder, unless `allow_outside_paths` (see hdf5_links.hpp). Errors:
+  /// MalformedFile, UnsupportedData.
   NcFile(const std::filesystem::path& path, const Progress& progress, bool allow_outside_paths = false);
   ~NcFile();
   NcFile(const NcFile&) = delete;
   NcFile& operator=(const NcFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  /// All variables, those of groups after those of the root.
+  /// All variables; those of groups come after those of the root.
   [[nodiscard]] std::vector<NcVariable> variables() const;
   [[nodiscard]] std::string dimension_name(const NcVariable& variable, std::size_t dimension) const;
-  /// The coordinate variable of a dimension: one-dimensional and of its name, in the variable's group or above it.
+  /// The coordinate variable of a dimension: one-dimensional, with its name, in the variable's group or a parent.
   [[nodiscard]] std::optional<NcVariable> coordinate(const NcVariable& variable, std::size_t dimension) const;
 
   [[nodiscard]] std::string text(const NcVariable& variable, const char* attribute) const;  ///< "" if absent
   [[nodiscard]] std::vector<double> numbers(const NcVariable& variable, const char* attribute) const;
   [[nodiscard]] std::optional<double> number(const NcVariable& variable, const char* attribute) const;
 
-  /// Values in the order of the file; attribute _Unsigned is taken into account. UnsupportedData unless numeric,
-  /// MalformedFile for a variable that the file cannot hold.
+  /// Values in the file's order; attribute _Unsigned is applied. UnsupportedData unless numeric, MalformedFile for a
+  /// variable too large for the file.
   [[nodiscard]] ValueArray values(const NcVariable& variable, const NcSlab& slab, const Progress& progress = {}) const;
-  /// Throws MalformedFile if the file cannot hold the values of a slab, which may be read in parts.
+  /// Throws MalformedFile if the values of a slab, which may be read in parts, are too large for the file.
   void require_stored(const NcVariable& variable, const NcSlab& slab) const;
-  /// How many indices of a dimension lie in one block of the file; 1 if it is not stored in blocks.
+  /// Number of indices of a dimension in one chunk; 1 if the variable has no chunks.
   [[nodiscard]] std::size_t block_length(const NcVariable& variable, std::size_t dimension) const;
-  /// Bytes of the values in a block of the file, as far as the variable has them.
+  /// Bytes of a chunk's values, clipped to the variable.
   [[nodiscard]] std::uint64_t chunk_bytes(const NcVariable& variable, std::size_t item) const;
   [[nodiscard]] bool is_compressed() const noexcept { return !content_.empty(); }
 
@@ -77,12 +76,12 @@ class NcFile {
                    const Progress& progress) const;
 
   std::filesystem::path path_;
-  std::vector<unsigned char> content_;  ///< of a compressed file; the library reads from here
-  std::uint64_t bytes_ = 0;             ///< of the file, and of those that it leads to
+  std::vector<unsigned char> content_;  ///< content of a compressed file; the library reads from it
+  std::uint64_t bytes_ = 0;             ///< size of the file and those that it refers to
   int id_ = -1;
 };
 
-/// "uint8", ... ; "char", "string" or "user-defined" for types that hold no numbers.
+/// "uint8", ... ; "char", "string" or "user-defined" for non-numeric types.
 const char* nc_type_name(nc_type type) noexcept;
 bool is_numeric(nc_type type) noexcept;
 

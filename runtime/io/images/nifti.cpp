@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers of NIfTI-1 images.
+// Reads headers of NIfTI-1 images.
 //
 // Based on: R. W. Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004; nifti1.h.
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 348;
 static_assert(std::endian::native == std::endian::little, "headers are decoded on little-endian machines");
 
-/// The header's bytes, and numbers out of them in the file's byte order.
+/// The bytes of the header, with access to numbers in the file's byte order.
 class HeaderBytes {
  public:
   explicit HeaderBytes(std::vector<unsigned char> bytes) : bytes_(std::move(bytes)) {}
@@ -68,9 +68,9 @@ constexpr std::array<StoredType, 10> kTypes = {{{2, "uint8", 1},
 struct Header {
   std::vector<std::uint64_t> sizes;  ///< at least 3
   StoredType type{};
-  bool swapped = false;  ///< in the other byte order than this machine's
-  bool pair = false;     ///< values in an .img file beside
-  double slope = 0;      ///< 0: values as stored
+  bool swapped = false;  ///< not in this machine's byte order
+  bool pair = false;     ///< values are in a separate .img file
+  double slope = 0;      ///< 0: values are not scaled
   double intercept = 0;
   std::uint64_t vox_offset = 0;
   std::array<double, 8> pixdim{};
@@ -83,7 +83,7 @@ struct Header {
   double toffset = 0;
 };
 
-/// Finds the byte order; errors unless this is NIfTI-1.
+/// Detects the byte order; fails unless the file is NIfTI-1.
 void check_magic(HeaderBytes& bytes, const fs::path& path) {
   if (bytes.size() < kHeaderBytes)
     fail(ErrorCode::MalformedFile, path, "NIfTI header of {} bytes; expected {}", bytes.size(), kHeaderBytes);
@@ -171,7 +171,7 @@ std::string time_unit(int xyzt) {
 
 std::uint64_t read_vox_offset(const HeaderBytes& bytes, bool pair, const fs::path& path) {
   const double offset = bytes.get<float>(108);
-  // 0 in a single file is common and means the smallest possible; niftilib reads it so.
+  // 0 in a single file is common and stands for the minimum; niftilib reads it the same way.
   const double smallest = pair ? 0 : 352;
   constexpr double kLargest = 1e9;
   if (!pair && offset == 0) return 352;
@@ -205,10 +205,10 @@ Header parse_header(const fs::path& path) {
   return header;
 }
 
-/// Steps of 0, negative or NaN are what broken converters write for "unknown".
+/// Some converters write steps of 0, negative or NaN for "unknown".
 double step_or_one(double step) { return std::isfinite(step) && step > 0 ? step : 1.0; }
 
-/// nifti1.h, method 2: rotation from the quaternion, times pixdim, the third column times qfac.
+/// nifti1.h, method 2: the rotation of the quaternion times pixdim; the third column also times qfac.
 Eigen::Matrix<double, 3, 4> qform(const Header& header) {
   const auto [b, c, d, x, y, z] = header.quaternion;
   const double rest = 1.0 - (b * b + c * c + d * d);
@@ -217,7 +217,7 @@ Eigen::Matrix<double, 3, 4> qform(const Header& header) {
   rotation << a * a + b * b - c * c - d * d, 2 * b * c - 2 * a * d, 2 * b * d + 2 * a * c,  //
       2 * b * c + 2 * a * d, a * a + c * c - b * b - d * d, 2 * c * d - 2 * a * b,          //
       2 * b * d - 2 * a * c, 2 * c * d + 2 * a * b, a * a + d * d - c * c - b * b;
-  // Quaternions are stored as float: one that is longer than 1 by rounding is brought back to a rotation.
+  // Quaternions are stored as float, so rounding may make the norm exceed 1; normalise to a rotation.
   const double norm = a * a + b * b + c * c + d * d;
   rotation /= norm > 0 ? norm : 1.0;
   const double qfac = header.pixdim[0] < 0 ? -1.0 : 1.0;
@@ -251,7 +251,7 @@ RawGrid make_grid(const Header& header, const fs::path& path) {
   for (std::size_t a = 0; a < 3; ++a) grid.axes[a].unit = header.space_unit;
   if (n == 4) grid.axes[3].unit = header.time_unit;
   name_axes(grid);
-  if (n == 3 && std::isfinite(header.toffset)) {  // an image of one time
+  if (n == 3 && std::isfinite(header.toffset)) {  // an image of one time step
     Axis time = Axis::uniform(1, header.toffset);
     time.name = "t";
     time.unit = header.time_unit;
@@ -260,7 +260,7 @@ RawGrid make_grid(const Header& header, const fs::path& path) {
   return grid;
 }
 
-/// For .hdr/.img pairs: the other file of the two, with the same compression as the one given or the other.
+/// The other file of a .hdr/.img pair, with the same compression or with the other one.
 fs::path partner(const fs::path& path, const std::string& wanted) {
   const bool compressed = lower(path.extension().string()) == ".gz";
   const fs::path stem = compressed ? fs::path(path).replace_extension() : path;
@@ -273,7 +273,7 @@ fs::path partner(const fs::path& path, const std::string& wanted) {
        path.filename().string());
 }
 
-/// How values are scaled when they are read.
+/// The linear scaling of stored values.
 struct Scaling {
   double slope;
   double intercept;
@@ -281,7 +281,7 @@ struct Scaling {
   [[nodiscard]] bool is_plain() const {
     return slope == 0 || !std::isfinite(slope) || !std::isfinite(intercept) || (slope == 1 && intercept == 0);
   }
-  /// slope * v + intercept, as float for values of up to 16 bits and for float, else as double.
+  /// Returns slope * v + intercept: as float for float and values of up to 16 bits, else as double.
   [[nodiscard]] ValueArray apply(const ValueArray& values) const {
     return std::visit(
         [&]<class T>(const ValueVector<T>& stored) -> ValueArray {
@@ -306,7 +306,7 @@ StoredImage open_nifti(const fs::path& path) {
   StoredSamples& samples = image.samples;
   samples.path = header.pair && !is_img ? partner(path, ".img") : path;
   require_readable_file(samples.path);
-  // Bytes of a compressed file are counted after decompression.
+  // Offsets in a compressed file count decompressed bytes.
   const bool compressed = is_gzip(samples.path);
   samples.encoding = compressed ? Encoding::deflate : Encoding::raw;
   (compressed ? samples.skip : samples.offset) = header.vox_offset;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Headers of NRRD images, with the data attached or in a file of their own.
+// Reads headers of NRRD images, with attached data or a separate data file.
 //
 // Based on: G. Kindlmann, "Definition of NRRD File Format" (Teem), versions NRRD0001 to NRRD0005.
 #include <algorithm>
@@ -27,13 +27,13 @@ using Fields = std::map<std::string, std::string, std::less<>>;
 struct Text {
   Fields fields;
   std::uint64_t end = 0;        ///< first byte after the header
-  bool has_blank_line = false;  ///< which separates attached data
+  bool has_blank_line = false;  ///< before attached data
 };
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
 
-/// Fields of the definition, without the blanks that some of them may or may not have.
+/// Field names of the definition, without blanks, as some are spelled with and without.
 constexpr std::array<std::string_view, 31> kFieldNames = {
     "content",         "number",           "type",        "blocksize", "dimension",   "space",      "spacedimension",
     "sizes",           "spacings",         "thicknesses", "axismins",  "axismaxs",    "centers",    "centerings",
@@ -47,7 +47,7 @@ std::string without_blanks(std::string_view text) {
   return result;
 }
 
-/// One "field: description" line into `fields`; comments and key/value pairs are passed over.
+/// Parses one "field: description" line into `fields`; skips comments and key/value pairs.
 void parse_line(std::string_view line, Fields& fields, const fs::path& path) {
   if (line.starts_with('#') || line.find(":=") != std::string_view::npos) return;
   const std::size_t colon = line.find(": ");
@@ -138,7 +138,7 @@ StoredType read_type(const Fields& fields, const fs::path& path) {
   fail(ErrorCode::MalformedFile, path, "type {}; expected a type such as 'uint8', 'short' or 'float'", shown(text));
 }
 
-/// A field with a number per axis; NaN where it says so, and for all axes where there is no such field.
+/// A field with one number per axis; NaN for entries "nan", and for all axes if the field is absent.
 std::vector<double> per_axis(const Fields& fields, std::string_view name, std::size_t axes, const fs::path& path) {
   std::vector<double> values;
   const std::string text = optional_field(fields, name);
@@ -157,7 +157,7 @@ std::vector<double> per_axis(const Fields& fields, std::string_view name, std::s
   return values;
 }
 
-/// A field with a word per axis, or nothing.
+/// A field with one word per axis; empty if the field is absent.
 std::vector<std::string> words_per_axis(const Fields& fields, std::string_view name, std::size_t axes,
                                         const fs::path& path) {
   std::vector<std::string> result;
@@ -169,7 +169,7 @@ std::vector<std::string> words_per_axis(const Fields& fields, std::string_view n
   return result;
 }
 
-/// A field of `count` strings in quotation marks; empty ones if there is no such field.
+/// A field of `count` quoted strings; empty strings if the field is absent.
 std::vector<std::string> quoted_strings(const Fields& fields, std::string_view name, std::size_t count,
                                         const fs::path& path) {
   constexpr std::size_t kLongest = 1024;  // bytes of a string
@@ -200,7 +200,7 @@ std::vector<std::string> quoted_strings(const Fields& fields, std::string_view n
   return result;
 }
 
-/// Vectors as "(1,0,0) (0,1,0) none"; nullopt for none.
+/// Parses vectors such as "(1,0,0) (0,1,0) none"; nullopt for "none".
 std::vector<std::optional<Eigen::VectorXd>> vectors(std::string_view text, std::size_t length, const fs::path& path) {
   std::vector<std::optional<Eigen::VectorXd>> result;
   while (!(text = trim(text)).empty()) {
@@ -228,11 +228,11 @@ std::vector<std::optional<Eigen::VectorXd>> vectors(std::string_view text, std::
   return result;
 }
 
-/// The space that the directions live in; dimension 0 where the header names none.
+/// The space of the direction vectors; dimension 0 if the header has none.
 struct Space {
   std::size_t dimension = 0;
   bool anatomical = false;
-  bool flip_x = false;  ///< to LPS
+  bool flip_x = false;  ///< convert to LPS by changing the sign of x
   bool flip_y = false;
 };
 
@@ -269,12 +269,12 @@ Space read_space(const Fields& fields, const fs::path& path) {
 struct Header {
   std::vector<std::uint64_t> sizes;
   StoredType type{};
-  std::optional<std::size_t> list_axis;  ///< a list of images: read as time
-  std::vector<bool> kept;                ///< axis of the image
+  std::optional<std::size_t> list_axis;  ///< axis of a list of images, read as time
+  std::vector<bool> kept;                ///< by file axis: whether it is an axis of the image
   StoredSamples samples;
 };
 
-/// Sorts the axes: the image's own, at most one list of images, and axes inside of a value.
+/// Classifies the axes: axes of the image, at most one list of images, and axes of components of a value.
 void read_kinds(const Fields& fields, Header& header, const fs::path& path) {
   const auto kinds = words_per_axis(fields, "kinds", header.sizes.size(), path);
   for (std::size_t a = 0; a < kinds.size(); ++a) {
@@ -291,7 +291,7 @@ void read_kinds(const Fields& fields, Header& header, const fs::path& path) {
   }
 }
 
-/// The offset behind some more lines.
+/// The offset after `lines` more lines.
 std::uint64_t after_lines(const fs::path& path, std::uint64_t offset, std::uint64_t lines) {
   while (lines > 0) {
     const auto bytes = read_bytes(path, offset, kLongestHeader);
@@ -315,7 +315,7 @@ Encoding read_encoding(const Fields& fields, const fs::path& path) {
   fail(ErrorCode::UnsupportedFormat, path, "encoding {}; expected raw, gzip, ascii or hex", shown(name));
 }
 
-/// Whether bytes of samples come in the other order than this machine's.
+/// Whether samples are not in this machine's byte order.
 bool read_byte_order(const Fields& fields, const Header& header, const fs::path& path) {
   if (header.type.bytes == 1 || header.samples.encoding == Encoding::text) return false;
   const std::string& order = required(fields, "endian", path);
@@ -324,7 +324,7 @@ bool read_byte_order(const Fields& fields, const Header& header, const fs::path&
   return (lower(order) == "big") != (std::endian::native == std::endian::big);
 }
 
-/// Where samples begin, after the lines and bytes that are to be skipped.
+/// Sets the offset of the samples, after the lines and bytes to skip.
 void skip_to_samples(const Fields& fields, StoredSamples& samples, const fs::path& path) {
   std::uint64_t lines = 0;
   std::int64_t bytes = 0;
@@ -336,14 +336,14 @@ void skip_to_samples(const Fields& fields, StoredSamples& samples, const fs::pat
   if (!byte_skip.empty() && (!parse_number(byte_skip, bytes) || bytes < -1))
     fail(ErrorCode::MalformedFile, path, "byte skip {}; expected -1 or more", shown(byte_skip));
   samples.offset = after_lines(samples.path, samples.offset, lines);
-  if (bytes == -1) {  // the samples are the end of the file
+  if (bytes == -1) {  // -1: the samples end at the end of the file
     if (samples.encoding != Encoding::raw)
       fail(ErrorCode::MalformedFile, path, "byte skip -1 with encoding {}; expected it with raw only",
            shown(required(fields, "encoding", path)));
     const std::uint64_t size = size_of_file(samples.path);
     const std::uint64_t needed = checked_bytes(samples.sizes, bytes_of_type(samples.type), path);
     samples.offset = std::max(samples.offset, size - std::min(size, needed));
-  } else if (samples.encoding == Encoding::deflate) {  // bytes are skipped after decompression
+  } else if (samples.encoding == Encoding::deflate) {  // skips decompressed bytes
     samples.skip = static_cast<std::uint64_t>(bytes);
   } else {
     samples.offset += static_cast<std::uint64_t>(bytes);
@@ -377,7 +377,7 @@ Header parse_header(const Text& text, bool allow_outside_paths, const fs::path& 
   return header;
 }
 
-/// Steps and origins of axes without directions: spacings, else the range that the axis covers.
+/// Steps and origins of axes without directions: from spacings, else from the range of the axis.
 void scalar_geometry(const Fields& fields, Header& header, std::vector<double>& steps, std::vector<double>& origins,
                      const fs::path& path) {
   const std::size_t n = header.sizes.size();
@@ -394,9 +394,9 @@ void scalar_geometry(const Fields& fields, Header& header, std::vector<double>& 
   }
 }
 
-/// Puts the directions of the space into the rows and columns of the axes that have one. With fewer such axes than
-/// the space has dimensions, the image is a plane or line in it: the axes then hold lengths only. True if the
-/// directions were kept, that is, if the grid is in the space's frame.
+/// Fills the affine from the space directions of the axes. If fewer axes have directions than the space has dimensions,
+/// the image is a plane or line in it, and its axes get lengths only. Returns whether directions were used, so the grid
+/// is in the frame of the space.
 bool spatial_geometry(const Fields& fields, const Space& space, const std::vector<bool>& kept, Eigen::MatrixXd& affine,
                       Eigen::VectorXd& offset, const fs::path& path) {
   const auto directions = vectors(required(fields, "spacedirections", path), space.dimension, path);
@@ -435,7 +435,7 @@ bool spatial_geometry(const Fields& fields, const Space& space, const std::vecto
   return full;
 }
 
-/// Names and units, for the axes of the image in their order.
+/// Sets names and units of the image's axes.
 void label_axes(const Fields& fields, const Header& header, const Space& space, RawGrid& grid, const fs::path& path) {
   const auto labels = quoted_strings(fields, "labels", header.sizes.size(), path);
   const auto units = quoted_strings(fields, "units", header.sizes.size(), path);
@@ -451,7 +451,7 @@ void label_axes(const Fields& fields, const Header& header, const Space& space, 
     target.unit = units[a];
     if (a >= directions.size() || !directions[a] || row >= space.dimension) continue;
     if (target.unit.empty()) target.unit = space_units[row];
-    // Anatomical spaces are in millimetres by the convention of all programs that write them.
+    // All programs that write anatomical spaces use millimetres.
     if (target.unit.empty() && space.anatomical && row < 3) target.unit = "mm";
     ++row;
   }
@@ -461,7 +461,7 @@ void label_axes(const Fields& fields, const Header& header, const Space& space, 
   }
 }
 
-/// Checks fields that say nothing of the image's samples or places.
+/// Validates fields that do not affect samples or coordinates.
 void require_sound_rest(const Fields& fields, const Header& header, const Space& space, const fs::path& path) {
   per_axis(fields, "thicknesses", header.sizes.size(), path);
   for (const char* name : {"min", "max", "oldmin", "oldmax"}) {
@@ -478,10 +478,12 @@ void require_sound_rest(const Fields& fields, const Header& header, const Space&
 }
 
 RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, const fs::path& path) {
+  // geometry without directions
   std::vector<double> steps;
   std::vector<double> origins;
   scalar_geometry(fields, header, steps, origins, path);
-  std::vector<std::size_t> order;  // file axes in the order of the image's
+  // order of the axes
+  std::vector<std::size_t> order;  // file axes in the order of the image's axes
   for (std::size_t a = 0; a < header.kept.size(); ++a)
     if (header.kept[a]) order.push_back(a);
   if (header.list_axis) order.push_back(*header.list_axis);
@@ -495,10 +497,12 @@ RawGrid make_grid(const Fields& fields, Header& header, std::string& frame, cons
     affine(i, i) = steps[a];
     offset[i] = origins[a];
   }
+  // directions
   const Space space = read_space(fields, path);
   if (space.dimension > 0 && spatial_geometry(fields, space, header.kept, affine, offset, path) && space.anatomical)
     frame = "LPS";
   RawGrid grid = affine_grid(sizes, affine, offset, path);
+  // names, units, other fields
   label_axes(fields, header, space, grid, path);
   name_axes(grid);
   require_sound_rest(fields, header, space, path);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// read_image: which format a file has, and the steps that all formats share.
+// Implements read_image: detects the format and performs the steps common to all formats.
 #include <array>
 #include <memory>
 #include <new>
@@ -46,7 +46,7 @@ constexpr std::array<Extension, 17> kExtensions = {{{".nii", Format::Nifti},
                                                     {".nc4.gz", Format::NetCdf},
                                                     {".netcdf", Format::NetCdf}}};
 
-/// By extension, as users mean it; a file without a known one, by its first bytes.
+/// By extension; a file with an unknown extension, by its first bytes.
 Format format_of(const fs::path& path) {
   const std::string name = lower_name(path);
   for (const Extension& extension : kExtensions)

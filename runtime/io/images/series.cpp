@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Series of files as one image: what fits together, where each file lies along the new axis, and the values one file
-// after the other.
+// Implements file series as one image: checks that the files match, computes coordinates along the new axis, and reads
+// the values file by file.
 #include "tegl/io/series.hpp"
 
 #include <algorithm>
@@ -26,13 +26,13 @@ namespace {
 
 using namespace io_detail;
 
-/// One file of the series without its values.
+/// The header of one file of the series.
 struct Member {
   fs::path path;
   RawGrid grid;
   ImageInfo info;
   std::size_t type = 0;  ///< index of ValueArray
-  double at = 0;         ///< where it lies along the new axis
+  double at = 0;         ///< coordinate along the new axis
 };
 
 ReadImageOptions member_options(const SeriesOptions& options, const Progress& progress) {
@@ -63,12 +63,13 @@ const char* name_of_type(std::size_t type) {
   return type_name(array);
 }
 
-/// Throws unless `member` has the samples of `first` at the same places.
+/// Throws unless `member` has the same grid as `first`, within the tolerance.
 void require_same_grid(const Member& member, const Member& first) {
   if (sizes_of(member.grid) != sizes_of(first.grid))
     fail(ErrorCode::UnsupportedData, member.path, "has {} samples; expected {}, as {}",
          shape_text(sizes_of(member.grid)), shape_text(sizes_of(first.grid)), first.path.string());
-  constexpr double kTolerance = 1e-3;  // of a step: what writers lose by rounding
+  constexpr double kTolerance = 1e-3;  // of a step; allows for rounding by writers
+  // axes: unit and coordinates
   for (std::size_t a = 0; a < first.grid.axes.size(); ++a) {
     const Axis& axis = member.grid.axes[a];
     const Axis& expected = first.grid.axes[a];
@@ -89,7 +90,7 @@ void require_same_grid(const Member& member, const Member& first) {
            first.path.string());
     }
   }
-  // How far the farthest corner may be displaced, in steps of the finest axis.
+  // World map: maximum displacement of the farthest corner, in steps of the finest axis.
   double least = std::abs(first.grid.axes[0].step());
   double extent = 1;
   for (const Axis& axis : first.grid.axes) {
@@ -116,8 +117,8 @@ void require_same(const Member& member, const Member& first) {
   require_same_grid(member, first);
 }
 
-/// Where the files lie along the first of the axes that they leave out and differ along; empty if there is none. The
-/// axis points to where all files say that it does.
+/// The coordinates of the files along the first removed axis in which they differ; empty if there is none. `found` gets
+/// its direction if all files agree.
 std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAxis& found) {
   const std::vector<SingleAxis>& singles = members.front().grid.single;
   for (std::size_t s = 0; s < singles.size(); ++s) {
@@ -126,7 +127,7 @@ std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAx
     for (const Member& member : members) {
       if (member.grid.single.size() != singles.size()) return {};
       const Axis& axis = member.grid.single[s].axis;
-      // Many files count from a day of their own, at which all of them are 0.
+      // Files may each have their own reference time, with coordinate 0.
       const std::optional<double> at = convert_time(axis[0], axis.unit, unit);
       if (!at)
         fail(
@@ -144,7 +145,7 @@ std::vector<double> own_coordinates(const std::vector<Member>& members, SingleAx
   return {};
 }
 
-/// Who says where the members lie.
+/// The source of the members' coordinates.
 enum class Says { header, step, caller };
 
 void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder order) {
@@ -167,8 +168,8 @@ void require_monotone(const std::vector<Member>& members, Says says, SeriesOrder
   }
 }
 
-/// Where the members lie, in a unit that is asked for instead of that of their headers, and its name: hours since the
-/// same day for days since then.
+/// Converts the members' coordinates to the requested unit, and returns its name: for instance days to hours since the
+/// same day.
 std::string converted(std::vector<Member>& members, const std::string& own, const std::string& asked) {
   if (own == asked) return own;
   const std::string since = split_time_unit(own).since;
@@ -183,7 +184,7 @@ std::string converted(std::vector<Member>& members, const std::string& own, cons
   return unit;
 }
 
-/// The new axis. Says where each member lies, and sorts them by that if it is asked for.
+/// Makes the new axis: sets the coordinate of each member, and sorts the members by it if requested.
 SingleAxis make_axis(std::vector<Member>& members, const SeriesOptions& options) {
   SingleAxis found;
   const bool by_coordinate = options.order == SeriesOrder::coordinate;
@@ -224,7 +225,7 @@ void require_sound(std::span<const fs::path> files, const SeriesOptions& options
                             std::numeric_limits<double>::min()));
 }
 
-/// The headers of all files in their order, compared; a coordinate that is given goes with its file.
+/// Reads and compares the headers of all files, in their order. Given coordinates stay with their files.
 std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOptions& options) {
   std::vector<std::size_t> order(files.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -247,7 +248,7 @@ std::vector<Member> read_headers(std::span<const fs::path> files, const SeriesOp
   return members;
 }
 
-/// Adds the values of a file behind those of others.
+/// Appends the values of a file.
 void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::path& path) {
   std::visit(
       [&]<class T>(ValueVector<T>& values) {
@@ -259,8 +260,9 @@ void append(ValueArray& to, ValueArray&& from, std::size_t expected, const fs::p
       to);
 }
 
-/// The series as layers, a file each.
+/// Opens the series with one file per layer.
 LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions& options) {
+  // headers, coordinates and grid
   std::vector<Member> members = read_headers(files, options);
   auto [last, direction] = make_axis(members, options);
   RawLayers result;
@@ -270,6 +272,7 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
   if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
   std::vector<fs::path> paths;
   for (const Member& member : members) paths.push_back(member.path);
+  // reader of layers
   const auto sizes = sizes_of(first);
   const std::size_t layer =
       std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, [](std::size_t a, std::size_t b) { return a * b; });
@@ -306,7 +309,7 @@ LayersOfFiles open_several(std::span<const fs::path> files, const SeriesOptions&
   return {open_dicom_files(files, options), {files.begin(), files.end()}};
 }
 
-/// One file or several, in this process.
+/// Reads one or several files in this process.
 ImageOfFiles read_files(std::span<const fs::path> files, const SeriesOptions& options) {
   if (files.size() == 1) return {read_member(files[0], Extent::whole, options, options.progress), {files[0]}};
   auto [layers, order] = open_several(files, options);
@@ -328,7 +331,7 @@ bool is_read_separately(std::span<const fs::path> files, const SeriesOptions& op
   return options.separate_process && !options.raw && needs_separate_process(files);
 }
 
-/// Throws for what only several files can be asked for.
+/// Throws if an option for several files is used with one file.
 void require_several(std::span<const fs::path> files, const SeriesRequest& request, const SeriesWords& words) {
   if (files.size() != 1) return;
   for (const auto& [is_given, word] :
@@ -340,7 +343,7 @@ void require_several(std::span<const fs::path> files, const SeriesRequest& reque
           fmt::format("{} with one file, {}; expected several files that become one image", *word, files[0].string()));
 }
 
-/// Throws if these are in a shell's order, which puts frame_10 before frame_2.
+/// Throws if the files are in a shell's order, with frame_10 before frame_2.
 void require_order_that_is_meant(std::span<const fs::path> files, const SeriesWords& words) {
   for (std::size_t i = 1; i < files.size(); ++i) {
     const std::string& a = files[i - 1].native();
@@ -411,7 +414,7 @@ ReadSeriesResult read_series(std::span<const fs::path> files, const SeriesOption
 
 OpenSeriesResult open_series(std::span<const fs::path> files, const SeriesOptions& options) {
   require_sound(files, options);
-  SeriesOptions silent = options;  // layers are read by whoever asks for them, and tells how far that is
+  SeriesOptions silent = options;  // the caller reads the layers and reports progress itself
   silent.progress = nullptr;
   const auto open = [&] { return open_files(files, silent); };
   LayersOfFiles opened = is_read_separately(files, options) ? open_separately(files[0], open) : open();

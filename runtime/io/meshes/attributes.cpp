@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Checks and file names of attributes.
+// Implements validation and file names of attributes.
 #include "meshes/attributes.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ bool is_color_of_bytes(const Attribute& attribute) {
 
 std::string FileNames::make(const std::string& wished) {
   if (taken_.insert(wished).second) return wished;
-  // Numbers below the next one are taken: many equal names need one step each.
+  // All numbers below `next` are taken, so each of many equal names needs one step.
   std::size_t& next = next_.try_emplace(wished, 2).first->second;
   for (;;)
     if (std::string name = fmt::format("{}_{}", wished, next++); taken_.insert(name).second) return name;

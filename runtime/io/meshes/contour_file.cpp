@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Streamed contours to VTKHDF.
+// Implements ContourFile: streamed contours in VTKHDF files.
 #include <type_traits>
 
 #include "base/common.hpp"
@@ -44,7 +44,7 @@ struct ContourFile<N, Real>::Parts {
       : writer(path, layout_of(path, grid, isovalue, std::is_same_v<Real, float>, compression)) {}
 
   using Vertex = typename ContourSink<N, Real>::Vertex;
-  /// Hands rows on as double, a block at a time.
+  /// Converts rows to double and passes them on in blocks.
   void append(std::span<const Vertex> rows, void (VtkhdfWriter::*append_block)(std::span<const double>)) {
     while (!rows.empty()) {
       const auto block = rows.first(std::min(kMostRows, rows.size()));
@@ -56,7 +56,7 @@ struct ContourFile<N, Real>::Parts {
   }
 
   VtkhdfWriter writer;
-  std::vector<double> numbers;  ///< of a block
+  std::vector<double> numbers;  ///< rows of one block
 };
 
 template <int N, Coordinate Real>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours as segments, polygons and polyhedra, into VTU and VTKHDF.
+// Writes contours as segments, polygons and polyhedra to VTU and VTKHDF.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 using io_detail::ByteSink;
 using io_detail::VtuArray;
 
-/// VTK's numbers of line, polygon, polyhedron.
+/// VTK's cell types of line, polygon and polyhedron, by dimension.
 constexpr std::array<unsigned char, 4> kFacetTypes = {1, 3, 7, 42};
 
-/// The facets of the highest dimension as cells of a file.
+/// The facets of the highest dimension as cells of a VTK file.
 template <int N, class Real>
 class FacetCells {
  public:
@@ -30,7 +30,7 @@ class FacetCells {
 
   explicit FacetCells(const FacetHierarchy<N, Real>& facets) : facets_(facets), point_counts_(facets.count(kDim)) {
     for (std::size_t f = 0; f < point_counts_.size(); ++f) {
-      // As many as segments, but for polyhedra.
+      // Segments and polygons: the number of boundary facets equals the number of points.
       const std::size_t points = kDim < 3 ? facets.down(kDim, f).size() : facets.points_of(kDim, f).size();
       point_counts_[f] = static_cast<Index>(points);
       points_ += points;
@@ -42,7 +42,7 @@ class FacetCells {
   [[nodiscard]] std::vector<Index> points(std::size_t f) const { return facets_.points_of(kDim, f); }
   [[nodiscard]] Index point_count(std::size_t f) const noexcept { return point_counts_[f]; }
 
-  /// VTK's description of a polyhedron: how many polygons; of each how many points, and these.
+  /// VTK's description of a polyhedron: the number of polygons; for each the number of points, then the points.
   [[nodiscard]] std::vector<Index> polygons(std::size_t f) const {
     const auto down = facets_.down(kDim, f);
     const auto signs = facets_.down_signs(kDim, f);
@@ -55,7 +55,7 @@ class FacetCells {
     }
     return result;
   }
-  /// The length of that.
+  /// Length of polygons(f).
   [[nodiscard]] std::size_t polygons_size(std::size_t f) const noexcept {
     const auto down = facets_.down(kDim, f);
     std::size_t size = 1 + down.size();
@@ -69,7 +69,7 @@ class FacetCells {
   std::uint64_t points_ = 0;
 };
 
-/// The three coordinates that VTK has.
+/// The first three coordinates, which VTK stores as a point.
 template <int N, class Real>
 std::array<Real, 3> first_three(const std::array<Real, N>& row) noexcept {
   std::array<Real, 3> result{};
@@ -89,7 +89,7 @@ void add_rows(const Buffer<std::array<Real, N>>& rows, const char* name, const c
                       [&rows](ByteSink& sink, std::size_t v) { sink.put(rows[v][3]); }});
 }
 
-/// The arrays of vertex numbers, of the type `Id`.
+/// The arrays of vertex numbers, with values of type `Id`.
 template <class Id, int N, class Real>
 std::vector<VtuArray> topology_of(const FacetCells<N, Real>& cells) {
   const std::size_t count = cells.count();
@@ -119,7 +119,7 @@ std::vector<VtuArray> topology_of(const FacetCells<N, Real>& cells) {
   return arrays;
 }
 
-/// Whether numbers of points, and the longest array of them, fit into 32 bits.
+/// Whether vertex numbers and the length of the longest array of them fit into 32 bits.
 template <int N, class Real>
 bool fits_int32(const FacetHierarchy<N, Real>& facets, const FacetCells<N, Real>& cells) {
   std::uint64_t most = std::max<std::uint64_t>(facets.vertices.size(), cells.point_numbers());
@@ -147,6 +147,7 @@ void write_vtu_facets(const FacetHierarchy<N, Real>& facets, const fs::path& pat
     add_rows<N, Real>(facets.normals, io_detail::kNormals, io_detail::kNormalTimes, normals, grid.point_arrays);
     grid.point_arrays.push_back(std::move(normals));
   }
+  // cell arrays
   const auto& places = facets.levels[N - 1].places;
   const auto add_cell_array = [&](const char* name, const char* type, unsigned bytes, auto put) {
     grid.cell_arrays.push_back({name, type, 1, places.size(), bytes, places.size(), put});
@@ -188,6 +189,7 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& 
     numbers.clear();
     for (std::size_t v = from; v < to; ++v) numbers.insert(numbers.end(), rows[v].begin(), rows[v].end());
   };
+  // points and normals
   in_blocks(facets.vertices.size(), [&](std::size_t from, std::size_t to) {
     gather_rows(facets.vertices, from, to);
     writer.append_vertices(numbers);
@@ -196,6 +198,7 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& 
     gather_rows(facets.normals, from, to);
     writer.append_normals(numbers);
   });
+  // cells
   std::int64_t end = 0;
   in_blocks(cells.count(), [&](std::size_t from, std::size_t to) {
     std::vector<Index> ids;
@@ -207,6 +210,7 @@ void write_vtkhdf_facets(const FacetHierarchy<N, Real>& facets, const fs::path& 
     }
     writer.append_cells(kFacetTypes[N - 1], ids, ends);
   });
+  // cell arrays
   const auto& places = facets.levels[N - 1].places;
   std::size_t order = 0;
   const auto add_cell_array = [&](const char* name, const auto& value) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Triangles and lines of glTF 2.0 files, of all meshes in the scene, placed by their nodes. Materials, skins, animation
-// and compressed buffers are outside of what is read.
+// Reads triangles and lines of glTF 2.0 files: all meshes of the scene, transformed by their nodes. Materials, skins,
+// animation and compressed buffers are not read.
 //
-// A small file can ask for much: text nested deeply, buffers of the same bytes, primitives in many places. So nesting
-// is limited before the text is parsed, buffers are views of one copy, and the mesh is counted before it is made.
+// A small file can describe a large result: deeply nested JSON, several buffers of the same bytes, primitives with many
+// instances. So nesting is limited before the text is parsed, buffers are views of one copy, and the mesh is counted
+// before it is made.
 //
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.5 to 3.7 and 4.4.
 #include <algorithm>
@@ -32,8 +33,8 @@ namespace {
 using Json = nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
-constexpr int kDeepest = 64;          ///< of nodes below nodes
-constexpr std::size_t kNested = 256;  ///< arrays and objects of JSON in each other; extras hold anything
+constexpr int kDeepest = 64;          ///< maximum depth of the node tree
+constexpr std::size_t kNested = 256;  ///< maximum nesting of JSON arrays and objects; extras hold anything
 
 /// Whether brackets and braces outside of strings are nested deeper than `kNested`.
 bool is_nested_too_deeply(std::span<const unsigned char> text) {
@@ -88,7 +89,7 @@ int hex_digit(char c) {
   return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// A URI with its escapes, such as %20, as the bytes that they stand for; other percent signs stay.
+/// Decodes the escapes of a URI, such as %20; other percent signs stay.
 std::string percent_decoded(std::string_view uri) {
   std::string result;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -100,13 +101,14 @@ std::string percent_decoded(std::string_view uri) {
   return result;
 }
 
-/// "http" of "http://x": the letters, digits and "+-." before a colon (RFC 3986, section 3.1); empty if there is none.
+/// The scheme of a URI, "http" for "http://x": letters, digits and "+-." before a colon (RFC 3986, section 3.1); empty
+/// without one.
 std::string_view scheme_of(std::string_view uri) {
   const std::size_t colon = uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
   return colon != std::string_view::npos && uri[colon] == ':' ? uri.substr(0, colon) : std::string_view();
 }
 
-/// An accessor's place, checked to lie within its buffer.
+/// The data of an accessor, checked to lie within its buffer.
 struct View {
   std::span<const unsigned char> bytes;
   std::size_t stride = 0;
@@ -126,7 +128,7 @@ class GltfReader {
     mesh_.dim = 0;
     count_scene();
     read_scene();
-    // Parts without normals leave those of the others without a use.
+    // If a primitive has no normals, all normals are dropped.
     if (mesh_.normals.size() != mesh_.coordinates.size()) mesh_.normals.clear();
     take_attributes();
     read_extras();
@@ -180,7 +182,7 @@ class GltfReader {
          extensions.size() > kShown ? ", ..." : "");
   }
 
-  /// A member of an object, or null.
+  /// A member of an object; null if there is none.
   static const Json& member(const Json& object, const char* name) {
     static const Json kNull;
     if (!object.is_object()) return kNull;
@@ -191,7 +193,7 @@ class GltfReader {
     const Json& value = member(object, name);
     return value.is_string() ? value.get<std::string>() : std::string();
   }
-  /// A whole number of at least 0; `absent` if there is no such member.
+  /// A non-negative integer; `absent` if there is no such member.
   [[nodiscard]] std::size_t number_at(const Json& object, const char* name, std::optional<std::size_t> absent) const {
     const Json& value = member(object, name);
     if (value.is_null() && absent) return *absent;
@@ -217,7 +219,7 @@ class GltfReader {
     }
   }
 
-  /// The bytes of a data URI, or of a file, which is read once for all buffers that name it.
+  /// The bytes of a data URI or a file. A file is read once for all buffers that name it.
   [[nodiscard]] std::span<const unsigned char> buffer_of(const std::string& uri) {
     const std::string_view scheme = scheme_of(uri);
     if (scheme.empty()) {
@@ -267,7 +269,7 @@ class GltfReader {
     return view;
   }
 
-  /// Calls `use` with the meshes of the scene and their places.
+  /// Calls `use` with each mesh of the scene and its transformation.
   template <class Use>
   void for_each_mesh(const Use& use) {
     const Json& scenes = member(json_, "scenes");
@@ -284,15 +286,15 @@ class GltfReader {
         [&](std::size_t mesh, const Eigen::Affine3d& place) { read_primitives(element("meshes", mesh), place); });
   }
 
-  /// Numbers that a mesh adds to the result.
+  /// Size of a mesh's contribution to the result.
   struct MeshSize {
     std::uint64_t primitives = 0;
     std::uint64_t vertices = 0;
     std::uint64_t corners = 0;
-    std::uint64_t bytes = 0;  ///< memory that all of them take, with their attributes and the time for each primitive
+    std::uint64_t bytes = 0;  ///< memory of all, with attributes and a time allowance per primitive
   };
 
-  /// Counts the vertices and simplices of all instances, before they are made.
+  /// Counts the vertices and simplices of all instances, before any are made.
   void count_scene() {
     std::map<std::size_t, MeshSize> sizes;
     MeshSize all;
@@ -314,13 +316,13 @@ class GltfReader {
     mesh_.simplices.reserve(static_cast<std::size_t>(all.corners));
   }
 
-  /// a += b, with the largest number for all that are larger.
+  /// Saturating a += b.
   static void add_to(std::uint64_t& a, std::uint64_t b) {
     if (__builtin_add_overflow(a, b, &a)) a = std::numeric_limits<std::uint64_t>::max();
   }
 
   [[nodiscard]] MeshSize size_of(const Json& mesh) const {
-    constexpr std::uint64_t kPrimitiveBytes = 1024;  // for the time that a primitive takes, even if it is empty
+    constexpr std::uint64_t kPrimitiveBytes = 1024;  // allowance for the time of a primitive, even an empty one
     MeshSize size;
     const Json& primitives = member(mesh, "primitives");
     for (std::size_t i = 0; primitives.is_array() && i < primitives.size(); ++i) {
@@ -332,7 +334,7 @@ class GltfReader {
       std::uint64_t numbers = 3;
       for (const auto& [semantic, accessor] : attributes.items())
         numbers += semantic.starts_with('_') ? 4 : semantic == "NORMAL" ? 3 : 0;
-      // A buffer has a byte or more for each vertex and corner: no product here exceeds 64 bits.
+      // A buffer has at least a byte for each vertex and corner, so products do not exceed 64 bits.
       ++size.primitives;
       add_to(size.vertices, vertices);
       add_to(size.corners, corners);
@@ -374,7 +376,7 @@ class GltfReader {
 
   template <class Use>
   void visit_node(std::size_t index, const Eigen::Affine3d& parent, int depth, const Use& use) {
-    // The specification wants a forest; a cycle or a node in many places would never end.
+    // The specification requires a forest. A cycle would never end, and shared nodes would multiply.
     const std::size_t nodes = member(json_, "nodes").size();
     if (depth > kDeepest || ++visited_ > nodes) malformed("nodes that are no tree, or deeper than {}", kDeepest);
     const Json& node = element("nodes", index);
@@ -403,6 +405,7 @@ class GltfReader {
 
   void read_primitive(const Json& primitive, const Eigen::Affine3d& place) {
     const auto first = static_cast<std::size_t>(mesh_.coordinates.size() / 3);
+    // vertices
     const Json& attributes = member(primitive, "attributes");
     const View points =
         vectors(attributes, "POSITION", mesh_.coordinates, [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
@@ -410,6 +413,7 @@ class GltfReader {
         });
     if (attributes.contains("NORMAL")) read_normals(attributes, place, points.count);
     read_attributes(attributes, points.count);
+    // simplices
     const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
     const bool indexed = primitive.contains("indices");
     View indices;
@@ -426,7 +430,7 @@ class GltfReader {
     }
   }
 
-  /// Appends an attribute's vectors, each mapped by `map`.
+  /// Appends the vectors of an attribute, each transformed by `map`.
   template <class Map>
   View vectors(const Json& attributes, const char* name, Buffer<double>& to, const Map& map) const {
     const View view = view_of(number_at(attributes, name, std::nullopt), 3);
@@ -444,7 +448,7 @@ class GltfReader {
 
   void read_normals(const Json& attributes, const Eigen::Affine3d& place, std::size_t points) {
     const Eigen::Matrix3d linear = place.linear();
-    // The inverse transpose, but for a factor: this exists always.
+    // The cofactor matrix is the inverse transpose up to a factor, and exists for singular matrices too.
     Eigen::Matrix3d cofactors;
     for (int a = 0; a < 3; ++a) cofactors.col(a) = linear.col((a + 1) % 3).cross(linear.col((a + 2) % 3));
     if (linear.determinant() < 0) cofactors = -cofactors;
@@ -455,7 +459,7 @@ class GltfReader {
     if (view.count != points) malformed("{} normals of {} positions", view.count, points);
   }
 
-  /// Application-specific attributes of floats: those whose names start with an underscore (section 3.7.2.1).
+  /// Reads application-specific attributes of floats, whose names start with an underscore (section 3.7.2.1).
   void read_attributes(const Json& attributes, std::size_t points) {
     constexpr std::size_t kFloat = 5126;
     constexpr std::array<std::string_view, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -482,11 +486,12 @@ class GltfReader {
     }
   }
 
-  /// The attributes that all parts have; names, units and order as the writer left them in the first mesh.
+  /// Keeps the attributes that all primitives have; names, units and order are from the extras of the first mesh.
   void take_attributes() {
     const auto is_whole = [&](const Attribute& attribute) {
       return attribute.values.size() == mesh_.coordinates.size() / 3 * static_cast<std::size_t>(attribute.width);
     };
+    // attributes of the writer, in its order
     FileNames names({});
     std::vector<bool> taken(attributes_.size(), false);
     const Json& meshes = member(json_, "meshes");
@@ -501,6 +506,7 @@ class GltfReader {
       attribute.name = names.make(attribute.name);
       attribute.unit = text_at(text, "unit");
     }
+    // other attributes
     for (std::size_t i = 0; i < attributes_.size(); ++i) {
       if (taken[i] || !is_whole(attributes_[i])) continue;
       attributes_[i].name = names.make(attributes_[i].name.empty() ? "_" : attributes_[i].name);
@@ -522,7 +528,7 @@ class GltfReader {
     }
   }
 
-  /// What the writer left: whether the mesh is planar, names and units.
+  /// Reads the extras of the writer: whether the mesh is planar, names and units.
   void read_extras() {
     const Json& extras = member(member(member(json_, "asset"), "extras"), "tegl");
     if (!extras.is_object()) return;
@@ -549,14 +555,14 @@ class GltfReader {
   bool allow_outside_paths_;
   Json json_;
   Bytes file_;
-  std::map<fs::path, Bytes> files_;                      ///< further files that were read
-  std::deque<Bytes> decoded_;                            ///< data URIs
-  std::span<const unsigned char> binary_;                ///< of file_
-  std::vector<std::span<const unsigned char>> buffers_;  ///< of file_, files_ and decoded_
-  std::uint64_t all_bytes_ = 0;                          ///< of this and the further files
+  std::map<fs::path, Bytes> files_;                      ///< other files, by path
+  std::deque<Bytes> decoded_;                            ///< decoded data URIs
+  std::span<const unsigned char> binary_;                ///< view into file_
+  std::vector<std::span<const unsigned char>> buffers_;  ///< views into file_, files_ and decoded_
+  std::uint64_t all_bytes_ = 0;                          ///< size of file_ and files_
   std::size_t visited_ = 0;
-  std::vector<Attribute> attributes_;             ///< of all parts so far, by the names in the file
-  std::map<std::string, std::size_t> semantics_;  ///< the place of each, by the name with its underscore
+  std::vector<Attribute> attributes_;             ///< of all primitives so far, named as in the file
+  std::map<std::string, std::size_t> semantics_;  ///< index of each, by its name with the underscore
   Mesh mesh_;
 };
 

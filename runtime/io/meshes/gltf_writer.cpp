@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// glTF 2.0: .glb, and .gltf with the buffer inside as base64, so that it is one file. Coordinates are float, as the
-// format has no other; axis names and what is needed to read a mesh back are in asset.extras. Without normals viewers
-// shade faces flat, as the specification asks. Vertex attributes of up to four numbers become _NAME attributes, whose
-// names and units are in the mesh's extras; the format has no place for others.
+// Writes glTF 2.0: .glb, and .gltf as a single file with the buffer as base64. Coordinates are float, the only type of
+// the format. Axis names and the data to read the mesh back are in asset.extras. Without normals viewers shade faces
+// flat, as the specification requires. Vertex attributes of up to four numbers become _NAME attributes, with names and
+// units in the mesh's extras; other attributes are not supported by the format.
 //
 // Based on: Khronos, "glTF 2.0 Specification" (ISO/IEC 12113:2022), sections 3.6, 3.7 and 4.4.
 #include <algorithm>
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct Positions {
   std::vector<std::array<float, 3>> values;
-  std::vector<std::array<float, 3>> normals;  ///< as many, or none
+  std::vector<std::array<float, 3>> normals;  ///< one per vertex, or none
   std::array<float, 3> low{};
   std::array<float, 3> high{};
 };
@@ -46,7 +46,7 @@ Positions positions(const Mesh& mesh, const std::filesystem::path& path) {
   return result;
 }
 
-/// Normals have to be of length 1 in glTF: those of length 0 become (0, 0, 1).
+/// Converts normals; glTF requires length 1, so those of length 0 become (0, 0, 1).
 std::vector<std::array<float, 3>> normals(const Mesh& mesh) {
   std::vector<std::array<float, 3>> result(mesh.normals.size() / static_cast<std::size_t>(mesh.space_dim));
   for (std::size_t v = 0; v < result.size(); ++v) {
@@ -57,7 +57,7 @@ std::vector<std::array<float, 3>> normals(const Mesh& mesh) {
   return result;
 }
 
-/// The vertex attributes that glTF has a place for, as float.
+/// A vertex attribute in a form that glTF supports, as float.
 struct GltfAttribute {
   std::string semantic;
   const Attribute* attribute;
@@ -70,7 +70,7 @@ bool is_color(const Attribute& attribute) {
                      [](double value) { return value >= 0.0 && value <= 1.0; });
 }
 
-/// Colours of vertices are linear in glTF (section 3.7.2.1): the numbers are decoded as IEC 61966-2-1 has it.
+/// Converts colours from sRGB to linear (IEC 61966-2-1), as glTF requires for vertices (section 3.7.2.1).
 std::vector<float> linear(const Attribute& attribute) {
   std::vector<float> result;
   for (const double value : attribute.values)
@@ -78,7 +78,7 @@ std::vector<float> linear(const Attribute& attribute) {
   return result;
 }
 
-/// Of up to four numbers; names start with an underscore (section 3.7.2.1) and are spelled with plain capitals.
+/// Selects attributes of up to four numbers. Names start with an underscore (section 3.7.2.1) and are in capitals.
 std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesystem::path& path) {
   std::vector<GltfAttribute> result;
   FileNames names({});
@@ -101,7 +101,7 @@ std::vector<GltfAttribute> gltf_attributes(const Mesh& mesh, const std::filesyst
   return result;
 }
 
-/// Everything that the buffer holds, in its order.
+/// The contents of the buffer, in their order.
 struct Content {
   const Mesh& mesh;
   Positions points;
@@ -116,7 +116,7 @@ Json asset(const Mesh& mesh) {
   return {{"version", "2.0"}, {"generator", "tegl"}, {"extras", {{"tegl", extras}}}};
 }
 
-/// Everything but the buffer itself. glTF allows no empty accessor: an empty mesh is a scene without nodes.
+/// The JSON document. glTF allows no empty accessor, so an empty mesh is a scene without nodes.
 Json document(const Content& content, std::size_t buffer_bytes) {
   const auto& [mesh, points, attributes] = content;
   Json json = {{"asset", asset(mesh)}, {"scene", 0}};
@@ -137,10 +137,12 @@ Json document(const Content& content, std::size_t buffer_bytes) {
                     {"material", 0},
                     {"mode", mesh.dim == 1 ? kLines : kTriangles}};
   if (!points.normals.empty()) primitive["attributes"]["NORMAL"] = 2;
+  // scene, node, mesh, material
   json["scenes"] = Json::array({Json{{"nodes", {0}}}});
   json["nodes"] = Json::array({Json{{"mesh", 0}, {"name", "contour"}}});
   json["meshes"] = Json::array({Json{{"name", "contour"}, {"primitives", Json::array({primitive})}}});
   json["materials"] = Json::array({Json{{"name", "contour"}, {"doubleSided", true}}});
+  // positions and indices
   json["accessors"] = Json::array(
       {Json{{"bufferView", 0},
             {"componentType", kFloat},
@@ -160,6 +162,7 @@ Json document(const Content& content, std::size_t buffer_bytes) {
                                    {"byteLength", position_bytes},
                                    {"target", kVertexBuffer}});
   }
+  // vertex attributes
   std::size_t offset = position_bytes + index_bytes + (points.normals.empty() ? 0 : position_bytes);
   for (const GltfAttribute& added : attributes) {
     constexpr std::array<const char*, 4> kTypes = {"SCALAR", "VEC2", "VEC3", "VEC4"};
@@ -173,7 +176,7 @@ Json document(const Content& content, std::size_t buffer_bytes) {
     json["bufferViews"].push_back(
         {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}, {"target", kVertexBuffer}});
     offset += bytes;
-    if (!added.semantic.starts_with('_')) continue;  // COLOR_0 is there a second time, by its name
+    if (!added.semantic.starts_with('_')) continue;  // COLOR_0 repeats an attribute that has its own name too
     Json& texts = json["meshes"][0]["extras"]["tegl"]["attributes"];
     texts.push_back({{"semantic", added.semantic}, {"name", added.attribute->name}, {"unit", added.attribute->unit}});
   }
@@ -181,7 +184,7 @@ Json document(const Content& content, std::size_t buffer_bytes) {
   return json;
 }
 
-/// base64 in pieces of a multiple of 3 bytes, as the two parts of the buffer come one after the other.
+/// base64 in pieces of a multiple of 3 bytes, so the parts of the buffer can be encoded one after the other.
 std::string base64(std::span<const unsigned char> bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -200,7 +203,7 @@ std::span<const unsigned char> as_raw(const Range& range) {
   return {reinterpret_cast<const unsigned char*>(range.data()), range.size() * sizeof(range[0])};
 }
 
-/// What the buffer holds, part after part.
+/// The parts of the buffer, in their order.
 std::vector<std::span<const unsigned char>> buffer_parts(const Content& content) {
   std::vector<std::span<const unsigned char>> parts = {as_raw(content.points.values), as_raw(content.mesh.simplices),
                                                        as_raw(content.points.normals)};

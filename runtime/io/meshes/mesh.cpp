@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes: between contours and files.
+// Implements conversion between meshes and contours, and the selection of mesh formats.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,8 +54,8 @@ void check_mesh(const Mesh& mesh, const fs::path& path) {
     fail(ErrorCode::InvalidArgument, path, "mesh with vertex number {}; expected less than {}", *bad, vertices);
 }
 
-/// Triangles go into every format, and lines into those but STL; tetrahedra, and a fourth coordinate, only where
-/// tetrahedra go.
+/// Every format supports triangles, and all except STL support lines. Tetrahedra and a fourth coordinate are only
+/// supported by formats with most_dim = 3.
 void check_combination(const Mesh& mesh, const MeshFileFormat& format, const fs::path& path) {
   if (mesh.dim < format.least_dim)
     fail(ErrorCode::UnsupportedFormat, path,

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Wavefront OBJ, of any program: vertices by number as the file has them, triangles or, where there are none, segments.
-// Numbers are read as double, each digit of them; nothing is joined, sorted or left out, so that what the writer wrote
-// comes back bit by bit. Colours, texture coordinates, groups, materials and free-form surfaces have no place in a mesh
-// and are passed over.
+// Reads Wavefront OBJ of any program: vertices in the file's order, triangles or, if there are none, segments. Numbers
+// are read as double with all digits, and nothing is merged, sorted or removed, so files of the writer are read back
+// bit by bit. Colours, texture coordinates, groups, materials and free-form surfaces are skipped.
 //
 // Based on: Wavefront Technologies, "The Advanced Visualizer", appendix B1, "Object Files (.obj)", 1991.
 #include "meshes/obj_reader.hpp"
@@ -24,7 +23,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Takes the first word off a line; empty at its end.
+/// Removes and returns the first word of a line; empty at the end.
 std::string_view next_word(std::string_view& line) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
   line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
@@ -49,7 +48,7 @@ class ObjReader {
       fail(ErrorCode::UnsupportedData, path_, "no triangles, no lines; expected a surface");
     mesh_.dim = triangles_.empty() ? 1 : 2;
     mesh_.simplices = std::move(triangles_.empty() ? segments_ : triangles_);
-    // Lines have no way to name normals: theirs are those by their vertices' numbers.
+    // Lines cannot refer to normals in OBJ: the normals with their vertices' numbers are used.
     const bool is_by_vertex = mesh_.dim == 1 || normals_by_vertex_;
     if (!is_by_vertex || mesh_.normals.size() != mesh_.coordinates.size()) mesh_.normals = {};
     mesh_.axis_names.resize(3);
@@ -58,7 +57,7 @@ class ObjReader {
   }
 
  private:
-  /// What a kind of numbers refers to: v or vn. The greatest number there is, and where, as what it names may follow.
+  /// State of references to v or vn: the largest number used and its line, as definitions may follow later.
   struct Reference {
     std::string_view what;
     std::uint64_t greatest = 0;
@@ -76,8 +75,8 @@ class ObjReader {
     fail(ErrorCode::MalformedFile, path_, "line {}: {}", line_, fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// The next line without its comment, with those behind it that a backslash at the end makes one with it. In a
-  /// comment it makes nothing: names of folders end so, too.
+  /// The next line without its comment, joined with the following lines if it ends with a backslash. A backslash in a
+  /// comment does not join lines: comments may end with folder names.
   std::string_view next_statement() {
     line_ = lines_ + 1;
     joined_.clear();
@@ -103,7 +102,7 @@ class ObjReader {
       read_vertex(line);
     else if (key == "vn")
       read_row("vn", line, mesh_.normals);
-    else if (key == "f" || key == "fo")  // the latter in files of old
+    else if (key == "f" || key == "fo")  // 'fo' occurs in old files
       read_face(line);
     else if (key == "l")
       read_line(line);
@@ -134,7 +133,8 @@ class ObjReader {
            std::numeric_limits<Index>::max());
   }
 
-  /// What a number stands for, from 0: those of files count from 1, negative ones back from where they stand.
+  /// Converts a number of the file to an index from 0. Numbers of the file start at 1; negative ones count back from
+  /// the current end.
   Index resolve(std::string_view text, Reference& reference, std::size_t present) const {
     std::int64_t value = 0;
     if (!parse_number(text, value)) bad("{}; expected the number of a {}", shown(text), reference.what);
@@ -155,7 +155,7 @@ class ObjReader {
            reference.line, reference.what, reference.greatest, present);
   }
 
-  /// "7", "7/2", "7/2/5" or "7//5": a vertex, a point of a texture, a normal.
+  /// Parses "7", "7/2", "7/2/5" or "7//5": vertex, texture coordinate, normal.
   Corner corner(std::string_view word) {
     const std::size_t slash = word.find('/');
     Corner result;
@@ -167,7 +167,7 @@ class ObjReader {
     return result;
   }
 
-  /// A polygon, as the fan of triangles from its first corner.
+  /// Triangulates a polygon as a fan from its first corner.
   void read_face(std::string_view line) {
     std::size_t count = 0;
     Index first = 0;
@@ -198,15 +198,15 @@ class ObjReader {
   const fs::path& path_;
   ReadProgress& progress_;
   std::vector<unsigned char> bytes_;
-  std::string_view text_;    ///< what is left to read
-  std::uint64_t lines_ = 0;  ///< read
-  std::uint64_t line_ = 0;   ///< the statement's first
-  std::string joined_;       ///< a statement of several lines
+  std::string_view text_;    ///< text not read yet
+  std::uint64_t lines_ = 0;  ///< number of lines read
+  std::uint64_t line_ = 0;   ///< first line of the current statement
+  std::string joined_;       ///< a statement joined from several lines
   Reference vertex_reference_{"vertex"};
   Reference normal_reference_{"normal"};
   Buffer<Index> triangles_;
   Buffer<Index> segments_;
-  bool normals_by_vertex_ = true;  ///< every corner names the normal of its vertex's number
+  bool normals_by_vertex_ = true;  ///< every corner refers to the normal of its vertex's number
   Mesh mesh_;
 };
 

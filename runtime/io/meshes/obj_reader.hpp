@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The reader of Wavefront OBJ.
+// Declares the reader of Wavefront OBJ.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace tegl::io_detail {
 
-/// The triangles of the file, polygons cut into fans; the segments where there are no triangles. Vertices are those of
-/// the file in its order, used or not. Normals are taken where there is one for each vertex and every corner of a face
-/// names the one of its vertex's number. Errors: MalformedFile (with the line), UnsupportedData (neither triangles nor
-/// segments), TooLarge (more vertices than Index counts).
+/// Reads the triangles of a file, with polygons triangulated as fans; if there are none, the segments. Vertices are
+/// those of the file in its order, used or not. Normals are read if there is one for each vertex, and every corner of a
+/// face refers to the normal of its vertex's number. Errors: MalformedFile (with the line), UnsupportedData (neither
+/// triangles nor segments), TooLarge (more vertices than Index can number).
 Mesh read_obj(const std::filesystem::path& path, ReadProgress& progress);
 
 }  // namespace tegl::io_detail

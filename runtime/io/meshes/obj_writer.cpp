@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Wavefront OBJ, text: vertices (v), normals if there are any (vn), and segments (l) or triangles (f) by the numbers of
-// their vertices, from 1. Numbers have as many digits as it takes to read the same double again (of a mesh in single
-// precision: the same float). The format has no place for units, names, the isovalue or attributes.
+// Writes Wavefront OBJ as text: vertices (v), normals if there are any (vn), and segments (l) or triangles (f) with
+// vertex numbers from 1. Numbers have enough digits to read back the same double (the same float for a mesh in single
+// precision). The format does not support units, names, the isovalue or attributes.
 //
 // Based on: Wavefront Technologies, "The Advanced Visualizer", appendix B1, "Object Files (.obj)", 1991.
 #include <cmath>
@@ -14,7 +14,7 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// A line of a vertex or normal.
+/// Writes the line of a vertex or normal.
 void put_row(BlockWriter& out, std::string_view key, const std::array<double, 3>& row, bool single_precision) {
   if (single_precision)
     out.put_format("{} {} {} {}\n", key, static_cast<float>(row[0]), static_cast<float>(row[1]),
@@ -49,7 +49,7 @@ void write_obj(const Mesh& mesh, const std::filesystem::path& path, const Progre
     out.put_text(mesh.dim == 1 ? "l" : "f");
     for (std::size_t c = 0; c < corners; ++c) {
       const std::uint64_t number = std::uint64_t{mesh.simplices[s * corners + c]} + 1;
-      // Lines have no normals in OBJ: theirs stand in the file, for those who look for them.
+      // OBJ lines cannot refer to normals; those of segments are only listed in the file.
       if (with_normals && mesh.dim == 2)
         out.put_format(" {}//{}", number, number);
       else

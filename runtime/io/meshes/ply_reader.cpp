@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// PLY in all three encodings, with any elements and properties; what is neither vertex, face nor edge is passed over.
-// Every count is checked against what is left of the file before it is used.
+// Reads PLY in all three encodings, with any elements and properties; elements other than vertices, faces and edges are
+// skipped. Every count is checked against the remaining bytes before it is used.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
@@ -32,7 +32,7 @@ constexpr std::array<std::size_t, 8> kScalarBytes = {1, 1, 2, 2, 4, 4, 4, 8};
 struct Property {
   std::string name;
   Scalar type{};
-  std::optional<Scalar> count_type;  ///< of lists
+  std::optional<Scalar> count_type;  ///< for lists
 };
 
 struct Element {
@@ -47,7 +47,7 @@ struct Element {
   }
 };
 
-/// One item of an element: a number per property, and the numbers of one list.
+/// One item of an element: one number per scalar property, and the numbers of one list.
 struct Item {
   std::vector<double> scalars;
   std::vector<double> list;
@@ -67,7 +67,7 @@ std::optional<Scalar> scalar_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// What comments of the writer say of an attribute, by its first property.
+/// Name and unit of an attribute from the writer's comments, by its first property.
 struct AttributeText {
   std::string name;
   std::string unit;
@@ -75,11 +75,11 @@ struct AttributeText {
 };
 using AttributeTexts = std::map<std::string, AttributeText>;
 
-/// The attributes among the scalar properties of an element: those that comments describe, and any other by its own
-/// name.
+/// The attributes among the scalar properties of an element: those described by comments, and any other property by its
+/// own name.
 class AttributeColumns {
  public:
-  /// `free`: the properties that are not something else.
+  /// `free`: properties without another meaning.
   AttributeColumns(const Element& element, const std::vector<bool>& free, const AttributeTexts& texts) {
     FileNames names({});
     const auto is_free = [&](std::size_t p) { return free[p] && !element.properties[p].count_type; };
@@ -105,7 +105,7 @@ class AttributeColumns {
     }
   }
   std::vector<Attribute> take() { return std::move(attributes_); }
-  /// Memory that the numbers of one item take.
+  /// Size of the numbers of one item in bytes.
   [[nodiscard]] std::uint64_t bytes() const {
     std::uint64_t numbers = 0;
     for (const Attribute& attribute : attributes_) numbers += static_cast<std::uint64_t>(attribute.width);
@@ -113,9 +113,9 @@ class AttributeColumns {
   }
 
  private:
-  std::vector<std::size_t> columns_;  ///< the first of each
+  std::vector<std::size_t> columns_;  ///< first column of each attribute
   std::vector<Attribute> attributes_;
-  std::vector<double> units_;  ///< what the file has for 1
+  std::vector<double> units_;  ///< file value that stands for 1
 };
 
 class PlyReader {
@@ -192,7 +192,7 @@ class PlyReader {
          shown(line));
   }
 
-  /// "comment tegl space_dim 2", "comment tegl axis 0 name lon", as the writer leaves them.
+  /// Parses the writer's comments "comment tegl space_dim 2", "comment tegl axis 0 name lon".
   void read_comment(std::string_view line, const std::vector<std::string_view>& parts) {
     if (parts.size() < 4 || parts[1] != "tegl") return;
     if (parts[2] == "vertex" || parts[2] == "simplex") read_attribute_comment(line, parts);
@@ -207,7 +207,7 @@ class PlyReader {
     texts[static_cast<std::size_t>(axis)] = line.substr(static_cast<std::size_t>(parts[5].data() - line.data()));
   }
 
-  /// "comment tegl vertex attribute u_0 3 u", "comment tegl vertex unit u_0 m s-1".
+  /// Parses "comment tegl vertex attribute u_0 3 u", "comment tegl vertex unit u_0 m s-1".
   void read_attribute_comment(std::string_view line, const std::vector<std::string_view>& parts) {
     auto& described = parts[2] == "vertex" ? of_vertices_ : of_simplices_;
     std::uint64_t width = 0;
@@ -291,7 +291,7 @@ class PlyReader {
     }
   }
 
-  /// The least number of bytes that an item takes; in text a digit and a blank per number.
+  /// Minimum size of an item in bytes; in text a digit and a blank per number.
   [[nodiscard]] std::uint64_t least_bytes(const Element& element) const {
     std::uint64_t bytes = 0;
     for (const Property& property : element.properties)
@@ -311,7 +311,7 @@ class PlyReader {
         continue;
       }
       const double count = number(*property.count_type);
-      const double most = static_cast<double>(left());  // a number takes a byte at least
+      const double most = static_cast<double>(left());  // a number takes at least a byte
       if (!(count >= 0 && count <= most) || count != std::floor(count))
         fail(ErrorCode::MalformedFile, path_, "list of {} numbers with {} bytes left", count, left());
       if (p == list_property) item.list.clear();
@@ -325,7 +325,7 @@ class PlyReader {
 
   void read_element(const Element& element) {
     const std::uint64_t least = least_bytes(element);
-    if (least == 0) return;  // items without properties take no room
+    if (least == 0) return;  // items without properties take no bytes
     if (element.count > (left() + 1) / least)
       fail(ErrorCode::MalformedFile, path_,
            "{} items of element '{}' take {} bytes each; expected them in the {} bytes left", element.count,
@@ -364,7 +364,7 @@ class PlyReader {
     mesh_.vertex_attributes = attributes.take();
   }
 
-  /// Where three numbers are among the properties, if they are.
+  /// The columns of three properties by name; nullopt unless all exist.
   using Columns = std::array<std::size_t, 3>;
   static std::optional<Columns> columns_of(const Element& element, const std::array<const char*, 3>& names) {
     Columns columns;
@@ -381,9 +381,10 @@ class PlyReader {
     return static_cast<Index>(value);
   }
 
-  /// Faces, fanned into triangles from their first vertex, or edges.
+  /// Reads faces, triangulated as fans from their first vertex, or edges.
   void read_simplices(const Element& element) {
     const bool face = element.name == "face";
+    // columns
     std::size_t list = element.index_of("vertex_indices");
     if (list >= element.properties.size()) list = element.index_of("vertex_index");
     const std::size_t first = element.index_of("vertex1");
@@ -396,11 +397,12 @@ class PlyReader {
     if (!face) others[first] = others[second] = false;
     AttributeColumns attributes(element, others, of_simplices_);
     Item item;
-    // Each face has three numbers in its list: a count that the file has no room for gets no memory.
+    // A face has at least three numbers: the reserved memory is limited by the remaining bytes.
     const std::uint64_t simplices = face ? std::min<std::uint64_t>(element.count, left() / 3) : element.count;
     mesh_.simplices.reserve(static_cast<std::size_t>(simplices) * (face ? 3 : 2));
     CopyLimit limit(path_, bytes_.size());
     const std::uint64_t copied = attributes.bytes();
+    // read and triangulate
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_item(element, list, item);
       if (!face) item.list = {item.scalars[first], item.scalars[second]};
@@ -424,7 +426,7 @@ class PlyReader {
   Encoding encoding_ = Encoding::Ascii;
   std::vector<Element> elements_;
   std::set<std::string> element_names_;
-  std::set<std::string> property_names_;  ///< of the last element
+  std::set<std::string> property_names_;  ///< of the current element
   AttributeTexts of_vertices_, of_simplices_;
   Mesh mesh_;
   bool planar_ = false;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// PLY, binary little-endian, with coordinates, normals and attributes as double: lossless. Of a mesh in single
+// Writes binary little-endian PLY with coordinates, normals and attributes as double: lossless. For a mesh in single
 // precision, coordinates and normals are float. Segments become an `edge` element. Attributes become properties after
-// the usual ones, with comments that say their names and units. Colours of whole 255ths become bytes.
+// the standard ones, with comments for their names and units. Colours that are multiples of 1/255 become bytes.
 //
 // Based on: G. Turk, "The PLY Polygon File Format", 1994.
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they are in memory");
 
-/// Comments end at the line's end: other control characters would end them too early.
+/// Replaces control characters, which would end a comment early.
 std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
@@ -32,10 +32,10 @@ std::string one_line(std::string text) {
 struct Properties {
   const Attribute* attribute;
   std::vector<std::string> names;
-  bool are_bytes = false;  ///< red, green and blue, as viewers show them
+  bool are_bytes = false;  ///< red, green and blue, which viewers display
 };
 
-/// Properties have names of one word; comments say what the attribute's name and unit are.
+/// Chooses property names, which are single words; comments hold the attributes' names and units.
 std::vector<Properties> properties_of(const std::vector<Attribute>& attributes, FileNames names) {
   std::vector<Properties> result;
   for (const Attribute& attribute : attributes) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// STL, binary and text. STL repeats a vertex for every triangle that has it; vertices with equal coordinates, bit by
-// bit, become one. Normals and attribute bytes have no place in a mesh and are passed over.
+// Reads binary and text STL. STL repeats a vertex for every triangle; vertices with equal coordinates, bit by bit, are
+// merged. Normals and attribute bytes are skipped.
 //
 // Based on: 3D Systems, "StereoLithography Interface Specification", 1989.
 #include <array>
@@ -33,7 +33,7 @@ struct BitsHash {
 
 using Point = std::array<float, 3>;
 
-constexpr std::size_t kHeaderBytes = 84;  // 80 of any kind, and the number of triangles
+constexpr std::size_t kHeaderBytes = 84;  // 80 arbitrary bytes, and the number of triangles
 constexpr std::size_t kTriangleBytes = 50;
 
 class StlReader {
@@ -44,7 +44,7 @@ class StlReader {
   Mesh run() {
     mesh_.dim = 2;
     mesh_.space_dim = 3;
-    // Headers of binary files may begin with "solid" as well.
+    // Headers of binary files may also begin with "solid".
     const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
     const std::string_view start = text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
     if (lower(start.substr(0, 5)) == "solid" && !has_exact_size())
@@ -91,7 +91,7 @@ class StlReader {
     }
   }
 
-  /// Takes the next word; empty at the end.
+  /// Removes and returns the next word; empty at the end.
   static std::string_view next_word(std::string_view& text) {
     constexpr std::string_view kBlanks = " \t\r\n\v\f";
     text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
@@ -100,13 +100,13 @@ class StlReader {
     return word;
   }
 
-  /// "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet", in any case of letters.
+  /// Parses "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet", in any case.
   void read_text(std::string_view text) {
     std::size_t corners = 0;
     for (std::string_view word = next_word(text); !word.empty(); word = next_word(text)) {
       const std::string key = lower(word.substr(0, 16));
       if (key == "solid" || key == "endsolid") {
-        text.remove_prefix(std::min(text.find('\n'), text.size()));  // a name
+        text.remove_prefix(std::min(text.find('\n'), text.size()));  // name of the solid
       } else if (key == "facet") {
         require_closed(corners);
       } else if (key == "normal") {
@@ -132,7 +132,7 @@ class StlReader {
            (mesh_.simplices.size() - corners) / 3, corners);
   }
 
-  /// `corners`: of a facet that has begun.
+  /// Throws if a facet has begun; `corners`: its number of corners so far.
   void require_closed(std::size_t corners) const {
     if (corners > 0)
       fail(ErrorCode::MalformedFile, path_, "facet {} without 'endfacet'; expected it behind 3 vertices",
@@ -153,7 +153,7 @@ class StlReader {
     return point;
   }
 
-  /// Numbers the vertices in the order in which they are met.
+  /// Adds a corner; vertices are numbered in order of first occurrence.
   void add_corner(const Point& point) {
     Bits bits;
     for (std::size_t a = 0; a < 3; ++a) bits[a] = std::bit_cast<std::uint32_t>(point[a] + 0.0F);  // -0 becomes 0
@@ -166,7 +166,7 @@ class StlReader {
     mesh_.simplices.push_back(found->second);
   }
 
-  static constexpr std::size_t kTextBytes = 160;  ///< that a facet takes about
+  static constexpr std::size_t kTextBytes = 160;  ///< approximate size of a facet
   const fs::path& path_;
   ReadProgress& progress_;
   std::vector<unsigned char> bytes_;

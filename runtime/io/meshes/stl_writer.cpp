@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// STL, binary: what programs for printing and milling take. 80 bytes of no meaning, the number of triangles, and 50
-// bytes for each: a normal and three corners as float, and two bytes of zero. Little-endian on any machine. The format
-// has neither shared vertices nor a place for units, names or attributes. Corners go around counter-clockwise as seen
-// from the low side, as in memory, and the normal of the facet points there.
+// Writes binary STL, for printing and milling: 80 arbitrary bytes, the number of triangles, and 50 bytes per triangle
+// (a normal and three corners as float, and two zero bytes). Little-endian on any machine. The format does not support
+// shared vertices, units, names or attributes. Corners are counter-clockwise seen from the side that the contour faces,
+// as in memory, and the facet's normal points to that side.
 //
 // Based on: 3D Systems, "Stereolithography Interface Specification", 1988.
 #include <array>
@@ -30,7 +30,7 @@ void put_vector(BlockWriter& out, const Eigen::Vector3f& vector) {
   for (const float value : vector) out.put(little_endian(std::bit_cast<std::uint32_t>(value)).data(), 4);
 }
 
-/// Of length 1; 0 for a triangle of no area. Products of what float holds are in the range of double.
+/// The unit normal; 0 for a triangle of zero area. Products of floats do not overflow double.
 Eigen::Vector3f facet_normal(const std::array<Eigen::Vector3f, 3>& corners) {
   const Eigen::Vector3d first = corners[1].cast<double>() - corners[0].cast<double>();
   const Eigen::Vector3d second = corners[2].cast<double>() - corners[0].cast<double>();
@@ -51,7 +51,7 @@ void write_stl(const Mesh& mesh, const std::filesystem::path& path, const Progre
   const std::uint32_t count = stl_triangle_count(simplex_count(mesh), path);
   OutputFile file(path);
   BlockWriter out(file, progress);
-  // A file that begins with "solid" is taken for STL as text.
+  // A file that begins with "solid" is read as text STL.
   constexpr std::size_t kHeader = 80;
   std::string header = "binary STL written by tegl";
   header.resize(kHeader, ' ');

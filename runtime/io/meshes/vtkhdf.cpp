@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTKHDF, unstructured grids: what ParaView opens. A mesh as a whole, to and from a file; vtkhdf_writer.cpp says what
-// is where in it.
+// Reads and writes whole meshes as VTKHDF unstructured grids, the format of ParaView. vtkhdf_writer.cpp describes the
+// layout.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
 #include <algorithm>
@@ -34,7 +34,7 @@ std::vector<std::string> split(const std::string& text, std::size_t count) {
   return result;
 }
 
-/// The simplices of cells that are all of one type.
+/// Reads simplices from cells that all have one type.
 class Reader {
  public:
   Reader(const fs::path& path, ReadProgress& progress, bool allow_outside_paths)
@@ -46,7 +46,7 @@ class Reader {
     read_points();
     const auto dims = file_.get_numbers(group_.id(), "tegl_dim_and_space_dim");
     if (mesh_.dim == 0) mesh_.dim = !dims.empty() && dims[0] >= 1 && dims[0] <= 3 ? static_cast<int>(dims[0]) : 2;
-    // Tetrahedra of other programs with a point array t are taken for contours in 4-space.
+    // Tetrahedra of other programs with a point array t are read as contours in 4-space.
     if (file_.has(group_.id(), "PointData") && (dims.size() == 2 ? dims[1] == 4 : mesh_.dim == 3)) add_times();
     read_normals();
     std::set<std::string> taken;
@@ -83,10 +83,10 @@ class Reader {
     return size[0];
   }
 
-  /// Memory for so many numbers, and for HDF5 beside them.
+  /// Requests memory for `count` numbers, and for HDF5's own use.
   static void expect_numbers(std::uint64_t count) { expect_memory(3 * sizeof(double) * count); }
 
-  /// A whole dataset, counted in the progress.
+  /// Reads a whole dataset and reports progress.
   void read(hid_t group, const char* name, hid_t type, void* to) const {
     file_.read(group, name, type, to, [this](std::uint64_t bytes) { progress_.add(bytes); });
   }
@@ -139,7 +139,7 @@ class Reader {
     if (size[0] > 0) read(group_.id(), "Points", H5T_NATIVE_DOUBLE, mesh_.coordinates.data());
   }
 
-  /// x y z and the point array t, side by side.
+  /// Adds the point array t as a fourth coordinate to x, y, z.
   void add_times() {
     const H5Handle point_data = file_.open_group("VTKHDF/PointData");
     if (!file_.has(point_data.id(), kTimes)) return;
@@ -151,7 +151,7 @@ class Reader {
     mesh_.space_dim = 4;
   }
 
-  /// Rows of three get a fourth column.
+  /// Converts rows of three numbers to rows of four.
   void add_fourth(const H5Handle& point_data, const char* name, Buffer<double>& rows) {
     const std::size_t count = rows.size() / 3;
     file_.claim(point_data.id(), name);
@@ -166,7 +166,7 @@ class Reader {
     rows = std::move(all);
   }
 
-  /// Arrays of these names and other shapes are other programs' and left alone.
+  /// Arrays with these names but other shapes belong to other programs and are ignored.
   void read_normals() {
     if (!file_.has(group_.id(), "PointData")) return;
     const H5Handle point_data = file_.open_group("VTKHDF/PointData");
@@ -183,7 +183,7 @@ class Reader {
     if (mesh_.space_dim == 4) add_fourth(point_data, kNormalTimes, mesh_.normals);
   }
 
-  /// The field array of that name, if it is one finite number.
+  /// Reads the field array `isovalue`, if it is one finite number.
   void read_isovalue() {
     if (!file_.has(group_.id(), "FieldData")) return;
     const H5Handle field_data = file_.open_group("VTKHDF/FieldData");
@@ -195,7 +195,7 @@ class Reader {
     if (std::isfinite(isovalue)) mesh_.isovalue = isovalue;
   }
 
-  /// The arrays of a group that have a row for each vertex or simplex, those of the writer first and in its order.
+  /// The arrays of a group with one row per vertex or simplex; those of the writer first and in its order.
   [[nodiscard]] std::vector<Attribute> attributes(const char* group_name, std::size_t rows,
                                                   const std::set<std::string>& taken) {
     std::vector<Attribute> result;
@@ -225,7 +225,7 @@ class Reader {
     return result;
   }
 
-  /// Whether a dataset is a list or a table of so many rows.
+  /// Whether a dataset is a list or a table with `rows` rows.
   [[nodiscard]] bool has_rows(hid_t group, const char* name, std::size_t rows) const {
     const int rank = file_.rank(group, name);
     if (rank < 1 || rank > 2) return false;
@@ -244,13 +244,14 @@ class Reader {
 }  // namespace
 
 void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progress, Compression compression) {
-  // Offsets go up to the count of vertex numbers.
+  // Offsets are at most the number of vertex numbers.
   const std::size_t largest_id = std::max(vertex_count(mesh), mesh.simplices.size());
   VtkhdfWriter writer(
       path, {mesh.dim, mesh.space_dim, mesh.axis_names, mesh.axis_units, vertex_count(mesh), simplex_count(mesh),
              mesh.isovalue, mesh.single_precision,
              mesh.single_precision && largest_id <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()),
              compression});
+  // progress
   std::size_t all = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   for (const auto* const attributes : {&mesh.vertex_attributes, &mesh.simplex_attributes})
     for (const Attribute& attribute : *attributes) all += attribute.values.size();
@@ -261,6 +262,7 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
       append(values.subspan(at, std::min(most, values.size() - at)));
     }
   };
+  // points, normals, simplices
   in_blocks(std::span<const double>(mesh.coordinates), 0, static_cast<std::size_t>(mesh.space_dim),
             [&](std::span<const double> part) { writer.append_vertices(part); });
   in_blocks(std::span<const double>(mesh.normals), mesh.coordinates.size(), static_cast<std::size_t>(mesh.space_dim),
@@ -268,6 +270,7 @@ void write_vtkhdf(const Mesh& mesh, const fs::path& path, const Progress& progre
   in_blocks(std::span<const Index>(mesh.simplices), mesh.coordinates.size() + mesh.normals.size(),
             static_cast<std::size_t>(mesh.dim) + 1,
             [&](std::span<const Index> part) { writer.append_simplices(part); });
+  // attributes
   std::size_t done = mesh.coordinates.size() + mesh.normals.size() + mesh.simplices.size();
   const auto append_attributes = [&](const char* group, const std::vector<Attribute>& attributes) {
     for (std::size_t i = 0; i < attributes.size(); ++i) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTKHDF, unstructured grids, written: triangles, segments, or tetrahedra whose vertices carry the time as the point
-// array "t". Normals are the point array "Normals", with the fourth component in "normal_t", and attributes are point
-// and cell arrays; the isovalue is a field array. All of these are double: lossless. Of a mesh in single precision,
-// points and normals are float. Axis names and units are attributes of the group, names and units of arrays attributes
-// of the arrays, which VTK ignores.
+// Writes VTKHDF unstructured grids: triangles, segments, or tetrahedra with the time of vertices in the point array
+// "t". Normals are the point array "Normals", with the fourth component in "normal_t". Attributes are point and cell
+// arrays; the isovalue is a field array. All are double: lossless. For a mesh in single precision, points and normals
+// are float. Axis names and units are attributes of the group; names and units of arrays are attributes of the arrays.
+// VTK ignores both.
 //
 // Based on: Kitware, "VTKHDF File Format", version 1.0 (read by VTK 9.1 and later), unstructured grid.
 #include "meshes/vtkhdf_writer.hpp"
@@ -140,7 +140,7 @@ H5Table VtkhdfWriter::attribute_table(const char* group, const Attribute& attrib
   const std::string path = std::string("VTKHDF/") + group;
   const H5Handle data =
       file_.has(group_->id(), group) ? file_.open_group(path.c_str()) : file_.create_group(path.c_str());
-  // HDF5 takes names with a slash for paths, and "." for the group itself.
+  // HDF5 reads names with a slash as paths, and "." as the group itself.
   std::string wished = attribute.name == "." ? "_" : attribute.name;
   std::replace(wished.begin(), wished.end(), '/', '_');
   const std::string name = (of_points ? point_names_ : cell_names_).make(wished);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Implements the writer of VTU files: XML tags, then the arrays as raw or zlib-compressed bytes.
 #include "meshes/vtu_writer.hpp"
 
 #include <bit>
@@ -13,11 +15,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they are in memory");
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;  ///< items between two reports
+constexpr std::size_t kBlock = std::size_t{1} << 16;  ///< items between two progress reports
 
 std::uint64_t byte_count(const VtuArray& array) { return array.rows * array.columns * array.bytes; }
 
-/// Calls put for all items of an array and reports the progress: `done` bytes of `all` were written before.
+/// Calls `put` for all items of an array and reports progress; `done` of `all` bytes were written before.
 void put_items(const VtuArray& array, ByteSink& sink, double done, double all, const Progress& progress,
                const std::filesystem::path& path) {
   for (std::size_t i = 0; i < array.items; ++i) {
@@ -27,8 +29,8 @@ void put_items(const VtuArray& array, ByteSink& sink, double done, double all, c
   sink.flush();
 }
 
-/// An array as vtkZLibDataCompressor has it: the count of blocks, their size, the size of a last one that is shorter,
-/// the compressed sizes; then the blocks.
+/// An array in the format of vtkZLibDataCompressor: number of blocks, block size, size of a shorter last block, the
+/// compressed sizes; then the blocks.
 class CompressedArray {
  public:
   void add(const void* bytes, std::size_t count, const std::filesystem::path& path) {
@@ -60,7 +62,7 @@ class CompressedArray {
   std::uint64_t last_ = 0;
 };
 
-/// How many bytes each array takes in the file, in their order.
+/// The size of each array in the file, in order.
 class FileSizes {
  public:
   explicit FileSizes(std::vector<std::uint64_t> sizes) : sizes_(std::move(sizes)) {}
@@ -71,7 +73,7 @@ class FileSizes {
   std::size_t at_ = 0;
 };
 
-/// The XML of arrays; `offset` goes on by what they take behind it.
+/// The XML tags of arrays; `offset` is increased by their sizes.
 std::string array_tags(const std::vector<VtuArray>& arrays, FileSizes& sizes, std::uint64_t& offset) {
   std::string text;
   for (const VtuArray& array : arrays) {
@@ -83,7 +85,7 @@ std::string array_tags(const std::vector<VtuArray>& arrays, FileSizes& sizes, st
   return text;
 }
 
-/// Text of any kind: the bytes as numbers, 0 behind each.
+/// The XML tag of texts: their bytes as numbers, each text followed by 0.
 std::string text_tag(const char* name, const std::vector<std::string>& texts) {
   std::string text =
       fmt::format(R"(<DataArray type="String" Name="{}" NumberOfTuples="{}" format="ascii">)", name, texts.size());
@@ -115,6 +117,7 @@ std::string header(const VtuGrid& grid, FileSizes sizes, Compression compression
 
 void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Progress& progress,
                Compression compression) {
+  // arrays in the order of the file
   std::vector<const VtuArray*> arrays;
   for (const VtuArray& array : grid.point_arrays) arrays.push_back(&array);
   for (const VtuArray& array : grid.cell_arrays) arrays.push_back(&array);
@@ -123,6 +126,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
   double all = 1.0, done = 0.0;
   for (const VtuArray* const array : arrays) all += static_cast<double>(byte_count(*array));
   const bool is_compressed = compression != Compression::none;
+  // compress, or compute sizes
   std::vector<CompressedArray> compressed;
   std::vector<std::uint64_t> sizes;
   for (const VtuArray* const array : arrays) {
@@ -135,6 +139,7 @@ void write_vtu(const VtuGrid& grid, const std::filesystem::path& path, const Pro
     sizes.push_back(is_compressed ? compressed.back().file_bytes() : sizeof(std::uint64_t) + byte_count(*array));
   }
 
+  // write
   OutputFile file(path);
   file.write(header(grid, FileSizes(std::move(sizes)), compression));
   for (const CompressedArray& array : compressed) array.write(file);

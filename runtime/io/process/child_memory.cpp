@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Blocks are files in memory, one each: freed ones go back to the system, and others pass to the parent as descriptors.
-// Private memory is limited by the kernel.
+// Implements ChildMemory. Each block is a memory file: freed blocks return to the system, and others are passed to the
+// parent as descriptors. The kernel limits private memory.
 #include "process/child_memory.hpp"
 
 #include <fcntl.h>
@@ -20,7 +20,7 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// Numbers of /proc/self/statm, in pages: the size of all that is mapped, and of what is private and writable.
+/// Numbers of /proc/self/statm, in pages: all mapped memory, and private writable memory.
 struct MappedPages {
   std::uint64_t all = 0;
   std::uint64_t data = 0;
@@ -60,7 +60,7 @@ int create_memory_file(std::size_t bytes, void*& begin) noexcept {
   if (ftruncate(file, static_cast<off_t>(bytes)) == 0 && fcntl(file, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) == 0) {
     begin = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (begin != MAP_FAILED) {
-      madvise(begin, bytes, MADV_HUGEPAGE);  // if the system has them for files in memory
+      madvise(begin, bytes, MADV_HUGEPAGE);  // if the system supports huge pages for memory files
       return file;
     }
   }
@@ -81,7 +81,7 @@ void ChildMemory::allow(std::uint64_t bytes) {
   set_limit();
 }
 
-/// The soft limit alone: it is raised again.
+/// Sets only the soft limit, so that it can be raised again.
 void ChildMemory::set_limit() {
   rlimit limit{};
   if (at_start_ == 0 || getrlimit(RLIMIT_DATA, &limit) != 0) return;
@@ -106,7 +106,8 @@ void* ChildMemory::allocate(std::size_t bytes) noexcept {
     return kept->begin;
   }
   if (in_blocks_ + bytes > allowed_) free_unused(0);
-  if (in_blocks_ + bytes > allowed_) return nullptr;  // private memory is asked for, and refused by its limit
+  // Without a block the caller allocates private memory, which the kernel's limit refuses.
+  if (in_blocks_ + bytes > allowed_) return nullptr;
   void* begin = nullptr;
   const int file = create_memory_file(bytes, begin);
   if (file < 0) return nullptr;
@@ -131,7 +132,7 @@ bool ChildMemory::release(void* block, std::size_t) noexcept {
   return true;
 }
 
-/// Gives unused blocks back to the system, the oldest first, until only so many are left.
+/// Returns unused blocks to the system, oldest first, until `most` are left.
 void ChildMemory::free_unused(std::size_t most) noexcept {
   auto unused = static_cast<std::size_t>(
       std::count_if(blocks_.begin(), blocks_.end(), [](const Block& block) { return !block.used; }));

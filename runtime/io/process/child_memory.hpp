@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The memory of a child process: large arrays in memory that the parent can map, all within a limit.
+// The memory of a child process: large arrays in memory that the parent can map, within a limit.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +11,25 @@
 
 namespace tegl::io_detail {
 
-/// A file in memory of so many bytes that nobody can make smaller; -1: there is none to be had. Mapped at `begin`.
+/// Creates a memory file of `bytes` bytes, sealed against resizing, and maps it at `begin`. Returns its descriptor, or
+/// -1.
 int create_memory_file(std::size_t bytes, void*& begin) noexcept;
 
 class ChildMemory final : public detail::BlockSource {
  public:
-  /// From now on this process may take `bytes` of memory beyond what it has.
+  /// Limits this process to `bytes` of memory beyond its present memory.
   explicit ChildMemory(std::uint64_t bytes);
   ~ChildMemory() override = default;
   /// Raises the limit.
   void allow(std::uint64_t bytes);
   [[nodiscard]] std::uint64_t allowed() const noexcept { return allowed_; }
-  /// Whether it is this limit that memory ran out at, and not the machine's or one of the parent.
+  /// Whether memory ran out at this limit, and not at the machine's or at an inherited one.
   [[nodiscard]] bool is_limiting() const;
 
   void* allocate(std::size_t bytes) noexcept override;
-  /// Keeps a few blocks for the next arrays of their sizes, so that these need no fresh pages.
+  /// Keeps a few blocks for later arrays of the same size, which then need no fresh pages.
   bool release(void* block, std::size_t bytes) noexcept override;
-  /// The file of a block; -1: it is not from here.
+  /// The memory file of a block; -1 if it is not from this object.
   [[nodiscard]] int descriptor(const void* block) const noexcept;
 
  private:
@@ -41,8 +42,8 @@ class ChildMemory final : public detail::BlockSource {
   void free_unused(std::size_t most) noexcept;
   void set_limit();
 
-  std::uint64_t at_start_ = 0;  ///< private memory
-  std::uint64_t allowed_;       ///< beyond it; as much again in blocks
+  std::uint64_t at_start_ = 0;  ///< private memory at construction
+  std::uint64_t allowed_;       ///< beyond at_start_; blocks may take as much again
   std::uint64_t in_blocks_ = 0;
   std::vector<Block> blocks_;
 };

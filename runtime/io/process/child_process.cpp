@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The parent's side: starting a child, waiting for its messages within its limits, and what its end means. The child's
-// side is in child_side.cpp.
+// The parent's side: starts a child, receives its messages within its limits, and reports its end. The child's side is
+// in child_side.cpp.
 #include "process/child_process.hpp"
 
 #include <fcntl.h>
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Both ends of a connection that keeps messages apart; neither is one of the standard streams.
+/// Creates both ends of a connection that preserves message boundaries; neither is a standard stream.
 std::array<int, 2> connect_pair() {
   std::array<int, 2> ends = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return {-1, -1};
@@ -42,7 +42,7 @@ std::array<int, 2> connect_pair() {
   return ends;
 }
 
-/// Signals are held back meanwhile, so that none runs a handler of the parent in the child.
+/// Blocks signals during the fork, so that no handler of the parent runs in the child.
 class BlockedSignals {
  public:
   BlockedSignals() {
@@ -58,10 +58,10 @@ class BlockedSignals {
   sigset_t before_{};
 };
 
-/// For a sound file that needs more than any that was thought of.
+/// Hint for valid files that exceed the limits.
 constexpr const char* kWithoutLimits = " (--in-process, or separate_process = false, reads without limits)";
 
-/// Processor time of a process so far; 0 if the system does not say.
+/// Processor time of a process so far; 0 if unknown.
 double seconds_used(pid_t process) {
   clockid_t clock = 0;
   timespec time{};
@@ -71,7 +71,7 @@ double seconds_used(pid_t process) {
 
 }  // namespace
 
-/// A message and the descriptor that came with it.
+/// A message, and its descriptor if it has one.
 struct ChildProcess::Message {
   MessageKind kind = MessageKind::closed;
   Package package;
@@ -99,7 +99,7 @@ ChildProcess::ChildProcess(fs::path path, const Work& work, const ChildLimits& l
 ChildProcess::~ChildProcess() { end(); }
 
 void ChildProcess::end() noexcept {
-  const bool is_owner = getpid() == owner_;  // or a copy of it, by another fork
+  const bool is_owner = getpid() == owner_;  // false in a fork of the owner
   if (is_owner && pid_ > 0) {
     kill(pid_, SIGKILL);
     int status = 0;
@@ -119,7 +119,7 @@ void ChildProcess::fail_damaged(const std::string& reason) {
 }
 
 void ChildProcess::fail_died() {
-  end();  // a process that has ended already stays what it is
+  end();  // has no effect on a process that has already ended
   if (status_ && WIFSIGNALED(*status_)) {
     const int number = WTERMSIG(*status_);
     const char* const name = sigdescr_np(number);
@@ -145,7 +145,7 @@ void ChildProcess::rethrow(const Message& message) {
   throw Error(static_cast<ErrorCode>(code), text);
 }
 
-/// A message, as long as it is one; `closed` when the child has ended.
+/// Receives and validates a message; `closed` if the child has ended.
 ChildProcess::Message ChildProcess::next_message() {
   Message message;
   MessageHead head;
@@ -153,6 +153,7 @@ ChildProcess::Message ChildProcess::next_message() {
   std::array<iovec, 2> parts = {iovec{&head, sizeof(head)}, iovec{message.package.small.data(), kMostInline}};
   alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
   msghdr header{};
+  // receive
   header.msg_iov = parts.data();
   header.msg_iovlen = parts.size();
   header.msg_control = control.data();
@@ -166,6 +167,7 @@ ChildProcess::Message ChildProcess::next_message() {
                                                            first->cmsg_len == CMSG_LEN(sizeof(int)))
     std::memcpy(&message.descriptor, CMSG_DATA(first), sizeof(int));
   if (size == 0 && message.descriptor < 0) return message;
+  // validate
   const auto bytes = static_cast<std::size_t>(size);
   const bool is_whole = bytes >= sizeof(head) && (header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) == 0;
   const bool is_known = is_whole && head.magic == kMessageMagic && head.version == kMessageVersion &&
@@ -181,8 +183,8 @@ ChildProcess::Message ChildProcess::next_message() {
   return message;
 }
 
-/// Maps a file in memory that nobody can make smaller: its pages stay there. Private pages are shared until one is
-/// written to, so that a later fork of this process has its own values.
+/// Maps a sealed memory file; the seal guarantees that its pages exist. A private mapping shares its pages until they
+/// are written to, so a later fork of this process has its own values.
 void ChildProcess::take_block(int descriptor, std::vector<Mapping>& blocks, bool shared) {
   struct stat status {};
   const int seals = fcntl(descriptor, F_GET_SEALS);
@@ -215,7 +217,7 @@ void ChildProcess::require_time(double fraction, const Progress& progress) {
     used_last_ = used;
     standing_since_ = now;
   }
-  constexpr std::chrono::seconds kLongestWait(120);  // for a disk or a network
+  constexpr std::chrono::seconds kLongestWait(120);  // allows for a slow disk or network
   if (now - standing_since_ > kLongestWait)
     fail_damaged(fmt::format("waited for more than {} s without progress{}", kLongestWait.count(), kWithoutLimits));
   if (used - used_before_ <= limits_.seconds + granted_) return;
@@ -237,6 +239,7 @@ Package ChildProcess::wait(const Progress& progress, bool shared) {
   };
   has_progressed();
   tick(progress, fraction, path_);
+  // handle messages until the result
   for (;;) {
     pollfd waiting{socket_, POLLIN, 0};
     if (poll(&waiting, 1, kMilliseconds) <= 0) {
@@ -297,7 +300,7 @@ Package ChildProcess::receive(const Progress& progress, Blocks blocks) {
 void ChildProcess::fail_contradiction() { fail_damaged("gave a result that contradicts itself"); }
 
 void ChildProcess::request(const LayerRequest& request) {
-  if (getpid() != owner_ || pid_ <= 0) return;  // receive() says so
+  if (getpid() != owner_ || pid_ <= 0) return;  // receive() throws in this case
   send(socket_, &request, sizeof(request), MSG_NOSIGNAL);
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work in a child process, which may die of a damaged file: its end is an error, not that of the program.
+// Runs work in a child process, so that a crash on a damaged file is an error and does not end the program.
 //
-// The child is a fork without exec, so that a library needs no program of its own beside it. It has one thread, takes
-// no lock but those that the C library makes safe for that (the allocator's among them), runs neither handlers of
-// signals nor those of the program's end, prints nothing, and leaves no core file. What it sends is checked as if it
-// came from anyone. It ends with its parent.
+// The child is a fork without exec, so a library needs no program of its own. It has one thread. It takes only locks
+// that the C library makes safe after a fork (the allocator's among them), runs no signal or exit handlers of the
+// program, prints nothing, and leaves no core file. Its messages are validated like untrusted input. It ends with its
+// parent.
 #pragma once
 
 #include <sys/types.h>
@@ -24,32 +24,32 @@
 
 namespace tegl::io_detail {
 
-/// A child at work, as its parent sees it. Belongs to the process that started it.
+/// A running child, seen by its parent. Belongs to the process that started it.
 class ChildProcess {
  public:
   using Work = ChildWork;
 
-  /// Starts `work` in a child; what it throws is thrown by receive(). `path` is named in messages. Errors:
-  /// FileNotFound if no process can be started.
+  /// Starts `work` in a child; receive() throws its exceptions. Messages name `path`. Errors: FileNotFound if no
+  /// process can be started.
   ChildProcess(std::filesystem::path path, const Work& work, const ChildLimits& limits = {});
-  /// Ends the child, whatever it is doing.
+  /// Ends the child in any state.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Who has the blocks of a result: the caller, or the child, which uses them anew at the next request.
+  /// Owner of a result's blocks: the caller, or the child, which reuses them at the next request.
   enum class Blocks { given, lent };
 
-  /// Waits for a result of the work. Calls `progress` now and then; Cancelled if it says stop. Lent blocks are in
-  /// lent_block(): at most one. Errors: MalformedFile if the child dies or goes beyond a limit, and those of the work;
-  /// the child has ended then.
+  /// Waits for a result. Calls `progress` from time to time; Cancelled if it returns false. A lent block is in
+  /// lent_block(): at most one. Errors: MalformedFile if the child dies or exceeds a limit, and those of the work; the
+  /// child has then ended.
   Package receive(const Progress& progress, Blocks blocks = Blocks::given);
   [[nodiscard]] const Mapping& lent_block() const noexcept { return shared_block_; }
-  /// Throws MalformedFile: what the child has sent makes no sense. Ends it.
+  /// Ends the child and throws MalformedFile: its messages are inconsistent.
   [[noreturn]] void fail_contradiction();
-  /// Asks for layers; the answer is received.
+  /// Requests layers; call receive() for the result.
   void request(const LayerRequest& request);
-  /// Ends the child, whose work is done.
+  /// Ends the child after its work.
   void end() noexcept;
   [[nodiscard]] pid_t pid() const noexcept { return pid_; }
 
@@ -63,18 +63,18 @@ class ChildProcess {
   [[noreturn]] void rethrow(const Message& message);
   void require_time(double fraction, const Progress& progress);
 
-  std::filesystem::path path_;  ///< that is read, as far as the child has said so
+  std::filesystem::path path_;  ///< the file being read, as reported by the child
   ChildLimits limits_;
   int socket_ = -1;
   pid_t pid_ = -1;
   pid_t owner_ = -1;                                      ///< the process that started it
-  std::optional<int> status_;                             ///< of its end, once it is known
-  double used_last_ = 0;                                  ///< its processor time when it was read last
-  std::chrono::steady_clock::time_point standing_since_;  ///< when that last grew
-  double used_before_ = 0;                                ///< its processor time at the last sign of progress
-  double granted_ = 0;                                    ///< further seconds of it until the next one
-  Mapping shared_block_;                                  ///< the last one that was lent
-  std::uint64_t shared_file_ = 0;                         ///< and of which file it is
+  std::optional<int> status_;                             ///< exit status, once known
+  double used_last_ = 0;                                  ///< the child's processor time at the last check
+  std::chrono::steady_clock::time_point standing_since_;  ///< time when used_last_ last increased
+  double used_before_ = 0;                                ///< processor time at the last sign of progress
+  double granted_ = 0;             ///< additional seconds allowed until the next sign of progress
+  Mapping shared_block_;           ///< the last lent block
+  std::uint64_t shared_file_ = 0;  ///< inode of its memory file
 };
 
 }  // namespace tegl::io_detail

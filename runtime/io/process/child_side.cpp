@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A child process: what it must not share with its parent, its limits, and its messages.
+// The child's side: isolation from the parent, limits, and messages.
 #include "process/child_side.hpp"
 
 #include <dirent.h>
@@ -30,22 +30,22 @@ namespace tegl::io_detail {
 
 namespace {
 
-/// What belongs to this process if it is a child: readers know nothing of it.
+/// State of this process if it is a child; global, because readers report to it without knowing about it.
 struct ChildSide {
   int socket;
   ChildMemory memory;
-  std::string file;  ///< that is read
+  std::string file;  ///< the file being read
 };
 ChildSide* child_side = nullptr;
 
 volatile pid_t parent_process = 0;
 
-/// Who computes for a parent that is gone is not needed; who waits for it notices by the connection.
+/// A computing child ends here if its parent is gone; a waiting one is ended by the closed connection.
 void end_if_orphaned(int) {
   if (getppid() != parent_process) _exit(EXIT_FAILURE);
 }
 
-/// Handlers are the parent's. Ctrl-C and requests to end concern the parent, which ends the child.
+/// Resets the parent's signal handlers. The parent handles Ctrl-C and termination requests, and ends the child.
 void reset_signals() {
   struct sigaction action {};
   action.sa_handler = SIG_DFL;
@@ -55,7 +55,7 @@ void reset_signals() {
   action.sa_handler = end_if_orphaned;
   action.sa_flags = SA_RESTART;
   sigaction(SIGPROF, &action, nullptr);
-  constexpr timeval kEverySecond = {1, 0};  // of processor time
+  constexpr timeval kEverySecond = {1, 0};  // processor time
   const itimerval timer = {kEverySecond, kEverySecond};
   setitimer(ITIMER_PROF, &timer, nullptr);
 }
@@ -66,8 +66,8 @@ void unblock_signals() {
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// Connections, pipes and files that are written would stay open as long as the child lives. Files that are only read
-/// may be those of a library that reads them here, too.
+/// Inherited connections, pipes and writable files would stay open while the child lives, so they are closed. Read-only
+/// files may belong to a library that uses them here too, so they are kept.
 bool is_kept(int descriptor, int socket) {
   if (descriptor == socket) return true;
   struct stat status {};
@@ -98,10 +98,10 @@ void silence() {
 void forbid_core_files() {
   const rlimit none = {0, 0};
   setrlimit(RLIMIT_CORE, &none);
-  prctl(PR_SET_DUMPABLE, 0);  // nor for a program that takes them
+  prctl(PR_SET_DUMPABLE, 0);  // also prevents dumps to a pipe
 }
 
-/// The child writes no files, but the system counts memory that it shares as one: as large as may be.
+/// Removes the file size limit: the system applies it to shared memory too, and the child writes no files.
 void allow_large_blocks() {
   rlimit limit{};
   if (getrlimit(RLIMIT_FSIZE, &limit) != 0) return;
@@ -109,7 +109,7 @@ void allow_large_blocks() {
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-/// Sends a message; a parent that is gone ends the process.
+/// Sends a message; ends the process if the parent is gone.
 void send_message(int socket, MessageKind kind, std::span<const unsigned char> bytes, int descriptor = -1,
                   std::uint64_t in_file = 0) {
   MessageHead head;
@@ -136,7 +136,7 @@ void send_message(int socket, MessageKind kind, std::span<const unsigned char> b
   if (sent < 0) _exit(EXIT_FAILURE);
 }
 
-/// A copy in a file in memory, of the bytes of whole pages.
+/// A copy of bytes in a memory file, in whole pages.
 class FileCopy {
  public:
   FileCopy(const void* bytes, std::size_t count, std::size_t size)
@@ -215,7 +215,7 @@ Progress ParentLink::progress() const {
   static constexpr std::chrono::milliseconds kEvery(20);
   return [last = Clock::time_point()](double fraction) mutable {
     const auto now = Clock::now();
-    if (fraction < 1.0 && now - last < kEvery) return true;  // the end is always told
+    if (fraction < 1.0 && now - last < kEvery) return true;  // the end is always reported
     last = now;
     send_number(MessageKind::progress, fraction);
     return true;
@@ -244,7 +244,7 @@ void now_reading(const std::filesystem::path& path) {
   Packer packer;
   packer.text(path.native());
   if (packer.bytes().size() <= kMostInline) send_message(child_side->socket, MessageKind::file, packer.bytes());
-  constexpr double kSlowest = 16 * 1024 * 1024;  // bytes per second, of a library that goes through a file's tables
+  constexpr double kSlowest = 16 * 1024 * 1024;  // bytes per second, for a library that reads a file's tables
   send_number(MessageKind::grant, static_cast<double>(known) / kSlowest);
 }
 
@@ -254,7 +254,7 @@ void expect_memory(std::uint64_t bytes) {
 
 void expect_objects(std::uint64_t count) {
   if (child_side == nullptr) return;
-  // netCDF-C 4.9 takes 65 to 85 kB and up to 1.5 ms for a variable, compressed or not, or a group.
+  // netCDF-C 4.9 takes 65 to 85 kB and up to 1.5 ms per variable, compressed or not, or group.
   constexpr std::uint64_t kBytes = std::uint64_t{1} << 17;
   constexpr double kSeconds = 0.005;
   child_side->memory.allow(kBytes * count);
@@ -262,17 +262,19 @@ void expect_objects(std::uint64_t count) {
 }
 
 void expect_step(std::uint64_t bytes) {
-  constexpr std::uint64_t kSmall = std::uint64_t{1} << 25;  // no matter, and would be many messages
+  constexpr std::uint64_t kSmall = std::uint64_t{1} << 25;  // negligible, and would be many messages
   if (child_side == nullptr || bytes < kSmall) return;
-  constexpr double kSlowest = 64 * 1024 * 1024;  // bytes per second, of the slowest decompression
+  constexpr double kSlowest = 64 * 1024 * 1024;  // bytes per second, for the slowest decompression
   send_number(MessageKind::grant, static_cast<double>(bytes) / kSlowest);
 }
 
 void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildWork& work) noexcept {
+  // isolate this process from the parent
   parent_process = parent;
   reset_signals();
   forbid_core_files();
   allow_large_blocks();
+  // work
   try {
     close_inherited(socket);
     silence();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The child's side of a child process: its limits, its connection to the parent, and what it does beside its work.
+// The child's side of a child process: its limits and its connection to the parent.
 #pragma once
 
 #include <sys/types.h>
@@ -17,9 +17,9 @@ namespace tegl::io_detail {
 
 /// Limits of a child.
 struct ChildLimits {
-  /// Memory that it may take before it has opened a file; more by now_reading() and expect_memory().
+  /// Memory in bytes before it opens a file; now_reading() and expect_memory() raise it.
   std::uint64_t memory = std::uint64_t{64} << 20;
-  /// Of its processor time between two signs of progress; more for large files by now_reading(), expect_step().
+  /// Processor time in seconds between two signs of progress; now_reading() and expect_step() raise it for large files.
   double seconds = 2;
 };
 
@@ -27,22 +27,22 @@ struct ChildLimits {
 class ParentLink {
  public:
   explicit ParentLink(int socket) noexcept : socket_(socket) {}
-  /// Reports to the parent, which may be often: few of the calls cost anything. Never says stop.
+  /// Reports progress to the parent. May be called often: most calls send nothing. Always returns true.
   [[nodiscard]] Progress progress() const;
   /// Sends a result.
   void send(const Packer& packer) const;
-  /// Waits for the parent; none: it needs nothing more.
+  /// Waits for the parent's request; nullopt if there are no more.
   [[nodiscard]] std::optional<LayerRequest> receive() const;
 
  private:
   int socket_;
 };
 
-/// What a child does for its parent.
+/// The work of a child.
 using ChildWork = std::function<void(const ParentLink& parent)>;
 
-/// Does the work of a child that has just been forked with all signals blocked, and ends the process. What is thrown
-/// while a failure is sent ends it, too (SIGABRT), as the caller's code must not go on in the child.
+/// Runs the work of a freshly forked child, with all signals blocked on entry, and ends the process. Exceptions while a
+/// failure is being sent abort it (SIGABRT), because the caller's code must not continue in the child.
 [[noreturn]] void run_child_side(int socket, pid_t parent, const ChildLimits& limits, const ChildWork& work) noexcept;
 
 }  // namespace tegl::io_detail

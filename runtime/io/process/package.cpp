@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bytes of numbers, texts and small arrays.
+// Implements packing of numbers, texts and small arrays as bytes.
 #include "process/package.hpp"
 
 #include <sys/mman.h>
@@ -9,7 +9,7 @@ namespace tegl::io_detail {
 
 namespace {
 
-constexpr std::size_t kAlignment = 8;  ///< of arrays among the bytes
+constexpr std::size_t kAlignment = 8;  ///< of arrays within the bytes
 
 std::size_t padding(std::size_t position) { return (kAlignment - position % kAlignment) % kAlignment; }
 

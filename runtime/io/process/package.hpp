@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Values between two processes: numbers, texts and arrays as bytes; large arrays in memory that both map.
+// Transfers values between two processes: numbers, texts and arrays as bytes; large arrays in shared memory.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace tegl::io_detail {
 
-/// Pages of a file in memory; unmaps them.
+/// Mapped pages of a memory file; unmaps them on destruction.
 class Mapping {
  public:
   Mapping() = default;
@@ -32,7 +32,7 @@ class Mapping {
   ~Mapping();
   [[nodiscard]] std::size_t bytes() const noexcept { return begin_ == nullptr ? 0 : bytes_; }
   [[nodiscard]] const unsigned char* data() const noexcept { return static_cast<const unsigned char*>(begin_); }
-  /// Leaves the pages to the caller.
+  /// Releases the pages to the caller.
   void* take() noexcept { return std::exchange(begin_, nullptr); }
 
  private:
@@ -40,10 +40,10 @@ class Mapping {
   std::size_t bytes_ = 0;
 };
 
-/// What a process sends. Arrays of 2 MiB and more stay where they are and have to live until they are sent.
+/// Packs values to be sent. Arrays of 2 MiB and more are not copied and must live until they are sent.
 class Packer {
  public:
-  /// A block that holds an array, from its first page to its last.
+  /// A block that holds one array, in whole pages.
   struct Block {
     const void* begin;
     std::size_t bytes;
@@ -87,7 +87,7 @@ class Packer {
   std::vector<Block> blocks_;
 };
 
-/// What a process has received.
+/// A received package.
 struct Package {
   std::vector<unsigned char> small;  ///< the bytes, unless they are in `large`
   Mapping large;
@@ -97,10 +97,10 @@ struct Package {
   }
 };
 
-/// Thrown by Unpacker: the sender has written nonsense.
+/// Thrown by Unpacker if a package is invalid.
 struct BadPackage {};
 
-/// Reads a package of a process that nothing can be believed of: each size is compared with what is there.
+/// Reads a package of an untrusted process: each size is checked against the available bytes.
 class Unpacker {
  public:
   explicit Unpacker(Package& package) : package_(package), left_(package.bytes()) {}
@@ -112,7 +112,7 @@ class Unpacker {
     std::memcpy(static_cast<void*>(&value), bytes.data(), sizeof(T));
     return value;
   }
-  /// A whole number up to `most`.
+  /// An integer, at most `most`.
   std::size_t count(std::size_t most);
   std::string text();
   /// Takes over the memory of a large array.
@@ -124,7 +124,7 @@ class Unpacker {
   void array(Buffer<T>& to) {
     array_in(to, [](std::size_t bytes) { return detail::block_of_buffer(bytes); });
   }
-  /// The samples where they lie, as long as the package lives, or the block if they are in that.
+  /// A view of the samples; valid while the package lives, or while `block` lives if they are in it.
   template <class T>
   std::span<const T> view(const Mapping& block) {
     const Array array = head(sizeof(T));
@@ -160,7 +160,7 @@ class Unpacker {
       std::memcpy(to.data(), bytes.data(), bytes.size());
     }
   }
-  /// Lets what `reserve` allocates be this block.
+  /// Makes `reserve` allocate this block.
   template <class Reserve>
   static void adopt(Mapping& block, std::size_t bytes, const Reserve& reserve) {
     AdoptedBlock source(block);

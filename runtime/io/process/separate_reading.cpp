@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The results of readers as packages, and layers that a child process reads.
+// Packs the results of readers, and reads layers through a child process.
 #include "process/separate_reading.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kMostItems = std::size_t{1} << 32;  ///< of a list: its bytes limit it before
+constexpr std::size_t kMostItems = std::size_t{1} << 32;  ///< of a list; the size of its bytes is a stricter limit
 
 template <class Item, class Put>
 void put_list(Packer& packer, const std::vector<Item>& items, const Put& put) {
@@ -27,7 +27,7 @@ void put_list(Packer& packer, const std::vector<Item>& items, const Put& put) {
   for (const Item& item : items) put(item);
 }
 
-/// Each item takes at least a byte, so that no list is longer than the package.
+/// Each item takes at least a byte, so a list is not longer than the package.
 template <class Item, class Get>
 void get_list(Unpacker& unpacker, std::vector<Item>& items, const Get& get) {
   const std::size_t count = unpacker.count(kMostItems);
@@ -148,7 +148,7 @@ void put_values(Packer& packer, const ValueArray& values) {
   std::visit([&](const auto& array) { packer.array(array); }, values);
 }
 
-/// Calls `use` with an empty array of the type of that number.
+/// An empty array of the type with this number.
 ValueArray array_of_number(std::size_t type) {
   ValueArray array;
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -233,7 +233,7 @@ Mesh get_mesh(Unpacker& unpacker) {
   return mesh;
 }
 
-/// What `get` makes of all that the child has sent.
+/// Applies `get` to a whole package of the child.
 template <class Get>
 auto unpack(ChildProcess& child, Package& package, const Get& get) {
   try {
@@ -246,13 +246,13 @@ auto unpack(ChildProcess& child, Package& package, const Get& get) {
   }
 }
 
-/// Layers of which a child reads as many at a time as a request to it is worth.
+/// Layers read by a child, several per request.
 class SeparateLayers {
  public:
   SeparateLayers(fs::path path, const std::function<LayersOfFiles()>& open)
       : path_(std::move(path)), child_(path_, [&](const ParentLink& parent) { serve(open(), parent); }) {}
 
-  /// Grid, description and files; nothing is read yet.
+  /// Receives grid, metadata and files; reads no values.
   LayersOfFiles describe() {
     Package package = child_.receive({});
     LayersOfFiles opened = unpack(child_, package, [&](Unpacker& unpacker) {
@@ -273,7 +273,7 @@ class SeparateLayers {
 
   [[nodiscard]] const ValueArray& type() const noexcept { return type_; }
 
-  /// Layers where the child has put them; valid until the next call.
+  /// A view of layers in the child's block; valid until the next call.
   ValueView look(std::size_t first, std::size_t count) {
     child_.request({first, count});
     package_ = child_.receive({}, ChildProcess::Blocks::lent);
@@ -289,7 +289,8 @@ class SeparateLayers {
   }
 
  private:
-  /// Layers of a multiple of the file's blocks, of some megabytes together: a request takes some 20 µs.
+  /// Number of layers per request: a multiple of the file's blocks, some megabytes in total. A request takes some 20
+  /// µs.
   [[nodiscard]] std::size_t worthwhile(std::size_t block) const {
     constexpr std::uint64_t kBytes = std::uint64_t{1} << 22;
     const std::size_t item = std::visit([]<class T>(const ValueVector<T>&) { return sizeof(T); }, type_);
@@ -315,7 +316,7 @@ class SeparateLayers {
     while (const auto request = parent.receive()) {
       if (request->count > most) expect_memory(kBytesPerValue * layer * request->count);
       most = std::max(most, request->count);
-      values = ValueArray();  // its block is used again
+      values = ValueArray();  // frees its block for reuse
       values = layers.read(request->first, request->count);
       Packer packer;
       std::visit([&](const auto& array) { packer.array(array); }, values);
@@ -344,7 +345,7 @@ bool needs_separate_process(const fs::path& path) {
            std::equal(prefix.begin(), prefix.end(), kHdf5.begin(),
                       [](unsigned char a, char b) { return a == static_cast<unsigned char>(b); });
   } catch (const Error&) {
-    return false;  // a reader says what is wrong with it
+    return false;  // the reader reports the error
   }
 }
 

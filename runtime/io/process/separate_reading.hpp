@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Readers in a child process: what they give comes back by way of shared memory.
+// Runs readers in a child process and returns their results through shared memory.
 #pragma once
 
 #include <filesystem>
@@ -13,30 +13,30 @@
 
 namespace tegl::io_detail {
 
-/// Whether files like this are read by a library that damaged ones bring down: HDF5 (netCDF-4 and VTKHDF) or DCMTK.
+/// Whether a file is read by a library that damaged files may crash: HDF5 (netCDF-4 and VTKHDF) or DCMTK.
 bool needs_separate_process(const std::filesystem::path& path);
 bool needs_separate_process(std::span<const std::filesystem::path> paths);
 
-/// An image and the files that it is made of, in their order.
+/// An image and its files, in order.
 struct ImageOfFiles {
   RawImage image;
   std::vector<std::filesystem::path> files;
 };
-/// Layers and the files that they are in, in their order.
+/// Layers and their files, in order.
 struct LayersOfFiles {
   RawLayers layers;
   std::vector<std::filesystem::path> files;
 };
 
-/// Calls `read` in a child with the progress that it reports to. `path` is named until the reader has named a file.
-/// Errors: those of ChildProcess.
+/// Calls `read` in a child, with a progress callback that reports to the parent. Messages name `path` until the reader
+/// reports a file. Errors: those of ChildProcess.
 ImageOfFiles read_separately(const std::filesystem::path& path, const Progress& progress,
                              const std::function<ImageOfFiles(const Progress&)>& read);
 Mesh read_separately(const std::filesystem::path& path, const Progress& progress,
                      const std::function<Mesh(const Progress&)>& read);
 std::vector<ImageVariable> read_separately(const std::filesystem::path& path,
                                            const std::function<std::vector<ImageVariable>()>& read);
-/// The layers stay in the child, which reads those that are asked for.
+/// Opens layers in a child, which reads them on request.
 LayersOfFiles open_separately(const std::filesystem::path& path, const std::function<LayersOfFiles()>& open);
 
 }  // namespace tegl::io_detail

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elements to text and to HDF5; see tegl/io/elements.hpp.
+// Writes elements as text and HDF5; see tegl/io/elements.hpp.
 //
 // Based on: P. Huovinen and H. Petersen, "Particlization in hybrid models", Eur. Phys. J. A 48 (2012) 171,
-// arXiv:1206.3371, and the example program that the authors give with their code: what its lines hold.
+// arXiv:1206.3371, and the authors' example program, whose line format is used.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ using namespace io_detail;
 
 namespace {
 
-constexpr std::size_t kRows = std::size_t{1} << 16;  ///< between two reports
+constexpr std::size_t kRows = std::size_t{1} << 16;  ///< rows between two progress reports
 
 /// The axes in the order of the file.
 template <int N>
@@ -37,13 +37,13 @@ std::array<int, N> order_of(const ElementFileOptions& options) {
   return order;
 }
 
-/// What a component is multiplied by.
+/// The factor of a component.
 template <int N>
 double sign_of(int axis, const ElementFileOptions& options) {
   return options.components == ElementComponents::contravariant && axis != N - 1 ? -1.0 : 1.0;
 }
 
-/// A name without blanks.
+/// Replaces blanks in a name.
 std::string word(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) <= 0x20) c = '_';
@@ -57,7 +57,7 @@ std::string name_of_axis(const Elements<N>& elements, int axis) {
   return word(name.empty() ? std::string(1, kUsual[axis]) : name);
 }
 
-/// The product of the units of all axes but one; empty if one of these has none.
+/// The unit of a normal's component: the product of the units of all other axes; empty if one of them is unknown.
 template <int N>
 std::string unit_of_component(const Elements<N>& elements, int axis) {
   std::string unit;
@@ -83,12 +83,13 @@ void write_lines(const Elements<N>& elements, const fs::path& path, const Elemen
       file.write(buffer.data(), buffer.size());
       buffer.clear();
     }
+    // centroid, normal, attributes
     for (int i = 0; i < N; ++i) {
       if (i > 0) buffer.push_back(' ');
       fmt::format_to(out, "{}", elements.centroids[e][order[i]]);
     }
     for (int i = 0; i < N; ++i) {
-      // Adding 0 makes a turned 0 a plain one.
+      // Adding 0 turns -0 into 0.
       const double component = sign_of<N>(order[i], options) * elements.normals[e][order[i]] + 0.0;
       fmt::format_to(out, " {}", component);
     }
@@ -97,7 +98,7 @@ void write_lines(const Elements<N>& elements, const fs::path& path, const Elemen
       for (std::size_t i = 0; i < width; ++i) {
         const double value = attribute.values[e * width + i];
         if (std::isnan(value))
-          fmt::format_to(out, " nan");  // whatever its sign
+          fmt::format_to(out, " nan");  // for either sign of NaN
         else
           fmt::format_to(out, " {}", value);
       }
@@ -109,7 +110,7 @@ void write_lines(const Elements<N>& elements, const fs::path& path, const Elemen
   file.commit();
 }
 
-/// A dataset of `count` rows of `columns` numbers (0: one each, in one dimension): number(row, column).
+/// Writes a dataset of `count` rows of `columns` numbers number(row, column); 0 columns: one-dimensional.
 template <class Number, class Make>
 void put_table(const H5File& file, hid_t group, const std::string& name, std::uint64_t count, std::uint64_t columns,
                const std::string& units, hid_t file_type, hid_t memory_type, const Make& number) {
@@ -155,6 +156,7 @@ void write_hdf5(const Elements<N>& elements, const fs::path& path, const Element
   const H5Quiet quiet;
   PendingPath pending(path);
   H5File file = H5File::create(pending.path(), path);
+  // names and units of columns
   const std::array<int, N> order = order_of<N>(options);
   std::string axes, units, component_units;
   for (int i = 0; i < N; ++i) {
@@ -164,12 +166,14 @@ void write_hdf5(const Elements<N>& elements, const fs::path& path, const Element
     component_units += unit_of_component(elements, order[i]) + end;
   }
   {
+    // attributes of the file
     const H5Handle root = file.open_group("/");
     file.put_text(root.id(), "format", "tegl elements 1");
     file.put_text(root.id(), "axes", axes);
     file.put_text(root.id(), "components",
                   options.components == ElementComponents::covariant ? "covariant" : "contravariant");
     file.put_text(root.id(), "direction", elements.direction == GradientDirection::descent ? "descent" : "ascent");
+    // datasets
     const std::size_t count = elements.centroids.size();
     tick(options.progress, 0.0, path);
     put_numbers(file, root.id(), "centroid", count, N, units,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of active tiles in files.
+// Reads and writes index files of active tiles.
 #include <cstdio>
 #include <string>
 
@@ -40,7 +40,7 @@ class FileSource final : public ByteSource {
   std::unique_ptr<std::FILE, CloseFile> file_;
 };
 
-/// Calls `work(source)`; what it throws names the file.
+/// Calls `work(source)` and adds the file's name to its errors.
 template <class Work>
 auto with_file(const fs::path& path, const Work& work) {
   FileSource source(path);

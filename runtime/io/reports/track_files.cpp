@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The graph of a contour's parts as JSON, DOT and CSV, and onto disk.
+// Formats track graphs as JSON, DOT and CSV, and writes them to files.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -47,7 +47,7 @@ Json event_json(const TrackGraph& graph, std::size_t number) {
 Json sample_json(const TrackGraph& graph, const TrackSample& sample) {
   return {{"time", sample.time},
           {"measure", sample.measure},
-          {"content", sample.content},  // null where it is NaN
+          {"content", sample.content},  // null for NaN
           {"centroid", coordinates(graph, sample.centroid)},
           {"lower", coordinates(graph, sample.lower)},
           {"upper", coordinates(graph, sample.upper)}};
@@ -76,7 +76,7 @@ Json handle_json(const TrackGraph& graph, const TrackHandle& handle) {
           {"segment", handle.segment}, {"euler_change", handle.euler_change}};
 }
 
-/// A colour for each track, told apart from its neighbours' by the golden angle; neither light nor dark.
+/// A colour of medium lightness for each track; hues of consecutive tracks differ by the golden angle.
 std::string track_colour(Index track) {
   return fmt::format("{:.3f} 0.650 0.750", std::fmod(0.58 + 0.61803398875 * track, 1.0));
 }
@@ -117,7 +117,7 @@ std::string track_json(const TrackGraph& graph) {
         {{"track", track.number}, {"start", track.start}, {"end", track.end}, {"segments", track.segments}});
   }
   for (const TrackHandle& handle : graph.handles) json["handles"].push_back(handle_json(graph, handle));
-  // Names of axes come from files and may be no UTF-8.
+  // Axis names come from files and may be invalid UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

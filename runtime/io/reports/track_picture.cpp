@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The picture of a graph of parts: time from left to right, a row for each track.
+// Draws a track graph as SVG: time from left to right, one row per track.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,8 @@ namespace {
 
 constexpr Index kNone = TrackGraph::kNoSegment;
 
-/// Neither light nor dark, so that all stand out from both grounds; told apart by most who see few colours.
+/// Medium lightness, for contrast with light and dark backgrounds; distinguishable with most colour vision
+/// deficiencies.
 constexpr std::array kColours{"#3d85c6", "#d9822b", "#2e9e76", "#c25b9a", "#8c6bb1", "#a3872b", "#c95a4c", "#5f8a99"};
 
 constexpr const char* kStyle =
@@ -38,7 +39,7 @@ constexpr const char* kStyle =
     "}\n"
     "</style>\n";
 
-/// Text that XML takes: no control characters, markup escaped, and what is no ASCII as it is if it is UTF-8 throughout,
+/// Text for XML: removes control characters and escapes markup. Non-ASCII bytes are kept if the whole text is UTF-8,
 /// else replaced.
 std::string escaped(std::string_view text) {
   const bool is_utf8 = [&] {
@@ -65,7 +66,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-/// Which of all tracks are shown.
+/// Restricts the graph to its longest-lived tracks.
 TrackGraph longest(const TrackGraph& graph, std::size_t most) {
   std::vector<std::size_t> order(graph.tracks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -76,12 +77,13 @@ TrackGraph longest(const TrackGraph& graph, std::size_t most) {
   return select_tracks(graph, keep);
 }
 
-/// Rows for tracks, those that meet near each other: a track that splits off comes below its origin, one that merges
-/// above what it merges into, and nearer those that let others pass.
+/// Assigns rows to tracks, with connected tracks close together: a track that splits off is below its origin, one that
+/// merges is above its target, and shorter-lived ones are closer, so they do not cross the others.
 class Rows {
  public:
   explicit Rows(const TrackGraph& graph)
       : graph_(graph), above_(graph.tracks.size()), below_(graph.tracks.size()), rows_(graph.tracks.size()) {
+    // attach each track to the one that it splits off from or merges into, without cycles
     std::vector<Index> hosts(graph.tracks.size(), kNone);
     for (Index t = 0; t < hosts.size(); ++t) {
       const TrackEvent& start = graph.events[graph.segments[graph.tracks[t].segments.front()].from];
@@ -93,12 +95,13 @@ class Rows {
       else if (goal != kNone && !leads_to(hosts, goal, t))
         above_[hosts[t] = goal].push_back(t);
     }
+    // place tracks that are not attached, with all that are attached to them
     for (Index t = 0; t < hosts.size(); ++t)
       if (hosts[t] == kNone) place(t);
   }
   [[nodiscard]] std::size_t operator[](Index track) const { return rows_[track]; }
 
-  /// The track that goes on through an event; kNone if none does.
+  /// The track that continues through an event; kNone if there is none.
   [[nodiscard]] Index through(const TrackEvent& event) const {
     for (const Index a : event.in)
       for (const Index b : event.out)
@@ -113,7 +116,7 @@ class Rows {
     return false;
   }
 
-  /// A track with all that hangs on it, without recursion: chains may be long.
+  /// Places a track and all tracks attached to it, without recursion, because chains may be long.
   void place(Index root) {
     std::vector<std::pair<Index, bool>> stack{{root, false}};
     while (!stack.empty()) {
@@ -129,7 +132,7 @@ class Rows {
                        [&](Index a, Index b) { return graph_.tracks[a].start < graph_.tracks[b].start; });
       std::stable_sort(above.begin(), above.end(),
                        [&](Index a, Index b) { return graph_.tracks[a].end < graph_.tracks[b].end; });
-      for (const Index child : below) stack.emplace_back(child, false);  // the last one comes out first
+      for (const Index child : below) stack.emplace_back(child, false);  // pushed in reverse order of placement
       stack.emplace_back(t, true);
       for (const Index child : above) stack.emplace_back(child, false);
     }
@@ -142,7 +145,7 @@ class Rows {
   std::size_t next_ = 0;
 };
 
-/// A mark, centred at a place.
+/// A mark centred at (x, y).
 std::string mark(TrackEventKind kind, double x, double y) {
   const auto path = [&](const char* style, std::string_view shape) {
     return fmt::format("<path class=\"{}\" transform=\"translate({:.2f} {:.2f})\" d=\"{}\"/>", style, x, y, shape);
@@ -173,7 +176,7 @@ std::string handle_mark(double x, double y) {
   return fmt::format("<path class=\"mark\" d=\"M{:.2f} {:.2f}l6 6m0-6l-6 6\"/>", x - 3, y - 3);
 }
 
-/// A round distance between ticks: at most `count` of them over the range.
+/// A round tick distance that gives at most `count` ticks over the range.
 double tick_step(double range, double count) {
   if (!(range > 0)) return 1;
   const double power = std::pow(10.0, std::floor(std::log10(range / count)));
@@ -215,7 +218,7 @@ class Drawing {
   }
 
  private:
-  /// The upright line that joins the tracks of an event.
+  /// The vertical line that connects the tracks of an event.
   struct Link {
     double at, top, bottom;
   };
@@ -269,13 +272,12 @@ class Drawing {
     const Track& track = graph_.tracks[t];
     text_ += fmt::format("<g fill=\"{}\"><title>track {}: {:.6g} to {:.6g}</title>\n",
                          kColours[track.number % kColours.size()], track.number, track.start, track.end);
-    double measure = 0;  // of a segment without samples: as the one before it
+    double measure = 0;  // a segment without samples has the measure of the previous one
     for (const Index s : track.segments) measure = draw_segment(graph_.segments[s], y(t), measure);
     text_ += number_of(t) + "</g>\n";
   }
 
-  /// The number of a track in its row, which is its own: before its start, or behind its end if links leave room nearer
-  /// to that.
+  /// The label of a track in its row: before its start, or after its end if links leave room closer to that.
   [[nodiscard]] std::string number_of(Index t) const {
     const Track& track = graph_.tracks[t];
     const std::string number = std::to_string(track.number);
@@ -289,19 +291,19 @@ class Drawing {
                        comes_first ? " text-anchor=\"end\"" : "", number);
   }
 
-  /// The left end of a text of some width in a row: from `left` on to the left (step < 0) or to the right, as near as
-  /// no link crosses it.
+  /// The left end of a text of width `width` in a row: starting at `left`, moved to the left (step < 0) or right until
+  /// no link crosses the text.
   [[nodiscard]] double free_of_links(double left, double width, double row, int step) const {
     const auto crosses = [&](const Link& link) {
       return link.top < row + 6 && link.bottom > row - 6 && link.at > left - 2 && link.at < left + width + 2;
     };
-    // Ends, as each link is passed once.
+    // Terminates, because each link is passed at most once.
     for (auto link = links_.begin(); (link = std::find_if(links_.begin(), links_.end(), crosses)) != links_.end();)
       left = step < 0 ? link->at - 2.5 - width : link->at + 2.5;
     return left;
   }
 
-  /// A band around the row: up along the samples and back. Returns the measure at its end.
+  /// Draws a band around the row: along the samples and back. Returns the measure at its end.
   double draw_segment(const TrackSegment& segment, double middle, double before) {
     std::vector<std::pair<double, double>> outline;
     const double first = segment.samples.empty() ? before : segment.samples.front().measure;
@@ -319,7 +321,7 @@ class Drawing {
     return last;
   }
 
-  /// The rows of an event's segments, from the highest to the lowest.
+  /// The rows of an event's segments, from top to bottom.
   [[nodiscard]] std::vector<double> rows_of(const TrackEvent& event) const {
     std::vector<double> rows;
     for (const auto* list : {&event.in, &event.out})
@@ -337,7 +339,7 @@ class Drawing {
                          mark(event.kind, x(event.time), row));
   }
 
-  /// What the marks mean; those that there are.
+  /// Draws a legend of the marks that occur.
   void draw_legend() {
     double at = kLeft;
     const double row = bottom_ + 56;

@@ -1,69 +1,70 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files that appear whole or not at all: written under another name beside the target, and renamed at the end.
+// Output files that appear complete or not at all: written to a temporary name beside the target, then renamed.
 #pragma once
 
 #include <filesystem>
 
 namespace tegl {
 
-/// Where a file of this name lies: absolute, and behind symbolic links, also those that lead to no file yet. Two names
-/// of one file have one place. A name in a folder that does not exist stays as it is.
+/// The absolute path of a file, with symbolic links resolved, including links to files that do not exist yet. All names
+/// of one file give the same path. A name in a folder that does not exist is returned unchanged.
 std::filesystem::path place_of(const std::filesystem::path& path);
 
-/// A name beside a target, with its extension: claimed on construction by an empty file, removed on destruction unless
-/// committed. Symbolic links are followed, also those that lead to no file yet: what they lead to is written, and they
-/// stay. A target that is there keeps its permissions, which the new file has from the beginning. Safe to use from
-/// several threads, each with its own objects. Errors of all members: WriteFailed, naming the target and the reason.
+/// A temporary file beside a target, with the target's extension: created empty by the constructor, removed by the
+/// destructor unless committed. Symbolic links are followed, including links to files that do not exist yet: the file
+/// that they refer to is written, and the links stay. The new file has the permissions of an existing target from the
+/// beginning. Thread-safe if each thread has its own objects. Errors of all members: WriteFailed, with the target and
+/// the reason.
 class PendingPath {
  public:
-  /// Claims a name beside the target. Errors also where the target is there and no file, or cannot be overwritten.
+  /// Creates the temporary file. Also fails if the target exists and is not a file, or cannot be overwritten.
   explicit PendingPath(const std::filesystem::path& target);
   ~PendingPath();
   PendingPath(const PendingPath&) = delete;
   PendingPath& operator=(const PendingPath&) = delete;
 
-  /// Where to write; the file exists and is empty.
+  /// The temporary file, to be written to; it exists and is empty at first.
   [[nodiscard]] const std::filesystem::path& path() const& noexcept { return pending_; }
-  /// Deleted: with the temporary the file is gone.
+  /// Deleted: a temporary object removes its file.
   const std::filesystem::path& path() const&& = delete;
-  /// The target as the user named it, for messages.
+  /// The target as the caller named it, for messages.
   [[nodiscard]] const std::filesystem::path& target() const& noexcept { return named_; }
-  [[nodiscard]] std::filesystem::path target() const&& { return named_; }  ///< of a temporary: a copy
-  /// place_of() the target.
+  [[nodiscard]] std::filesystem::path target() const&& { return named_; }  ///< a copy, for temporaries
+  /// The target's place_of().
   [[nodiscard]] const std::filesystem::path& place() const& noexcept { return place_; }
-  [[nodiscard]] std::filesystem::path place() const&& { return place_; }  ///< of a temporary: a copy
-  /// Moves the file, written and closed, to its place.
+  [[nodiscard]] std::filesystem::path place() const&& { return place_; }  ///< a copy, for temporaries
+  /// Renames the temporary file, written and closed, to the target.
   void commit();
-  /// As commit(), but what was there is kept until destruction, so that roll_back() can restore it. File systems that
-  /// cannot exchange two files lose what was there, as with commit().
+  /// As commit(), but keeps the previous target until destruction, so that roll_back() can restore it. File systems
+  /// that cannot exchange two files lose the previous target, as with commit().
   void commit_reversibly();
-  /// After commit_reversibly(): what was there before, a file or nothing, is there again. No errors: what cannot be
-  /// undone stays.
+  /// After commit_reversibly(): restores the previous state, a file or none. No errors: changes that cannot be undone
+  /// stay.
   void roll_back() noexcept;
 
  private:
   friend void remove_pending_files() noexcept;
   enum class State { pending, placed, exchanged, replaced };
-  /// Enters the list of files that remove_pending_files() removes.
+  /// Adds this object to the list for remove_pending_files().
   void enlist() noexcept;
-  /// Creates the pending file, listed. Returns its descriptor, or -1.
+  /// Creates the temporary file and adds this object to the list. Returns its descriptor, or -1.
   int create(unsigned mode) noexcept;
-  /// Leaves the list.
+  /// Removes this object from the list.
   void delist() noexcept;
 
   std::filesystem::path named_;
   std::filesystem::path place_;
   std::filesystem::path pending_;
   State state_ = State::pending;
-  // Neighbours in the list; null at its ends, and for files that are not in it.
+  // Neighbours in the list; null at its ends and for objects outside of it.
   PendingPath* before_ = nullptr;
   PendingPath* after_ = nullptr;
 };
 
-/// Removes the files that all PendingPaths of this process still hold. For handlers of signals that end the program:
-/// async-signal-safe, and to be called once, by a process that ends right after it. Any thread that creates, commits or
-/// destroys a PendingPath afterwards waits forever.
+/// Removes the temporary files of all PendingPaths of this process. For handlers of fatal signals: async-signal-safe.
+/// Call it once, right before the process ends: any thread that creates, commits or destroys a PendingPath afterwards
+/// waits forever.
 void remove_pending_files() noexcept;
 
 }  // namespace tegl

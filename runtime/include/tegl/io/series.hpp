@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Series of files as one image with one more axis: volumes over time as a 4D image, slices as a 3D one. Link with
-// tegl::io; what is said there of threads holds here, too.
+// File series read as one image with an additional axis: volumes over time as a 4D image, slices as a 3D one. Link with
+// tegl::io; its rules for threads apply.
 #pragma once
 
 #include <filesystem>
@@ -15,103 +15,103 @@
 
 namespace tegl {
 
-/// In which order files follow each other along the new axis.
+/// The order of files along the new axis.
 enum class SeriesOrder {
-  given,       ///< as they are listed
-  by_name,     ///< by their names, whose numbers count as such: frame_2 before frame_10
-  coordinate,  ///< by where they lie along the new axis, ascending; by `coordinates`, or as they say themselves
+  given,       ///< as listed
+  by_name,     ///< by name, with runs of digits compared as numbers: frame_2 before frame_10
+  coordinate,  ///< by ascending coordinate along the new axis, from `coordinates` or the files
 };
 
-/// How files become one image.
+/// Options of read_series and open_series.
 struct SeriesOptions {
-  std::string variable = {};             ///< netCDF: as in ReadImageOptions, of every file
-  std::vector<double> coordinates = {};  ///< where each file lies, as they are listed; empty: see read_series
-  std::optional<double> step = {};       ///< instead of them: 0, step, 2 step, ...
-  /// Of the new axis; empty: the files' own. Where the files give times in a unit, these are converted (ms, s, min, h,
-  /// d, "since" the same moment if that is said); another unit is an error.
+  std::string variable = {};             ///< netCDF: as in ReadImageOptions, for every file
+  std::vector<double> coordinates = {};  ///< one per file, as listed; empty: see read_series
+  std::optional<double> step = {};       ///< instead of `coordinates`: 0, step, 2 step, ...
+  /// Unit of the new axis; empty: that of the files. Times that the files give in another unit are converted (ms, s,
+  /// min, h, d; "since" the same moment, if there is one); other units are an error.
   std::string unit = {};
-  SeriesOrder order = SeriesOrder::given;  ///< of the files
-  std::optional<RawLayout> raw = {};       ///< files of nothing but values: how each one of them is laid out
-  Progress progress = {};                  ///< of read_series, over all files
-  std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, of every file
+  SeriesOrder order = SeriesOrder::given;  ///< order of the files
+  std::optional<RawLayout> raw = {};       ///< layout of each file, for headerless raw files
+  Progress progress = {};                  ///< for read_series, over all files
+  std::vector<FixedIndex> fixed = {};      ///< as in ReadImageOptions, for every file
   bool allow_outside_paths = false;        ///< as in ReadImageOptions
   bool separate_process = false;           ///< as in ReadImageOptions: one child for all files
 };
 
-/// An image of several files, which is a ReadImageResult as any other, and those files.
+/// An image read from several files, and the list of files.
 struct ReadSeriesResult : ReadImageResult {
-  std::vector<std::filesystem::path> files = {};  ///< in the order of the new axis; of DICOM as they were listed
+  std::vector<std::filesystem::path> files = {};  ///< in the order of the new axis; DICOM: as listed
 };
 
-/// The same to be read layer by layer.
+/// Several files opened as one image by layers.
 struct OpenSeriesResult : OpenLayersResult {
-  std::vector<std::filesystem::path> files = {};  ///< as above
+  std::vector<std::filesystem::path> files = {};  ///< in the order of the new axis; DICOM: as listed
 };
 
-/// What a person asks of a series, where each is said or not.
+/// A user's request for a series. Each option may be missing.
 struct SeriesRequest {
   std::string variable = {};                      ///< as in SeriesOptions
-  std::optional<std::vector<double>> times = {};  ///< where each file lies along the new axis
-  std::optional<double> time_step = {};           ///< or how far one is from the next
-  std::optional<std::string> time_unit = {};      ///< of the new axis
-  std::optional<SeriesOrder> sort = {};           ///< of the files
+  std::optional<std::vector<double>> times = {};  ///< coordinate of each file along the new axis
+  std::optional<double> time_step = {};           ///< or the distance between adjacent files
+  std::optional<std::string> time_unit = {};      ///< unit of the new axis
+  std::optional<SeriesOrder> sort = {};           ///< order of the files
   std::optional<RawLayout> raw = {};              ///< as in SeriesOptions
   std::vector<FixedIndex> fixed = {};             ///< as in SeriesOptions
   bool allow_outside_paths = false;               ///< as in SeriesOptions
 };
 
-/// What these are called where they are asked for: "--times" on a command line.
+/// The names of these options in error messages, as the user interface has them: "--times" on a command line.
 struct SeriesWords {
-  std::string_view times = {};      ///< of SeriesRequest::times
-  std::string_view time_step = {};  ///< of SeriesRequest::time_step
-  std::string_view time_unit = {};  ///< of SeriesRequest::time_unit
-  std::string_view sort = {};       ///< of SeriesRequest::sort
-  std::string_view by_time = {};    ///< of SeriesRequest::sort as SeriesOrder::coordinate
-  std::string_view by_name = {};    ///< as SeriesOrder::by_name
-  std::string_view given = {};      ///< as SeriesOrder::given
+  std::string_view times = {};      ///< for SeriesRequest::times
+  std::string_view time_step = {};  ///< for SeriesRequest::time_step
+  std::string_view time_unit = {};  ///< for SeriesRequest::time_unit
+  std::string_view sort = {};       ///< for SeriesRequest::sort
+  std::string_view by_time = {};    ///< for the value SeriesOrder::coordinate
+  std::string_view by_name = {};    ///< for the value SeriesOrder::by_name
+  std::string_view given = {};      ///< for the value SeriesOrder::given
 };
 
-/// The options for what is asked for, where that makes sense together and for these files. Errors, all InvalidArgument
-/// and in these words: what belongs to several files, asked of one; `times` with `time_step`; a step with an order by
-/// times; other than one time for each file; a step of 0; and files without `sort` in an order that only
-/// a shell would choose, frame_10 before frame_2, as a contour through these looks like one and is wrong. (DICOM files,
-/// which say themselves where they lie, may come in any.)
+/// Converts a request to options, and checks that it is consistent and fits the files. Errors, all InvalidArgument with
+/// the names of `words`: options for several files with one file; `times` with `time_step`; a step with an order by
+/// times; a number of times other than the number of files; a step of 0; and files without `sort` in the order of a
+/// shell, frame_10 before frame_2, because a contour through these looks right and is wrong. (DICOM files have their
+/// own positions and may be in any order.)
 SeriesOptions series_options(std::span<const std::filesystem::path> files, const SeriesRequest& request,
                              const SeriesWords& words);
 
-/// What to add to an error of read_series or open_series, so that it says which requests do not go together where files
-/// do not follow each other; empty where there is nothing.
+/// Text to append to an error of read_series or open_series: if the files are not in monotone order, it names the
+/// conflicting options. Else empty.
 std::string series_hint(const Error& error, const SeriesOptions& options, const SeriesWords& words);
 
-/// Reads files of one shape as one image with one axis more, the last: 3D files as a 4D image, 2D files as a 3D one.
-/// Any formats of read_image, or raw values. One file alone is read as it is.
+/// Reads files of equal shape as one image with one additional, last axis: 3D files as a 4D image, 2D files as a 3D
+/// one. Files are of any format of read_image, or raw. A single file is read without an additional axis.
 ///
-/// The new axis is named t (of 3D files) or z (of 2D ones). Its coordinates are `coordinates`, each of which stays with
-/// its file whatever the order, or multiples of `step` in that order; without either the files' own, where each says in
-/// an axis of one sample where it lies (netCDF: a coordinate variable; NIfTI: toffset, or the position of a slice; NRRD
-/// and MetaImage: the last axis) and these differ, and the name and unit they give; else 0, 1, 2, ... They have to be
-/// strictly monotone in the order of the files.
+/// The new axis is named t (for 3D files) or z (for 2D files). Its coordinates are `coordinates`, which stay with their
+/// files in any order, or multiples of `step` in the order of the files. Without both they come from the files, with
+/// name and unit, if every file has its coordinate in an axis of one sample (netCDF: a coordinate variable; NIfTI:
+/// toffset, or the position of a slice; NRRD and MetaImage: the last axis) and these differ. Otherwise they are 0, 1,
+/// 2, ... They must be strictly monotone in the order of the files.
 ///
-/// Values and coordinates are those of read_image. The files must have the same sizes, type of values, unit of values,
-/// frame and coordinates; the latter up to a thousandth of a step, and those of the first file count. All headers are
-/// compared before any value is read. Memory: the image and one file.
+/// Values and coordinates are those of read_image. The files must have the same sizes, value type, value unit, frame
+/// and coordinates; coordinates may differ by up to a thousandth of a step, and those of the first file are used. All
+/// headers are compared before any value is read. Memory: the image and one file.
 ///
-/// Errors, naming the file and what differs from the first: UnsupportedData (files that do not fit together; more than
-/// 3 axes), InvalidArgument (no file; coordinates that are not one for each file or not monotone, both `coordinates`
-/// and `step`, a unit that the files' own does not become), and those of read_image.
+/// Errors, naming the file and the difference from the first file: UnsupportedData (files that do not match; more than
+/// 3 axes), InvalidArgument (no file; not one coordinate per file, or coordinates that are not monotone; both
+/// `coordinates` and `step`; a unit that the files' unit does not convert to), and those of read_image.
 ReadSeriesResult read_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
-/// The same to be read layer by layer, a file for each layer: what is larger than memory as a whole. Values as in
-/// open_layers (uint32, int64 and uint64 as double). Memory: one file. Errors: as above, at once; and by read() if a
-/// file has become another since. One file alone is opened by open_layers, or open_raw_layers.
+/// Opens a series to be read layer by layer, one file per layer, for images larger than memory. Values as in
+/// open_layers (uint32, int64 and uint64 as double). Memory: one file. Errors: those of read_series, immediately; and
+/// in read() if a file has changed since. A single file is opened by open_layers or open_raw_layers.
 OpenSeriesResult open_series(std::span<const std::filesystem::path> files, const SeriesOptions& options = {});
 
-/// Whether these are DICOM files, which say themselves where they lie: read_series reads them in any order, and takes
-/// neither coordinates nor a SeriesOrder for them.
+/// Whether the files are DICOM. DICOM files have their own positions: read_series accepts them in any order, without
+/// coordinates and without a SeriesOrder.
 bool are_dicom_files(std::span<const std::filesystem::path> files);
 
-/// Whether name `a` comes before `b` where runs of digits count as numbers: "frame_2" before "frame_10". Names that
-/// differ in leading zeros alone come in the order of their bytes.
+/// Whether name `a` precedes `b` if runs of digits are compared as numbers: "frame_2" before "frame_10". Names that
+/// differ only in leading zeros are compared by bytes.
 bool natural_less(std::string_view a, std::string_view b);
 
 }  // namespace tegl
