@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The certificate in five dimensions: ten thousand tiles, every choice in every face at random. By itself, as it takes
-// more than a minute on two processors.
+// The certificate in five dimensions: ten thousand tiles with random choices in every face. In a program of its own, as
+// it takes more than a minute on two processors.
 #include <gtest/gtest.h>
 
 #include "filling/resolutions.hpp"
@@ -9,7 +9,7 @@
 namespace tegl::gen {
 namespace {
 
-// Sanitizers make it ten times as slow, and a few tiles show them all there is.
+// Sanitizers make it ten times as slow, and a few tiles suffice for them.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t kTiles = 200;
 #else

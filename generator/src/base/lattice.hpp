@@ -40,12 +40,8 @@ struct Tile {
   std::vector<std::string> edge_names;  ///< cubes: ternary, highest axis first, 'e' = free axis; else the two corners
   std::vector<SubTile> faces;           ///< codimension one; empty for dim 0
 
-  [[nodiscard]] std::uint32_t corner_count() const {
-    return static_cast<std::uint32_t>(corners.size());
-  }  ///< number of corners
-  [[nodiscard]] std::uint32_t edge_count() const {
-    return static_cast<std::uint32_t>(edges.size());
-  }  ///< number of edges
+  [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }  ///< count
+  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }      ///< count
   /// All corners.
   [[nodiscard]] Signature full() const { return ~Signature{0} >> (32 - corner_count()); }
   /// The signature restricted to face f, in the numbering of the face's corners.
@@ -68,10 +64,8 @@ class Lattice {
   Lattice(const Lattice&) = delete;
   Lattice& operator=(const Lattice&) = delete;
 
-  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }  ///< highest dimension
-  [[nodiscard]] const Tile& tile(int k) const {
-    return tiles_[static_cast<std::size_t>(k)];
-  }  ///< the tile of dimension k
+  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }                ///< highest dimension
+  [[nodiscard]] const Tile& tile(int k) const { return tiles_[static_cast<std::size_t>(k)]; }  ///< of dimension k
 
  private:
   std::vector<Tile> tiles_;

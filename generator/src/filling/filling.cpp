@@ -328,8 +328,7 @@ std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& 
         if (found != known.end() && sign == 0) sign = found->second * faces[drop].second;
       }
       if (sign == 0) return false;
-      for (const auto& [face, own] : faces)
-        known.try_emplace(face, -sign * own);  // for the tetrahedron on the other side
+      for (const auto& [face, own] : faces) known.try_emplace(face, -sign * own);  // for the other side
       result.push_back(t);
       if (sign < 0) std::swap(result.back()[2], result.back()[3]);
       return true;

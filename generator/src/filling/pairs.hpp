@@ -3,7 +3,6 @@
 // The certificate of two neighbouring tiles: on the shared face, the boundary of one tile's contour must be the
 // boundary of the other's with the opposite orientation. Otherwise the contour has a hole there.
 //
-//
 // Based on: M. Liversage, thesis, 1994, sections 6.2.10 (consistency), 7.2.6 (the hole of figure 7.3) and 9.4 (its
 // cause in "marching cubes": the exchange of high and low used as a symmetry).
 #pragma once

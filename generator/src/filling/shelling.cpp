@@ -135,8 +135,7 @@ class Front {
   const std::vector<std::uint8_t>& vertices_;
   const SigmaComplex* sigma_;
   std::size_t left_;
-  std::array<std::array<std::uint8_t, kMost>, kMost>
-      third_;  ///< by directed edge: the triangle's third vertex, or kNone
+  std::array<std::array<std::uint8_t, kMost>, kMost> third_;  ///< by directed edge: third vertex of its triangle
   std::array<std::uint8_t, kMost> degree_{};
   std::bitset<kMost * kMost> used_edges_;  ///< edges of the front, now or earlier
   std::bitset<kMost * kMost * kMost> used_triangles_;

@@ -3,7 +3,6 @@
 // The symmetry group of the n-cube, the hyperoctahedral group B_n, and its action on corners and signatures. No element
 // is typed by hand: elements are products of the group's reflections, and the order is checked against 2^n n!.
 //
-//
 // Based on: M. Liversage, thesis, 1994, sections 6.5 and 7.4 (action on tiles); H. S. M. Coxeter, 1935 (presentation of
 // B_n by n reflections).
 #pragma once

@@ -35,12 +35,11 @@ Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation);
 
 /// Arguments of make_table_set.
 struct TableRequest {
-  TileKind tile = TileKind::cube;  ///< the kind of tile
-  int dim = 0;                     ///< dimension
-  std::vector<Triangulation> triangulations{Triangulation::barycentric,
-                                            Triangulation::compact};  ///< triangulations to make
-  std::function<Layout(Triangulation)> layout;                        ///< empty: preferred_layout
-  std::string command;                                                ///< for the banner
+  TileKind tile = TileKind::cube;                                                                 ///< the kind of tile
+  int dim = 0;                                                                                    ///< dimension
+  std::vector<Triangulation> triangulations{Triangulation::barycentric, Triangulation::compact};  ///< all to make
+  std::function<Layout(Triangulation)> layout;  ///< empty: preferred_layout
+  std::string command;                          ///< for the banner
 };
 
 /// Builds and certifies the tables. Throws Error{CertificateFailed} or Error{Internal}; writes no files.
