@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl check: reports, requirements and exit codes.
 #include <gmock/gmock.h>
 
 #include "tegl/io.hpp"

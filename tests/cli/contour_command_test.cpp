@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl contour: results for fields with known contours, options, formats and reports.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>

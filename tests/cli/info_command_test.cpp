@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl info: axes, values, variables, world map and suggested isovalues of image files.
 #include <gmock/gmock.h>
 
 #include <numeric>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Writers of small image files: NRRD, NIfTI, MetaImage and netCDF.
 #include "sample_files.hpp"
 
 #include <netcdf.h>

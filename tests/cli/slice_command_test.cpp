@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl slice: slices of images and of saved contours, by axis and by plane.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Child processes, pipes and pseudo-terminals for running `tegl`.
 #include "tegl_program.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl track: events, graphs, pictures and tables.
 #include <gmock/gmock.h>
 
 #include <fstream>

@@ -130,7 +130,7 @@ TEST(ResolvedCube, EveryEntryIsCertifiedAndIsTheSurfaceThatTheBuilderFinds) {
       ASSERT_EQ(certifier.certify(lattice, tile), facets::Fault::none) << s << " " << high;
     }
   });
-  // 304 entries with a star of two, three or four polygons are joined by one sign; 8 with a chain of three by both.
+  // 308 entries with a star of two, three or four polygons are joined by one sign; 8 with a chain of three by both.
   EXPECT_EQ(tunnels, 308 + 2 * 8);
 }
 
