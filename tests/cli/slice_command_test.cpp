@@ -76,7 +76,7 @@ TEST_F(Slice, AttributesAreThoseOfOtherImagesAtTheCutWhereverItComesFrom) {
     const Mesh cut = read_mesh(path("cut.vtkhdf"));
     ASSERT_EQ(cut.vertex_attributes.size(), 1u);
     const auto& values = cut.vertex_attributes[0].values;
-    // At a time step vertices lie on edges of the grid, where the image has the isovalue.
+    // At a time step vertices lie on edges of the grid, at which the image has the isovalue.
     for (const double value : values) ASSERT_NEAR(value, 0.0, 1e-5);
     found.emplace_back(values.begin(), values.end());
     EXPECT_GT(found.back().size(), 50u);

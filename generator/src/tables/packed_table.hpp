@@ -3,14 +3,14 @@
 // A tile table as one array of 32-bit words, for shaders and GPU kernels, whose constant data has neither bytes nor
 // structs. GLSL, WGSL and CUDA tables consist of this array and a few lines of look-up.
 //
-// Words, all little-endian where they are written to a file:
+// Words; little-endian in files:
 //   0  kPackedMagic ("TEGL")        6  group elements, 0 if flat         12  offset of the lists
 //   1  table contract version       7  bytes per permutation row         13  offset of the simplices
 //   2  dimension n                  8  most simplices of a signature     14  offset of the permutations
 //   3  0 barycentric, 1 compact     9  most own vertices of a signature  15  offset of the reversal bits
 //   4  lists                       10  words per list, 1 or 3            16  offset of the side masks
 //   5  simplices                   11  offset of the signatures          17  side masks
-// An offset is 0 where there is nothing to be found. At the offsets:
+// The offset of an empty part is 0. At the offsets:
 //   signatures    by class only: list | element << 12 | slot swaps << 24, one word per signature
 //   lists         1 word (n < 4): first simplex | simplices << 16 | cone vertices << 24
 //                 3 words: first simplex, simplices | cone vertices << 16 | side vertices << 24, first side mask

@@ -59,7 +59,7 @@ void expect_elements_of_a_ball(std::size_t samples) {
     double flux = 0;
     for (std::size_t e = 0; e < all.centroids.size(); ++e) flux += dot<N>(all.centroids[e], all.normals[e]);
     EXPECT_NEAR(flux / N, enclosed_content(contour), 1e-12 * ball.content());
-    // By cell the total is equal, and the size of each element is bounded by that of its triangles.
+    // By cell the totals are equal, and the norm of each normal is at most the element's measure.
     const Elements<N> cells = elements_by_cell(contour, grid);
     const ElementSum<N> cell_sum = sum_of(cells);
     EXPECT_LE(cells.centroids.size(), all.centroids.size());

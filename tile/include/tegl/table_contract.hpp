@@ -130,8 +130,8 @@ struct RegionTable {
 /// 12 + j is own vertex j of the list. Its mask has bit v for corner v and bit 8 + e for the point of edge e. If the
 /// mask holds edge points only, the vertex is their mean; if it holds a corner, the vertex is the midpoint of the
 /// cube's centre and the mean of the corners and points in the mask. The segments in a square are equal in all entries
-/// that resolve the square equally. Orientation as above. If a signature has no ambiguous square or all are high,
-/// `separate` equals the high-connected compact table; if it has none or all are low, the low-connected one.
+/// that resolve the square equally. Orientation as above. If all ambiguous squares are low, or none is
+/// ambiguous, `separate` equals the low-connected compact table; if all are high, the high-connected one.
 struct ResolvedList {
   std::uint16_t first_triangle;  ///< index into ResolvedTable::triangles, in triangles
   std::uint8_t triangle_count;   ///< number of triangles
