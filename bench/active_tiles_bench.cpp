@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of active tiles: what each method costs to build and keep, what a query costs as the active tiles grow, and
-// what a sweep over 256 isovalues gains. Writes tables in Markdown.
+// Benchmarks indexes of active tiles: time and memory of building each, query time against the number of active tiles,
+// and the gain of a sweep over 256 isovalues. Writes tables in Markdown.
 //
 //   active_tiles_bench [--queries N] [--csv FILE] IMAGE...
 //
-// An image "balls:N" is made: N^3 samples of float with three balls, empty elsewhere.
-// One thread; times are those of the processor. Times of queries and contours are the least of a few runs. `--csv`
-// keeps every single query.
+// An image "balls:N" is generated: N^3 float samples with three balls, empty elsewhere. One thread; CPU times. Times of
+// queries and contours are minima over a few runs. `--csv` writes every single query.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -31,12 +30,12 @@ namespace {
 
 struct Query {
   double isovalue;
-  double active;           ///< tiles
-  double seconds;          ///< to find them
-  double extract_seconds;  ///< to find them and make the contour
+  double active;           ///< number of active tiles
+  double seconds;          ///< time to find them
+  double extract_seconds;  ///< time to find them and generate the contour
 };
 
-/// Isovalues over the range of the values: for 8 bits and up to 256 queries, one between any two values.
+/// Isovalues spread over the range of the values; for 8 bits and 256 queries about one between adjacent values.
 template <class Owned>
 std::vector<double> isovalues_of(const Owned& owned, int queries) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -107,7 +106,7 @@ void measure(const std::string& name, const Owned& owned, int queries, std::FILE
   }
 }
 
-/// N^3 samples, most of them far from any contour: the case for an index.
+/// N^3 samples, most of them far from any contour: the best case for an index.
 OwnedImage<float, 3> few_balls(std::size_t n) {
   OwnedImage<float, 3> image{Grid<3>::unit({n, n, n}), std::vector<float>(n * n * n)};
   const auto radius = static_cast<double>(n) / 12;

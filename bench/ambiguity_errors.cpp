@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// ambiguity_errors: how many contours of random fields have another topology than the interpolant's, by the way to
-// resolve ambiguities: another number of components, or another Euler characteristic. As CSV.
+// ambiguity_errors: for each way to resolve ambiguities, the number of contours of random fields whose topology (number
+// of components or Euler characteristic) differs from the interpolant's. Writes CSV.
 //
 //     ambiguity_errors [FIELDS [CELLS]]
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Numbers among the arguments of measuring programs.
+// Parsing of numbers in the arguments of benchmark programs.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 
 namespace tegl::bench {
 
-/// A whole number, all of `text`. Throws InvalidArgument, which names the argument and what is wrong, unless it is at
-/// least `least` and at most `most`.
+/// Parses all of `text` as a whole number from `least` to `most`. Otherwise throws InvalidArgument with the argument's
+/// name, the text and the range.
 template <class Number>
 Number whole_number(std::string_view argument, std::string_view text, Number least, Number most) {
   Number number{};

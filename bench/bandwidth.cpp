@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Reading and writing memory, in as many pieces as there are threads.
+// Memory bandwidth: one part of the memory per thread.
 #include "bandwidth.hpp"
 
 #include <sys/mman.h>
@@ -26,7 +26,7 @@ struct Unmap {
 };
 using Mapping = std::unique_ptr<std::uint64_t, Unmap>;
 
-/// Memory that nothing has touched, at least `bytes` of it from the next border of a huge page on.
+/// Untouched memory of at least `bytes`, plus one huge page so that it can start at a huge page's border.
 Mapping map(std::size_t bytes, bool huge) {
   bytes += kHugePage;
   void* p = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -35,7 +35,7 @@ Mapping map(std::size_t bytes, bool huge) {
   return Mapping(static_cast<std::uint64_t*>(p), Unmap{bytes});
 }
 
-/// Seconds of work(part of 0 ... threads - 1), one thread each.
+/// Wall time in seconds of work(i) for i = 0 to threads - 1, each in a thread of its own.
 template <class Work>
 double time_of(int threads, const Work& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -46,7 +46,7 @@ double time_of(int threads, const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The sum of words, in eight chains so that additions do not wait for one another.
+/// The sum of words in eight chains, so that additions do not wait for one another.
 std::uint64_t sum(const std::uint64_t* words, std::size_t count) {
   std::uint64_t chains[8] = {};
   for (std::size_t i = 0; i + 8 <= count; i += 8)

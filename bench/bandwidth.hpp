@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What this machine's memory can do, by number of threads: the floor under every time of an extraction, which reads
+// Memory bandwidth of the machine by number of threads: a lower bound of every extraction time, as an extraction reads
 // each sample and writes each vertex and simplex at least once. C++17.
 #pragma once
 
@@ -8,11 +8,11 @@
 
 namespace tegl::bench {
 
-/// Bytes per second of reading `bytes` of memory that is there, the best of six.
+/// Bytes per second of reading `bytes` of initialised memory, the maximum of six runs.
 double read_rate(std::size_t bytes, int threads);
 
-/// Bytes per second of writing `bytes` of memory that is new, so that the kernel has to find and clear its pages: those
-/// of 4 KiB, or huge ones where the kernel gives them on request. The best of six.
+/// Bytes per second of the first write to `bytes` of new memory, so that the kernel must find and clear its pages: 4
+/// KiB pages, or huge pages if the kernel grants them on request. The maximum of six runs.
 double fresh_write_rate(std::size_t bytes, int threads, bool huge);
 
 }  // namespace tegl::bench

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How fast contours are made, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
-// closed or not, by number of threads, and by size (scaling/...: what bench/scaling plots); in 5D a smooth field and
-// noise, and single tiles.
-// stages.hpp says what is reported.
+// Benchmarks of extraction, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
+// closed or open, by number of threads and by size (scaling/..., which bench/scaling plots); in 5D a smooth field,
+// noise, and single tiles. stages.hpp documents the report.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -23,7 +22,7 @@
 namespace tegl::bench {
 namespace {
 
-/// What to run.
+/// One benchmark.
 struct Case {
   std::string field;
   std::size_t samples = 0;
@@ -31,7 +30,8 @@ struct Case {
   int threads = 1;
 };
 
-/// The field last used: benchmarks of one field run after one another, and a 512^3 image is not kept beside others.
+/// Returns a field; keeps only the last one. Benchmarks of one field run in sequence, so a 512^3 image does not share
+/// memory with others.
 template <int N>
 const OwnedImage<float, N>& field_image(const std::string& name, std::size_t samples) {
   static std::map<std::string, OwnedImage<float, N>> kept;
@@ -43,7 +43,7 @@ const OwnedImage<float, N>& field_image(const std::string& name, std::size_t sam
   return kept.at(key);
 }
 
-/// The field in another value type: integers spread over the type's range, isovalue 0 in the middle of it.
+/// Converts the field to another value type: integers are spread over the type's range, with isovalue 0 in its middle.
 template <Value T, int N>
 OwnedImage<T, N> convert(const OwnedImage<float, N>& image) {
   OwnedImage<T, N> converted{image.grid, std::vector<T>(image.values.size())};
@@ -61,7 +61,7 @@ OwnedImage<T, N> convert(const OwnedImage<float, N>& image) {
   return converted;
 }
 
-/// The isovalue of `convert`ed fields: the middle of the type's range.
+/// The isovalue of converted fields: the middle of the type's range.
 template <Value T>
 constexpr double isovalue() {
   if constexpr (std::is_floating_point_v<T>) return 0.0;
@@ -106,8 +106,8 @@ void add_field(const std::string& field, std::size_t samples) {
   add<float, N>("extract", what);
 }
 
-/// Ambiguous faces resolved from the data, beside `low` in add_field: of a smooth field, which has hardly any, and of
-/// noise.
+/// Ambiguous faces resolved from the data, to compare with `low` in add_field: a smooth field, with hardly any
+/// ambiguity, and noise.
 template <int N>
 void add_estimators(const std::string& smooth, std::size_t samples, std::size_t samples_of_noise) {
   for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle})
@@ -122,8 +122,8 @@ void add_estimators(const std::string& smooth, std::size_t samples, std::size_t 
     }
 }
 
-/// Barycentric tiles of 4D resolved from the data, all put together from their cubes, beside those of tables: a smooth
-/// field, and noise.
+/// Barycentric 4D tiles resolved from the data, which are assembled from their cubes, to compare with table tiles: a
+/// smooth field and noise.
 void add_barycentric_4d() {
   for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle}) {
     Case what{"sphere", 24, {}, 1};
@@ -136,7 +136,7 @@ void add_barycentric_4d() {
   }
 }
 
-/// One smooth field in every value type: the classification reads fewer bytes, the rest stays.
+/// One smooth field in every value type: classification reads fewer bytes, the other stages are equal.
 void add_types() {
   const Case what{"metaballs", 256, {}, 1};
   add<std::uint8_t, 3>("types", what);
@@ -155,7 +155,7 @@ void add_scaling(const std::string& field, std::initializer_list<std::size_t> si
       add<float, N>("scaling", {field, samples, {}, threads});
 }
 
-/// A smooth field, whose time goes to writing, and noise, whose time goes to building tiles.
+/// A smooth field, whose time is mostly spent on writing, and noise, whose time is spent on building tiles.
 void add_5d() {
   for (const int threads : {1, 4}) {
     if (threads > 1 && !kHasThreads) continue;
@@ -165,8 +165,8 @@ void add_5d() {
   }
 }
 
-/// The facets of one tile of 5D: a corner cut off, a plane through it, random signatures, and random signs of faces
-/// too.
+/// The facets of a 5D tile: one corner cut off, a plane, random signatures, and random signatures with random signs of
+/// faces.
 void add_tiles() {
   constexpr int N = 5;
   const auto add_tile = [](const char* name, std::uint32_t signature, bool random_signature, bool random_signs) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The fixed fields, row by row: all but the sphere and noise are sums of products of functions of one coordinate each
-// (Gaussian bumps and products of sines are separable), so a row costs one multiplication and addition per term and
-// sample, and no call of exp or sin.
+// The fixed fields, computed row by row. All except the sphere, the balls and noise are sums of products of functions
+// of one coordinate (Gaussian bumps and products of sines are separable). So a row costs one multiplication and
+// addition per term and sample, without calls of exp or sin.
 #include "fields.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace tegl::bench {
 namespace {
 
 /// 64 well mixed bits of a number: splitmix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators,
-/// 2014). A function of the index, so noise does not depend on the order in which it is made.
+/// 2014). A function of the index, so noise does not depend on the order of generation.
 std::uint64_t mix(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15U;
   z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -24,10 +24,10 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31U);
 }
 
-/// In [0, 1).
+/// A number in [0, 1).
 double unit(std::uint64_t index) { return static_cast<double>(mix(index) >> 11U) * 0x1p-53; }
 
-/// Sample i of an axis from -1 to 1.
+/// Position of sample i of an axis from -1 to 1.
 double position(std::size_t i, std::size_t samples) {
   return 2.0 * static_cast<double>(i) / static_cast<double>(samples - 1) - 1.0;
 }
@@ -55,7 +55,7 @@ void fill_sphere(std::size_t samples, float* out) {
   });
 }
 
-/// Two balls of N - 1 dimensions, centres at -d and d on axis 0, d shrinking from 0.5 to 0.1 along the last axis.
+/// Two balls of N - 1 dimensions with centres at -d and d on axis 0; d decreases from 0.5 to 0.1 along the last axis.
 template <int N>
 void fill_balls(std::size_t samples, float* out) {
   for_each_row<N>(samples, out, [&](float* row, const std::array<std::size_t, N>& index) {
@@ -88,7 +88,7 @@ void fill_gyroid(std::size_t samples, float* out) {
   });
 }
 
-/// 200 bumps exp(-(x - c)^2 / (2 w^2)), less the isovalue. A bump that adds less than 1e-7 to a row is left out there.
+/// 200 bumps exp(-(x - c)^2 / (2 w^2)) minus the isovalue. Bumps that add less than 1e-7 to a row are skipped there.
 template <int N>
 void fill_metaballs(std::size_t samples, float* out) {
   constexpr std::size_t kBumps = 200;

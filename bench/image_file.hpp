@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the programs that measure images from files share.
+// Helpers of the programs that measure images from files.
 #pragma once
 
 #include <fmt/core.h>
@@ -15,7 +15,7 @@
 
 namespace tegl::bench {
 
-/// Calls work(name, image) with the OwnedImage of the file at `path`; the name is that of the file alone.
+/// Calls work(name, image) with the file name without folder and the OwnedImage of the file at `path`.
 template <class Work>
 void with_image_of_file(const std::string& path, const Work& work) {
   const ReadImageResult read = read_image(path);
@@ -23,7 +23,7 @@ void with_image_of_file(const std::string& path, const Work& work) {
   std::visit([&](const auto& typed) { std::visit([&](const auto& owned) { work(name, owned); }, typed); }, read.image);
 }
 
-/// The program's exit status: run(argc, argv), or 1 after an error, which is told.
+/// Returns the program's exit status: run(argc, argv), or 1 after printing an error.
 template <class Run>
 int run_program(const char* program, int argc, char** argv, const Run& run) {
   try {

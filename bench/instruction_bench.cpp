@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fixed inputs whose instructions are counted: `instruction_bench --list` names the small ones, which are watched,
-// `instruction_bench --list-large` those whose counts explain times, and `instruction_bench NAME` runs one. What counts
-// happens inside the function tegl_measured, which valgrind knows by that name (see bench/instructions); making the
-// field does not.
+// Fixed inputs for instruction counts. `instruction_bench --list` names the small ones, which are monitored,
+// `instruction_bench --list-large` those whose counts explain times, and `instruction_bench NAME` runs one. valgrind
+// counts the instructions inside the function tegl_measured (see bench/instructions), so generating the field does not
+// count.
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -17,8 +17,8 @@
 #include "tegl/slice.hpp"
 #include "usage.hpp"
 
-/// The function that is counted: by a C name, so that it can be found; and no tail call, which would leave it before
-/// the work begins.
+/// The counted function: it has a C name so that valgrind finds it, and no tail call, which would leave it before the
+/// work begins.
 extern "C" [[gnu::noinline]] void tegl_measured(const std::function<void()>& work) {
   work();
   asm volatile("" : : : "memory");
@@ -29,25 +29,25 @@ namespace {
 
 using NamedCase = std::pair<std::string, std::function<void()>>;
 
-/// Keeps a result alive up to here.
+/// Keeps a result alive up to this point.
 template <class T>
 void use(const T& result) {
   asm volatile("" : : "g"(&result) : "memory");
 }
 
-/// Calls tegl_measured through a pointer that the compiler cannot follow, so that it makes no copies for its callers.
+/// Calls tegl_measured through a pointer opaque to the compiler, which then makes no clones of it for its callers.
 void measured(const std::function<void()>& work) {
   void (*volatile function)(const std::function<void()>&) = tegl_measured;
   function(work);
 }
 
-/// Counts one extraction, and prints how large it is: samples, active tiles, simplices.
+/// Counts one extraction and prints its size: samples, active tiles, simplices.
 template <Value T, int N>
 void count_extract(const Image<T, N>& image, double isovalue, const ExtractOptions& base) {
   const ExtractOptions options = with_threads(base, 1);
   ExtractStats stats;
   std::size_t simplices = 0;
-  // What estimators make once per program is no part of a contour's cost.
+  // Excludes the one-time initialisation of estimators from the count.
   if (options.ambiguity != Ambiguity::low) {
     const OwnedImage<float, N> noise = make_field<N>("noise", 4);
     count(noise.view(), 0.0, options);
@@ -67,7 +67,7 @@ NamedCase extract_case(const std::string& field, std::size_t samples, const std:
           }};
 }
 
-/// Integers of 8 bits: classification at its narrowest.
+/// 8-bit integers: the narrowest classification.
 void count_bytes() {
   const auto field = make_field<3>("metaballs", 96);
   OwnedImage<std::uint8_t, 3> image{field.grid, std::vector<std::uint8_t>(field.values.size())};
@@ -85,7 +85,7 @@ void count_slice() {
 void count_slice_image() {
   const auto image = make_field<4>("balls", 32);
   const ExtractOptions options =
-      with_threads(ExtractOptions{}, 1);  // how several share the work is not the same each time
+      with_threads(ExtractOptions{}, 1);  // the division of work among several threads varies
   measured([&] { use(slice_image(image.view(), 0.0, 14.3, options)); });
 }
 
@@ -140,7 +140,7 @@ std::vector<NamedCase> all_cases() {
   };
 }
 
-/// What bench/side_by_side runs, at an eighth of its samples or less.
+/// The cases of bench/side_by_side with at most an eighth of its samples.
 std::vector<NamedCase> large_cases() {
   const ExtractOptions normals = with_normals(ExtractOptions{}, true);
   return {

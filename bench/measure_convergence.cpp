@@ -30,7 +30,7 @@ void measure_field(const char* name, const Field& field, double half_width, doub
   }
 }
 
-/// The largest errors of area and volume over 50 times between the samples.
+/// The maximum errors of area and volume over 50 times between the samples.
 void measure_expanding_ball(const std::vector<std::size_t>& tiles) {
   const auto radius = [](double t) { return 0.5 + 0.2 * t + 0.1 * t * t; };
   const auto field = [&](const tegl::test::Point<4>& x) { return radius(x[3]) - std::hypot(x[0], x[1], x[2]); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much memory this process has, and had at most (Linux).
+// Current and peak memory of this process (Linux).
 #pragma once
 
 #include <malloc.h>
@@ -12,8 +12,7 @@
 
 namespace tegl::bench {
 
-/// A value of /proc/self/status, such as VmHWM (the most memory that was resident) or VmRSS, in bytes; 0 if it has
-/// none.
+/// A value of /proc/self/status in bytes, such as VmHWM (peak resident memory) or VmRSS; 0 if there is none.
 inline std::uint64_t memory_bytes(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -21,13 +20,13 @@ inline std::uint64_t memory_bytes(const std::string& key) {
   return 0;
 }
 
-/// Gives the system what is freed but kept: else it would count as memory that was there before.
+/// Returns freed memory to the system; otherwise it would count as memory in use before a measurement.
 inline void give_back_memory() { malloc_trim(0); }
 
-/// Starts VmHWM anew from what is resident now.
+/// Resets VmHWM to the current resident memory.
 inline void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
-/// Page faults of this process so far that needed no disk.
+/// Number of page faults of this process so far that needed no disk access.
 inline std::uint64_t page_faults() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

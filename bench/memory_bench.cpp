@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The machine's memory by number of threads, for reading the other figures: 512 MiB read, and written for the first
-// time with small and with huge pages. Prints gigabytes (1e9) per second.
+// Memory bandwidth by number of threads, as a reference for other figures: reading 512 MiB, and first writes with small
+// and huge pages. Prints gigabytes (1e9) per second.
 #include <cstdio>
 #include <exception>
 

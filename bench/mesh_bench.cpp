@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How fast contours are used: cut at a time (`slice`), cut without making all of them first (`slice_image`), checked
-// (`check`); items are simplices of the contour, or samples of the image.
+// Benchmarks of using contours: slices at a time (`slice`), slices of the image without its contour (`slice_image`),
+// checks (`check`). Items are simplices of the contour, or samples of the image.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -35,7 +35,7 @@ void slice_field(benchmark::State& state, const std::string& field, std::size_t 
   const auto image = make_field<N>(field, samples);
   std::size_t cut = 0;
   for (auto _ : state) cut = slice_image(image.view(), 0.0, 0.37 * static_cast<double>(samples)).simplices.size();
-  // A cut reads the two layers that it lies between.
+  // A slice reads the two adjacent layers.
   const auto samples_read = static_cast<std::int64_t>(2 * image.values.size() / samples);
   state.SetItemsProcessed(state.iterations() * samples_read);
   state.SetBytesProcessed(state.iterations() * samples_read * static_cast<std::int64_t>(sizeof(float)));

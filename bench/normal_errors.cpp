@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How exact normals are: the root mean square of their angles to those of a sphere, by kind, dimension, grid, number of
-// samples and noise, as lines of comma separated values. Nothing here depends on the machine.
+// Errors of normals: the root mean square of their angles to the exact normals of a sphere, by kind, dimension, grid,
+// number of samples and noise, as CSV. The result does not depend on the machine.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 using tegl::GradientKind;
 using tegl::NormalWeights;
 
-/// `samples` along every axis over [-1.35, 1.35], a bit off centre, so that no symmetry helps.
+/// A grid with `samples` samples along every axis over [-1.35, 1.35], slightly off centre to avoid symmetry.
 template <int N>
 tegl::Grid<N> grid_of(const std::string& kind, std::size_t samples) {
   tegl::Grid<N> grid;
@@ -39,7 +39,8 @@ tegl::Grid<N> grid_of(const std::string& kind, std::size_t samples) {
   return grid;
 }
 
-/// A ball of radius 0.8 in the world: 0.8 minus the distance, with normal noise of so many steps.
+/// 0.8 minus the distance from the origin in world coordinates, plus normally distributed noise with a standard
+/// deviation of `noise` steps.
 template <int N>
 tegl::OwnedImage<double, N> ball_of(const tegl::Grid<N>& grid, double noise) {
   std::size_t count = 1;
@@ -58,7 +59,7 @@ tegl::OwnedImage<double, N> ball_of(const tegl::Grid<N>& grid, double noise) {
   return image;
 }
 
-/// The angle between a normal and the direction of a point, in degrees, squared.
+/// The squared angle, in degrees, between a normal and the direction of a point.
 template <int N>
 double squared_angle(const std::array<double, N>& normal, const std::array<double, N>& at) {
   double size = 0.0, square = 0.0;
@@ -75,7 +76,7 @@ double error_at_vertices(const tegl::Contour<N, double>& contour,
   return std::sqrt(sum / static_cast<double>(normals.size()));
 }
 
-/// Of simplices, against the direction of their centroids; those of next to no size have no direction.
+/// Root mean square error of flat normals, against the directions of the centroids.
 template <int N>
 double error_of_simplices(const tegl::Contour<N, double>& contour) {
   const auto normals = tegl::flat_normals(contour);

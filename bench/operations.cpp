@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// operations [--threads T] [--repetitions R] [--only TEXT] FILE ISO [FILE ISO ...]: what each operation on a 4D contour
-// costs (of those with TEXT in their names): the least time of R (5) repetitions, or of fewer where these take more
-// than 10 s together, the least processor time of all threads together (which other work on the machine hardly
-// changes), and the most memory that it had beside what was there before (image, contour, and what it works on).
-// A Markdown table for each file; docs/cost.md has the figures.
+// operations [--threads T] [--repetitions R] [--only TEXT] FILE ISO [FILE ISO ...]: the cost of each operation on a 4D
+// contour (with --only, of operations with TEXT in their names). Reports the minimum wall time of R (5) repetitions, or
+// of fewer if these exceed 10 s in total, the minimum CPU time of all threads (which other work on the machine hardly
+// influences), and the peak memory in addition to the image, the contour and the operation's input. Writes a Markdown
+// table per file; docs/cost.md has the figures.
 //
-// A new operation is a line in `operations_on`, or in a function that it calls.
+// To add an operation, add a line to `operations_on`, or to a function that it calls.
 #include <malloc.h>
 
 #include <algorithm>
@@ -42,28 +42,28 @@
 namespace tegl::bench {
 namespace {
 
-/// An operation: does its work and says in a few words what came out.
+/// An operation: does its work and returns a short description of the result.
 struct Operation {
   std::string name;
   std::function<std::string()> work;
 };
 
-/// What the operations of a file work on.
+/// Input of the operations on a file.
 template <Value T>
 struct Subject {
   Image<T, 4> image;
   double isovalue;
   unsigned threads;
   Contour<4, double> contour;
-  double first;  ///< time of the contour
+  double first;  ///< time range of the contour: first, last
   double last;
   std::unique_ptr<Scrubber<4, double>> scrubber;  ///< made by the operation that builds it
-  ComponentLabels labels;                         ///< likewise
-  Contour<4, double> simplified;                  ///< likewise
+  ComponentLabels labels;                         ///< made by the operation `label_components`
+  Contour<4, double> simplified;                  ///< made by the operations `simplify`
 
   [[nodiscard]] WorkOptions work_options() const { return {threads, {}}; }
   [[nodiscard]] double time(double share) const { return first + share * (last - first); }
-  /// Times spread evenly, of which none is a sample's.
+  /// Evenly spread times, none of which is a sample's.
   [[nodiscard]] std::vector<double> times(std::size_t count) const {
     std::vector<double> result;
     for (std::size_t i = 0; i < count; ++i)
@@ -173,7 +173,7 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
     SimplifyOptions<4> options;
     options.method = method;
     options.ratio = 0.2;
-    options.measure = false;  // that is the row of `deviation`
+    options.measure = false;  // the row of `deviation` measures that
     options.threads = subject.threads;
     options.scale = automatic_scale(subject.contour);
     subject.simplified = simplify(subject.contour, options);
@@ -222,7 +222,7 @@ std::string milliseconds(double seconds) {
   return seconds < 0.01 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.0f} ms", seconds * 1e3);
 }
 
-constexpr double kLongEnough = 10.0;  ///< seconds: then an operation is not repeated any more
+constexpr double kLongEnough = 10.0;  ///< seconds after which an operation is not repeated
 
 /// Runs the operations and prints their table.
 template <Value T>
@@ -235,8 +235,9 @@ void run(Subject<T>& subject, int repetitions, const std::string& only) {
     double most_memory = 0;
     double all = 0;
     std::string result;
+    // minima over the repetitions
     for (int r = 0; r < repetitions && all < kLongEnough; ++r) {
-      malloc_trim(0);  // so that what was freed before does not count as there
+      malloc_trim(0);  // memory freed earlier must not count as in use
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
       const std::clock_t cpu_start = std::clock();

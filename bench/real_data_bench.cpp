@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of real images, by number of threads: the ocean of examples/data, and the larger data sets beside the
-// checkout where these are there. Reading the file does not count. stages.hpp says what is reported.
+// Extraction from measured images, by number of threads: the ocean of examples/data and, if present, the larger data
+// sets beside the checkout. Reading is not timed. stages.hpp documents the report.
 #include <benchmark/benchmark.h>
 
 #include <array>

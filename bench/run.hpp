@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the measuring programs share: options by thread count, and sizes of results.
+// Helpers of the benchmark programs: options by thread count, and sizes of results.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 
 namespace tegl::bench {
 
-/// Whether the library has an option for the number of threads.
+/// The library has an option for the number of threads.
 template <class Options>
 concept Threaded = requires(Options options) {
   options.threads = 1;
 };
 inline constexpr bool kHasThreads = Threaded<ExtractOptions>;
 
-/// Whether it has normals at the vertices: an option to ask for them.
+/// The library has an option for normals at vertices.
 template <class Options>
 concept WithNormals = requires(Options options) {
   options.normals = true;
 };
 inline constexpr bool kHasNormals = WithNormals<ExtractOptions>;
 
-/// The options with normals, or without. Throws InvalidArgument where the library has none.
+/// The options with or without normals. Throws InvalidArgument if the library has none.
 template <class Options = ExtractOptions>
 Options with_normals(Options options, bool normals) {
   if constexpr (WithNormals<Options>)
@@ -35,7 +35,7 @@ Options with_normals(Options options, bool normals) {
   return options;
 }
 
-/// The options with a number of threads. Throws InvalidArgument for more than one where the library has no threads.
+/// The options with a number of threads. Throws InvalidArgument for more than one if the library has no threads.
 template <class Options = ExtractOptions>
 Options with_threads(Options options, int threads) {
   if constexpr (Threaded<Options>)
@@ -45,7 +45,7 @@ Options with_threads(Options options, int threads) {
   return options;
 }
 
-/// Bytes of a contour's vertices, normals and simplices.
+/// Total bytes of a contour's vertices, normals and simplices.
 template <int N, class Real>
 std::uint64_t contour_bytes(const Contour<N, Real>& contour) {
   std::uint64_t normals = 0;

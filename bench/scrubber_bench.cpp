@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// scrubber_bench [STEPS SAMPLES CUTS]: what a cut by `Scrubber` costs, on one thread: medians over CUTS cuts (101) of a
-// gyroid of SAMPLES^3 (36) that drifts for STEPS time steps (86), beside `slice` of the same contour. Then the same
-// with more and fewer time steps, for which a cut stays as large while the contour does not, and with fewer samples,
-// for which it does not: the time follows the cut. One line of a Markdown table for each.
+// scrubber_bench [STEPS SAMPLES CUTS]: cost of slices by `Scrubber` on one thread. Medians over CUTS slices (101) of a
+// gyroid of SAMPLES^3 (36) that drifts for STEPS time steps (86), and medians of `slice` for comparison. Further rows
+// vary the number of time steps, which changes the contour's size but not the slice's, and the number of samples, which
+// changes the slice's: time depends on the size of the slice. One row of a Markdown table each.
 #include <time.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 namespace tegl::bench {
 namespace {
 
-/// Of the processor, by this thread: what else the machine does is left out.
+/// CPU time of this thread, so that other work on the machine does not count.
 double now() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -40,7 +40,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// A gyroid with 16 samples to the period that drifts along x by a tenth of one in a step.
+/// A gyroid with a period of 16 samples that drifts along x by a tenth of a period per step.
 Contour<4, float> drifting_gyroid(std::size_t samples, std::size_t steps) {
   OwnedImage<float, 4> image{Grid<4>::unit({samples, samples, samples, steps}), {}};
   constexpr double kPerSample = 2.0 * std::numbers::pi / 16.0;
@@ -60,7 +60,7 @@ Contour<4, float> drifting_gyroid(std::size_t samples, std::size_t steps) {
   return extract(image.view(), 0.05);
 }
 
-/// The median time of a cut at times where no sample is, and of one at samples.
+/// The median times of a slice between time steps and of a slice at time steps.
 template <class Cut>
 std::pair<double, double> medians(std::size_t steps, int cuts, const Cut& cut) {
   std::mt19937_64 bits(1);

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seed sets: how many seeds each method finds, how many there must be, what that takes, and what it costs to pick a
+// Benchmarks of seed sets: number of seeds by method, lower bounds, time and memory, and the cost of picking a
 // component. Writes the tables of docs/seed-sets.md in Markdown.
 //
 //   seeds_bench [--methods A,B,...] [--neighbourhoods A,B,...] [--orders] [--picks N] [--runs N] [--scaling] IMAGE...
 //
-// An image "metaballs:N" is made: N^3 samples of float; "metaballs:N^D" in D dimensions, "metaballs:N@uint8" of 8 bits.
-// So are "gyroid", "noise", and the others that bench/fields.hpp names, and three more: "sines" (of a wavelength of
-// about 40 samples, whatever their number), "smooth-noise" (large waves and a tenth of noise), and "plateaus" (the same
-// in 20 steps).
-// `--orders`: over all scan orders, the least and the most seeds. `--picks`: so many components, each at a random point
-// and an isovalue of the middle half. `--scaling`: images in one table, without bounds. One thread; times are those of
-// the processor, the least of `--runs`.
+// Images can be generated: "metaballs:N" has N^3 float samples, "metaballs:N^D" D dimensions, "metaballs:N@uint8" 8
+// bits. Instead of "metaballs": "gyroid", "noise", and the other names in bench/fields.hpp; "sines" (wavelength about
+// 40 samples for any N), "smooth-noise" (long waves and a tenth of noise), and "plateaus" (the same waves in 20 steps).
+// `--orders`: minimum and maximum number of seeds over all scan orders. `--picks`: number of components to pick, each
+// at a random point and an isovalue of the middle half. `--scaling`: all images in one table, without bounds. One
+// thread; CPU times, the minimum of `--runs`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,16 +62,16 @@ std::string count_seeds(const Image<T, N>& image, SeedSetOptions options, bool o
   return fmt::format("{} to {}", least, most);
 }
 
-/// One way to find seeds, and what it took.
+/// One search for seeds, and its cost.
 struct Search {
   SeedSetOptions options;
   SeedSetStats stats;
   std::size_t seeds = 0;
   double seconds = 0;
-  double peak_bytes = 0;  ///< beside what was there before
+  double peak_bytes = 0;  ///< in addition to memory in use before
 };
 
-/// Finds seeds in every way that is asked for, by one thread, and has each printed.
+/// Runs every requested search on one thread and prints each.
 template <Value T, int N, class Print>
 void for_each_search(const Image<T, N>& image, const Arguments& arguments, const Print& print) {
   for (const Neighbourhood neighbourhood : arguments.neighbourhoods)
@@ -81,7 +80,7 @@ void for_each_search(const Image<T, N>& image, const Arguments& arguments, const
       search.options.method = method;
       search.options.neighbourhood = neighbourhood;
       search.options.threads = 1;
-      give_back_memory();  // of images before
+      give_back_memory();  // memory of earlier images
       reset_peak_memory();
       const std::uint64_t before = memory_bytes("VmRSS");
       search.seconds = least_seconds(
@@ -120,7 +119,7 @@ void measure_seeds(const Image<T, N>& image, const Arguments& arguments) {
   });
 }
 
-/// A value so far up in the order of all.
+/// The quantile `share` of the finite values, estimated from about 100 000 of them.
 template <Value T>
 double quantile(const Values<T>& values, double share) {
   std::vector<double> finite;
@@ -185,7 +184,7 @@ bool is_field(const std::string& name) {
   return is_own(name) || std::find(fields.begin(), fields.end(), name) != fields.end();
 }
 
-/// One of kOwnFields, or of bench/fields.hpp.
+/// A field of kOwnFields or of bench/fields.hpp.
 template <int N>
 OwnedImage<float, N> make_any_field(const std::string& name, std::size_t samples) {
   auto image = make_field<N>(name == "sines" ? "empty" : is_own(name) ? "noise" : name, samples);
@@ -207,7 +206,7 @@ OwnedImage<float, N> make_any_field(const std::string& name, std::size_t samples
   return image;
 }
 
-/// Scaled to all values of a type.
+/// Scales a field to the full non-negative range of a type.
 template <Value T, int N>
 OwnedImage<T, N> as_type(const OwnedImage<float, N>& image) {
   const auto ends = std::minmax_element(image.values.begin(), image.values.end());
@@ -229,10 +228,10 @@ void measure_field_in(const std::string& name, const std::string& field, std::si
   throw Error(ErrorCode::InvalidArgument, fmt::format("{}: type '{}'; expected float, uint8 or uint16", name, type));
 }
 
-/// Along each axis, for 2^32 in all.
+/// Maximum number of samples along an axis, for 2^32 in all.
 constexpr std::size_t most_samples(int dim) { return dim == 2 ? 1u << 16 : dim == 3 ? 1625 : 1u << 8; }
 
-/// FIELD:N[^D][@TYPE]
+/// Parses FIELD:N[^D][@TYPE] and measures that field.
 void measure_field(const std::string& name, const Arguments& arguments) {
   const std::string field = name.substr(0, name.find(':'));
   if (field.size() == name.size())
@@ -253,7 +252,7 @@ void measure_field(const std::string& name, const Arguments& arguments) {
   measure_field_in<4>(name, field, samples, type, arguments);
 }
 
-/// Those of `all` whose names are in the list with commas that follows an option.
+/// The elements of `all` whose names are in an option's comma-separated list.
 template <class Each, class Name>
 std::vector<Each> choose(const std::string& option, const std::string& list, const std::vector<Each>& all,
                          const Name& name) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// self_intersections: pairs of triangles that intersect in contours of random fields, by the way to resolve ambiguities
-// and by triangulation, as CGAL counts them; and what they are. As CSV.
+// self_intersections: pairs of intersecting triangles in contours of random fields, by way to resolve ambiguities and
+// by triangulation, as found by CGAL, with their causes. Writes CSV.
 //
 //     self_intersections [FIELDS]
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -32,7 +32,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Surface = Contour<3, double>;
 
-/// Pairs of triangles, by number.
+/// Pairs of intersecting triangles, by number.
 std::vector<std::array<std::size_t, 2>> intersecting_pairs(const Surface& contour) {
   Mesh mesh;
   for (const auto& v : contour.vertices) mesh.add_vertex(Kernel::Point_3(v[0], v[1], v[2]));
@@ -55,7 +55,7 @@ std::array<int, 3> tile_of(const Surface& contour, std::size_t triangle) {
   return tile;
 }
 
-/// Euler characteristic of the piece of the contour in its tile that a triangle belongs to, and its triangles.
+/// The piece of the contour that contains a triangle within its tile: its Euler characteristic and its triangles.
 std::pair<int, std::set<std::size_t>> piece_of(const Surface& contour, std::size_t triangle) {
   std::vector<std::size_t> in_tile;
   for (std::size_t t = 0; t < contour.simplices.size(); ++t)
@@ -80,7 +80,7 @@ std::pair<int, std::set<std::size_t>> piece_of(const Surface& contour, std::size
   return {static_cast<int>(vertices.size() + piece.size()) - static_cast<int>(edges.size()), piece};
 }
 
-/// Whether a vertex of the triangles lies on no edge of the grid.
+/// True if a vertex of the triangles does not lie on an edge of the grid.
 bool has_own_vertex(const Surface& contour, const std::set<std::size_t>& piece) {
   for (const std::size_t t : piece)
     for (const Index v : contour.simplices[t]) {

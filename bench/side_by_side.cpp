@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl's part of side_by_side.hpp, and the fields.
+// The functions of side_by_side.hpp for tegl, and the fields.
 #include "side_by_side.hpp"
 
 #include <stdexcept>

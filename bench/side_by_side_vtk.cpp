@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// VTK's part of side_by_side.hpp.
+// The functions of side_by_side.hpp for VTK.
 #include <stdexcept>
 
 #include <vtkCellArray.h>
@@ -26,7 +26,7 @@ void run_vtk(Filter* filter, int dim, const float* data, std::size_t samples, do
   vtkNew<vtkFloatArray> values;
   vtkIdType total = 1;
   for (int a = 0; a < dim; ++a) total *= count;
-  values->SetArray(const_cast<float*>(data), total, 1);  // VTK keeps the caller's array, and only reads it
+  values->SetArray(const_cast<float*>(data), total, 1);  // VTK refers to the caller's array and only reads it
   vtkNew<vtkImageData> image;
   image->SetDimensions(count, count, dim == 3 ? count : 1);
   image->GetPointData()->SetScalars(values);

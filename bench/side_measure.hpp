@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How side_by_side.cpp and side_by_side_vtk.cpp measure: the same clock and the same count of memory for both.
-// C++17, as the headers of VTK 9.1 are not valid C++20.
+// Measuring for side_by_side.cpp and side_by_side_vtk.cpp: the same clock and the same memory count for both. C++17, as
+// the headers of VTK 9.1 are not valid C++20.
 #pragma once
 
 #include <malloc.h>
@@ -18,10 +18,10 @@
 
 namespace tegl::bench {
 
-/// The text that side_error() gives.
+/// The text returned by side_error().
 std::string& last_error();
 
-/// Runs f; an exception becomes 1 and its text.
+/// Calls f; returns 0, or 1 after an exception, whose text goes to last_error().
 template <class F>
 int guarded(F&& f) {
   try {
@@ -33,10 +33,10 @@ int guarded(F&& f) {
   }
 }
 
-/// Measures make(): seconds, and the most memory on the way beside what was there before.
+/// Measures make(): seconds, page faults, and peak memory in addition to memory in use before.
 template <class Make>
 auto measured(SideResult& result, Make&& make) {
-  malloc_trim(0);  // what earlier runs left would be used again, and not be seen
+  malloc_trim(0);  // freed memory of earlier runs would be reused and not counted
   const std::uint64_t before = memory_bytes("VmRSS");
   reset_peak_memory();
   const std::uint64_t faults = page_faults();
@@ -49,13 +49,13 @@ auto measured(SideResult& result, Make&& make) {
   return made;
 }
 
-/// What an array takes of the process's memory: all of its large pages, where it has some.
+/// The resident memory of an array: whole huge pages if it has any.
 inline std::uint64_t in_pages(std::uint64_t bytes) {
   constexpr std::uint64_t kPage = std::uint64_t{1} << 21U;
   return bytes < kPage ? bytes : (bytes + kPage - 1) / kPage * kPage;
 }
 
-/// What remains of the measured memory beside the output, which is of the given arrays.
+/// Subtracts the output, consisting of the given arrays, from the measured memory.
 inline void set_output_bytes(SideResult& result, std::initializer_list<std::uint64_t> arrays) {
   std::uint64_t occupied = 0;
   for (const std::uint64_t bytes : arrays) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// An extraction as a benchmark, and what is reported of its stages.
+// Benchmark of one extraction, and its report by stages.
 //
-// Time is that of the whole extraction. Beside it stand, as means over the iterations, the milliseconds of each stage,
-// and rates: samples and input bytes per second of all of it and of the classification alone, active tiles per second
-// of all of it and tiles per second of finding them, simplices and output bytes per second of all of it and of their
-// generation.
+// The time is that of the whole extraction. Counters, as means over the iterations: milliseconds of each stage; samples
+// per second and input bytes per second of the whole, and input bytes per second of classification; active tiles per
+// second of the whole, and tiles per second of finding them; simplices and output bytes per second of the whole, and
+// output bytes per second of generation.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -28,7 +28,7 @@ struct Sums {
   }
 };
 
-/// The counters `stage_ms` and, where the stage took time, `rate` = units in a second of it.
+/// Sets the counters `stage_ms` and, if the stage took time, `rate` = units per second of the stage.
 inline void report_stage(benchmark::State& state, const char* stage, double seconds, const char* rate, double units) {
   const auto iterations = static_cast<double>(state.iterations());
   state.counters[std::string(stage) + "_ms"] = 1e3 * seconds / iterations;
@@ -52,7 +52,7 @@ inline void report(benchmark::State& state, const Sums& sums, const ExtractStats
   report_stage(state, "close", sums.stages.close_seconds, "close_samples/s", 0);
 }
 
-/// One benchmark: the contour of an image, freed outside of the time.
+/// Benchmarks the contour of an image; freeing it is not timed.
 template <Value T, int N>
 void extract_image(benchmark::State& state, const Image<T, N>& image, double isovalue, const ExtractOptions& options) {
   ExtractStats stats;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tile_intersections: in how many tiles the contour intersects itself, in 3D and 4D, and how much of noise the contours
-// of an image and of its negative enclose together. As CSV. Simplices of different tiles never intersect, as all points
-// of a simplex lie in its tile.
+// tile_intersections: the number of tiles whose contour intersects itself, in 3D and 4D, and the total content that the
+// contours of noise and of its negative enclose. Writes CSV. Simplices of different tiles never intersect, as each
+// simplex lies in its tile.
 //
 //     tile_intersections [TILES]
 #include <algorithm>
@@ -27,9 +27,9 @@ namespace {
 
 using namespace tegl;
 
-/// Weights of the points of two simplices of N points in N dimensions, such that both weighted sums are the same point:
-/// N + 2 linear equations in 2 N weights, none of which may be negative. Two simplices intersect outside of the face
-/// that they share if and only if a vertex of the polytope of all solutions has weight outside of that face.
+/// The common points of two simplices of N points in N dimensions, as weights of the points such that both weighted
+/// sums are equal: N + 2 linear equations in 2 N non-negative weights. The simplices intersect outside their common
+/// face if and only if a vertex of the solution polytope has weight outside that face.
 template <int N>
 class CommonPoints {
  public:
@@ -47,7 +47,7 @@ class CommonPoints {
     eliminate();
   }
 
-  /// Calls visit(weights) for the vertices of the polytope until it returns true; whether it did.
+  /// Calls visit(weights) for the vertices of the polytope until it returns true; returns whether it did.
   template <class Visit>
   [[nodiscard]] bool any_vertex(const Visit& visit) const {
     for (std::size_t i = rank_; i < kRows; ++i)
@@ -72,7 +72,7 @@ class CommonPoints {
     row[column] = 0.0;
   }
 
-  /// Gauss–Jordan with full pivoting: afterwards the first rank_ rows are independent.
+  /// Gauss-Jordan elimination with full pivoting; afterwards the first rank_ rows are independent.
   void eliminate() {
     std::array<bool, kWeights> used{};
     for (; rank_ < kRows; ++rank_) {
@@ -93,7 +93,7 @@ class CommonPoints {
     }
   }
 
-  /// The solution with all weights 0 except those of the basis; none if there is no such one, or one is negative.
+  /// The solution with all weights 0 except those of the basis, unless it does not exist or has a negative weight.
   [[nodiscard]] std::optional<Weights> solve(unsigned basis) const {
     std::array<Row, kRows> rows = rows_;
     Weights weights{};
@@ -123,7 +123,7 @@ class CommonPoints {
   std::size_t rank_ = 0;
 };
 
-/// The least and the greatest coordinate k of N points.
+/// Minimum and maximum of coordinate k over N points.
 template <int N>
 std::pair<double, double> span(const std::array<std::array<double, N>, N>& points, std::size_t k) {
   const auto [low, high] =
@@ -131,7 +131,7 @@ std::pair<double, double> span(const std::array<std::array<double, N>, N>& point
   return {(*low)[k], (*high)[k]};
 }
 
-/// Whether two simplices with at most N - 2 points in common intersect elsewhere.
+/// True if two simplices with at most N - 2 common points intersect elsewhere.
 template <int N>
 bool intersect(const Contour<N, double>& contour, std::size_t s, std::size_t t) {
   std::array<std::array<double, N>, N> a, b;
@@ -165,7 +165,7 @@ bool intersects_itself(const Contour<N, double>& contour) {
   return false;
 }
 
-/// Whether each component of the contour of a tile has the Euler characteristic of a disc or a ball.
+/// True if each component of the contour of a tile has the Euler characteristic of a disc or a ball.
 template <int N>
 bool only_balls(const Contour<N, double>& contour) {
   std::vector<Index> component(contour.vertices.size());
@@ -190,7 +190,7 @@ bool only_balls(const Contour<N, double>& contour) {
   return std::all_of(euler.begin(), euler.end(), [](const auto& entry) { return entry.second == 1; });
 }
 
-/// A way to make contours, as the lines of the output name it.
+/// A combination of options, with its names in the output.
 struct Way {
   const char* ambiguity_name;
   Ambiguity ambiguity;
@@ -208,8 +208,8 @@ struct Way {
   }
 };
 
-/// How far the corners' values are from the isovalue: all alike (points at the middle of their edges), uniform in
-/// [0, 1), or with uniform logarithm between 1e-3 and 1.
+/// Distances of the corners' values from the isovalue: all equal (points at the middle of their edges), uniform in [0,
+/// 1), or with uniform logarithm between 1e-3 and 1.
 enum class Distances { alike, uniform, log_uniform };
 
 double distance(Distances kind, std::mt19937_64& bits) {
@@ -225,13 +225,13 @@ Grid<N> unit_grid(std::size_t samples) {
   return Grid<N>::unit(sizes);
 }
 
-/// `tiles` random ones; with distances that are alike, every signature once.
+/// Tests `tiles` random tiles; with equal distances, every signature once.
 template <int N>
 void count_tiles(const Way& way, Distances kind, std::size_t tiles) {
   constexpr std::size_t kCorners = std::size_t{1} << N;
   constexpr std::uint64_t kActive = (std::uint64_t{1} << kCorners) - 2;
   std::mt19937_64 bits(1994);
-  std::array<std::size_t, 2> of{}, hit{};  // of tiles with balls alone, of others
+  std::array<std::size_t, 2> of{}, hit{};  // tiles with balls only; others
   if (kind == Distances::alike) tiles = kActive;
   for (std::size_t t = 0; t < tiles; ++t) {
     const std::uint64_t signature = 1 + (kind == Distances::alike ? t : bits() % kActive);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Processor time of parts of a program, and the line that fits it.
+// CPU time of parts of a program, and linear fits.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace tegl::bench {
 
-/// Seconds that this process has worked: other programs on the machine do not count.
+/// CPU seconds of this process; other programs on the machine do not count.
 inline double worked_seconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// The least seconds of several runs.
+/// The minimum CPU seconds over several runs.
 template <class Work>
 double least_seconds(const Work& work, int runs = 3) {
   double least = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ double least_seconds(const Work& work, int runs = 3) {
   return least;
 }
 
-/// y = start + each * x, by least squares; and the share of the variance of y that it explains.
+/// y = start + each * x by least squares, and the explained share of the variance of y.
 struct Fit {
   double start = 0, each = 0, explained = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What all measuring programs answer to --help.
+// The --help option of all benchmark programs.
 #pragma once
 
 #include <cstdio>
@@ -8,7 +8,7 @@
 
 namespace tegl::bench {
 
-/// Whether --help (or -h) is among the arguments: then the usage has been printed, and nothing else is to be done.
+/// True if --help or -h is among the arguments: the usage has been printed, and the program should end.
 inline bool tells_usage(int argc, char** argv, const char* usage) {
   for (int i = 1; i < argc; ++i)
     if (std::string_view(argv[i]) == "--help" || std::string_view(argv[i]) == "-h") {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The memory that an extraction takes beside its image and its contour, as a share of the image, by counting every
-// allocation: the table of bench/README.md. Of noise, the most that there can be, for images of float.
+// Working memory of extractions besides image and contour, in per cent of the image, by counting every allocation: the
+// table of bench/README.md. Measured on noise, the worst case, for images of float.
 #include <cstdio>
 #include <exception>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 2: a closed surface from a volume, saved as PLY. Three "metaballs" melt into one body; where the
-// body leaves the image, `close` puts a lid on it, so that the surface encloses a volume.
+// Example 2: a closed surface of a volume, saved as PLY. Three "metaballs" merge into one body. `close` caps the
+// surface at the image border, so that it encloses a volume.
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>
 #include <tegl/io.hpp>
@@ -16,7 +16,7 @@ struct Ball {
   double x, y, z, strength;
 };
 
-/// The sum of the balls' fields at a point: 1 or more inside of the body.
+/// The sum of the balls' fields at a point; at least 0.4, the isovalue, inside the body.
 double field(double x, double y, double z) {
   constexpr std::array<Ball, 3> kBalls = {{{20, 32, 32, 90}, {42, 30, 36, 110}, {34, 40, 2, 60}}};
   double sum = 0.0;
@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
               surface.simplices.size(), static_cast<std::size_t>(report.components),
               static_cast<long long>(report.euler), static_cast<std::size_t>(report.boundary_simplices));
 
-  // One body without a tunnel: a sphere as far as topology goes. And the file holds what memory holds.
+  // One body without a tunnel: topologically a sphere. The file holds the same triangles.
   const bool sphere = report.components == 1 && report.euler == 2 && report.boundary_simplices == 0;
   return sphere && tegl::read_mesh(argv[1]).simplices.size() == 3 * surface.simplices.size() ? 0 : 1;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 3: a volume that changes with time is a 4D image. Its contour is made once, from tetrahedra in
-// space and time; after that, the surface at any moment is a cut through it, and between two time steps
-// it changes continuously. Here two balls fly towards each other: when exactly do they meet?
+// Example 3: a volume over time is a 4D image. Its contour is extracted once, as tetrahedra in space and time. The
+// surface at any time is then a slice of it, and varies continuously between two time steps. Here two balls approach
+// each other; bisection finds the time at which they merge.
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>
 #include <tegl/scrubber.hpp>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kSize = 40, kSteps = 12;
 
-/// Radius minus distance to the nearer ball: positive inside. The balls move half a voxel per step each.
+/// Radius minus distance to the nearer ball: positive inside. Each ball moves half a voxel per step.
 float inside(double x, double y, double z, double t) {
   const double left = std::hypot(x - (10.875 + 0.5 * t), y - 20.0, z - 20.0);
   const double right = std::hypot(x - (29.125 - 0.5 * t), y - 20.0, z - 20.0);
@@ -50,14 +50,14 @@ int main() {
               std::size_t(report.boundary_simplices));
   // [/readme]
 
-  // Bisection for the moment at which two components become one.
-  const tegl::Scrubber<4, float> scrubber(contour);  // for many cuts: an index of the tetrahedra by time
+  // Bisection for the time at which two components become one.
+  const tegl::Scrubber<4, float> scrubber(contour);  // for many slices: an index of the tetrahedra by time
   double apart = 0.0, joined = 11.0;
   while (joined - apart > 1e-6) {
     const double middle = (apart + joined) / 2.0;
     (tegl::check(scrubber.cut(middle)).components == 2 ? apart : joined) = middle;
   }
-  // They touch at x = 20, when 10.875 + t/2 + 6 = 20: at t = 6.25, a quarter of the way between two steps.
+  // They touch at x = 20, where 10.875 + t/2 + 6 = 20: at t = 6.25, a quarter of the way between two steps.
   std::printf("they meet at t = %.6f\n", joined);
   return report.components == 1 && report.euler == 2 && std::abs(joined - 6.25) < 1e-5 ? 0 : 1;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 4: a real 4D file. Reads a year of ocean temperatures (longitude, latitude, depth, month; depths are
-// not evenly spaced, land is missing) and cuts its 20 degC surface a third of the way from July to August.
+// Example 4: a measured 4D file. Reads a year of ocean temperatures (longitude, latitude, depth, month; uneven depths,
+// missing values on land) and slices the 20 degC surface 0.3 of the way from one month to the next.
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>
 #include <tegl/io.hpp>
@@ -15,9 +15,9 @@
 
 namespace {
 
-/// The cut at `month` of the surface where the image is `temperature`; reads just the two months around it.
+/// The isosurface at `temperature`, sliced at `month`. Only the two adjacent months are contoured.
 tegl::Contour<3> surface_at(const tegl::AnyImage& any, double temperature, double month) {
-  // The file decides on the value type; `visit` gets the image as what it is.
+  // The file determines the value type; `visit` passes the image with its type.
   return std::visit([&](const auto& owned) { return tegl::slice_image(owned.view(), temperature, month); },
                     std::get<tegl::AnyImageN<4>>(any));
 }
@@ -34,7 +34,7 @@ int run(const char* in, const char* out) {
   std::printf("%s: %zu triangles in %zu components, down to %.0f %s\n", out, surface.simplices.size(),
               static_cast<std::size_t>(report.components), static_cast<double>(deepest), surface.axis_units[2].c_str());
 
-  // The surface ends at coasts and at the sea's surface, but it is a manifold everywhere.
+  // The surface ends at coasts and at the sea surface; elsewhere it is a manifold without boundary.
   const bool manifold = report.nonmanifold_simplices == 0 && report.bad_links == 0 && report.orientation_conflicts == 0;
   return manifold && deepest > 200.0F && deepest <= 500.0F ? 0 : 1;
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 5: images where they lie, and with missing values. One buffer of (r, g, b) pixels serves as an image of its
-// green channel, upside down, without a copy; and samples that are NaN are taken for missing: the contour ends
-// there, and does not run around them.
+// Example 5: images in existing memory, and missing values. A buffer of (r, g, b) pixels serves as an image of its
+// green channel, upside down, without a copy. Samples that are NaN are missing: the contour ends at them.
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>
 
@@ -17,7 +16,7 @@ namespace {
 
 constexpr std::size_t kWidth = 60, kHeight = 40;
 
-/// A bright spot at (30, 14), fading outwards by 10 per pixel.
+/// A bright spot at (30, 14), which falls by 10 per pixel.
 double spot(std::size_t x, std::size_t y) {
   return 255.0 - 10.0 * std::hypot(static_cast<double>(x) - 30.0, static_cast<double>(y) - 14.0);
 }
@@ -28,7 +27,7 @@ bool strides() {
     for (std::size_t x = 0; x < kWidth; ++x)
       pixels[3 * (y * kWidth + x) + 1] = static_cast<std::uint8_t>(std::max(0.0, spot(x, y)));
 
-  // The first sample is the green value of the last row; a step in x skips 3 bytes, a step in y goes back a row.
+  // The first sample is the green value of the last row. A step in x skips 3 bytes; a step in y goes back one row.
   const tegl::Image<std::uint8_t, 2> green(&pixels[3 * (kHeight - 1) * kWidth + 1],
                                            tegl::Grid<2>::unit({kWidth, kHeight}), {3, -3 * std::ptrdiff_t(kWidth)});
   const tegl::Contour<2> line = tegl::extract(green, 175.5);
@@ -47,13 +46,13 @@ bool missing() {
   const auto grid = tegl::Grid<2>::unit({kWidth, kHeight});
   const std::size_t whole = tegl::extract(tegl::Image<float, 2>(values.data(), grid), 175.5).simplices.size();
 
-  // A sensor failed: one sample on the ring is missing.
+  // One sample on the ring is missing, as if a sensor failed.
   values[14 * kWidth + 38] = std::numeric_limits<float>::quiet_NaN();
   const tegl::Contour<2> line = tegl::extract(tegl::Image<float, 2>(values.data(), grid), 175.5);
   const tegl::MeshReport report = tegl::check(line);
   std::printf("missing: %zu segments of %zu are left, with %zu ends\n", line.simplices.size(), whole,
               static_cast<std::size_t>(report.boundary_simplices));
-  // One line with two ends, at either side of the gap, in place of a ring.
+  // Instead of a ring, one line with two ends at the gap.
   return line.simplices.size() < whole && report.components == 1 && report.boundary_simplices == 2;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Example 6: the hole of "marching cubes". The original table has one entry for each of 15 classes under rotations and
-// the exchange of high and low. That exchange is no symmetry of ambiguous faces: of two tiles side by side, one may cut
-// off the high corners of the face between them and the other the low ones. The generator builds that table, counts the
-// pairs of neighbours that leave a hole, and draws one: above a tile of type 10, below one of type 3 of Lorensen and
-// Cline (1987), as in M. Liversage's thesis (1994), figure 7.3.
+// the exchange of high and low. This exchange is not a symmetry of ambiguous faces: of two neighbouring tiles, one may
+// cut off the high corners of the common face and the other the low ones. The generator builds that table, counts the
+// pairs of neighbours that leave a hole, and draws one: a tile of type 10 above one of type 3 of Lorensen and Cline
+// (1987), as in M. Liversage, thesis, 1994, figure 7.3.
 //
 //   06_marching_cubes_hole [PICTURE.svg]
 #include <cstdio>
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   const CubeLattice lattice(3);
   const ContourBuilder builder(lattice, 3, Alternative::low, Triangulation::compact);
 
-  // One entry per signature, in two ways: by the rule that looks at each face alone, and through classes.
+  // One entry per signature, in two ways: by the rule that depends on each face only, and by classes.
   std::vector<TileContour> consistent;
   for (Signature s = 0; s < 256; ++s) consistent.push_back(builder.build(s));
   const std::vector<TileContour> by_class = contours_by_class(builder, GroupKind::Rotations, true);
@@ -31,8 +31,8 @@ int main(int argc, char** argv) {
   std::printf("table by class:   %llu of %llu pairs of neighbours leave a hole\n",
               static_cast<unsigned long long>(bad.unmatched), static_cast<unsigned long long>(bad.pairs));
 
-  // A pair like that of the thesis's figure, searched for: below, the complement of two corners on a face's diagonal;
-  // above, two opposite edges.
+  // Searches for a pair as in the thesis's figure: below, the complement of two corners on a face's diagonal; above,
+  // two opposite edges.
   const auto classes = transversal(3, group(3, GroupKind::Rotations, true));
   const auto type_of = [&](Signature s) { return classes.representatives[classes.class_of[s]]; };
   constexpr int kUp = 2;

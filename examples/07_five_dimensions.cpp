@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 7: five dimensions. A family of films: volumes over time, for several values of a parameter. Their contour is
-// one hypersurface of 4-simplices in 5-space, and it is a manifold as well. There are no tables for 5D: tiles are built
-// when they are first met.
+// Example 7: five dimensions. The image holds volumes over time for several values of a parameter. Its contour is a
+// hypersurface of 4-simplices in 5-space, again a manifold. There are no tables for 5D: a tile is built at its first
+// occurrence.
 #include <tegl/check.hpp>
 #include <tegl/extract.hpp>
 #include <tegl/tile_facets.hpp>
@@ -13,7 +13,7 @@
 #include <vector>
 
 int main() {
-  // A ring in x, y, z that grows with time and has vanished at the end; its thickness falls with the parameter p.
+  // A ring in x, y, z that grows with time and is gone at the end; its thickness falls with the parameter p.
   const std::array<std::size_t, 5> sizes = {9, 9, 7, 7, 7};
   tegl::Grid<5> grid = tegl::Grid<5>::unit(sizes);
   const std::array<const char*, 5> names = {"x", "y", "z", "t", "p"};
@@ -41,7 +41,7 @@ int main() {
               contour.simplices.size(), std::size_t(stats.active_tiles), std::size_t(stats.tiles),
               contour.vertices.size(), std::size_t(report.components), int(report.euler));
 
-  // One tile by itself: opposite corners of a 5-cube, kept apart, or joined as its centre is high.
+  // A single tile: two opposite corners of a 5-cube, kept separate, or joined because its centre is high.
   const std::uint64_t opposite = std::uint64_t{1} << 31 | 1;
   std::vector<tegl::facets::Choice> signs(tegl::kFaceCount<5>);
   const std::size_t apart = tegl::tile_facets<5>(opposite, signs).facets.size();
@@ -49,7 +49,7 @@ int main() {
   const std::size_t joined = tegl::tile_facets<5>(opposite, signs).facets.size();
   std::printf("two opposite corners of a tile: %zu pieces of contour, or %zu\n", apart, joined);
 
-  // The border of a ring that is thick in four directions: a circle times a 3-sphere.
+  // The boundary of a solid ring that is thick in four directions: a circle times a 3-sphere.
   const bool closed = report.boundary_simplices == 0 && report.nonmanifold_simplices == 0 && report.bad_links == 0;
   return closed && report.components == 1 && report.euler == 0 && apart == 2 && joined == 1 ? 0 : 1;
 }

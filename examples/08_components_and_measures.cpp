@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 8: what is in a contour, and how large it is. Two balls in space and time: one is there from the
-// beginning to the end and grows, the other comes and goes. Which is which, and how large are they when?
+// Example 8: the components of a contour and their sizes. The field has two balls in space and time: one exists from
+// the beginning to the end and grows, the other appears and vanishes. The example identifies and measures them.
 #include <tegl/components.hpp>
 #include <tegl/extract.hpp>
 #include <tegl/measure.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kSize = 32, kSteps = 20;
 
-/// Positive inside: a ball of radius 4 + 0.2 t, and one that is there around t = 9.5.
+/// Positive inside: a ball of radius 4 + 0.2 t, and one that exists around t = 9.5.
 float inside(double x, double y, double z, double t) {
   const double growing = 4.0 + 0.2 * t - std::hypot(x - 9.0, y - 15.5, z - 15.5);
   const double passing = 5.0 - std::hypot(std::hypot(x - 24.0, y - 15.5, z - 15.5), t - 9.5);
@@ -56,7 +56,7 @@ int main() {
     std::printf("t = %4.1f: area %.1f, volume %.1f\n", cut.at, cut.size, cut.content.value());
   // [/measures]
 
-  // The passing ball is open nowhere, so it has a 4-volume; the growing one is open at the first and the last time.
+  // The passing ball is closed, so it has a 4-volume; the growing one is open at the first and the last time.
   const bool one_closed =
       std::count_if(found.begin(), found.end(), [](const auto& c) { return c.content.has_value(); }) == 1;
   const tegl::CutMeasures middle = tegl::measure_cuts(growing, times)[1];

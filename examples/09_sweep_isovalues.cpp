@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 9: contours at many isovalues. An index is built once; then every contour costs what is in it, not what is in
-// the image.
+// Example 9: contours at many isovalues. An index is built once; each contour then takes time in proportion to its own
+// size instead of the image's.
 #include <tegl/active_tiles.hpp>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <vector>
 
 int main() {
-  // A few bumps in a volume that is empty elsewhere.
+  // A few bumps in an otherwise empty volume.
   constexpr std::size_t kSize = 96;
   std::vector<std::uint8_t> values(kSize * kSize * kSize);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -32,7 +32,7 @@ int main() {
   }
   // [/sweep]
 
-  // The same contour as without an index, byte by byte.
+  // The contour equals the one without an index, byte by byte.
   const auto with = tegl::extract(image, 60.0, {}, *index);
   const auto without = tegl::extract(image, 60.0);
   return with.vertices == without.vertices && with.simplices == without.simplices ? 0 : 1;

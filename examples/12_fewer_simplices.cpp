@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 12: fewer triangles, the same surface. A ball is left with as few as keep it within a twentieth of a step of
-// what it was; the bound of the error comes with it.
+// Example 12: simplification with a bounded error. A sphere keeps only as many triangles as its error bound of a
+// twentieth of a grid step requires; the result comes with a proved bound.
 #include <tegl/check.hpp>
 #include <tegl/deviation.hpp>
 #include <tegl/extract.hpp>
@@ -22,13 +22,13 @@ int main() {
   const auto contour = tegl::extract<double>(image, 0.0);
 
   tegl::SimplifyOptions<3> options;
-  options.max_error = 0.05;  // no point of either contour is farther from the other
+  options.max_error = 0.05;  // maximum distance between the contours, in both directions
   tegl::SimplifyStats stats;
   const auto small = tegl::simplify(contour, options, &stats);
   std::printf("%llu -> %llu triangles, error at most %.4f\n", static_cast<unsigned long long>(stats.simplices_before),
               static_cast<unsigned long long>(stats.simplices_after), *stats.error());
 
-  // The same bounds for any two contours, here one way: of the original's points from the result.
+  // The same kind of bounds for any two contours, in one direction: from points of the original to the result.
   const tegl::Deviation far = tegl::deviation(contour, small);
   std::printf("between %.4f and %.4f\n", far.least, far.bound);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Example 13: an estimator of one's own. Two fields, one body and two bodies, which have the same high and low samples
-// on a grid, and for which mean and saddle answer alike (their values differ by a constant): after J. Wilhelms and A.
-// Van Gelder, Topological considerations in isosurface generation, 1990. Both are cubic, and a cubic estimate of what
-// is in the middle of a face, from its neighbourhood, tells them apart.
+// Example 13: a custom estimator. Two fields, of one body and of two bodies, have the same high and low samples on a
+// grid, and `mean` and `saddle` resolve both equally (their values differ by a constant): after J. Wilhelms and A. Van
+// Gelder, Topological considerations in isosurface generation, 1990. Both are cubic, and a cubic estimate of the value
+// at a face's centre, from the samples around it, distinguishes them.
 //
 //     13_own_estimator [FOLDER]     writes six surfaces there, for examples/render_estimators.py
 #include <tegl/check.hpp>
@@ -19,7 +19,7 @@
 
 namespace {
 
-/// An oval and a sheet, along the diagonal of x and y: they just meet about the origin if `level` is above 0.
+/// An oval and a sheet along the diagonal of x and y. They are connected near the origin if `level` is above 0.
 double field(double x, double y, double z, double level) {
   constexpr double kNeck = 3.0;
   const double along = (x + y) / std::sqrt(2.0) + kNeck, across = (x - y) / std::sqrt(2.0);
@@ -27,7 +27,7 @@ double field(double x, double y, double z, double level) {
          4.25 * across * across - 7 * z * z;
 }
 
-/// The value in the middle of a face, by cubic interpolation along each of its axes from two samples on either side.
+/// The value at the centre of a face, by cubic interpolation along each of its axes from two samples on either side.
 double middle(const tegl::AmbiguousFace& face) {
   constexpr std::array<double, 4> kWeights{-1.0 / 16, 9.0 / 16, 9.0 / 16, -1.0 / 16};
   double sum = 0;
@@ -49,7 +49,7 @@ tegl::facets::Choice cubic(const tegl::AmbiguousFace& face) {
   return middle(face) >= face.isovalue() ? tegl::facets::Choice::high : tegl::facets::Choice::low;
 }
 
-/// The contour at 0, on a grid with `fineness` steps for one.
+/// The contour at 0, on a grid with `fineness` steps per unit.
 tegl::Contour<3, double> surface(double level, int fineness, const tegl::ExtractOptions& options) {
   const std::array<std::size_t, 3> sizes{std::size_t(13 * fineness + 1), std::size_t(13 * fineness + 1),
                                          std::size_t(12 * fineness + 1)};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What all parts of the Python module share: contours and images of any dimension and type behind one Python class
-// each, calls that let go of the interpreter's lock, and arrays that NumPy sees without copies.
+// Helpers for all parts of the Python module: contours and images of any dimension and type behind one Python class
+// each, calls that release the interpreter lock (GIL), and NumPy arrays without copies.
 //
-// Axes are in the order of the library here: axis 0 first. The Python part of the package turns them around.
+// Axes are in the library's order here: axis 0 first. The Python part of the package reverses them.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -30,7 +30,7 @@ namespace tegl::python {
 
 namespace py = pybind11;
 
-/// A contour of any dimension and type: what Python holds as `_tegl.Contour`.
+/// A contour of any dimension and type; `_tegl.Contour` in Python.
 struct AnyContour {
   std::variant<Contour<2, float>, Contour<3, float>, Contour<4, float>, Contour<5, float>, Contour<2, double>,
                Contour<3, double>, Contour<4, double>, Contour<5, double>>
@@ -42,13 +42,13 @@ template <int N>
 using ViewsOf = std::variant<Image<std::uint8_t, N>, Image<std::int8_t, N>, Image<std::uint16_t, N>,
                              Image<std::int16_t, N>, Image<std::int32_t, N>, Image<float, N>, Image<double, N>>;
 
-/// A view of a NumPy array with its grid, and the array, so that it lives as long: `_tegl.Image`.
+/// A view of a NumPy array with its grid, and the array, which is kept alive: `_tegl.Image`.
 struct AnyImage {
   std::variant<ViewsOf<2>, ViewsOf<3>, ViewsOf<4>, ViewsOf<5>> view;
   py::array array;
 };
 
-/// A grid of any dimension, without the image: `_tegl.Grid`.
+/// A grid of any dimension, without image: `_tegl.Grid`.
 struct AnyGrid {
   std::variant<Grid<2>, Grid<3>, Grid<4>, Grid<5>> grid;
 };
@@ -59,10 +59,10 @@ decltype(auto) visit_image(const AnyImage& image, F&& f) {
   return std::visit([&](const auto& views) -> decltype(auto) { return std::visit(f, views); }, image.view);
 }
 
-/// For operations that there are not in all dimensions.
+/// Throws UnsupportedData for an operation that does not exist in dimension `dim`.
 [[noreturn]] void throw_dimension(const char* operation, int dim, const char* expected);
 
-/// The value that `name` stands for. Throws InvalidArgument, listing what there is.
+/// Returns the value with the given name. Throws InvalidArgument, with a list of valid names.
 template <class Value>
 Value named(const char* option, const std::string& name, const std::vector<std::pair<const char*, Value>>& values) {
   std::string expected;
@@ -78,20 +78,20 @@ inline std::vector<std::pair<const char*, GradientDirection>> gradient_direction
   return {{"descent", GradientDirection::descent}, {"ascent", GradientDirection::ascent}};
 }
 
-/// A long call: without the interpreter's lock, so that other threads of Python go on; with the caller's progress
-/// function, whose exceptions end the call and reach the caller; and with signals looked at now and then, so that
-/// Ctrl-C ends it as it ends Python code.
+/// A long call without the GIL, so that other Python threads continue. Calls the caller's progress function, whose
+/// exceptions end the call and are rethrown to the caller. Checks signals periodically, so that Ctrl-C interrupts it as
+/// it interrupts Python code.
 class Call {
  public:
-  /// Throws TypeError for what is neither a function nor None.
+  /// Throws TypeError if `progress` is neither a callable nor None.
   explicit Call(py::object progress);
 
-  /// What the library takes. Valid as long as this.
+  /// The progress callback for the library. Valid as long as this object.
   [[nodiscard]] Progress progress() {
     return [this](double fraction) { return tell(fraction); };
   }
 
-  /// work(), without the lock. What it returns must be no Python object.
+  /// Calls work() without the GIL. Its result must not be a Python object.
   template <class Work>
   auto run(Work&& work) {
     try {
@@ -113,9 +113,9 @@ class Call {
   std::exception_ptr error_;
 };
 
-/// Of the formats' libraries some keep global state (tegl/io.hpp): one file at a time. Take it without the
-/// interpreter's lock. Who waits for it is told so by `progress`, 0, and can be cancelled; a thread that has it, which
-/// is one whose progress function asks for another file, gets InvalidArgument.
+/// Serialises file access, because some file format libraries have global state (tegl/io.hpp). Acquire it without the
+/// GIL. While it waits, it calls `progress` with 0, so that the wait can be cancelled. Throws InvalidArgument if the
+/// thread already holds the lock, which happens if a progress function of a file call accesses another file.
 class FileLock {
  public:
   explicit FileLock(const Progress& progress = {});
@@ -124,7 +124,7 @@ class FileLock {
   FileLock& operator=(const FileLock&) = delete;
 };
 
-/// A view of memory that `owner` holds, for reading only.
+/// A read-only view of memory that `owner` holds.
 template <class T>
 py::array read_only(const T* data, std::vector<py::ssize_t> shape, py::handle owner) {
   py::array result(py::dtype::of<T>(), std::move(shape), data, owner);
@@ -132,7 +132,7 @@ py::array read_only(const T* data, std::vector<py::ssize_t> shape, py::handle ow
   return result;
 }
 
-/// An array that owns a buffer, which is moved, not copied. `width`: columns; 0: a vector.
+/// An array that owns a buffer; the buffer is moved, not copied.
 template <class T>
 py::array owned(Buffer<T>&& buffer) {
   auto kept = std::make_unique<Buffer<T>>(std::move(buffer));
@@ -149,23 +149,23 @@ py::array owned(Buffer<std::array<T, Width>>&& buffer) {
                    held.empty() ? nullptr : held.data()->data(), owner);
 }
 
-/// name -> (values, unit) of attributes that `owner` holds.
+/// A dict name -> (values, unit) of attributes that `owner` holds.
 py::dict attribute_arrays(const std::vector<Attribute>& attributes, py::handle owner);
 
-/// Options of an extraction from Python's arguments: triangulation, ambiguity, direction, close, epsilon, normals (a
-/// kind, or "" for none), threads; all of them are required. The call gives progress.
+/// Converts Python's arguments to extraction options: triangulation, ambiguity, direction, close, epsilon, normals (a
+/// kind, or "" for none), threads. All are required. Progress goes to the call.
 ExtractOptions extract_options(const py::dict& arguments, Call& call);
 
-/// Adds the normals that a contour has from its own shape, if the argument `normals` is "geometric" or "flat"; the
-/// latter as the simplex attribute "normal". Throws UnsupportedData for 5D contours.
+/// Adds normals computed from the contour's shape if `kind` is "geometric" or "flat"; the latter as the simplex
+/// attribute "normal". Throws UnsupportedData for 5D contours.
 void add_shape_normals(AnyContour& contour, const std::string& kind, const ExtractOptions& options);
 
-/// Python's floats of the library's arrays.
+/// Converts an array to a list of Python floats.
 template <std::size_t N>
 std::vector<double> to_list(const std::array<double, N>& values, std::size_t count = N) {
   return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
 }
-/// The other way. Throws InvalidArgument if there are not N of them.
+/// Converts a list to an array. Throws InvalidArgument unless it has N numbers.
 template <int N>
 std::array<double, N> to_array(const char* what, const std::vector<double>& values) {
   if (values.size() != N)
@@ -176,7 +176,7 @@ std::array<double, N> to_array(const char* what, const std::vector<double>& valu
   return result;
 }
 
-/// Puts `values` behind `name` and no more, as `dict["name"] = values`.
+/// dict[name] = value.
 template <class T>
 void put(py::dict& dict, const char* name, const T& value) {
   dict[name] = py::cast(value);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours as Python sees them: arrays that look into the memory of the library's contour, which lives as long as they.
+// Contours in Python: arrays are views into the memory of the library's contour, which they keep alive.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ auto of_contour(F f) {
   return [f](py::object self) { return std::visit([&](const auto& c) { return f(c, self); }, held(self).contour); };
 }
 
-/// What Python has of attributes: (name, unit, values of #rows x width) each.
+/// Attributes as given by Python: (name, unit, values of #rows x width) each.
 using AttributeArguments =
     std::vector<std::tuple<std::string, std::string, py::array_t<double, py::array::c_style | py::array::forcecast>>>;
 
@@ -127,7 +127,7 @@ std::unique_ptr<AnyContour> from_arrays(const py::array& vertices, const Rows<In
   return result;
 }
 
-/// The arrays themselves, to write to. The contour is empty afterwards.
+/// Moves the contour's memory to writable arrays. The contour is empty afterwards.
 py::tuple take_arrays(AnyContour& contour) {
   return std::visit(
       [](auto& c) {

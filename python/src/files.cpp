@@ -43,7 +43,7 @@ void put_grid(py::dict& result, const Grid<N>& grid) {
   result["affine"] = py::cast(affine);
 }
 
-/// The array has the library's memory, in the order of its axes: axis 0 fastest.
+/// The array takes over the library's memory, in the order of its axes: axis 0 fastest.
 template <class T, int N>
 void put_image(py::dict& result, OwnedImage<T, N>& image) {
   put_grid(result, image.grid);
@@ -61,7 +61,7 @@ void put_image(py::dict& result, OwnedImage<T, N>& image) {
   result["array"] = py::array(py::dtype::of<T>(), shape, strides, values.data(), owner);
 }
 
-/// What `variable` and `series` choose among, said where the choice is missing.
+/// The name of the argument that selects one of several variables or series, for the error message of a missing choice.
 const char* choosing_argument(const std::vector<std::filesystem::path>& files) {
   return std::filesystem::is_directory(files.front()) || are_dicom_files(files) ? "series=" : "variable=";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of active tiles for Python: built once for an image, which they keep, and asked for many isovalues.
+// Indexes of active tiles for Python: built once for an image, which they keep, and queried for many isovalues.
 #include <fmt/format.h>
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace tegl::python {
 
 namespace {
 
-/// An index and what it belongs to, whatever the image's dimension and type: `_tegl.Index`.
+/// An index with its image, of any dimension and type: `_tegl.Index`.
 class AnyIndex {
  public:
   AnyIndex() = default;
@@ -50,7 +50,8 @@ class IndexOf final : public AnyIndex {
   std::unique_ptr<ActiveTiles<N>> tiles_;
 };
 
-/// The index whose tiles make(image) gives, for images in as many dimensions as extraction by an index knows.
+/// Wraps the index made by make(image). Throws UnsupportedData for 5D images, for which there is no extraction by
+/// index.
 template <class Make>
 std::unique_ptr<AnyIndex> index_of(const AnyImage& image, const Make& make) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::unique_ptr<AnyIndex> {
@@ -157,7 +158,7 @@ void bind_index(py::module_& m) {
       .def("contour", &contour_of, py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"))
       .def("find", &find, py::arg("level"), "The numbers of the active tiles, ascending.")
       .def("save", &save, py::arg("path"), doc::write_active_tiles);
-  // The index looks into the image's array, so the image lives as long as it.
+  // The index refers to the image's array, so it keeps the image alive.
   m.def("build_index", &build, py::keep_alive<0, 1>(), py::arg("image"), py::arg("method"), py::arg("threads"),
         py::arg("progress"), doc::build_active_tiles);
   m.def("load_index", &load, py::keep_alive<0, 2>(), py::arg("path"), py::arg("image"), py::arg("threads"),

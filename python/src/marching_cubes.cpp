@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The parts of marching_cubes that tegl.contour does not have: masks of cubes, the largest range of samples around each
-// vertex, and the removal of triangles of zero size.
+// The parts of marching_cubes that tegl.contour lacks: masks of cubes, the maximum range of samples around each vertex,
+// and the removal of degenerate triangles.
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -22,11 +22,11 @@ namespace tegl::python {
 namespace {
 
 using Word = std::uint64_t;
-constexpr std::size_t kAtOnce = sizeof(Word);  ///< bytes of a word, one for each tile
+constexpr std::size_t kAtOnce = sizeof(Word);  ///< bytes of a word, one per tile
 constexpr Word kOnes = 0x0101010101010101;
 static_assert(std::endian::native == std::endian::little, "the lowest byte of a word is the first in memory");
 
-/// Where a sample is.
+/// Pointer to a sample.
 template <class T>
 const T* place_of(const Image<T, 3>& image, const std::array<std::size_t, 3>& index) noexcept {
   std::ptrdiff_t at = 0;
@@ -34,7 +34,7 @@ const T* place_of(const Image<T, 3>& image, const std::array<std::size_t, 3>& in
   return image.data() + at;
 }
 
-/// Which samples are at or above a level, in the samples' own type.
+/// Compares samples with a level in the samples' own type.
 template <class T>
 class AtLeast {
  public:
@@ -43,11 +43,11 @@ class AtLeast {
       limit_ = static_cast<T>(level);
       if (static_cast<double>(limit_) < level) limit_ = std::nextafter(limit_, std::numeric_limits<T>::infinity());
     } else {
-      constexpr double kBeyond = 4e9;  // of any integer type that there is
+      constexpr double kBeyond = 4e9;  // beyond the range of all integer types used
       limit_ = static_cast<std::int64_t>(std::ceil(std::clamp(level, -kBeyond, kBeyond)));
     }
   }
-  /// 1: at or above; 2: missing; 0: below.
+  /// 1: at or above the level; 2: missing; 0: below.
   std::uint8_t operator()(T value) const noexcept {
     if constexpr (std::is_floating_point_v<T>)
       return static_cast<std::uint8_t>((value >= limit_ ? 1 : 0) | (value != value ? 2 : 0));
@@ -59,11 +59,11 @@ class AtLeast {
   std::conditional_t<std::is_floating_point_v<T>, T, std::int64_t> limit_;
 };
 
-/// The active tiles of a 3D image among those of a mask, slab by slab (between two layers of the last axis).
+/// The active tiles of a 3D image within a mask, slab by slab (a slab lies between two layers of the last axis).
 template <class T>
 class MaskedTiles {
  public:
-  /// `mask`: as many truth values as samples; a tile counts if that of its highest corner is true.
+  /// `mask`: one truth value per sample; a tile is included if the value at its highest corner is true.
   MaskedTiles(const Image<T, 3>& image, const Image<std::uint8_t, 3>& mask, double level)
       : image_(image),
         mask_(mask),
@@ -73,7 +73,7 @@ class MaskedTiles {
         found_(image.size(2) - 1) {}
 
   std::vector<TileNumber> find() {
-    constexpr std::size_t kLeastSlabs = 8;  // the first layer of a part is classified once more
+    constexpr std::size_t kLeastSlabs = 8;  // the first layer of a part is classified twice
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, found_.size(), kLeastSlabs), [this](const auto& part) {
       std::array<std::vector<std::uint8_t>, 2> layers;
       for (auto& layer : layers) layer.resize(pitch_ * image_.size(1), 0);
@@ -99,7 +99,7 @@ class MaskedTiles {
       const T* const samples = place_of(image_, {0, j, k});
       std::uint8_t* const out = layer.data() + j * pitch_;
       std::size_t i = 0;
-      // By blocks of a fixed length, which compilers turn into vector instructions.
+      // Blocks of fixed length, which compilers vectorise.
       constexpr std::size_t kBlock = 16;
       for (; stride == 1 && i + kBlock <= size; i += kBlock) {
         std::array<std::uint8_t, kBlock> block;
@@ -126,6 +126,7 @@ class MaskedTiles {
       const std::array<const std::uint8_t*, 4> rows = {one.data() + j * pitch_, one.data() + (j + 1) * pitch_,
                                                        other.data() + j * pitch_, other.data() + (j + 1) * pitch_};
       const TileNumber first = grid_.number({0, j, k});
+      // eight tiles per word: active if some corners are high, not all, and none is missing
       for (std::size_t i = 0; i < tiles; i += kAtOnce) {
         const Word chosen = load(mask.data() + i);
         if (chosen == 0) continue;
@@ -146,7 +147,7 @@ class MaskedTiles {
   const Image<std::uint8_t, 3>& mask_;
   TileGrid<3> grid_;
   AtLeast<T> at_least_;
-  std::size_t pitch_;  ///< bytes of a row of samples, with room for words that reach beyond it
+  std::size_t pitch_;  ///< bytes per row of samples, padded for words that extend beyond it
   std::vector<std::vector<TileNumber>> found_;
 };
 
@@ -166,7 +167,7 @@ Image<std::uint8_t, 3> view_of_mask(const py::array& mask, const std::array<std:
   return {static_cast<const std::uint8_t*>(mask.data()), Grid<3>::unit(sizes), strides};
 }
 
-/// The contour of a 3D image in the tiles whose highest corner is true in the mask, as if all others had a missing
+/// The contour of a 3D image in the tiles whose highest corner is true in the mask, as if all other tiles had a missing
 /// corner.
 std::unique_ptr<AnyContour> extract_masked(const AnyImage& image, const py::array& mask, double level,
                                            const py::dict& arguments) {
@@ -187,11 +188,11 @@ std::unique_ptr<AnyContour> extract_masked(const AnyImage& image, const py::arra
       *views);
 }
 
-/// The range of the samples of tiles around a point: the largest one of the tiles that it lies in or on the border of.
+/// The maximum range of samples over the tiles that contain a point, border included.
 template <class T>
 float range_around(const Image<T, 3>& image, const std::array<float, 3>& point) {
   std::array<std::size_t, 3> first;
-  std::array<std::size_t, 3> count;  // of tiles: 1 or 2
+  std::array<std::size_t, 3> count;  // number of tiles: 1 or 2
   for (std::size_t a = 0; a < 3; ++a) {
     const auto last_tile = static_cast<double>(image.size(static_cast<int>(a)) - 2);
     const auto at = static_cast<double>(point[a]);
@@ -199,11 +200,11 @@ float range_around(const Image<T, 3>& image, const std::array<float, 3>& point) 
     first[a] = static_cast<std::size_t>(low);
     count[a] = static_cast<std::size_t>(std::clamp(std::floor(at), 0.0, last_tile) - low) + 1;
   }
-  // Each sample is read once. Ranges along axis 0, then of these along axis 1, then along axis 2.
+  // Each sample is read once: ranges along axis 0, of these along axis 1, of these along axis 2.
   struct Range {
     T least, greatest;
     void add(const Range& other) noexcept {
-      if (other.least < least || least != least) least = other.least;  // a NaN counts for nothing
+      if (other.least < least || least != least) least = other.least;  // NaN is ignored
       if (other.greatest > greatest || greatest != greatest) greatest = other.greatest;
     }
   };
@@ -257,7 +258,7 @@ py::array ranges_around(const AnyImage& image, const AnyContour& contour) {
 
 using Faces = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
 
-/// The first of the vertices in each place, by a hash table with open addressing.
+/// For each vertex the first vertex at the same position, by a hash table with open addressing.
 template <class Real>
 std::vector<std::int32_t> first_in_place(const py::detail::unchecked_reference<Real, 2>& vertices) {
   const auto count = static_cast<std::size_t>(vertices.shape(0));
@@ -281,8 +282,8 @@ std::vector<std::int32_t> first_in_place(const py::detail::unchecked_reference<R
   return result;
 }
 
-/// (kept, faces): the vertices that are left if vertices in the same place become one, triangles with two equal corners
-/// are left out, and then vertices in no triangle; and the triangles, with their numbers among these.
+/// Returns (kept, faces): merges vertices at equal positions, drops triangles with two equal corners, then unused
+/// vertices. `kept` holds the numbers of the remaining vertices; `faces` the remaining triangles by their new numbers.
 template <class Real>
 py::tuple weld(const py::array_t<Real>& vertices, const Faces& faces) {
   if (vertices.ndim() != 2 || vertices.shape(1) != 3 || faces.ndim() != 2 || faces.shape(1) != 3)
@@ -294,6 +295,7 @@ py::tuple weld(const py::array_t<Real>& vertices, const Faces& faces) {
     const std::span<const std::array<std::int32_t, 3>> all(
         reinterpret_cast<const std::array<std::int32_t, 3>*>(faces.data()), static_cast<std::size_t>(faces.shape(0)));
     const py::gil_scoped_release release;
+    // merge vertices, drop degenerate triangles
     const std::vector<std::int32_t> first = first_in_place<Real>(places);
     std::vector<std::int32_t> number(first.size(), -1);
     for (const auto& face : all) {
@@ -303,6 +305,7 @@ py::tuple weld(const py::array_t<Real>& vertices, const Faces& faces) {
       proper.push_back(corners);
       for (const std::int32_t corner : corners) number[static_cast<std::size_t>(corner)] = 0;
     }
+    // number the vertices in use
     for (std::size_t v = 0; v < number.size(); ++v)
       if (number[v] == 0) {
         number[v] = static_cast<std::int32_t>(kept.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The Python module tegl._tegl: what the package is made of, and how errors of the library reach Python.
+// The Python module tegl._tegl: its parts, and the translation of the library's errors to Python exceptions.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -23,7 +23,7 @@ Call::Call(py::object progress) : callback_(std::move(progress)) {
 
 namespace {
 
-/// Whether what a progress function returned is False, Python's or NumPy's, which comparisons of its numbers give.
+/// True if a progress function returned False, either Python's or NumPy's, which comparisons of NumPy numbers return.
 bool is_false(const py::object& returned) {
   if (py::isinstance<py::bool_>(returned)) return !returned.cast<bool>();
   if (returned.is_none() || !py::hasattr(returned, "dtype")) return false;
@@ -33,7 +33,7 @@ bool is_false(const py::object& returned) {
 }  // namespace
 
 bool Call::tell(double fraction) {
-  // Now and then is enough: the lock is waited for each time.
+  // Rate limited: each call waits for the GIL.
   const std::scoped_lock only_one(mutex_);
   const auto now = std::chrono::steady_clock::now();
   if (error_) return false;
@@ -99,7 +99,7 @@ ExtractOptions extract_options(const py::dict& arguments, Call& call) {
 
 namespace {
 
-/// The exception of Python's that fits best.
+/// The Python exception that corresponds to an error code.
 PyObject* exception_of(ErrorCode code, PyObject* cancelled) {
   switch (code) {
     case ErrorCode::FileNotFound:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is done with contours: cuts, checks, components, measures, simplification.
+// Operations on contours: slices, checks, components, measures, simplification.
 #include <fmt/format.h>
 
 #include "binding.hpp"
@@ -79,7 +79,7 @@ py::dict measure_any(const AnyContour& contour, unsigned threads, const py::obje
       contour.contour);
 }
 
-/// (size, content) of each cut; content NaN where there is none.
+/// (size, content) of each slice; content is NaN if undefined.
 std::pair<Numbers, Numbers> measure_cuts_any(const AnyContour& contour, const Numbers& at, unsigned threads,
                                              const py::object& progress) {
   Call call(progress);
@@ -239,7 +239,7 @@ Numbers automatic_scale_any(const AnyContour& contour) {
       contour.contour);
 }
 
-/// Adds an image's values at the vertices as an attribute. Arrays of others that Python has stay where they are.
+/// Adds an image's values at the vertices as an attribute. Arrays of other attributes held by Python stay valid.
 void sample_any(AnyContour& contour, const AnyImage& image, const std::string& name, const std::string& unit,
                 unsigned threads, const py::object& progress) {
   Call call(progress);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The graph of a moving contour's parts for Python.
+// The graph of a moving contour's components for Python.
 #include "tegl/track.hpp"
 
 #include "binding.hpp"
@@ -36,7 +36,7 @@ std::unique_ptr<TrackGraph> track_any(const AnyContour& contour, double min_life
   });
 }
 
-/// All but the last coordinate, and no more than there are.
+/// All coordinates except the last, which is time.
 std::vector<double> place_of(const TrackGraph& graph, const std::array<double, 3>& place) {
   return to_list(place, static_cast<std::size_t>(std::max(graph.space_dim - 1, 0)));
 }

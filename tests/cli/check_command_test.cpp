@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl check: reports, requirements and exit codes.
 #include <gmock/gmock.h>
 
 #include "tegl/io.hpp"
@@ -9,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Triangles over the corners of an octahedron and its centre (vertex 6).
+/// Files with triangles on the corners of an octahedron and its centre (vertex 6).
 class Check : public ProgramTest {
  protected:
   [[nodiscard]] std::string save(const std::vector<std::array<Index, 3>>& triangles) const {

@@ -12,7 +12,7 @@
 namespace tegl::cli {
 namespace {
 
-/// Size 12, x from -1 to 2, y from 0 to 5, t from 3 to 7; open.
+/// A component of size 12, x from -1 to 2, y from 0 to 5, t from 3 to 7; open.
 ComponentFacts facts() {
   ComponentFacts result;
   result.label = 4;

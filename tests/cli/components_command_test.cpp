@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl components and tegl measure, as a user's shell runs them.
+// The commands tegl components and tegl measure, run as in a shell.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Balls of the radii 5, 3 and 2 in a volume with steps of 1 mm.
+/// Balls of radii 5, 3 and 2 in a volume with steps of 1 mm.
 Samples three_balls() {
   return sample({30, 20, 20}, [](const std::vector<double>& x) {
     const auto ball = [&](double centre, double radius) {
@@ -164,7 +164,7 @@ TEST_F(Components, WrongOptionsAreRefusedBeforeAnythingIsWritten) {
 
 TEST_F(Components, AreAllWrittenOrNone) {
   ASSERT_EQ(run_tegl({"contour", file_, "--iso", "0", "-o", path("part_1.ply"), "-q"}).exit, 0);
-  // The input stands where the second part would go.
+  // The input has the name of the second output.
   const RunResult run = run_tegl({"components", path("part_1.ply"), "--split", path("part_{label}.ply")});
   EXPECT_EQ(run.exit, 6);
   EXPECT_THAT(run.err, HasSubstr("is the input itself"));

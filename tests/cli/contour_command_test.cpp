@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl contour: results for fields with known contours, options, formats and reports.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -21,7 +23,7 @@ using testing::HasSubstr;
 
 class Contour : public ProgramTest {
  protected:
-  /// Runs `tegl contour FILE --iso ISO -o OUT --json` with more options, and expects success.
+  /// Runs `tegl contour FILE --iso ISO -o OUT --json` with further options; expects success.
   nlohmann::json contour(const std::string& file, const std::string& iso, const std::string& out,
                          const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {"contour", file, "--iso", iso, "-o", path(out), "--json"};
@@ -124,7 +126,7 @@ TEST_F(Contour, FarFromTheOriginSaysHowManyVerticesSinglePrecisionLoses) {
     ASSERT_EQ(run.exit, 0) << run.err;
     const auto vertices = run.json()["vertices"].get<std::size_t>();
     const auto together = run.json()["vertices_together"].get<std::size_t>();
-    // Counted another way: in STL they are one when read.
+    // Independent count: readers of STL merge equal vertices.
     const Mesh read = read_mesh(out);
     std::set<std::array<double, 3>> places;
     for (std::size_t i = 0; i < read.coordinates.size(); i += 3)

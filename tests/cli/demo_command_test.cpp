@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl demo, on a terminal and elsewhere; and that colours and bars are for terminals in every command.
+// tegl demo, on a terminal and elsewhere. Colours and progress bars of every command appear on terminals only.
 #include <gmock/gmock.h>
 
 #include "sample_files.hpp"
@@ -79,8 +79,8 @@ TEST_F(Demo, PlaysNothingOnATerminalThatCannotMoveItsCursor) {
   EXPECT_THAT(run.out, HasSubstr("%%%"));
 }
 
-// What is played, between hiding the cursor and showing it, as a window sees it: no line as wide as the window, which
-// would break, and never more lines than it has, which would scroll.
+// The animation, between hiding and showing the cursor: every line is shorter than the window, so that it does not
+// wrap, and there are at most as many lines as in the window, so that it does not scroll.
 TEST_F(Demo, StandsInASmallWindowOrPlaysNothing) {
   if (!has_terminals()) GTEST_SKIP() << "this machine gives no pseudo-terminals";
   struct Window {
@@ -108,7 +108,7 @@ TEST_F(Demo, StandsInASmallWindowOrPlaysNothing) {
       std::size_t wide = 0;
       std::size_t lines = 0;
       for (std::size_t i = 0; i < film.size(); ++i) {
-        if (film[i] == '\x1b') {  // an escape, of no width
+        if (film[i] == '\x1b') {  // an escape sequence, of no width
           i = film.find_first_of("ABCDHJKhlm", i);
           ASSERT_NE(i, std::string::npos);
           if (film[i] == 'A') lines = 0;
@@ -116,7 +116,7 @@ TEST_F(Demo, StandsInASmallWindowOrPlaysNothing) {
           lines += film[i] == '\n' ? 1 : 0;
           EXPECT_LT(lines, window.lines);
           wide = 0;
-        } else if ((film[i] & 0xc0) != 0x80) {  // not within a character of several bytes
+        } else if ((film[i] & 0xc0) != 0x80) {  // the first byte of a UTF-8 character
           ++wide;
           ASSERT_LT(wide, window.columns);
         }

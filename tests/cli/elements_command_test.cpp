@@ -22,7 +22,7 @@ class ElementsCommand : public ProgramTest {
   [[nodiscard]] std::string ball_file(const std::vector<std::size_t>& sizes, double radius) const {
     return write("ball.nrrd", nrrd_bytes(ball(sizes, radius)));
   }
-  /// Rows of numbers; lines that begin with # are left out.
+  /// Rows of numbers, without lines that begin with #.
   [[nodiscard]] std::vector<std::vector<double>> table(const std::string& name) const {
     std::ifstream file(path(name));
     std::vector<std::vector<double>> rows;
@@ -42,7 +42,7 @@ TEST_F(ElementsCommand, OfAClosedHypersurfaceCloseUpAndHaveItsVolume) {
   ASSERT_EQ(run.exit, 0) << run.err;
   const nlohmann::json json = run.json();
   EXPECT_LT(json["closure_error"], 1e-13);
-  EXPECT_NEAR(json["measure"].get<double>(), 2 * std::numbers::pi * std::numbers::pi * 125, 100);  // of radius 5
+  EXPECT_NEAR(json["measure"].get<double>(), 2 * std::numbers::pi * std::numbers::pi * 125, 100);  // radius 5
   EXPECT_EQ(json["elements"], json["simplices"]);
   const auto rows = table("e.dat");
   ASSERT_EQ(rows.size(), json["elements"].get<std::size_t>());
@@ -147,7 +147,7 @@ TEST_F(ElementsCommand, TellWhetherTheyCloseUp) {
   EXPECT_THAT(run_tegl({"elements", ball_file({9, 9, 9}, 3.0), "--iso", "0", "-o", path("e.dat")}).out,
               HasSubstr("closes up"));
   EXPECT_THAT(run_tegl({"elements", ball_file({9, 9, 9}, 6.0), "--iso", "0", "-o", path("e.dat")}).out,
-              HasSubstr("0 up to rounding"));  // the ball leaves by all sides: what is missing adds up to 0
+              HasSubstr("0 up to rounding"));  // the ball leaves through all sides, so the missing parts add up to 0
   const std::string plane = write("p.nrrd", nrrd_bytes(sample({5, 5, 5}, [](const auto& x) { return x[2] - 1.5; })));
   EXPECT_THAT(run_tegl({"elements", plane, "--iso", "0", "-o", path("e.dat")}).out, HasSubstr("is open"));
 }
@@ -188,7 +188,7 @@ TEST_F(ElementsCommand, ContoursHaveNormalsOfTheKindAskedFor) {
     const bool flat = spelling.back() == "flat";
     ASSERT_EQ(mesh.normals.empty(), flat);
     ASSERT_EQ(mesh.simplex_attributes.size(), flat ? 1u : 0u);
-    // Outwards, as a ball's are.
+    // The normals of a ball point outwards.
     const Buffer<double>& normals = flat ? mesh.simplex_attributes[0].values : mesh.normals;
     for (std::size_t i = 0; i < normals.size() / 3; ++i) {
       const std::size_t v = flat ? mesh.simplices[3 * i] : i;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Values outside of the data, in all commands: an error that names the value and the range, or with --allow-empty the
-// empty result. A value within the data with no contour there gives an empty result, which is no error.
+// Values outside the data, in all commands: an error with the value and the range, or with --allow-empty an empty
+// result. A value within the data that has no contour gives an empty result without an error.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class EmptyResults : public ProgramTest {
     ProgramTest::SetUp();
     balls_ = write("balls.nrrd", nrrd_bytes(merging_balls(12, 4)));  // values from -12 to 3, t from 0 to 3
   }
-  /// Expects exit 5 and these texts; with --allow-empty exit 0, and returns that run.
+  /// Expects exit code 5 and these texts; with --allow-empty expects exit code 0 and returns that run.
   static RunResult expect_outside(std::vector<std::string> arguments, const std::string& text) {
     SCOPED_TRACE(arguments[0]);
     const RunResult refused = run_tegl(arguments);
@@ -67,7 +67,7 @@ TEST_F(EmptyResults, OfAnIsovalueOutsideOfTheValuesAreErrorsUnlessAllowed) {
   for (std::vector<std::string> command : commands) {
     std::filesystem::remove(out);
     const bool streamed = std::find(command.begin(), command.end(), "--stream") != command.end();
-    if (streamed) {  // no single NRRD is streamed
+    if (streamed) {  // a single NRRD cannot be streamed
       const Samples balls = merging_balls(12, 4);
       command[1] =
           write("balls.raw", {reinterpret_cast<const char*>(balls.values.data()), balls.values.size() * sizeof(float)});
@@ -95,7 +95,7 @@ TEST_F(EmptyResults, OfImagesWithoutValuesAndWithOneValueAreErrorsUnlessAllowed)
 }
 
 TEST_F(EmptyResults, OfAnIsovalueWithinValuesThatNeverMeetAreNone) {
-  // Both sides of the isovalue, but missing samples between them.
+  // Samples on both sides of the isovalue, separated by missing samples.
   const Samples split = sample({5, 4, 4}, [](auto& x) { return x[0] == 2 ? static_cast<double>(NAN) : x[0]; });
   const std::string file = write("split.nrrd", nrrd_bytes(split));
   const RunResult run = run_tegl({"contour", file, "--iso", "2", "-o", path("out.ply")});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Streams that nobody reads, limits of the system, and texts of files on their way to a terminal.
+// Streams without a reader, system limits, and control characters of files on their way to a terminal.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ class Endings : public ProgramTest {
   std::string ball_;
 };
 
-/// Makes a stream a pipe that nobody reads from, as `tegl ... | head -c0` does.
+/// Replaces a stream by a pipe without a reader, as in `tegl ... | head -c0`.
 void break_pipe(int stream) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) _exit(1);
@@ -69,7 +69,7 @@ TEST_F(Endings, ClosedStreamsAreNotTakenForOutputFiles) {
     EXPECT_EQ(run.exit, closed == STDOUT_FILENO ? 6 : 0) << run.err;
     EXPECT_EQ(text_of("out.ply"), expected) << closed;
   }
-  // An error message has no place then, and goes nowhere else.
+  // The error message cannot be written then, and goes nowhere else.
   const RunResult run = run_tegl({"info", path("none.nrrd")}, [] {
     close(STDERR_FILENO);
     close(STDIN_FILENO);
@@ -86,7 +86,7 @@ TEST_F(Endings, FewerThreadsThanTheMachineHasAreSaidAndEnough) {
   if (sysconf(_SC_NPROCESSORS_ONLN) < 2) GTEST_SKIP() << "one processor needs one thread";
   const std::string file = write("noise.nrrd", nrrd_bytes_uint8(noise({64, 64, 64}, 3)));
   const auto as_nobody = [] {
-    constexpr uid_t kOther = 64999;  // of no account
+    constexpr uid_t kOther = 64999;  // no account has this number
     const rlimit one{1, 1};
     if (setrlimit(RLIMIT_NPROC, &one) != 0 || setresuid(kOther, kOther, kOther) != 0) _exit(126);
   };
@@ -100,7 +100,7 @@ TEST_F(Endings, FewerThreadsThanTheMachineHasAreSaidAndEnough) {
   EXPECT_EQ(one.err, "");
 }
 
-/// Escape, bell, DEL, a C1 control character, a reversal of direction, a byte that is no UTF-8, and a new line.
+/// Escape, bell, DEL, a C1 control character, a reversal of direction, an invalid UTF-8 byte, and a new line.
 const std::string kControls = "\x1b[31mred\x07\x7f\xc2\x9b\xe2\x80\xae\xff\nC";
 
 void expect_printable(const std::string& text) {
@@ -148,7 +148,7 @@ TEST_F(Endings, NoCommandShowsControlCharactersOfFilesAsTheyAre) {
     EXPECT_TRUE(json.out.empty() || nlohmann::json::accept(json.out)) << json.out;
   }
   const nlohmann::json info = run_tegl({"info", file, "--json"}).json();
-  // JSON has the text itself, but for the byte that is no UTF-8.
+  // JSON has the text unchanged, except for the invalid UTF-8 byte.
   EXPECT_THAT(info.dump(), HasSubstr("\\u001b[31mred\\u0007\x7f\xc2\x9b\xe2\x80\xae"));
   EXPECT_THAT(run_tegl({"info", file}).out, HasSubstr("\\x1b[31mred\\x07\\x7f\\u009b\\u202e\\xff\\x0aC"));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What goes wrong: the exit code, a message that names the file and the value, and no file left behind.
+// Errors of all commands: exit code, a message with the file and the value, and no file left behind.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -34,8 +34,8 @@ class Errors : public ProgramTest {
   }
   [[nodiscard]] const std::string& ball_file() const { return ball_; }
 
-  /// Expects the exit code and one line on standard error with all the parts, nothing on standard output, and
-  /// no file but those that were there.
+  /// Expects the exit code, one line on standard error with all the parts, nothing on standard output, and no new
+  /// files.
   void expect_failure(int exit, const std::vector<std::string>& arguments,
                       const std::vector<std::string>& parts) const {
     const std::vector<std::string> before = files();
@@ -155,7 +155,7 @@ TEST_F(Errors, DamagedInputExitsWith4) {
 TEST_F(Errors, UnknownInputExitsWith4) {
   const std::string file = write("image.txt", "1 2 3\n");
   expect_contour_failure(4, file, "0", path("out.ply"), {file});
-  // One axis alone.
+  // An image with a single axis.
   const std::string line = write("line.nrrd", nrrd_bytes(ball({9}, 2)));
   expect_contour_failure(4, line, "0", path("out.ply"), {line});
 }
@@ -164,7 +164,7 @@ TEST_F(Errors, AnIsovalueOutOfRangeExitsWith5AndNamesTheRange) {
   const std::string file = write("small.nrrd", nrrd_bytes(sample({3, 3}, [](auto& x) { return x[0] + 3 * x[1]; })));
   expect_contour_failure(5, file, "8.5", path("out.ply"), {file, "8.5", "0 < isovalue <= 8"});
   expect_contour_failure(5, file, "-2", path("out.ply"), {file, "-2", "0 .. 8"});
-  // All samples are at or above the least one: nothing lies below it.
+  // No sample lies below the minimum.
   expect_contour_failure(5, file, "0", path("out.ply"), {file, "0 < isovalue <= 8"});
   expect_failure(5, {"contour", file, "--iso", "-2", "--close", "-o", path("out.ply")}, {"-2"});
 }
@@ -218,7 +218,7 @@ TEST_F(Errors, ASavedContourIsNoImage) {
   expect_contour_failure(4, saved, "0", path("out.ply"), {saved, "mesh", "expected an image"});
 }
 
-/// A surface of four triangles, the last of its vertices here, and whatever triangles else.
+/// A surface of four triangles with this last vertex, and further triangles.
 std::string tetrahedron_ply(const std::string& last, const std::vector<std::string>& others = {}) {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face " +
@@ -229,7 +229,7 @@ std::string tetrahedron_ply(const std::string& last, const std::vector<std::stri
   return text;
 }
 
-/// Everything that reads a saved contour in space.
+/// All commands that read a saved contour in space.
 std::vector<std::vector<std::string>> all_of_saved_contours(const std::string& file, const std::string& out) {
   return {{"slice", file, "--at", "z=0.5", "-o", out},
           {"simplify", file, "--ratio", "0.5", "-o", out},
@@ -264,7 +264,7 @@ TEST_F(Errors, ASavedContourAtNoFinitePlaceExitsWith4) {
 }
 
 TEST_F(Errors, AnInfiniteCoordinateOfAModelIsNamedAsSuch) {
-  constexpr float kPlace = 12345.0F;  // found again in the file
+  constexpr float kPlace = 12345.0F;  // searched for in the file
   Mesh mesh;
   mesh.dim = 2;
   mesh.space_dim = 3;
@@ -356,7 +356,7 @@ TEST_F(Errors, AnOptionGivenTwiceIsNamed) {
 }
 
 TEST_F(Errors, OutputChecksComeBeforeTheInputIsRead) {
-  // The input is damaged and the output is wrong: the output is seen first.
+  // The input is damaged and the output is invalid: the error is about the output.
   const std::string damaged = write("damaged.nrrd", nrrd_bytes(ball({8, 8, 8}, 2)).substr(0, 300));
   expect_contour_failure(6, damaged, "0", path("none/out.ply"), {path("none/out.ply")});
 }

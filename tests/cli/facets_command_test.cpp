@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 class FacetsCommand : public ProgramTest {
  protected:
-  /// Runs `tegl contour` with these arguments and --json, and expects success.
+  /// Runs `tegl contour` with these arguments and --json; expects success.
   static nlohmann::json contour(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "contour");
     arguments.push_back("--json");

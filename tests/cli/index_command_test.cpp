@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl index, and contours by its files.
 #include <gmock/gmock.h>
 
 #include <fstream>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl info: axes, values, variables, world map and suggested isovalues of image files.
 #include <gmock/gmock.h>
 
 #include <numeric>
@@ -63,7 +65,7 @@ TEST_F(Info, ShowsTheWorldMatrixInColumnsWhateverItsEntries) {
                                       "(1.5e-8,-0.161604,0.986856)\n"));
   const RunResult run = run_tegl({"info", file});
   ASSERT_EQ(run.exit, 0) << run.err;
-  // What rounding left beside entries of 1 has one digit; what is no rounding has all that are shown.
+  // Entries that are only rounding errors of entries of 1 are printed with one digit, other entries with all digits.
   EXPECT_THAT(run.out, HasSubstr("  world            -1         0    1.5e-08  |   117.855  LPS\n"
                                  "               -3e-19  0.986856  -0.161604  |  -35.7229\n"
                                  "                4e-18  0.161604   0.986856  |     1e-19\n"));
@@ -168,7 +170,7 @@ TEST_F(Info, SuggestsIsovaluesThatHaveAContour) {
     const RunResult run =
         run_tegl({"contour", file, "--iso", suggestion["value"].dump(), "-o", path("out.ply"), "--json"});
     ASSERT_EQ(run.exit, 0) << run.err;
-    // Some of the contour's points on edges lie at the image's border, in tiles all the same: all are counted.
+    // Edge points on the image border also lie in tiles, so all are counted.
     EXPECT_GE(run.json()["vertices"], suggestion["edges"]);
   }
 }

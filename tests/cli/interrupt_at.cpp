@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Loaded before a program (LD_PRELOAD), sends it SIGINT at a point that is known, whatever the machine's speed: when
-// all events of TEGL_INTERRUPT_AT have come, one after the other ("out_1|frame_5"). An event is a file opened whose
-// path has the text, or such a text on standard error. The call that is the last event comes after the signal, and
-// after TEGL_STALL seconds, as if the program were in a library that knows no progress. With TEGL_SIGNALS it sends so
-// many signals.
+// A library for LD_PRELOAD that sends the program SIGINT at a defined point, independently of the machine's speed:
+// after all events of TEGL_INTERRUPT_AT ("out_1|frame_5") have occurred in this order. An event is the opening of a
+// file whose path contains the text, or such a text on standard error. The call that is the last event continues after
+// the signal and after TEGL_STALL seconds, as if the program were in a library without progress. TEGL_SIGNALS sets the
+// number of signals.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/types.h>
@@ -32,7 +32,7 @@ void interrupt() {
   while (std::time(nullptr) < end) usleep(10000);
 }
 
-/// The events that are still to come.
+/// The remaining events.
 void note(std::string_view event) {
   static std::mutex mutex;
   static std::string left = std::getenv("TEGL_INTERRUPT_AT") == nullptr ? "" : std::getenv("TEGL_INTERRUPT_AT");
@@ -44,7 +44,7 @@ void note(std::string_view event) {
   if (left.empty()) interrupt();
 }
 
-/// The function of that name that this one stands before.
+/// The replaced function of that name.
 template <class Function>
 Function* next(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));

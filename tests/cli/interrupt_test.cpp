@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ctrl-C in the midst of several outputs: none appears, whatever was there stays, and nothing is left beside it. The
-// signal comes at a known call of the program (interrupt_at.cpp), not after some time.
+// Ctrl-C while several outputs are written: no output appears, existing files stay, and no temporary file is left. The
+// signal arrives at a defined call of the program (interrupt_at.cpp), not after some time.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -42,7 +42,7 @@ class Interrupt : public ProgramTest {
     return run_tegl_on_terminal(arguments, {"LD_PRELOAD=" TEGL_INTERRUPT_AT_LIBRARY, "TEGL_INTERRUPT_AT=" + events});
   }
 
-  /// The same, and that it leaves all as it was, with files at `outputs` as without.
+  /// Also expects all files to be unchanged, both with and without existing files at `outputs`.
   void expect_untouched(const std::string& events, const std::vector<std::string>& inputs,
                         const std::vector<std::string>& more, const std::vector<std::string>& outputs) {
     for (const bool there : {false, true}) {
@@ -58,7 +58,7 @@ class Interrupt : public ProgramTest {
         std::filesystem::remove(path(output));
       }
     }
-    // Without the signal the same command does its work.
+    // Without the signal the same command succeeds.
     const RunResult run = interrupted("no such file", inputs, more);
     EXPECT_EQ(run.exit, 0) << run.out;
     for (const std::string& output : outputs) {
@@ -88,13 +88,13 @@ TEST_F(Interrupt, WhileTheSecondOfSeveralContoursForOneFileIsMadeLeavesAllAsItWa
   expect_untouched("contour |contour ", {ball_}, {"--one-file", "-o", path("out.vtkhdf")}, {"out.vtkhdf"});
 }
 
-// All three files are begun, and five layers of twelve have come.
+// All three files are open, and five of twelve layers are written.
 TEST_F(Interrupt, InTheMidstOfAStreamLeavesAllAsItWas) {
   expect_untouched("out_2.vtkhdf|frame_15", frames_, {"--stream", "-o", path("out.vtkhdf")},
                    {"out_0.vtkhdf", "out_1.vtkhdf", "out_2.vtkhdf"});
 }
 
-// A stage that reports no progress, as those in other libraries, does not keep the program from ending.
+// A stage that reports no progress, as in other libraries, does not prevent the program from ending.
 TEST_F(Interrupt, InAStageWithoutProgressEndsTheProgramAtOnce) {
   for (const std::string extension : {".ply", ".vtkhdf"}) {
     const auto before = files();

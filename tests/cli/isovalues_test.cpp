@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl contour at several isovalues: one read of the image, a file each or all in one, in memory and streamed.
+// tegl contour at several isovalues: the image is read once, outputs are separate files or one file, in memory and
+// streamed.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -27,7 +28,7 @@ class Isovalues : public ProgramTest {
     ProgramTest::SetUp();
     ball_ = write("ball.nrrd", nrrd_bytes(ball({12, 12, 12}, 4)));
   }
-  /// Runs `tegl contour` without failure and gives the JSON.
+  /// Runs `tegl contour`, expects success, and returns the JSON.
   static nlohmann::json contour(const std::string& file, const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"contour", file, "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -131,7 +132,7 @@ TEST_F(Isovalues, WorkWithIndexFacetsPicksAndTriangulations) {
             contour(ball_, {"--iso", "1", "--facets", "-o", path("facet.vtu")})["facets"]["polygons"]);
 }
 
-// The name of the second output is longer than file systems allow, which shows when it is written.
+// The name of the second output exceeds the limit of file systems, which fails only when it is written.
 TEST_F(Isovalues, KeepWhatWasThereIfALateOneFails) {
   const std::string late = "1." + std::string(240, '0');
   const std::string raw = write("ball.raw", raw_ball());
@@ -187,7 +188,7 @@ TEST_F(Isovalues, AreStreamedAsManyAsThereMayBeOpenFiles) {
   EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("80 numbers"), HasSubstr("allows 64 open files"),
                                           HasSubstr("expected at most 32")));
   EXPECT_EQ(files().size(), 2U) << "the image and its raw values";
-  const RunResult raised = with_files(64, 256);  // the program may ask for more, and does
+  const RunResult raised = with_files(64, 256);  // the program may raise its limit, and does
   EXPECT_EQ(raised.exit, 0) << raised.err;
   EXPECT_EQ(files().size(), 82U);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs with several results: a file for each, or a refusal before anything is lost.
+// Commands with several results: one file each, or an error before any file is lost.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class Outputs : public ProgramTest {
   std::string ball_;
 };
 
-// Around 1013.25 hPa in Pa six digits do not tell one isovalue from the next.
+// Around 1013.25 hPa in Pa, six digits do not distinguish neighbouring isovalues.
 TEST_F(Outputs, OfARangeFarFromZeroHaveNamesOfTheirOwn) {
   Samples samples = ball({12, 12, 12}, 4);
   for (float& value : samples.values) value = 101325.0F + value;

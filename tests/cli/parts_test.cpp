@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The parts of the program that are functions: numbers, cuts, output paths, exit codes.
+// Unit tests of the program's functions: numbers, cuts, output paths, exit codes.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// The error that a call throws; fails the test if it throws none.
+/// The error thrown by a call; fails the test if there is none.
 template <class Call>
 Error error_of(Call&& call) {
   try {
@@ -171,7 +171,7 @@ TEST(Cuts, AreNumberedSoThatTheirNamesSort) {
     EXPECT_EQ(outputs.front().size(), outputs.back().size());
     EXPECT_TRUE(std::is_sorted(outputs.begin(), outputs.end())) << count;
   }
-  // Cuts of several directions, and an axis of that name, whose number goes first.
+  // Cuts of several directions. An axis of that name has priority over the cut's number.
   EXPECT_THAT(cut_outputs("{n}.ply", parse_cuts({"t=1", "x=5,1"})), ElementsAre("1.ply", "2.ply", "3.ply"));
   EXPECT_THAT(cut_outputs("{n}.ply", parse_cuts({"n=7,5"})), ElementsAre("7.ply", "5.ply"));
 }
@@ -209,7 +209,7 @@ TEST(Output, WhatOptionsAskForIsNotLeftOut) {
     EXPECT_NO_THROW(require_output_keeps(name, "", false));
     EXPECT_THAT(error_of([&] { require_output_keeps(name, "", true); }).what(), HasSubstr("no place for attributes"));
   }
-  // STL has the normals of facets, OBJ those of vertices.
+  // STL stores normals of facets, OBJ normals of vertices.
   EXPECT_NO_THROW(require_output_keeps("a.stl", "flat", false));
   EXPECT_NO_THROW(require_output_keeps("a.obj", "sobel", false));
   const Error error = error_of([] { require_output_keeps("A.STL", "gradient", false); });
@@ -220,7 +220,7 @@ TEST(Output, WhatOptionsAskForIsNotLeftOut) {
 }
 
 TEST(Output, TheDimensionsThatAreAllowedCanBeWritten) {
-  // The table of formats here and the writers must not drift apart.
+  // The table of formats must agree with the writers.
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir());
   for (const char* extension : {".ply", ".gltf", ".glb", ".vtkhdf", ".stl", ".obj"}) {
     for (int dim = 1; dim <= 3; ++dim) {
@@ -319,12 +319,12 @@ TEST(Printable, LeavesTextAloneAndEscapesWhatIsNoneInIt) {
   EXPECT_EQ(printable("\x9b"
                       "31m\xb0"),
             "\\x9b31m\\xb0");
-  // Directions, separators of lines and paragraphs.
+  // Direction marks, separators of lines and paragraphs.
   EXPECT_EQ(
       printable(
           "\xd8\x9c\xe2\x80\x8e\xe2\x80\x8f\xe2\x80\xa8\xe2\x80\xa9\xe2\x80\xaa\xe2\x80\xae\xe2\x81\xa6\xe2\x81\xa9"),
       "\\u061c\\u200e\\u200f\\u2028\\u2029\\u202a\\u202e\\u2066\\u2069");
-  // Overlong, a surrogate, beyond Unicode, cut short, a byte that only goes on.
+  // Overlong, a surrogate, beyond Unicode, truncated, a continuation byte only.
   EXPECT_EQ(printable("\xc0\x9b"), "\\xc0\\x9b");
   EXPECT_EQ(printable("\xe0\x80\x9b"), "\\xe0\\x80\\x9b");
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The option --pick of tegl contour: the component nearest to a point.
 #include <gmock/gmock.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// --precision float and --compress: smaller files, which are read back.
+// --precision float and --compress: smaller files that can be read back.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ class Precision : public ProgramTest {
     solid_ = write("solid.nrrd", nrrd_bytes(ball({40, 40, 40}, 15)));
     balls_ = write("balls.nrrd", nrrd_bytes(merging_balls(14, 7)));
   }
-  /// Runs the command with this output, and returns its size.
+  /// Runs the command with this output; returns the file's size.
   [[nodiscard]] double size(std::vector<std::string> command, const std::string& output,
                             const std::vector<std::string>& more) const {
     command.insert(command.end(), {"-o", path(output)});
@@ -38,7 +38,7 @@ class Precision : public ProgramTest {
 };
 
 TEST_F(Precision, FloatMakesFilesSmallerInTheFormatsThatHaveBoth) {
-  // Largest share of the file in double.
+  // Maximum size as a share of the file in double precision.
   const std::vector<std::pair<std::string, double>> formats = {
       {".ply", 0.75}, {".obj", 0.85}, {".vtkhdf", 0.56}, {".glb", 1.0}};
   for (const auto& [extension, share] : formats) {
@@ -49,7 +49,7 @@ TEST_F(Precision, FloatMakesFilesSmallerInTheFormatsThatHaveBoth) {
     const Mesh a = read_mesh(path("double" + extension));
     const Mesh b = read_mesh(path("float" + extension));
     EXPECT_EQ(a.simplices, b.simplices);
-    if (extension != ".obj") {  // its digits are those of a float, and read as a double
+    if (extension != ".obj") {  // OBJ has the digits of a float but is read as double
       expect_floats(b.coordinates);
       expect_floats(b.normals);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The command line as a whole: one word for one thing in all commands, and what is generated from the options: the
-// manual page and the completion of shells, as those who read them see them.
+// The command line as a whole: consistent options in all commands, and the files generated from the options: the manual
+// page and the shell completions, as displayed by their programs.
 #include "program/program.hpp"
 
 #include <gmock/gmock.h>
@@ -29,14 +29,14 @@ class Program : public testing::Test {
     return program.get_subcommands([](const CLI::App*) { return true; });
   }
 
-  /// Writes a file that the tests' shells read.
+  /// Writes a file for the tests' shells.
   static std::string write(const std::string& name, const std::string& text) {
     const std::string path = testing::TempDir() + name + "_" + std::to_string(getpid());
     std::ofstream(path) << text;
     return path;
   }
 
-  /// What a command of the system writes, standard error too, and its exit status.
+  /// Runs a system command; returns its output, standard error included, and exit status.
   static std::pair<std::string, int> run(const std::string& command) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen((command + " 2>&1").c_str(), "r"),
                                                                [](std::FILE*) { return 0; });
@@ -47,7 +47,7 @@ class Program : public testing::Test {
     const int status = pclose(pipe.get());
     return {text, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
   }
-  /// Of a manual page on a terminal 80 columns wide.
+  /// Expects a manual page to fit a terminal of 80 columns.
   static void expect_narrow(const std::string& shown) {
     EXPECT_THAT(shown, HasSubstr(" \\\n")) << "a command that goes on in another line";
     for (std::size_t at = 0; at < shown.size();) {
@@ -75,7 +75,7 @@ TEST_F(Program, NamesAndTypesEveryOption) {
       SCOPED_TRACE(command->get_name() + " " + option->get_name());
       EXPECT_FALSE(option->get_description().empty());
       if (option->nonpositional() && option->get_name() != "--title") {
-        // "TEXT:{...}" names the choices.
+        // "TEXT:{...}" lists the choices.
         EXPECT_THAT(option->get_type_name(), testing::Not(testing::ContainsRegex("TEXT$|INT|FLOAT"))) << "what is it?";
       }
       if (!option->get_description().ends_with(" ...")) {
@@ -85,7 +85,7 @@ TEST_F(Program, NamesAndTypesEveryOption) {
 }
 
 TEST_F(Program, CallsTheSameThingTheSameInAllCommands) {
-  // Options whose text or type differs from command to command, because what they do does.
+  // Options whose text or type differs between commands because their function does.
   const std::set<std::string> own = {"--output",  "--at",      "--iso", "--triangulation", "--scale",
                                      "--require", "--method",  "--csv", "--components",    "--samples",
                                      "--count",   "--largest", "--as",  "--limit"};
@@ -201,7 +201,7 @@ TEST_F(Program, CompletesInZshAndFish) {
   if (!any) GTEST_SKIP() << "neither zsh nor fish";
 }
 
-// A zsh of its own on a terminal of its own, in which the tab key is pressed: what its completion offers.
+// Starts a zsh on a pseudo-terminal, presses the tab key and reads the completions offered.
 TEST_F(Program, CompletesWhatIsTypedInZsh) {
   if (!has("zsh") || run("zsh -f -c 'zmodload zsh/zpty'").second != 0) GTEST_SKIP() << "no zsh with terminals";
   const std::string script = write("tegl.zsh", completion_script(program_, "zsh"));

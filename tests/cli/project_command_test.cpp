@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl project: outlines of 4D contours with times and colours.
 #include <gmock/gmock.h>
 
 #include "sample_files.hpp"

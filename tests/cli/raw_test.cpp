@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Raw values: into every format, with coordinates, names and units of their axes.
+// Raw values with coordinates, names and units of their axes, written to every format.
 #include <gmock/gmock.h>
 
 #include "sample_files.hpp"
@@ -21,7 +21,7 @@ class Raw : public ProgramTest {
                  {reinterpret_cast<const char*>(samples.values.data()), samples.values.size() * sizeof(float)});
     nrrd_ = write("ball.nrrd", nrrd_bytes(samples));
   }
-  /// `tegl contour` of the raw file at 0.
+  /// Runs `tegl contour` of the raw file at isovalue 0.
   [[nodiscard]] RunResult contour(const std::string& output, const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = {"contour", raw_,    "--raw", "12x10x9", "--raw-type",
                                           "float",   "--iso", "0",     "-o",      path(output)};
@@ -78,7 +78,7 @@ TEST_F(Raw, HasTheSpacingOriginNamesAndUnitsOfItsAxes) {
       EXPECT_NEAR(mesh.coordinates[v + 2], 7 - 3 * plain.coordinates[v + 2], 1e-12);
     }
   }
-  // One number for all axes; --step is another name.
+  // One number applies to all axes; --step is an alias.
   ASSERT_EQ(contour("half.ply", {"--step", "0.5"}).exit, 0);
   EXPECT_NEAR(run_tegl({"measure", path("half.ply"), "--json"}).json()["size"].get<double>() * 4,
               run_tegl({"measure", path("plain_raw.ply"), "--json"}).json()["size"].get<double>(), 1e-6);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Real files, where the folder of shared data is there.
+// Measured files, if the folder of shared data exists.
 #include <gmock/gmock.h>
 
 #include "tegl_program.hpp"
@@ -12,12 +12,12 @@ namespace fs = std::filesystem;
 
 class RealData : public ProgramTest {
  protected:
-  /// The path of a shared file; skips the test where there is none.
+  /// The path of a shared file; skips the test if it does not exist.
   static std::string shared(const std::string& name) {
     const fs::path file = fs::path(TEGL_SHARED_DATA_DIR) / name;
     return fs::exists(file) ? file.string() : std::string();
   }
-  /// A run that succeeds with a manifold whose simplices have this dimension.
+  /// Runs the command; expects a manifold with simplices of this dimension.
   static nlohmann::json expect_manifold(std::vector<std::string> arguments, int dim) {
     arguments.emplace_back("--json");
     const RunResult run = run_tegl(arguments);

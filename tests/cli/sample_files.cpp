@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Writers of small image files: NRRD, NIfTI, MetaImage and netCDF.
 #include "sample_files.hpp"
 
 #include <netcdf.h>
@@ -90,7 +92,7 @@ std::string nrrd_bytes_uint8(const Samples& samples) {
 }
 
 std::string nifti_bytes(const Samples& samples, const std::vector<float>& spacing) {
-  // Offsets from the definition of the format, nifti1.h.
+  // Offsets as in the format's definition, nifti1.h.
   std::string header(352, '\0');
   const auto put = [&](std::size_t at, auto value) { std::memcpy(header.data() + at, &value, sizeof(value)); };
   put(0, std::int32_t{348});
@@ -102,7 +104,7 @@ std::string nifti_bytes(const Samples& samples, const std::vector<float>& spacin
   put(70, std::int16_t{16});      // datatype: float32
   put(72, std::int16_t{32});      // bits
   put(76, 1.0f);                  // handedness
-  put(108, 352.0f);               // where the values start
+  put(108, 352.0f);               // offset of the values
   put(112, 1.0f);                 // slope
   put(123, std::uint8_t{2 | 8});  // mm and s
   put(252, std::int16_t{1});      // qform: scanner; the zero quaternion is the identity
@@ -131,7 +133,7 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
   }
   for (const auto& [axis, name, text] : of_axes)
     require(nc_put_att_text(file, axes.at(axis), name.c_str(), text.size(), text.c_str()));
-  // The last dimension of netCDF runs fastest.
+  // In netCDF the last dimension varies fastest.
   const std::vector<int> slow_first(dimensions.rbegin(), dimensions.rend());
   std::vector<int> ids;
   for (const NetcdfVariable& variable : variables) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Small image files, written without the library that is to read them.
+// Small image files, written without the library that reads them.
 #pragma once
 
 #include <cmath>
@@ -17,21 +17,21 @@ struct Samples {
   std::vector<float> values;
 };
 
-/// The values of a function of the index.
+/// Samples of a function of the index.
 Samples sample(const std::vector<std::size_t>& sizes, const std::function<double(const std::vector<double>&)>& field);
 
 /// A ball of this radius in the middle of the grid: radius minus distance. Contour at 0: a sphere.
 Samples ball(const std::vector<std::size_t>& sizes, double radius);
 
-/// Two balls of radius 3 in 3D that move towards each other along x while t runs from 0 to steps - 1, and merge.
+/// Two balls of radius 3 in 3D that approach each other along x for t = 0 to steps - 1, and merge.
 Samples merging_balls(std::size_t size, std::size_t steps);
 
-/// Numbers without a pattern in [0, 255], always the same ones.
+/// Pseudo-random numbers in [0, 255], determined by the seed.
 Samples noise(const std::vector<std::size_t>& sizes, std::uint64_t seed);
 
 /// NRRD, attached header, float. `extra` header lines end with a newline each.
 std::string nrrd_bytes(const Samples& samples, const std::string& extra = "");
-/// The same as uint8.
+/// As nrrd_bytes, with uint8 values.
 std::string nrrd_bytes_uint8(const Samples& samples);
 
 /// NIfTI-1, float, with spacings (mm; s along t) and without a rotation.
@@ -46,7 +46,7 @@ struct NetcdfVariable {
   Samples samples;
   std::string unit = "degC";
 };
-/// What a netCDF file says of an axis.
+/// An attribute of an axis in a netCDF file.
 struct NetcdfAttribute {
   std::size_t axis = 0;
   std::string name;

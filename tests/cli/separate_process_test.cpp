@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files that bring the library that reads them down: an error, with exit code 4 and the name of the file, and the same
-// results as without the child process that this takes.
+// Files that crash the library that reads them: an error with exit code 4 and the file name. Reading in a child process
+// gives the same results as reading directly.
 #include <gmock/gmock.h>
 #include <netcdf.h>
 
@@ -28,7 +28,7 @@ class SeparateProcess : public ProgramTest {
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   }
 
-  /// A netCDF-4 file of one variable, which takes a while to decompress.
+  /// A netCDF-4 file with one variable that takes some time to decompress.
   [[nodiscard]] std::string write_netcdf4(const std::string& name, std::size_t layers) const {
     const std::array<std::size_t, 3> sizes = {layers, 150, 200};
     const std::array<std::size_t, 3> chunks = {1, 150, 200};
@@ -48,7 +48,7 @@ class SeparateProcess : public ProgramTest {
   }
 };
 
-/// The parent of a process; 0 if there is none.
+/// The parent of a process, or 0.
 int parent_of(const fs::path& process) {
   std::ifstream in(process / "stat");
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

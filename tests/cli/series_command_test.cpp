@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several files as one image, in every command that reads one.
+// Several files as one image, in every command that reads an image.
 #include <gmock/gmock.h>
 
 #include <cstring>
@@ -27,7 +27,7 @@ Samples layer(const Samples& samples, std::size_t k) {
   return result;
 }
 
-/// An element of DICOM, explicit VR, little endian.
+/// A DICOM element, explicit VR, little endian.
 std::string element(unsigned group, unsigned number, const std::string& type, std::string value) {
   if (value.size() % 2 == 1) value += type == "UI" ? '\0' : ' ';
   const auto bytes = [](std::size_t integer, int count) {
@@ -41,7 +41,8 @@ std::string element(unsigned group, unsigned number, const std::string& type, st
 
 std::string short_value(unsigned value) { return {static_cast<char>(value & 0xff), static_cast<char>(value >> 8)}; }
 
-/// A slice of `size` x `size` samples at z: `inside` and more in the middle, 0 at its border; or 0 everywhere.
+/// A slice of `size` x `size` samples at z: at least `inside` in the middle and 0 at its border; 0 everywhere if
+/// `inside` is 0.
 std::string dicom_bytes(double z, unsigned size, const std::string& series = "1.2.3", unsigned frames = 1,
                         unsigned told_size = 0, unsigned inside = 100) {
   std::string pixels;
@@ -60,7 +61,7 @@ std::string dicom_bytes(double z, unsigned size, const std::string& series = "1.
          element(0x7fe0, 0x10, "OW", pixels);
 }
 
-/// Whether `tegl` was built with DICOM.
+/// True if `tegl` was built with DICOM.
 bool reads_dicom(const std::string& file) { return run_tegl({"info", file}).err.find("DCMTK") == std::string::npos; }
 
 class SeriesCommand : public ProgramTest {
@@ -73,17 +74,17 @@ class SeriesCommand : public ProgramTest {
       frames_.push_back(write("frame_" + std::to_string(k) + ".nrrd", nrrd_bytes(layer(balls_, k))));
   }
 
-  /// A command, the frames in the order of their numbers, and further arguments.
+  /// A command with the frames in numerical order, and further arguments.
   [[nodiscard]] std::vector<std::string> of_frames(std::vector<std::string> command,
                                                    const std::vector<std::string>& more) const {
     command.insert(command.end(), frames_.begin(), frames_.end());
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
-  /// As a shell lists them: frame_10 before frame_2.
+  /// Sorts as shells do: frame_10 before frame_2.
   void sort_as_shells_do() { std::sort(frames_.begin(), frames_.end()); }
 
-  /// Runs without failure and gives the JSON.
+  /// Runs the command, expects success, and returns the JSON.
   static nlohmann::json run(std::vector<std::string> arguments) {
     arguments.emplace_back("--json");
     const RunResult result = run_tegl(arguments);
@@ -109,7 +110,7 @@ class SeriesCommand : public ProgramTest {
   std::vector<std::string> frames_;
 };
 
-// Planes of DICOM say where they lie: the order of their names is of no meaning.
+// DICOM planes contain their positions, so the order of their names does not matter.
 TEST_F(SeriesCommand, TakesDicomFilesInTheOrderOfAShell) {
   std::filesystem::create_directory(path("scan"));
   std::vector<std::string> arguments = {"contour"};
@@ -172,7 +173,7 @@ TEST_F(SeriesCommand, SaysWhatItLeavesOutOfAFolder) {
   expect_refused(4, {"info", notes}, {"notes.dcm"});
 }
 
-// Where slices in the middle of a thing are far apart, it is the same thing.
+// Uneven spacing of the slices in the middle of an object does not change its contour's measures.
 TEST_F(SeriesCommand, PutsUnevenSlicesOfDicomWhereTheyLie) {
   const auto scan = [&](const std::string& name, const std::vector<double>& places) {
     std::filesystem::create_directory(path(name));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl simplify, as a user's shell runs it.
+// tegl simplify, run as in a shell.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -24,7 +24,7 @@ class SimplifyCommand : public ProgramTest {
     ProgramTest::SetUp();
     file_ = write("ball.nii", nifti_bytes(tegl::test::ball({20, 20, 20}, 7), {1, 1, 1}));
   }
-  /// The arguments after the image and its isovalue; expects success.
+  /// Runs with these arguments after the image and its isovalue; expects success.
   [[nodiscard]] nlohmann::json run_json(const std::vector<std::string>& more, const std::string& out) const {
     std::vector<std::string> arguments = {"simplify", file_, "--iso", "0", "-o", path(out), "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -58,7 +58,7 @@ TEST_F(SimplifyCommand, LeavesTheShareThatWasAskedForAndAManifold) {
     const RunResult checked = run_tegl({"check", path("tenth.vtkhdf"), "--json"});
     EXPECT_EQ(checked.exit, 0) << checked.out;
     EXPECT_EQ(checked.json()["euler"], 2);
-    // The largest error is in the file.
+    // The file contains the largest error.
     const Mesh mesh = read_mesh(path("tenth.vtkhdf"));
     ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
     EXPECT_EQ(mesh.vertex_attributes[0].name, "simplification_error");
@@ -96,7 +96,7 @@ TEST_F(SimplifyCommand, OfASavedContourIsThatOfTheImage) {
   EXPECT_TRUE(std::equal(a.simplices.begin(), a.simplices.end(), b.simplices.begin(), b.simplices.end()));
 }
 
-/// What is farther from its original than is allowed now is refused, not handed out as if it were near enough.
+/// A contour whose error already exceeds the allowed one is an error, not a result.
 TEST_F(SimplifyCommand, RefusesALargestErrorBelowTheOneThatAContourHas) {
   const nlohmann::json report = run_json({"--ratio", "0.1"}, "tenth.vtkhdf");
   const RunResult run =
@@ -107,7 +107,7 @@ TEST_F(SimplifyCommand, RefusesALargestErrorBelowTheOneThatAContourHas) {
   EXPECT_THAT(run.err, HasSubstr(fmt::format("{}", report["error"].get<double>())));
   EXPECT_EQ(run.out, "");
   EXPECT_FALSE(std::filesystem::exists(path("again.vtkhdf")));
-  // As the page says: the bound can be forgotten.
+  // As documented, the stored bound can be ignored.
   EXPECT_EQ(run_tegl({"simplify", path("tenth.vtkhdf"), "--ratio", "1", "--no-bound", "-o", path("new.vtkhdf")}).exit,
             0);
   EXPECT_EQ(run_tegl({"simplify", path("new.vtkhdf"), "--max-error", "0.001", "-o", path("again.vtkhdf")}).exit, 0);
@@ -144,7 +144,7 @@ TEST_F(SimplifyCommand, LeavesOutTheBoundAndTheCheckWhenTold) {
 }
 
 TEST_F(SimplifyCommand, MovesTheBorderOnlyWhenTold) {
-  // A ball that leaves the image: its contour has a border.
+  // A ball that extends beyond the image: its contour has a border.
   const std::string cut = write("cut.nii", nifti_bytes(ball({14, 14, 9}, 6), {1, 1, 1}));
   std::array<std::uint64_t, 2> border{};
   for (const bool within : {false, true}) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl slice: slices of images and of saved contours, by axis and by plane.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -74,7 +76,7 @@ TEST_F(Slice, AttributesAreThoseOfOtherImagesAtTheCutWhereverItComesFrom) {
     const Mesh cut = read_mesh(path("cut.vtkhdf"));
     ASSERT_EQ(cut.vertex_attributes.size(), 1u);
     const auto& values = cut.vertex_attributes[0].values;
-    // At a step vertices lie on edges of the grid, where the image has the isovalue.
+    // At a time step vertices lie on edges of the grid, at which the image has the isovalue.
     for (const double value : values) ASSERT_NEAR(value, 0.0, 1e-5);
     found.emplace_back(values.begin(), values.end());
     EXPECT_GT(found.back().size(), 50u);
@@ -83,7 +85,7 @@ TEST_F(Slice, AttributesAreThoseOfOtherImagesAtTheCutWhereverItComesFrom) {
 }
 
 TEST_F(Slice, OfAContourSavedInSinglePrecisionMeetsItsOwnTimes) {
-  // 0.1 and 0.7 are other numbers in single precision than in double, the first larger, the second smaller.
+  // 0.1 and 0.7 differ between single and double precision; the first float is larger, the second smaller.
   const std::vector<double> places = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
   write_netcdf(path("balls.nc"), {"x", "y", "z", "t"}, {places, places, places, {0.1, 0.3, 0.4, 0.5, 0.7}},
                {{"TEMP", merging_balls(18, 5)}});
@@ -157,7 +159,7 @@ TEST_F(Slice, OfNoiseAtAWholeTimeIsTheContourOfThatStepFromTheImageAndFromASaved
   for (float& value : film.values) value = std::floor(value / 64);  // many equal the isovalue
   const std::size_t step = 6 * 7 * 5;
   const std::string film_file = write("film.nii", nifti_bytes(film, {1, 1, 1, 1}));
-  /// Triangles by the places of their corners, each from its least corner on.
+  /// Triangles by corner positions, each from its smallest corner on.
   const auto triangles = [&](const std::string& name) {
     const Mesh mesh = read_mesh(path(name));
     std::vector<std::array<std::array<double, 3>, 3>> list(mesh.simplices.size() / 3);
@@ -166,7 +168,7 @@ TEST_F(Slice, OfNoiseAtAWholeTimeIsTheContourOfThatStepFromTheImageAndFromASaved
     for (auto& corners : list) {
       std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
       const bool repeats = corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2];
-      if (repeats) std::sort(corners.begin(), corners.end());  // without an orientation
+      if (repeats) std::sort(corners.begin(), corners.end());  // ignores orientation
     }
     std::sort(list.begin(), list.end());
     return list;
@@ -311,7 +313,7 @@ TEST_F(Slice, ScaleStretchesWhatIsCutAndNotThePlane) {
   const auto stretched = coordinates({"--at", "x=5.25", "--scale", "t=4,x=2"});
   ASSERT_EQ(plain.size(), stretched.size());
   for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(stretched[i], i % 3 == 2 ? 4 * plain[i] : plain[i]);
-  // The plane x + t = 9 holds as many vertices whatever the scale.
+  // The plane x + t = 9 contains the same number of vertices at any scale.
   EXPECT_EQ(coordinates({"--plane", "1,0,0,1=9"}).size(),
             coordinates({"--plane", "1,0,0,1=9", "--scale", "t=4"}).size());
   for (const char* scale : {"t=0", "t=-1", "q=2", "t", "t=a"})

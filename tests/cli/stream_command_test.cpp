@@ -24,7 +24,7 @@ const std::string kOcean = TEGL_SOURCE_DIR "/examples/data/ocean_temperature.nc"
 
 class Stream : public ProgramTest {
  protected:
-  /// Expects two saved contours to be the same, byte by byte.
+  /// Expects two saved contours to be equal byte by byte.
   static void expect_same(const std::string& a, const std::string& b) {
     const Mesh x = read_mesh(a);
     const Mesh y = read_mesh(b);
@@ -126,10 +126,10 @@ TEST_F(Stream, NeedsLittleMemoryWhateverTheLengthOfTheLastAxis) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers need address space";
 #endif
-  // 2 GiB of samples, almost all of them in the holes of a sparse file, with a ball in every 16th volume.
+  // 2 GiB of samples, most of them in the holes of a sparse file, with a ball in every 16th volume.
   constexpr std::uintmax_t kSize = 256;
   constexpr std::uintmax_t kSteps = 128;
-  constexpr int kLimitKiB = 480 * 1024;  // of address space, program and libraries included
+  constexpr int kLimitKiB = 480 * 1024;  // limit of address space, program and libraries included
   static_assert(kSize * kSize * kSize * kSteps >= 3 * std::uintmax_t{kLimitKiB} * 1024);
   const std::string raw = path("large.raw");
   {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Child processes, pipes and pseudo-terminals for running `tegl`.
 #include "tegl_program.hpp"
 
 #include <fcntl.h>
@@ -20,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Starts the program in a child process in which `prepare` ran first.
+/// Starts the program in a child process after calling `prepare` there.
 pid_t start(const std::vector<std::string>& arguments, const std::function<void()>& prepare) {
   std::vector<std::string> words = {TEGL_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -38,7 +40,7 @@ pid_t start(const std::vector<std::string>& arguments, const std::function<void(
 
 int exit_status(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
-/// Everything from two pipes, both drained as it comes, so that the child never waits for room in one.
+/// Reads everything from two pipes at the same time, so that the child never blocks on one of them.
 void drain(std::array<int, 2> ends, std::array<std::string*, 2> texts) {
   std::array<pollfd, 2> waits = {{{ends[0], POLLIN, 0}, {ends[1], POLLIN, 0}}};
   std::array<char, 65536> buffer{};
@@ -90,7 +92,7 @@ RunResult run_tegl(const std::vector<std::string>& arguments, const std::functio
 
 namespace {
 
-/// A new pseudo-terminal and its other side, both open; -1 where the machine gives none (no /dev/pts, say).
+/// A new pseudo-terminal and its other side, both open; -1 if the machine has none (for example without /dev/pts).
 std::array<int, 2> open_terminal() {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   if (terminal < 0) return {-1, -1};
@@ -132,7 +134,7 @@ RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const 
   close(other_side);
   std::array<char, 4096> buffer{};
   bool interrupted = interrupt_at.empty();
-  // Once the child has ended, reading the terminal fails.
+  // Reading the terminal fails when the child has ended.
   for (ssize_t got = 0; (got = read(terminal, buffer.data(), buffer.size())) > 0;) {
     result.out.append(buffer.data(), static_cast<std::size_t>(got));
     if (!interrupted && result.out.find(interrupt_at) != std::string::npos) {

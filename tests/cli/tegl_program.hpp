@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs the built program `tegl` as a user's shell does, and looks at what it leaves.
+// Runs the built program `tegl` as a shell does, and checks its output and files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,28 +14,28 @@
 
 namespace tegl::test {
 
-/// What a run of a program gave.
+/// Result of a run.
 struct RunResult {
   int exit = -1;  ///< exit status; 128 + signal if a signal ended it
   std::string out;
   std::string err;
 
-  /// Standard output as JSON; fails the test if it is none.
+  /// Parses standard output as JSON; fails the test if it is not JSON.
   [[nodiscard]] nlohmann::json json() const;
 };
 
-/// Runs `tegl` with these arguments, without a terminal. `prepare` is called in its process before.
+/// Runs `tegl` with these arguments, without a terminal, after calling `prepare` in its process.
 RunResult run_tegl(const std::vector<std::string>& arguments, const std::function<void()>& prepare = {});
 
-/// Whether the machine gives pseudo-terminals, which run_tegl_on_terminal needs.
+/// True if the machine has pseudo-terminals, which run_tegl_on_terminal needs.
 bool has_terminals();
 
-/// A run on a pseudo terminal (TERM=xterm; 80 x 24, or COLUMNS x LINES), with `environment` added ("NAME=value").
-/// If `interrupt_at` is not empty, sends the signal as soon as that text appeared. All that was shown is in `out`.
+/// Runs on a pseudo-terminal (TERM=xterm; 80 x 24, or COLUMNS x LINES), with `environment` added ("NAME=value"). If
+/// `interrupt_at` is not empty, sends the signal when that text has appeared. `out` has all terminal output.
 RunResult run_tegl_on_terminal(const std::vector<std::string>& arguments, const std::vector<std::string>& environment,
                                const std::string& interrupt_at = "", int signal = SIGINT);
 
-/// A test with an empty folder of its own, removed afterwards.
+/// A test with its own empty folder, removed afterwards.
 class ProgramTest : public testing::Test {
  protected:
   void SetUp() override;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What shows on a terminal and nowhere else: the progress bar, colours; and Ctrl-C.
+// Output on terminals only: the progress bar and colours. Ctrl-C.
 #include <gmock/gmock.h>
 
 #include "sample_files.hpp"

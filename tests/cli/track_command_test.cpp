@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The command tegl track: events, graphs, pictures and tables.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -16,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Two balls that merge.
+/// A file with two merging balls.
 class Track : public ProgramTest {
  protected:
   [[nodiscard]] std::string image() const { return write("balls.nrrd", nrrd_bytes(merging_balls(20, 8))); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// tegl view, but for what a browser shows of its pages (tests/viewer).
+// tegl view, except for the rendering of its pages in a browser (tests/viewer).
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -33,14 +33,14 @@ class View : public ProgramTest {
       GTEST_SKIP() << "this build has no viewer";
   }
   [[nodiscard]] const std::string& file() const { return file_; }
-  /// What the page knows of itself.
+  /// The scene description in the page.
   [[nodiscard]] static nlohmann::json scene(const std::string& page) {
     const std::string text = content(page);
     const std::string start = "<script type=\"application/json\" id=\"scene\">";
     const std::size_t from = text.find(start) + start.size();
     return nlohmann::json::parse(text.substr(from, text.find("</script>", from) - from));
   }
-  /// Two balls of which one is larger, in 3D.
+  /// Two balls of different size in 3D.
   std::string two_balls() {
     const auto balls = [](const std::vector<double>& x) {
       return std::max(4.25 - std::hypot(x[0] - 9.0, x[1] - 9.5, x[2] - 9.5),
@@ -61,7 +61,7 @@ TEST_F(View, WritesOnePageThatRefersToNothingElse) {
   const std::string page = content(path("page.html"));
   EXPECT_EQ(run.json()["bytes"], page.size());
   EXPECT_THAT(page.substr(0, 500), HasSubstr("default-src 'none'"));
-  EXPECT_THAT(page, HasSubstr("three.js authors"));  // the licence asks for it
+  EXPECT_THAT(page, HasSubstr("three.js authors"));  // required by the licence
   EXPECT_FALSE(std::regex_search(page.substr(0, page.find("id=\"scene\"")), std::regex("(src|href)=\"(?!data:,)")));
 }
 
@@ -153,7 +153,7 @@ TEST_F(View, AxesPointWhereTheFileOrTheOptionSays) {
   EXPECT_EQ(downs(path("a.nc"), {"--down", "Depth"}), are("[false, false, true]"));
   EXPECT_EQ(downs(path("a.nc"), {"--down", "lat"}), are("[false, true, false]"));
   EXPECT_EQ(downs(file_with("level", {{2, "positive", "down"}}), {"--down", "none"}), are("[false, false, false]"));
-  // Saved contours know names alone.
+  // Saved contours contain axis names only.
   ASSERT_EQ(run_tegl({"contour", path("a.nc"), "--iso", "0", "-o", path("a.ply"), "-q"}).exit, 0);
   EXPECT_EQ(downs(path("a.ply"), {}), are("[null, null, null]"));
   EXPECT_EQ(downs(path("a.ply"), {"--down", "level"}), are("[false, false, true]"));
@@ -184,7 +184,7 @@ TEST_F(View, WorldsAreThoseOfTheFileOrTheOption) {
   EXPECT_EQ(world(known, {"--world", "none"}), nullptr);
   EXPECT_EQ(world(unknown, {}), nullptr);
   EXPECT_EQ(world(unknown, {"--world", "ras"}), "RAS");
-  // Saved contours do not say.
+  // Saved contours do not contain it.
   ASSERT_EQ(run_tegl({"contour", known, "--iso", "0", "-o", path("known.ply"), "-q"}).exit, 0);
   EXPECT_EQ(world(path("known.ply"), {}), nullptr);
   EXPECT_EQ(world(path("known.ply"), {"--world", "LPI"}), "LPI");
@@ -208,7 +208,7 @@ TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {
   EXPECT_EQ(view(file(), "/dev/full/page.html").exit, 6);
   EXPECT_EQ(run_tegl({"view", file(), "--iso", "1000", "-o", path("a.html")}).exit, 5);
   EXPECT_EQ(run_tegl({"view", file(), "-o", path("a.html")}).exit, 2);
-  // The second file's name stands in messages about it.
+  // Messages about the second file contain its name.
   const std::string flat = write("zero.nrrd", nrrd_bytes(sample({4, 4, 4}, [](const auto&) { return 5.0; })));
   const RunResult second = run_tegl({"view", file(), flat, "--iso", "0", "-o", path("a.html")});
   EXPECT_EQ(second.exit, 5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Several files that appear together or not at all, and where a name's file lies.
+// Several files that are written all together or not at all, and outputs through symbolic links.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -95,7 +95,7 @@ TEST_F(WrittenFilesTest, GoBackIfOneOfThemCannotBePutInPlace) {
 
 TEST_F(WrittenFilesTest, AreAFileEachByWhateverName) {
   fs::create_directories(path("folder"));
-  fs::create_symlink("a.csv", path("link.csv"));  // leads to no file yet
+  fs::create_symlink("a.csv", path("link.csv"));  // its target does not exist yet
   fs::create_directory_symlink(folder_, path("folder/back"));
   for (const std::string other : {"a.csv", "./a.csv", "folder/../a.csv", "link.csv", "folder/back/a.csv"}) {
     WrittenFiles written;

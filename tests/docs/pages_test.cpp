@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What docs/guides.md and docs/coming-from.md show in C++: between [name] and [/name] stand the pages' snippets, around
-// them what they need, and whether they do what the pages say.
+// The C++ snippets of docs/guides.md and docs/coming-from.md stand between [name] and [/name]. The code around them
+// provides their context and checks their results.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t kSize = 20, kSteps = 9;
 
-/// Positive inside of a ball of radius 6 about the middle of kSize^3 samples, which moves along x with time.
+/// Positive inside a ball of radius 6 near the middle of kSize^3 samples, which moves along x with time.
 double ball(double x, double y, double z, double t = 0.0) {
   const double middle = 9.4;
   return 6.0 - std::hypot(x - middle - 0.25 * t, y - middle, z - middle);
@@ -88,7 +88,7 @@ TEST(ComingFromVtk, ImageDataIsAGridAndItsSurfaceFacesLow) {
     double outward = 0;
     for (std::size_t a = 0; a < 3; ++a)
       outward += (static_cast<double>(surface.vertices[v][a]) - middle[a]) * static_cast<double>(surface.normals[v][a]);
-    EXPECT_GT(outward, 0);  // out of what is high, as VTK's
+    EXPECT_GT(outward, 0);  // from high to low, as in VTK
   }
   EXPECT_EQ(tegl::read_mesh("small.ply").simplices.size(), 3 * small.simplices.size());
 }
@@ -143,7 +143,7 @@ TEST(ComingFromCornelius, ElementsOfAllCellsComeAtOnceAndCloseUp) {
   const tegl::Elements<4> elements = tegl::elements_by_cell(contour, grid);
   for (std::size_t e = 0; e < elements.centroids.size(); ++e) integrate(elements.centroids[e], elements.normals[e]);
   // [/cornelius]
-  // Open at the first and the last time alone, by as much on either side, one facing back and one ahead.
+  // Open at the first and the last time only, with boundaries of equal size that face back and ahead.
   for (const double component : sum) EXPECT_NEAR(component, 0.0, 1e-9);
 }
 

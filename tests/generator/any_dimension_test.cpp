@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles of any dimension: certified for all signatures where that is cheap, for seeded ones elsewhere, and held
-// against the builder that the tables come from.
+// Tiles of any dimension: certified for all signatures if that is cheap, else for random ones, and compared with the
+// builder of the tables.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -78,7 +78,7 @@ TEST(AnyDimension, SeededTilesWithRandomResolutionsAreCertified) {
   expect_random_certified(FaceLattice::cube(5), 4, 5);
 }
 
-/// A vertex by what a neighbouring tile knows of it as well: its face's corners, kind and number.
+/// A vertex by properties that neighbouring tiles share: its face's corners, kind and number.
 using Name = std::tuple<Signature, VertexKind, std::uint32_t>;
 
 std::multiset<std::set<Name>> named(const FaceLattice& lattice, const TileFacets& tile, const Simplices& simplices,
@@ -247,7 +247,7 @@ TEST(AnyDimension, FamiliesOfSetsThatAreNoPolytopesAreRefused) {
   std::vector<Signature> simplex, torus;
   for (int v = 0; v < 8; ++v) simplex.push_back(0xffu & ~(Signature{1} << v));
   EXPECT_THROW(lattice(7, simplex), std::invalid_argument);
-  for (unsigned v = 0; v < 7; ++v) {  // the torus of seven vertices
+  for (unsigned v = 0; v < 7; ++v) {  // the torus with seven vertices
     torus.push_back(Signature{1} << v | Signature{1} << (v + 1) % 7 | Signature{1} << (v + 3) % 7);
     torus.push_back(Signature{1} << v | Signature{1} << (v + 2) % 7 | Signature{1} << (v + 3) % 7);
   }
@@ -271,7 +271,7 @@ TEST(AnyDimension, AConeOverATorusFailsByItsApex) {
 TEST(AnyDimension, AChordAcrossAFaceFails) {
   const FaceLattice cube = FaceLattice::cube(3);
   TileFacets tile = build_facets(cube, 1);
-  // The middle of the triangle, said to lie in one of the squares.
+  // The triangle's middle, assigned to one of the squares.
   const Simplex triangle = tile.facets[0].simplices[0];
   const auto middle = static_cast<VertexId>(tile.vertices.size());
   tile.vertices.push_back({VertexKind::barycentre, cube.faces().back().faces[0], 1000, kNoVertex, tile.sigma});
@@ -284,7 +284,7 @@ TEST(AnyDimension, AChordAcrossAFaceFails) {
   EXPECT_EQ(certify(cube, tile), Fault::in_tile_boundary);
 }
 
-/// A builder that spoils what FacetBuilder builds.
+/// A builder that corrupts results of FacetBuilder.
 class SpoiltBuilder {
  public:
   using Spoil = std::function<void(TileFacets&, Signature, const Resolution&)>;
@@ -317,14 +317,14 @@ TEST(TileCertifier, SeesWhatATileMakesOfItsFaces) {
   EXPECT_EQ(certified_with(
                 lattice, [](TileFacets&, Signature, const Resolution&) {}, two_corners, none),
             Fault::none);
-  // Everything lost, in the faces as well: in itself consistent.
+  // Removes everything, also in the faces: consistent in itself.
   const auto lose = [](TileFacets& tile, Signature, const Resolution&) {
     tile.facets.clear(), tile.sigma.clear(), tile.sigma_sign.clear();
     for (Simplices& in_face : tile.in_face) in_face.clear();
     for (std::vector<int>& signs : tile.in_face_sign) signs.clear();
   };
   EXPECT_EQ(certified_with(lattice, lose, two_corners, none), Fault::sigma);
-  // Everything inside out.
+  // Reverses all orientations.
   const auto turn = [](TileFacets& tile, Signature, const Resolution&) {
     for (Facet& facet : tile.facets)
       for (Simplex& s : facet.simplices) std::swap(s[0], s[1]);
@@ -333,7 +333,7 @@ TEST(TileCertifier, SeesWhatATileMakesOfItsFaces) {
       for (int& sign : signs) sign = -sign;
   };
   EXPECT_EQ(certified_with(lattice, turn, two_corners, none), Fault::sigma);
-  // Squares resolved the other way round by the tile: right in itself, but not what a neighbour builds.
+  // The tile resolves squares in the opposite way: consistent in itself, but different from a neighbour's.
   FacetBuilder other(lattice);
   const auto disagree = [&](TileFacets& tile, Signature signature, const Resolution&) {
     tile = other.build(signature, {{}, Alternative::high}, Geometry::without);
@@ -342,14 +342,14 @@ TEST(TileCertifier, SeesWhatATileMakesOfItsFaces) {
   for (std::size_t f = 0; f < low.size(); ++f)
     if (lattice.faces()[f].dim == 2) low[f] = Choice::low;
   EXPECT_EQ(certified_with(lattice, disagree, 0x0006, low), Fault::sigma);
-  // And squares themselves: an edge whose ends differ has its point.
+  // The same faults in squares: an edge whose ends differ must have its point.
   const FaceLattice square = FaceLattice::cube(2);
   EXPECT_EQ(certified_with(square, lose, 6, none), Fault::sigma);
   EXPECT_EQ(certified_with(square, turn, 6, none), Fault::sigma);
 }
 
 TEST(TileCertifier, PassesTilesThatNobodyPlannedFor) {
-  // The pyramid over a square, the prism over a triangle, and the prism over that.
+  // The pyramid over a square, the prism over a triangle, and the prism over that prism.
   const std::vector<Signature> pyramid = {0b01111, 0b10011, 0b11010, 0b11100, 0b10101};
   const std::vector<Signature> prism = {0b000111, 0b111000, 0b011011, 0b110110, 0b101101};
   std::vector<Signature> duoprism = {0b000000111111, 0b111111000000};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The catalogue of cases in docs/ is what the generator writes, and its pictures show what they should.
+// The catalogue of cases in docs/ equals the generator's output, and its pictures are correct.
 #include "pictures/cases.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Orbit counts: golden values (computed independently, by explicit corner cycles in another language), cycle types
-// against the elements themselves, and Burnside's lemma against enumeration.
+// Orbit counts: golden values (computed independently, from explicit corner cycles in another language), cycle types
+// against the elements, and Burnside's lemma against enumeration.
 #include "symmetry/counting.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(Counting, EnumerationGivesTheSameNumbers) {
   }
 }
 
-/// Signed cycles of axes and cycles of corners, followed step by step.
+/// The cycle type found by following the cycles of axes and corners.
 CycleType followed(const Element& g, int n) {
   CycleType type;
   type.det = g.det;
@@ -135,9 +135,9 @@ TEST(Counting, NumberOfCycleTypesIsThatOfPairsOfPartitions) {
   }
 }
 
-// A published generator for 4D tables typed its generators by hand. They were meant to be rotations, generate the 192
-// elements whose axes are permuted evenly instead, and so found 479 classes. The order is that of the rotations and
-// does not show the fault; the second count does.
+// A published generator for 4D tables typed its group generators by hand. They were meant to be rotations, but generate
+// the 192 elements that permute the axes evenly, which gives 479 classes. The order equals that of the rotations and
+// does not reveal the fault; the second count does.
 TEST(Counting, TheWrongGroupOf192ElementsAnd479ClassesIsFoundOut) {
   std::vector<Element> wrong = group(4, GroupKind::Full, false);
   std::erase_if(wrong, [](const Element& g) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A signature's contour as a reader of the table contract finds it: written from the contract's words alone, apart
-// from the runtime and from the emitters.
+// Decodes a signature's contour from a table. Written from the text of the table contract only, independently of the
+// runtime and the emitters.
 #pragma once
 
 #include <cstdint>

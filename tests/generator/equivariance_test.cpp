@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Building after a symmetry is the symmetry after building, for every signature of 4D and every one of the 384
-// elements. It suffices to look at representatives: a signature is h(r) for one of them, so that g after h is one
-// element, and what holds of g h and of h holds of g.
+// Building commutes with every one of the 384 symmetries, for every signature of 4D. It suffices to test
+// representatives: a signature is h(r) for a representative r, so g after h is a single element, and equivariance under
+// g h and under h implies it under g.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -20,13 +20,13 @@ namespace {
 
 constexpr int kDim = 4;
 
-/// A vertex by what it is, not by its number: edges (bits 0 ... 31), corners (bits 32 ... 47) and a kind. A point on an
-/// edge has that edge; a barycentre the edges around its facet; a side vertex the corners and edges of its mean.
+/// A vertex by its meaning, not by its number: edges (bits 0 to 31), corners (bits 32 to 47) and a kind. An edge point
+/// has its edge; a barycentre the edges around its facet; a side vertex the corners and edges of its mean.
 using Place = std::uint64_t;
 enum Kind : Place { kPoint = 0, kCubeBarycentre = 1, kOwnBarycentre = 2, kSide = 3 };
 constexpr Place place(Kind kind, Place corners, Place edges) { return Place{kind} << 60 | corners << 32 | edges; }
 
-/// A symmetry as it moves places.
+/// The action of a symmetry on places.
 class Motion {
  public:
   Motion(const Element& g, const Tile& tile) : det_(g.det) {
@@ -109,7 +109,8 @@ std::vector<PlacedSimplex> placed(const ContourBuilder& builder, Signature s) {
   return result;
 }
 
-/// What a facet is, however it is triangulated: its points, its boundary's Euler characteristic and size.
+/// The properties of a facet that do not depend on its triangulation: points, Euler characteristic and size of its
+/// boundary.
 using FacetKind = std::tuple<Place, int, std::uint32_t>;
 
 std::vector<FacetKind> facets_of(const ContourBuilder& builder, Signature s) {

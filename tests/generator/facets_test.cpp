@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of single tiles against the theory's numbers, the certificate against deliberate faults, regions by volume.
+// Contours of single tiles against the numbers in theory.md, the certificate against injected faults, regions by
+// volume.
 #include "filling/facets.hpp"
 
 #include <gtest/gtest.h>
@@ -110,8 +111,8 @@ TEST(Facets, EverySignatureOf2dAnd3dPassesInEveryWay) {
   for (const int n : {2, 3}) EXPECT_EQ(4u, certify_all(n).size());
 }
 
-/// Oriented simplices in canonical form with the tile's own vertices left out of the comparison by name: the own
-/// vertex of a cone is named by the smallest vertex that it cones.
+/// Oriented simplices in canonical form, independent of the numbers of own vertices: the own vertex of a cone is named
+/// by the smallest vertex that it cones.
 std::multiset<std::vector<int>> canonical(const ContourBuilder& builder, const TileContour& contour,
                                           const std::array<int, 64>& rename, bool reversed) {
   std::multiset<std::vector<int>> result;
@@ -172,7 +173,7 @@ TEST(Facets, HighAlternativeIsTheReversedLowOneOfTheComplement) {
     }
 }
 
-// ---- The certificate notices what it is for.
+// ---- The certificate detects each kind of fault.
 
 TEST(Certificate, AConeOverATorusFailsAtItsApex) {
   const CubeLattice lattice(4);
@@ -219,7 +220,7 @@ TEST(Certificate, EveryKindOfFaultIsNamed) {
 }
 
 TEST(Certificate, AChordInAFaceOfTheTileIsRefused) {
-  // Signature 61: a heptagon, two of whose vertices that are no neighbours lie on one square.
+  // Signature 61: a heptagon with two non-adjacent vertices on one square.
   const CubeLattice lattice(3);
   const ContourBuilder builder(lattice, 3, Alternative::low, Triangulation::compact);
   TileContour contour = builder.build(61);
@@ -292,8 +293,8 @@ double volume(const RegionBuilder& builder, Signature s) {
 }
 
 TEST(Regions, HighAndLowPartsOfATileFillItExactly) {
-  // The low part of the low-connected alternative is the high part of the complement, high-connected. With edge
-  // points at the midpoints, signed volumes add up to the tile's whatever the ambiguities.
+  // The low part in the low-connected alternative is the high part of the complement in the high-connected one. With
+  // edge points at midpoints, their volumes add up to the tile's volume.
   const CubeLattice lattice(3);
   for (int k = 1; k <= 3; ++k)
     for (const RegionStyle style : {RegionStyle::cone, RegionStyle::fan}) {
@@ -309,7 +310,7 @@ TEST(Regions, EverySimplexIsPositivelyOrientedInTheUnambiguousSquares) {
   const RegionBuilder builder(lattice, 2, Alternative::low, Triangulation::compact, RegionStyle::fan);
   EXPECT_NEAR(0.125, volume(builder, 1), 1e-15);
   EXPECT_NEAR(0.5, volume(builder, 3), 1e-15);
-  EXPECT_NEAR(0.25, volume(builder, 6), 1e-15);  // two corners kept apart
+  EXPECT_NEAR(0.25, volume(builder, 6), 1e-15);  // two separate corners
   EXPECT_NEAR(0.875, volume(builder, 7), 1e-15);
   EXPECT_NEAR(1.0, volume(builder, 15), 1e-15);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The program `gen` as its users meet it: run as a process, judged by exit status, output and messages.
+// The program `gen` run as a process: exit status, output and messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -33,7 +33,7 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs gen with these arguments; `redirect` is appended to the shell command as it is.
+/// Runs gen with these arguments; `redirect` is appended to the shell command unchanged.
 Outcome gen(std::initializer_list<std::string_view> arguments, const std::string& redirect = "") {
   const std::string messages =
       testing::TempDir() + "gen_" + testing::UnitTest::GetInstance()->current_test_info()->name() + ".txt";
@@ -60,7 +60,7 @@ Outcome gen(std::initializer_list<std::string_view> arguments, const std::string
   return run;
 }
 
-/// A refused command line: status 2, nothing on standard output, and a message that has all these texts.
+/// Expects a refused command line: status 2, nothing on standard output, and a message with all these texts.
 void expect_refused(std::initializer_list<std::string_view> arguments, std::initializer_list<const char*> texts) {
   const Outcome run = gen(arguments);
   EXPECT_EQ(run.status, 2) << run.err;
@@ -314,7 +314,7 @@ TEST(GenCli, FailsWhenItsOutputCannotBeWritten) {
   EXPECT_THAT(run.err, HasSubstr("standard output"));
 }
 
-/// Polygon sizes, largest first.
+/// Polygon sizes, in descending order.
 std::vector<std::size_t> sizes_of(const json& facets) {
   std::vector<std::size_t> sizes;
   for (const json& facet : facets) {
@@ -395,7 +395,7 @@ TEST(GenCli, CertifiesEverySignatureOfBothAlternativesAndTriangulations) {
   }
 }
 
-/// A new, empty folder, removed at the end.
+/// A new empty folder, removed at the end.
 class Folder {
  public:
   Folder() : path_(testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Neighbours: that the consistent tables never leave a hole between two tiles, that the table by class with inversion
-// does, and that the check sees a hole where one was made.
+// Neighbouring tiles: the consistent tables leave no hole between two tiles, the table by class with inversion does,
+// and the check detects injected holes.
 #include "filling/pairs.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles whose ambiguities are resolved freely: how many there are, their certificates, symmetry, and what the tables
-// say.
+// Tiles with freely resolved ambiguities: their number, certificates and symmetry, and agreement with the tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +45,7 @@ TEST(Resolutions, ATesseractHasAsManyAsTheTheorySays) {
   EXPECT_EQ(by_class, 17395393u);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // ten times as slow; the sample shows them enough
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // ten times as slow: the sample suffices
 TEST(Resolutions, EveryOneOfATesseractPasses) {
   const ResolutionFigures figures = certify_all_resolutions(TileKind::cube, 4, 0);
   EXPECT_EQ(figures.classes, 402u);
@@ -59,7 +58,7 @@ TEST(Resolutions, EveryOneOfATesseractPasses) {
 #endif
 
 TEST(Resolutions, TheCheckerboardReachesGenusFive) {
-  // Every square of it is ambiguous; a seeded search through its 2^24 resolutions.
+  // Every square of this signature is ambiguous; a seeded search through its 2^24 resolutions.
   const FaceLattice lattice = FaceLattice::cube(4);
   FacetBuilder builder(lattice);
   std::vector<Choice> choices(lattice.faces().size());
@@ -83,7 +82,7 @@ TEST(Resolutions, OtherTilesPassToo) {
   EXPECT_EQ(certify_all_resolutions(TileKind::octahedron, 3, 1).pairs, 64u);
 }
 
-// Sanitizers make it ten times as slow, and some tiles show them all there is.
+// Sanitizers make it ten times as slow, and fewer tiles suffice for them.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t kTesseracts = 4000;
 #else
@@ -124,7 +123,7 @@ TEST(InParallel, TheFailureOfTheSmallestUnitIsTold) {
   }
 }
 
-/// Names for the vertices of a tile that do not depend on the numbering of corners, once a symmetry has renamed these.
+/// Names of a tile's vertices that are independent of the numbering of corners after a symmetry has renamed these.
 class Names {
  public:
   Names(const FaceLattice& lattice, const facets::TileFacets& tile, const std::vector<std::uint32_t>& corner)
@@ -148,7 +147,7 @@ class Names {
     return mix(sum);
   }
 
-  /// With its orientation, times `sign`.
+  /// A simplex with its orientation times `sign`.
   std::uint64_t oriented(const facets::Simplex& s, int sign) {
     for (int i = 0; i < facets::size(s); ++i)
       for (int j = i + 1; j < facets::size(s); ++j)
@@ -220,7 +219,7 @@ TEST(Resolutions, BuildingAfterASymmetryIsSymmetryAfterBuilding) {
   }
 }
 
-/// What a facet is, up to the numbers of vertices inside it: how many simplices each of its edge points is in.
+/// A facet up to the numbers of its interior vertices: for each edge point, the number of simplices that contain it.
 using Portrait = std::pair<std::size_t, std::map<std::uint64_t, int>>;
 
 TEST(Resolutions, EveryTesseractIsThatOfTheBarycentricTable) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The complete table of the cube as it was compiled: every entry certified again, and held against the builder of
-// single tiles for what its surfaces are.
+// The complete table of the cube as compiled: every entry is certified again, and its surfaces are compared with those
+// of the builder of single tiles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ std::vector<std::array<std::uint8_t, 3>> triangles_of(const tables::ResolvedList
   return result;
 }
 
-/// How many connected surfaces there are and the sum of their Euler characteristics.
+/// The number of connected surfaces and the sum of their Euler characteristics.
 std::pair<int, int> topology(const std::vector<std::array<std::uint8_t, 3>>& triangles) {
   std::set<std::pair<int, int>> edges;
   std::map<int, int> part;
@@ -51,7 +51,7 @@ std::pair<int, int> topology(const std::vector<std::array<std::uint8_t, 3>>& tri
           static_cast<int>(part.size()) - static_cast<int>(edges.size()) + static_cast<int>(triangles.size())};
 }
 
-/// Visits every entry: signature, set of high squares, entry.
+/// Calls `visit` for every entry with signature, set of high squares, and entry.
 template <class Visit>
 void for_each_entry(const Visit& visit) {
   for (std::uint32_t s = 0; s < 256; ++s) {
@@ -110,7 +110,7 @@ TEST(ResolvedCube, EveryEntryIsCertifiedAndIsTheSurfaceThatTheBuilderFinds) {
       ASSERT_EQ((std::pair{parts, euler}), topology(built)) << s << " " << high;
       ASSERT_EQ(entry.components, tile.sigma_euler.size());
       tunnels += parts < entry.components ? 1 : 0;
-      // The table's triangles in place of the builder's.
+      // Replaces the builder's triangles by the table's.
       std::map<std::uint8_t, facets::VertexId> id;
       for (facets::VertexId v = 0; v < tile.vertices.size(); ++v)
         for (std::uint8_t e = 0; e < cube.edge_count() && tile.vertices[v].kind == facets::VertexKind::edge; ++e)
@@ -130,7 +130,7 @@ TEST(ResolvedCube, EveryEntryIsCertifiedAndIsTheSurfaceThatTheBuilderFinds) {
       ASSERT_EQ(certifier.certify(lattice, tile), facets::Fault::none) << s << " " << high;
     }
   });
-  // 304 entries with a star of two, three or four polygons are joined by one sign; 8 with a chain of three by both.
+  // 308 entries with a star of two, three or four polygons are joined by one sign; 8 with a chain of three by both.
   EXPECT_EQ(tunnels, 308 + 2 * 8);
 }
 
@@ -202,7 +202,7 @@ TEST(ResolvedCube, TheCompiledTableIsTheOneThatWasReviewed) {
   table.triangles.assign(kTile3Resolved.triangles, kTile3Resolved.triangles + 3 * triangles);
   table.masks.assign(kTile3Resolved.masks, kTile3Resolved.masks + masks);
   EXPECT_EQ(fmt::format("{:016x}", digest(table)), manifest.substr(at + 9, 16));
-  // One entry flipped, and it is another table.
+  // Changing one entry changes the digest.
   table.triangles[1000] ^= 1u;
   EXPECT_NE(fmt::format("{:016x}", digest(table)), manifest.substr(at + 9, 16));
 }

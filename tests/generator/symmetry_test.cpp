@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The symmetry group against its definition, which the code does not use: all signed permutations, and the
-// determinant by Leibniz' formula.
+// The symmetry group against its definition, which the code does not use: all signed permutations, and the determinant
+// by expansion.
 #include "symmetry/symmetry.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ int determinant_of(const Matrix& m) {
   return sum;
 }
 
-/// The defining property of a symmetry of the cube: a bijection of corners that keeps neighbours neighbours.
+/// The defining property of a symmetry of the cube: a bijection of corners that preserves adjacency.
 bool keeps_edges(const Corners& image, int n) {
   for (std::uint32_t v = 0; v < image.size(); ++v) {
     for (int axis = 0; axis < n; ++axis) {

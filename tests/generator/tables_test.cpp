@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tables that the build compiled, read back as the contract says and held against the builder that they came
-// from; and the manifest that is reviewed in their stead.
+// The compiled tables, decoded by the contract and compared with the builder; and the manifest, which is reviewed in
+// their place.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace tegl::gen {
 namespace {
 
-/// Sorted oriented simplices; own vertices by what they are, not by number.
+/// Sorted oriented simplices, with own vertices named by their meaning, not by number.
 std::vector<std::vector<std::uint64_t>> canonical(std::uint32_t n, std::uint32_t own_base, const Decoded& d) {
   std::map<std::uint8_t, std::uint64_t> name;
   for (const Simplex& s : d.simplices)
@@ -54,7 +54,7 @@ Decoded from_builder(const TileContour& contour) {
   return d;
 }
 
-/// The first signature whose decoded contour is not the builder's, or -1.
+/// The first signature whose decoded contour differs from the builder's, or -1.
 long first_difference(const tables::TileTable& table, Triangulation triangulation) {
   const auto n = static_cast<int>(table.dim);
   const CubeLattice lattice(n);
@@ -78,7 +78,7 @@ TEST_P(CompiledTableTest, HoldsTheBuildersContourOfEverySignature) {
 
 INSTANTIATE_TEST_SUITE_P(All, CompiledTableTest, testing::Combine(testing::Values(2, 3, 4), testing::Values(0, 1)));
 
-/// A compiled table in owning form, to be digested, and to be spoilt.
+/// An owning copy of a compiled table, for computing digests and injecting faults.
 TileTables owning(const tables::TileTable& t, Triangulation triangulation) {
   const std::size_t signatures = std::size_t{1} << (1u << t.dim);
   TileTables table;
@@ -126,7 +126,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// The digest that the reviewed manifest has for a table.
+/// A table's digest in the reviewed manifest.
 std::string reviewed_digest(const std::string& name) {
   const std::string manifest = text_of(TEGL_SOURCE_DIR "/generated/MANIFEST.json");
   const std::size_t at = manifest.find("fnv1a", manifest.find('"' + name + '"'));
@@ -139,8 +139,8 @@ std::string hexadecimal(std::uint64_t number) {
   return text.str();
 }
 
-/// Every compiled table, entry by entry, is the one whose digest was reviewed; so a flipped entry is noticed, also
-/// where it would change no contour. The test before this one says that the contours are the builder's.
+/// The digest of every compiled table equals the reviewed one, so a changed entry is detected even if it changes no
+/// contour. The previous test shows that the contours equal the builder's.
 TEST(Tables, CompiledOnesAreThoseOfTheManifest) {
   if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   for (const int dim : {2, 3, 4})
@@ -202,7 +202,7 @@ TEST(Tables, OneFlippedEntryIsNoticed) {
     }
 }
 
-/// What a flipped entry does to contours is seen by the test that decodes them.
+/// The decoding test detects the effect of a changed entry on contours.
 TEST(Tables, AFlippedSimplexIsADifferentContour) {
   const tables::TileTable& good = tables::tile_table(3, 1);
   std::vector<std::uint8_t> simplices(good.simplices, good.simplices + std::size_t{good.simplex_count} * 3);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The symbolic facets against the tables printed in the thesis. data/thesis_tables.txt holds them as the scan
-// left them; its header says what a damaged place may stand for. A damaged place matches each of these and nothing
-// else, orientation included.
+// The symbolic facets against the tables printed in the thesis. data/thesis_tables.txt holds them as scanned; its
+// header lists the possible readings of a damaged place. A damaged place matches exactly these readings, orientation
+// included.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ bool matches_digits(const std::string& printed, const std::string& edge) {
          std::equal(printed.begin(), printed.end(), edge.begin(), [](char p, char e) { return p == '?' || p == e; });
 }
 
-/// Whether the printed edge may be this one.
+/// True if the printed edge can be read as this one.
 bool matches(const std::string& printed, const std::string& edge) {
   if (printed.front() != '~') {
     return matches_digits(printed, edge);
@@ -117,7 +117,7 @@ bool matches(const std::string& printed, const std::string& edge) {
     }
     return false;
   }
-  for (std::size_t i = 0; i <= digits.size(); ++i) {  // the e was not read at all
+  for (std::size_t i = 0; i <= digits.size(); ++i) {  // the e was not read
     std::string candidate = digits;
     candidate.insert(i, 1, 'e');
     if (matches_digits(candidate, edge)) {
@@ -127,7 +127,8 @@ bool matches(const std::string& printed, const std::string& edge) {
   return false;
 }
 
-/// Equal up to where the cycle begins. A 1-facet (two points) is no cycle: it goes from the first to the second.
+/// Equality up to the start of the cycle. A 1-facet (two points) is not a cycle: it goes from the first point to the
+/// second.
 bool matches(const Polygon& printed, const Polygon& polygon, int dim) {
   const std::size_t size = polygon.size();
   if (printed.size() != size) {
@@ -146,7 +147,7 @@ bool matches(const Polygon& printed, const Polygon& polygon, int dim) {
   return false;
 }
 
-/// Whether the printed facets can be assigned one to one to these.
+/// True if the printed facets can be assigned one to one to these.
 bool matches(const Facets& printed, const Facets& facets, int dim) {
   std::vector<std::size_t> order(facets.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -201,7 +202,7 @@ class Builder {
   ContourBuilder builder_;
 };
 
-/// The rows whose printed facets are not those of the builder, one line each.
+/// The rows whose printed facets differ from the builder's, one line each.
 std::string differences(const Table& printed, const Builder& builder) {
   std::string text;
   for (const auto& [signature, facets] : printed.rows) {
@@ -237,8 +238,8 @@ TEST(ThesisTables, TwoDimensionalTransversal) {
   EXPECT_EQ(printed, transversal(2, group(2, GroupKind::Rotations, false)).representatives);
 }
 
-// The comparison must be able to fail: the other alternative differs from the print in the 2-ambiguous signatures and
-// in no other.
+// The comparison must be able to fail: the other alternative differs from the print in exactly the 2-ambiguous
+// signatures.
 TEST(ThesisTables, TheHighConnectedAlternativeIsNotThePrintedOne) {
   const Builder high(3, Alternative::high);
   std::vector<Signature> different;
@@ -247,7 +248,7 @@ TEST(ThesisTables, TheHighConnectedAlternativeIsNotThePrintedOne) {
       different.push_back(signature);
     }
   }
-  // 30, 60 and 105 have facets of the same sizes in both alternatives, but not the same facets.
+  // 30, 60 and 105 have facets of equal sizes in both alternatives, but different facets.
   EXPECT_EQ(different, (std::vector<Signature>{6, 22, 25, 30, 60, 61, 105, 107, 111}));
 }
 
@@ -259,7 +260,7 @@ TEST(ThesisTables, AFacetTurnedAroundIsNotThePrintedOne) {
       for (Polygon& polygon : reversed) {
         std::reverse(polygon.begin(), polygon.end());
       }
-      // Of signatures 1 and 14 in the plane no e could be read: both directions agree with what is left of them.
+      // For signatures 1 and 14 in the plane no e is legible, so both directions match.
       const bool unreadable = dim == 2 && (signature == 1 || signature == 14);
       EXPECT_EQ(matches(printed, reversed, dim), printed.empty() || unreadable) << name << ", signature " << signature;
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles other than cubes: their face lattices, their symmetries, their classes, and that every contour passes its
-// certificate and moves with the symmetries.
+// Tiles other than cubes: face lattices, symmetries, classes; every contour passes its certificate and is equivariant.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,7 +123,7 @@ TEST(TileContours, HaveHighOnTheirPositiveSide) {
   }
 }
 
-/// The boundary of a contour's facets as sets of edges, which no choice of triangulation changes.
+/// The boundaries of a contour's facets as sets of edges, independent of the triangulation.
 std::set<std::set<std::uint8_t>> outlines(const TileContour& contour) {
   std::set<std::set<std::uint8_t>> result;
   for (const Facet& facet : contour.facets) result.emplace(facet.points.begin(), facet.points.end());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a transversal promises, for every group and signature of dimension 1 to 4.
+// The guarantees of a transversal, for every group and signature of dimension 1 to 4.
 #include "symmetry/transversal.hpp"
 
 #include <gtest/gtest.h>
@@ -148,7 +148,7 @@ TEST(Representatives, Of5dAreAsManyAsTheoryHasAndTheirOrbitsMakeUpAllSignatures)
       ASSERT_GT(std::int64_t{r.signature}, last) << "ascending";
       last = r.signature;
       if (count++ % 50'021 != 0) return;
-      // A sample against the definition.
+      // Checks a sample against the definition.
       std::set<std::uint32_t> orbit;
       for (std::size_t g = 0; g < elements.size(); ++g) orbit.insert(act(elements[g], permutations[g], r.signature));
       EXPECT_EQ(*orbit.begin(), r.signature);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// WideUint against built-in arithmetic, and its errors.
 #include "base/wide_uint.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the tests of readers and writers share: a folder of their own, files from bytes, errors with their text, and
-// images and meshes to write.
+// Helpers for tests of readers and writers: a temporary folder, files from bytes, expected errors, and images and
+// meshes to write.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ namespace tegl::test {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes away with its contents.
+/// A temporary folder, removed with its contents by the destructor.
 class TempDir {
  public:
   TempDir() {
@@ -70,7 +70,7 @@ std::string bytes_of(const Values<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// deflate with a gzip (or, `zlib`, a zlib) frame.
+/// Deflate-compressed bytes with a gzip frame (or a zlib frame, if `zlib`).
 inline std::string compressed(const std::string& bytes, bool zlib = false) {
   z_stream stream{};
   deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, zlib ? 15 : 15 + 16, 8, Z_DEFAULT_STRATEGY);
@@ -100,7 +100,7 @@ Error error_of(Work&& work) {
   return {ErrorCode::InvalidArgument, ""};
 }
 
-/// The code, and parts that the message must have.
+/// Expects an error with this code and these parts in its message.
 template <class Work>
 void expect_error(ErrorCode code, const std::vector<std::string>& parts, Work&& work) {
   const Error error = error_of(work);
@@ -114,7 +114,7 @@ inline void expect_unreadable(ErrorCode code, const fs::path& path, const std::v
   expect_error(code, all, [&] { read_image(path); });
 }
 
-/// The image as one of a value type and dimension; the test fails if it is another.
+/// The image with the given value type and dimension; the test fails if it has others.
 template <class T, int N>
 OwnedImage<T, N> image_as(const AnyImage& any) {
   if (const auto* in_n = std::get_if<AnyImageN<N>>(&any))
@@ -133,7 +133,7 @@ Eigen::Matrix<double, N, 1> world(const Grid<N>& grid,
   return grid.linear * position + grid.offset;
 }
 
-/// 0, 1, 2, ... in any type, wrapped to what it holds.
+/// The numbers 0, 1, 2, ... in any type, wrapped to its range.
 template <class T>
 std::vector<T> counting(std::size_t count, double start = 0) {
   std::vector<T> values(count);
@@ -162,7 +162,7 @@ inline Mesh random_mesh(int dim, int space_dim, std::size_t vertices, std::size_
   return mesh;
 }
 
-/// Attributes of widths 1 to 3 with random values, of vertices and of simplices.
+/// Adds random vertex and simplex attributes of widths 1 to 3.
 inline void add_attributes(Mesh& mesh, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> number(-1000, 1000);

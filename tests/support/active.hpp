@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Active tiles by their definition alone, tile by tile: what every way to find them is held against.
+// Active tiles by definition, tile by tile: the reference for all search structures.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace tegl::test {
 
-/// A smooth field whose values differ everywhere: most tiles of it lie in the range of no neighbour.
+/// A smooth field with few equal values: the ranges of most tiles lie in no neighbour's range.
 struct Waves {
   template <class Point>
   double operator()(const Point& x) const {
@@ -26,7 +26,7 @@ struct Waves {
   }
 };
 
-/// Ranges of all tiles, in real numbers. Where a corner is missing: empty.
+/// Ranges of all tiles as doubles. A tile with a missing corner has an empty range.
 template <int N>
 struct PlainRanges {
   std::vector<double> least, greatest;
@@ -59,7 +59,7 @@ struct PlainRanges {
   }
 };
 
-/// All values but NaN, ascending, each once.
+/// All values except NaN, ascending, without duplicates.
 template <Value T, int N>
 std::vector<double> distinct_values(const OwnedImage<T, N>& image) {
   std::vector<double> values;
@@ -70,11 +70,11 @@ std::vector<double> distinct_values(const OwnedImage<T, N>& image) {
   return values;
 }
 
-/// Whether tests are to take all isovalues there are, however long that takes: TEGL_ALL_ISOVALUES in the environment.
+/// True if the environment has TEGL_ALL_ISOVALUES: tests then use all isovalues, which takes long.
 inline bool wants_all_isovalues() { return std::getenv("TEGL_ALL_ISOVALUES") != nullptr; }
 
-/// Isovalues at which the active tiles may differ, and just above and below each of them; at most about `most` unless
-/// all are wanted.
+/// Isovalues at which the active tiles may differ, and the numbers just below and above each; about `most` of them
+/// unless wants_all_isovalues().
 template <Value T, int N>
 std::vector<double> critical_isovalues(const OwnedImage<T, N>& image, std::size_t most) {
   const std::vector<double> values = distinct_values(image);
@@ -89,7 +89,7 @@ std::vector<double> critical_isovalues(const OwnedImage<T, N>& image, std::size_
   return result;
 }
 
-/// Bytes in memory as a file.
+/// A file in memory.
 class MemoryFile final : public ByteSink, public ByteSource {
  public:
   void write(const void* data, std::size_t bytes) override {

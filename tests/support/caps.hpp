@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the caps of a closed contour must be: in the border of the image to the bit, each in one side of it, and on
-// every side as large as the high set of that side's own image.
+// Checks the caps of a closed contour: each lies exactly in one side of the image border, and their content in a side
+// equals that of the high set of that side's own image.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,14 @@
 
 namespace tegl::test {
 
-/// The 2 N sides of an image's border: side 2 a is at the first sample of axis a, side 2 a + 1 at the last.
+/// Coordinate of a side of an image's border: side 2 a is at the first sample of axis a, side 2 a + 1 at the last.
 template <int N, class Real>
 Real border_coordinate(const Grid<N>& grid, int side) {
   const Axis& axis = grid.axes[side / 2];
   return static_cast<Real>(axis[side % 2 == 0 ? 0 : axis.size() - 1]);
 }
 
-/// A side that all corners of a simplex lie in, to the bit. For grids without a world map.
+/// A side that contains all corners of a simplex exactly, if any. For grids without a world map.
 template <int N, class Real>
 std::optional<int> side_of(const CanonicalSimplex<N, Real>& simplex, const Grid<N>& grid) {
   for (int side = 0; side < 2 * N; ++side) {
@@ -40,8 +40,7 @@ std::optional<int> side_of(const CanonicalSimplex<N, Real>& simplex, const Grid<
   return std::nullopt;
 }
 
-/// The measure of a simplex that lies in a side of the border, negative if it faces the wrong way: what is high there
-/// is inside.
+/// The measure of a simplex in a side of the border; negative if its orientation is wrong. The high set is inside.
 template <int N, class Real>
 double content_outwards(const CanonicalSimplex<N, Real>& simplex, int side, const Grid<N>& grid,
                         GradientDirection direction) {
@@ -55,9 +54,9 @@ double content_outwards(const CanonicalSimplex<N, Real>& simplex, int side, cons
   return simplex.parity * frame.determinant() / factorial(N - 1);
 }
 
-/// Expects `closed` to have all simplices of `open`, and the others, the caps, to lie in one side of the border each,
-/// with no corner outside of the image. Returns the content of the caps in each side, what faces inwards counted
-/// negative (in noise, 4D caps of one cube may fold over each other).
+/// Expects `closed` to contain all simplices of `open`, and each of its other simplices, the caps, to lie in one side
+/// of the border with no corner outside the image. Returns the content of the caps in each side; caps that face inwards
+/// count negatively (in noise, 4D caps of one cube may overlap).
 template <int N, class Real, Value T>
 std::array<double, 2 * N> expect_caps_in_border(const Contour<N, Real>& closed, const Contour<N, Real>& open,
                                                 const Image<T, N>& image) {
@@ -99,7 +98,7 @@ OwnedImage<T, N - 1> image_of_side(const Image<T, N>& image, int side) {
   return result;
 }
 
-/// The content of the contour's box.
+/// The content of the image's box.
 template <int N>
 double box_content(const Grid<N>& grid) {
   double product = std::abs(grid.linear.determinant());
@@ -107,7 +106,7 @@ double box_content(const Grid<N>& grid) {
   return product;
 }
 
-/// All that a closed contour of an image without missing values has to be. For grids without a world map.
+/// All checks of a closed contour of an image without missing values. For grids without a world map.
 template <class Real, Value T, int N>
 void expect_closed_at_border(const Image<T, N>& image, double isovalue, ExtractOptions options) {
   options.close = false;
@@ -131,8 +130,8 @@ void expect_closed_at_border(const Image<T, N>& image, double isovalue, ExtractO
     }
 }
 
-/// Expects a closed contour of an image with missing values to be open inside of the image alone, where tiles without
-/// values begin; and the caps to be in the border.
+/// Expects a closed contour of an image with missing values to be open only inside the image, at tiles with missing
+/// values, and the caps to lie in the border.
 template <class Real, Value T, int N>
 void expect_closed_up_to_missing_values(const Image<T, N>& image, double isovalue, ExtractOptions options) {
   options.close = false;
@@ -153,7 +152,7 @@ void expect_closed_up_to_missing_values(const Image<T, N>& image, double isovalu
       const double layer = std::round(centroid[a]);
       if (std::abs(centroid[a] - layer) > 1e-6 || layer < 1.0 || layer > static_cast<double>(image.size(a)) - 2.0)
         continue;
-      // Caps at the far sides lie in the last tiles.
+      // Caps at the last samples belong to the last tiles.
       Point<N> inside = centroid;
       for (int b = 0; b < N; ++b) inside[b] = std::min(inside[b], static_cast<double>(image.size(b)) - 1.5);
       inside[a] = layer;

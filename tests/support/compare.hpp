@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Are two contours the same surface up to the numbering of vertices and simplices and the choice of each simplex's
-// first vertex? Coordinates are compared bit by bit, orientations by the parity of the vertex order.
+// Equality of two contours as surfaces: up to the numbering of vertices and simplices and the choice of each simplex's
+// first vertex. Coordinates are compared bitwise, orientations by the parity of the vertex order.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace tegl::test {
 
-/// A simplex by its corners' coordinates in lexicographic order, and the parity of the order that they were in. A
-/// simplex with two equal corners has no orientation to compare: parity 0.
+/// A simplex as its corners' coordinates in lexicographic order and the parity of the sorting permutation. A simplex
+/// with two equal corners has no orientation: parity 0.
 template <int N, class Real>
 struct CanonicalSimplex {
   std::array<std::array<Real, N>, N> corners;
@@ -52,7 +52,7 @@ std::vector<CanonicalSimplex<N, Real>> canonical_simplices(const Contour<N, Real
   return result;
 }
 
-/// The coordinates of all vertices, sorted; vertices at the same place count each.
+/// The coordinates of all vertices, sorted; coinciding vertices are all kept.
 template <int N, class Real>
 std::vector<std::array<Real, N>> sorted_vertices(const Contour<N, Real>& contour) {
   std::vector<std::array<Real, N>> result(contour.vertices.begin(), contour.vertices.end());
@@ -75,7 +75,8 @@ std::string describe(const CanonicalSimplex<N, Real>& simplex) {
   return text.str();
 }
 
-/// EXPECT_TRUE(same_surface(a, b)): the same vertices and the same oriented simplices; else says what differs first.
+/// EXPECT_TRUE(same_surface(a, b)): equal vertices and equal oriented simplices. The failure message names the first
+/// difference.
 template <int N, class Real>
 ::testing::AssertionResult same_surface(const Contour<N, Real>& a, const Contour<N, Real>& b) {
   if (a.vertices.size() != b.vertices.size() || a.simplices.size() != b.simplices.size())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every allocation of the program counted: replaces its operators new and delete. To be included by one source of a
-// program. (Blocks of 2 MiB and more come to the library from the system, past the counter.)
+// Counts every allocation of the program: replaces operators new and delete. Include it in one source of a program
+// only. (The library allocates blocks of 2 MiB and more from the system; these are not counted.)
 #pragma once
 
 #include <malloc.h>
@@ -31,7 +31,7 @@ inline std::atomic<std::size_t> peak_bytes = 0;
   return block;
 }
 
-// Not inlined, or the compiler takes the pair of malloc and free for a mismatch.
+// Not inlined: the compiler would warn about mismatched malloc and free.
 [[gnu::noinline]] inline void free_counted(void* block) noexcept {
   if (block == nullptr) return;
   live_bytes.fetch_sub(malloc_usable_size(block));
@@ -56,7 +56,7 @@ void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
 
 namespace tegl::test {
 
-/// The most bytes that are allocated at a time while the contour is written to memory that is there beforehand.
+/// Peak of allocated bytes while the contour is written to memory allocated beforehand.
 template <Value T, int N>
 std::size_t bytes_beside(const OwnedImage<T, N>& image, double isovalue, const ExtractOptions& options) {
   const ContourSize size = count(image.view(), isovalue, options);
@@ -64,7 +64,7 @@ std::size_t bytes_beside(const OwnedImage<T, N>& image, double isovalue, const E
   std::vector<std::array<Index, N>> simplices(size.simplices);
   std::vector<std::array<float, N>> normals(options.normals ? size.vertices : 0);
   const ContourRoom<N, float> room{vertices, simplices, normals};
-  extract_into(image.view(), isovalue, room, options);  // threads and tables are there
+  extract_into(image.view(), isovalue, room, options);  // creates threads and tables
   const std::size_t before = counted_memory::live_bytes;
   counted_memory::peak_bytes = before;
   extract_into(image.view(), isovalue, room, options);

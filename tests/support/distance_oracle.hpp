@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Distances between contours at random points, the slow way: every simplex, every face of it. Lower bounds of what the
-// library bounds from above.
+// Brute-force distances between contours at random points, over every simplex and each of its faces. They are lower
+// bounds of the distances that the library bounds from above.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,8 @@
 
 namespace tegl::test {
 
-/// The distance of a point from a simplex: the least over all faces whose affine hull has the point's foot inside.
+/// The distance of a point from a simplex: the minimum over all faces that contain the point's projection on their
+/// affine hull.
 template <int N>
 double distance_to_simplex_by_faces(const Point<N>& p, const std::array<Point<N>, N>& corners) {
   const auto vector = [](const Point<N>& x) { return Eigen::Map<const Eigen::Matrix<double, N, 1>>(x.data()); };
@@ -40,7 +41,7 @@ double distance_to_simplex_by_faces(const Point<N>& p, const std::array<Point<N>
   return best;
 }
 
-/// The largest distance of `samples` random points of one contour from the other.
+/// Maximum distance of `samples` random points of one contour from the other.
 template <int N, class Real>
 double sampled_deviation(const Contour<N, Real>& from, const Contour<N, Real>& to, int samples, std::uint64_t seed) {
   std::mt19937_64 bits(seed);
@@ -67,7 +68,7 @@ double sampled_deviation(const Contour<N, Real>& from, const Contour<N, Real>& t
     }
     for (std::size_t t = 0; t < to.simplices.size(); ++t) {
       const auto other = corners_of(to, t);
-      // No point of it is nearer than its nearest corner less its longest edge.
+      // Every point of the simplex is at least (distance to its nearest corner - its longest edge) away.
       double corner = std::numeric_limits<double>::infinity(), edge = 0.0;
       for (int i = 0; i < N; ++i) {
         double square = 0.0, along = 0.0;

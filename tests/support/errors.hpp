@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Errors that have to come.
+// Expectations on errors.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace tegl::test {
 
-/// Expects that `work` throws a tegl::Error with this code, and `part` in its message.
+/// Expects `work` to throw a tegl::Error with this code and a message that contains `part`.
 template <class Work>
 void expect_error(ErrorCode code, const std::string& part, const Work& work) {
   try {

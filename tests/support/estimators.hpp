@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The ways to resolve ambiguities, for tests that hold for each of them: those of the library, and estimators of a
-// caller's.
+// All ways to resolve ambiguities, for tests that hold for each: the library's estimators and two custom ones.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +14,7 @@
 
 namespace tegl::test {
 
-/// A choice out of three by a hash of the face's values: any of them may meet any other.
+/// One of three choices by a hash of the face's values, so that all combinations of neighbours occur.
 inline facets::Choice random_choice(const AmbiguousFace& face) {
   std::uint64_t hash = 0x9e3779b97f4a7c15u;
   for (const double value : face.values()) {
@@ -26,7 +25,7 @@ inline facets::Choice random_choice(const AmbiguousFace& face) {
   return kChoices[hash % 3];
 }
 
-/// By the middle between the least and the largest value: the same for the mirrored face.
+/// By the mean of minimum and maximum; invariant under mirroring of the face.
 inline facets::Choice mid_range(const AmbiguousFace& face) {
   const auto [least, largest] = std::minmax_element(face.values().begin(), face.values().end());
   return *least + *largest >= 2 * face.isovalue() ? facets::Choice::high : facets::Choice::low;
@@ -50,14 +49,14 @@ struct NamedOptions {
   ExtractOptions options;
 };
 
-/// Those of the library, and both above.
+/// The library's estimators and the two above.
 inline std::vector<NamedOptions> all_estimators() {
   return {{"low", by_ambiguity(Ambiguity::low)},   {"high", by_ambiguity(Ambiguity::high)},
           {"mean", by_ambiguity(Ambiguity::mean)}, {"saddle", by_ambiguity(Ambiguity::saddle)},
           {"mid-range", by_estimator(mid_range)},  {"random", by_estimator(random_choice)}};
 }
 
-/// Each of them in each triangulation, with one thread: for many small images.
+/// Each estimator in each triangulation, with one thread: for many small images.
 inline std::vector<NamedOptions> all_ways() {
   std::vector<NamedOptions> result;
   for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})

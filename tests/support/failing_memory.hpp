@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Memory that runs out on demand: replaces the program's operators new and delete, and (on Linux) its mmap, from which
-// the library takes large blocks. To be included by one source of a program.
+// Out-of-memory on demand: replaces the program's operators new and delete and (on Linux) mmap, from which the library
+// takes large blocks. Include it in one source of a program only.
 //
-// What is taken and not given back is counted, so that leaks show without a sanitizer too.
+// Counts blocks that are not released, so leaks are found without a sanitizer too.
 #pragma once
 
 #include <array>
@@ -31,16 +31,16 @@
 
 namespace tegl::test {
 
-/// The state of the replaced functions, which have no other way to it.
+/// State of the replaced functions. Global, as they take no other argument.
 struct MemoryState {
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
-  std::atomic<std::int64_t> asked = 0;  ///< allocations while armed
+  std::atomic<std::int64_t> asked = 0;  ///< number of allocations while armed
   std::atomic<std::int64_t> first_failure = kNever;
   std::atomic<bool> once = true;
   std::atomic<bool> armed = false;
   std::atomic<std::int64_t> failures = 0;
-  std::atomic<std::int64_t> blocks = 0;        ///< from operator new, not given back
-  std::atomic<std::int64_t> mapped_bytes = 0;  ///< of large blocks, not given back
+  std::atomic<std::int64_t> blocks = 0;        ///< from operator new, not released
+  std::atomic<std::int64_t> mapped_bytes = 0;  ///< of large blocks, not released
 
   bool fails_now() noexcept {
     if (!armed) return false;
@@ -52,7 +52,7 @@ struct MemoryState {
 };
 inline MemoryState memory;
 
-/// While it lives, the allocation of the given number fails, or that one and all after it.
+/// During its lifetime, the allocation of the given number fails, and all after it unless `once`.
 class RunOut {
  public:
   RunOut(std::int64_t first_failure, bool once) {
@@ -87,7 +87,7 @@ inline void release(void* block) noexcept {
 }
 
 #ifdef __linux__
-/// Address space that was asked for without reserve, as the library does.
+/// Address ranges reserved with MAP_NORESERVE, which the library uses for large blocks.
 class LargeBlocks {
  public:
   void add(void* block, std::size_t bytes) noexcept {
@@ -105,7 +105,7 @@ class LargeBlocks {
     for (Range& range : ranges_) {
       if (range.bytes == 0 || begin < range.begin || begin >= range.begin + range.bytes) continue;
       memory.mapped_bytes -= static_cast<std::int64_t>(bytes);
-      if (begin == range.begin) range.begin += bytes;  // ends are cut off, nothing else
+      if (begin == range.begin) range.begin += bytes;  // only the ends of a range are unmapped
       range.bytes -= bytes;
       return;
     }
@@ -122,16 +122,16 @@ class LargeBlocks {
 inline LargeBlocks large_blocks;
 #endif
 
-/// Runs `work` again and again, each time with another allocation that fails, until none does. Returns how many there
-/// are.
+/// Runs `work` repeatedly with a different failing allocation each time, until none fails. Expects bad_alloc, an Error
+/// about memory, or the usual result, and no leak. Returns the number of the last allocation tried.
 inline std::int64_t expect_survives(
     const std::string& name, const std::function<std::uint64_t()>& work, bool counts_blocks,
     const std::function<void()>& expect_nothing_left = [] {}) {
-  const std::uint64_t expected = work();  // and what is made once and kept is there
+  const std::uint64_t expected = work();  // also creates what the library keeps
   std::int64_t allocations = 0;
   for (const bool once : {true, false}) {
     bool done = false;
-    for (std::int64_t failing = 0; !done; failing += 1 + failing / 30) {  // later ones are many alike
+    for (std::int64_t failing = 0; !done; failing += 1 + failing / 30) {  // later ones are sampled
       const std::int64_t blocks = memory.blocks;
       const std::int64_t mapped = memory.mapped_bytes;
       std::optional<std::uint64_t> result;
@@ -163,7 +163,7 @@ inline std::int64_t expect_survives(
 
 }  // namespace tegl::test
 
-// NOLINTBEGIN: all forms, or blocks would come from one and go to the other.
+// NOLINTBEGIN: all forms are replaced, so that a block is allocated and released by matching functions.
 void* operator new(std::size_t n) { return tegl::test::allocate_or_throw(n, 1); }
 void* operator new[](std::size_t n) { return tegl::test::allocate_or_throw(n, 1); }
 void* operator new(std::size_t n, std::align_val_t a) {

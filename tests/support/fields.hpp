@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images to test with: analytic fields whose contours have known topology and measure, and seeded noise.
+// Test images: analytic fields whose contours have known topology and measure, and seeded noise.
 //
-// A field is a function object from a position (std::array<double, N>) to a double, positive inside;
-// `sample_field` puts it on a grid. Fields are seen in axis coordinates, that is before the grid's world map.
-// Noise depends on its seed alone: the bits come from std::mt19937_64, which the standard fixes, and are
-// turned into values by code below, not by the distributions, which differ between libraries.
+// A field is a function object from a position (std::array<double, N>) to a double, positive inside. `sample_field`
+// samples it on a grid. Positions are axis coordinates, before the grid's world map. Noise depends only on its seed:
+// the bits come from std::mt19937_64, which the standard specifies, and code below converts them to values, because the
+// standard distributions differ between libraries.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace tegl::test {
 template <int N>
 using Point = std::array<double, N>;
 
-/// A value of type T nearest to a real number: rounded and clamped for integers.
+/// The value of type T nearest to a real number: rounded and clamped for integers.
 template <Value T>
 T value_cast(double value) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -56,7 +56,7 @@ void for_each_sample(const Grid<N>& grid, Visit&& visit) {
   }
 }
 
-/// scale * field + shift at every sample of a grid; scale and shift bring a field into an integer type's range.
+/// Samples scale * field + shift on a grid; scale and shift map a field to an integer type's range.
 template <Value T, int N, class Field>
 OwnedImage<T, N> sample_field(const Grid<N>& grid, const Field& field, double scale = 1.0, double shift = 0.0) {
   OwnedImage<T, N> image{grid, std::vector<T>(sample_count(grid))};
@@ -68,7 +68,7 @@ OwnedImage<T, N> sample_field(const Grid<N>& grid, const Field& field, double sc
   return image;
 }
 
-/// `samples` samples along every axis, from -half_width to half_width.
+/// A grid of `samples` samples along every axis, from -half_width to half_width.
 template <int N>
 Grid<N> centred_grid(std::size_t samples, double half_width) {
   Grid<N> grid;
@@ -90,7 +90,7 @@ struct Ball {
     for (int a = 0; a < N; ++a) square += (x[a] - centre[a]) * (x[a] - centre[a]);
     return radius - std::sqrt(square);
   }
-  /// Length, area or volume of the sphere.
+  /// Length, area or volume of the sphere (4-dimensional volume for N = 5).
   [[nodiscard]] double surface() const {
     constexpr double kPi = std::numbers::pi;
     if constexpr (N == 2) return 2.0 * kPi * radius;
@@ -98,12 +98,12 @@ struct Ball {
     if constexpr (N == 4) return 2.0 * kPi * kPi * radius * radius * radius;
     if constexpr (N == 5) return 8.0 / 3.0 * kPi * kPi * radius * radius * radius * radius;
   }
-  /// Area or volume enclosed.
+  /// Enclosed area or volume.
   [[nodiscard]] double content() const { return surface() * radius / N; }
 };
 
-/// A tube of radius `tube` around the circle of radius `ring` in the x-y plane: a torus for N = 3
-/// (Euler characteristic 0), S^1 x S^2 for N = 4 (0).
+/// A tube of radius `tube` around the circle of radius `ring` in the x-y plane: a torus for N = 3 (Euler characteristic
+/// 0), S^1 x S^2 for N = 4 (0).
 template <int N>
 requires(N == 3 || N == 4) struct RingTube {
   double ring = 1.0;
@@ -115,7 +115,7 @@ requires(N == 3 || N == 4) struct RingTube {
     for (int a = 2; a < N; ++a) square += x[a] * x[a];
     return tube - std::sqrt(square);
   }
-  [[nodiscard]] double surface() const {  // Pappus
+  [[nodiscard]] double surface() const {  // theorem of Pappus
     constexpr double kPi = std::numbers::pi;
     return 2.0 * kPi * ring * (N == 3 ? 2.0 * kPi * tube : 4.0 * kPi * tube * tube);
   }
@@ -149,9 +149,9 @@ struct TorusTube {
   }
 };
 
-/// Two balls in N - 1 dimensions that move towards each other along x as the last coordinate t grows: centres
-/// at x = -d and x = +d with d = distance - speed * t. They touch at `event`; the cut has two components
-/// before (for N = 4: Euler characteristic 4) and one after (2).
+/// Two balls in N - 1 dimensions that approach each other along x as the last coordinate t grows: their centres are at
+/// x = -d and x = +d with d = distance - speed * t. They touch at `event`; the slice has two components before (for N =
+/// 4: Euler characteristic 4) and one after (2).
 template <int N>
 struct MergingBalls {
   double radius = 1.0;
@@ -180,7 +180,7 @@ struct Gyroid {
   }
 };
 
-/// A sum of Gaussian bumps of one width; never negative. Contour it at some level between 0 and 1.
+/// A sum of Gaussian bumps of one width; never negative. Typical isovalues lie between 0 and 1.
 template <int N>
 struct Metaballs {
   std::vector<Point<N>> centres;
@@ -199,7 +199,7 @@ struct Metaballs {
 
 // ---- noise ----
 
-/// A number in [0, 1) from 53 of the generator's bits.
+/// A number in [0, 1) from 53 random bits.
 inline double unit_random(std::mt19937_64& bits) { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
 /// An integer in [0, count), from the generator's top bits (bias at most count / 2^53).
@@ -207,7 +207,7 @@ inline std::uint64_t random_below(std::mt19937_64& bits, std::uint64_t count) {
   return static_cast<std::uint64_t>(unit_random(bits) * static_cast<double>(count));
 }
 
-/// Independent values: integers over the whole range of T, reals in [0, 1). `noise_isovalue<T>()` splits them in half.
+/// Independent values: integers over the whole range of T, reals in [0, 1). `noise_isovalue<T>()` is their median.
 template <Value T, int N>
 OwnedImage<T, N> noise(const Grid<N>& grid, std::uint64_t seed) {
   std::mt19937_64 bits(seed);
@@ -226,7 +226,7 @@ OwnedImage<T, N> noise(const std::array<std::size_t, N>& sizes, std::uint64_t se
   return noise<T, N>(Grid<N>::unit(sizes), seed);
 }
 
-/// A cube of noise: `samples` samples along every axis, unit steps.
+/// A cube of noise with `samples` samples along every axis and unit steps.
 template <Value T, int N>
 OwnedImage<T, N> noise(std::size_t samples, std::uint64_t seed) {
   std::array<std::size_t, N> sizes;
@@ -234,7 +234,7 @@ OwnedImage<T, N> noise(std::size_t samples, std::uint64_t seed) {
   return noise<T, N>(sizes, seed);
 }
 
-/// An isovalue that half of `noise<T>` is above, and that no sample of an integer image equals.
+/// An isovalue exceeded by half of `noise<T>` that no sample of an integer image equals.
 template <Value T>
 constexpr double noise_isovalue() {
   if constexpr (std::is_floating_point_v<T>) return 0.5;
@@ -242,7 +242,7 @@ constexpr double noise_isovalue() {
          2;
 }
 
-/// Noise of few values, 0 … levels - 1: with an isovalue of 1, many samples equal it exactly.
+/// Noise of few values, 0 … levels - 1; at isovalue 1, many samples equal it exactly.
 template <Value T, int N>
 OwnedImage<T, N> coarse_noise(const Grid<N>& grid, std::uint64_t seed, std::uint64_t levels) {
   std::mt19937_64 bits(seed);
@@ -251,7 +251,7 @@ OwnedImage<T, N> coarse_noise(const Grid<N>& grid, std::uint64_t seed, std::uint
   return image;
 }
 
-/// Noise of reals with a share of the samples missing (NaN).
+/// Noise of reals in which a share of the samples is missing (NaN).
 template <Value T, int N>
 requires std::is_floating_point_v<T> OwnedImage<T, N> noise_with_missing(const Grid<N>& grid, std::uint64_t seed,
                                                                          double share) {

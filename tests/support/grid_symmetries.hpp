@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The symmetries of a grid, applied to images and to contours.
+// The symmetries of a grid, applied to images and contours.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace tegl::test {
 
-/// Axis a goes to axis `to[a]`, mirrored if `flip[a]`.
+/// Maps axis a to axis `to[a]`, mirrored if `flip[a]`.
 template <int N>
 struct GridSymmetry {
   std::array<int, N> to{};
   std::array<bool, N> flip{};
 
-  /// Whether it reverses orientation.
+  /// True if it reverses orientation.
   [[nodiscard]] bool reverses() const {
     bool odd = false;
     for (int a = 0; a < N; ++a) {
@@ -29,7 +29,7 @@ struct GridSymmetry {
     }
     return odd;
   }
-  /// A place in an image of `sizes` samples, in the moved image.
+  /// The image of a point of an image of `sizes` samples.
   template <class Coordinate>
   [[nodiscard]] std::array<Coordinate, N> move(const std::array<Coordinate, N>& x,
                                                const std::array<std::size_t, N>& sizes) const {
@@ -39,7 +39,7 @@ struct GridSymmetry {
   }
 };
 
-/// All 2^N N! of them.
+/// All 2^N N! symmetries.
 template <int N>
 std::vector<GridSymmetry<N>> grid_symmetries() {
   std::vector<GridSymmetry<N>> result;
@@ -61,7 +61,7 @@ std::array<std::size_t, N> sizes_of(const Grid<N>& grid) {
   return sizes;
 }
 
-/// On grids of unit steps.
+/// The transformed image. For grids of unit steps.
 template <Value T, int N>
 OwnedImage<T, N> moved(const OwnedImage<T, N>& image, const GridSymmetry<N>& symmetry) {
   const auto sizes = sizes_of(image.grid);

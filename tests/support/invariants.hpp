@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What every contour must be, written once: closed, manifold, oriented, open only where the data end.
+// Invariants of every contour: closed, manifold, oriented, with boundary only at the end of the data.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +30,8 @@ inline std::ostream& operator<<(std::ostream& out, const MeshReport& report) {
 
 namespace tegl::test {
 
-/// An oriented manifold, with or without boundary: no face in three simplices, all links spheres or balls, all
-/// simplices oriented alike, no vertex unused. Zero-size simplices are allowed.
+/// An oriented manifold, with or without boundary: no face in three simplices, all links spheres or balls, consistent
+/// orientations, no unused vertices. Zero-size simplices are allowed.
 inline ::testing::AssertionResult is_oriented_manifold(const MeshReport& report) {
   if (report.nonmanifold_simplices == 0 && report.bad_links == 0 && report.orientation_conflicts == 0 &&
       report.unused_vertices == 0)
@@ -45,7 +45,7 @@ inline ::testing::AssertionResult is_closed_oriented_manifold(const MeshReport& 
   return ::testing::AssertionFailure() << "not closed: " << report;
 }
 
-/// Each returns the report, for further expectations.
+/// Checks the contour; returns the report for further expectations.
 template <int N, class Real>
 MeshReport expect_oriented_manifold(const Contour<N, Real>& contour) {
   const MeshReport report = check(contour);
@@ -60,8 +60,8 @@ MeshReport expect_closed_manifold(const Contour<N, Real>& contour) {
   return report;
 }
 
-/// The (N-2)-faces that lie in exactly one simplex, as rows of N - 1 vertex numbers. Written apart from `check`,
-/// by sorting all faces, so that each confirms the other.
+/// The (N-2)-faces that lie in exactly one simplex, as rows of N - 1 vertex numbers. Implemented independently of
+/// `check`, by sorting all faces, so that each confirms the other.
 template <int N, class Real>
 std::vector<std::array<Index, N - 1>> boundary_faces(const Contour<N, Real>& contour) {
   std::vector<std::array<Index, N - 1>> faces;
@@ -83,7 +83,7 @@ std::vector<std::array<Index, N - 1>> boundary_faces(const Contour<N, Real>& con
   return result;
 }
 
-/// Whether the tile with the given lowest corner lies in the image and has no missing corner.
+/// True if the tile with the given lowest corner lies in the image and has no missing corner.
 template <Value T, int N>
 bool is_valid_tile(const Image<T, N>& image, const std::array<std::ptrdiff_t, N>& tile) {
   for (int a = 0; a < N; ++a)
@@ -97,8 +97,8 @@ bool is_valid_tile(const Image<T, N>& image, const std::array<std::ptrdiff_t, N>
   return true;
 }
 
-/// The index coordinate (real) of an axis coordinate, for any strictly monotone axis; exact at the samples'
-/// Real-rounded coordinates.
+/// The (real) index coordinate of an axis coordinate, for any strictly monotone axis; exact at the samples' coordinates
+/// rounded to Real. Returns -1 outside the axis.
 template <class Real>
 double index_coordinate(const Axis& axis, Real x) {
   for (std::size_t i = 0; i < axis.size(); ++i)
@@ -109,8 +109,8 @@ double index_coordinate(const Axis& axis, Real x) {
   return -1.0;
 }
 
-/// Whether a boundary face lies between a tile that has a contour and one that has none: outside of the image, or
-/// with a missing corner. `at` is the index coordinates of the face's centroid, `axis` the axis that is constant in it.
+/// True if a boundary face lies between a valid tile and an invalid one, which is outside the image or has a missing
+/// corner. `at`: index coordinates of the face's centroid; `axis`: the axis that is constant in the face.
 template <Value T, int N>
 bool separates_valid_tile(const Image<T, N>& image, const Point<N>& at, int axis) {
   std::array<std::ptrdiff_t, N> above;
@@ -121,9 +121,8 @@ bool separates_valid_tile(const Image<T, N>& image, const Point<N>& at, int axis
   return is_valid_tile<T, N>(image, above) != is_valid_tile<T, N>(image, below);
 }
 
-/// EXPECT_TRUE(is_open_only_where_data_end(contour, image)): every boundary face lies in a face of a tile that has a
-/// contour, with no such tile on its other side. For grids without a world map and images without samples at the
-/// isovalue.
+/// EXPECT_TRUE(is_open_only_where_data_end(contour, image)): every boundary face lies in a face of a valid tile whose
+/// other side has no valid tile. For grids without a world map and images without samples at the isovalue.
 template <int N, class Real, Value T>
 ::testing::AssertionResult is_open_only_where_data_end(const Contour<N, Real>& contour, const Image<T, N>& image) {
   for (const auto& face : boundary_faces(contour)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How large a contour is: length, area or 3-volume, and the content that it encloses.
+// Measures of a contour: length, area or 3-volume, and enclosed content.
 #pragma once
 
 #include <cmath>
@@ -41,8 +41,8 @@ double measure(const Contour<N, Real>& contour) {
   return sum;
 }
 
-/// The content of the high side of a closed contour, by the divergence theorem: 1/N of the flux of x outwards
-/// (high to low). Negative if the contour is oriented against its `direction`.
+/// The content of the high side of a closed contour, by the divergence theorem: 1/N of the outward flux of x (high to
+/// low). Negative if the contour is oriented against its `direction`.
 template <int N, class Real>
 double enclosed_content(const Contour<N, Real>& contour) {
   double sum = 0.0;
@@ -55,8 +55,8 @@ double enclosed_content(const Contour<N, Real>& contour) {
   return (contour.direction == GradientDirection::descent ? sum : -sum) / factorial(N);
 }
 
-/// The share of the simplices whose normal has a positive component along `outwards(centroid)`, weighted by
-/// measure: 1 for a contour oriented that way everywhere, 0 for the reverse.
+/// The share of simplices, weighted by measure, whose normal has a positive component along `outwards(centroid)`: 1 for
+/// a contour oriented that way everywhere, 0 for the reverse.
 template <int N, class Real, class Outwards>
 double share_facing(const Contour<N, Real>& contour, const Outwards& outwards) {
   double facing = 0.0;
@@ -76,7 +76,7 @@ double share_facing(const Contour<N, Real>& contour, const Outwards& outwards) {
   return total > 0 ? facing / total : 0.0;
 }
 
-/// The order p of convergence from errors at step h and h / 2: error ~ h^p.
+/// The order p of convergence from the errors at steps h and h / 2: error ~ h^p.
 inline double convergence_order(double coarse_error, double fine_error) {
   return std::log2(std::abs(coarse_error) / std::abs(fine_error));
 }

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The topology of {f = 0} for the piecewise bilinear (2D) or trilinear (3D) interpolant f of samples, exactly: an
-// oracle for contours, which shares neither code nor method with what makes them.
+// The exact topology of {f = 0} for the piecewise bilinear (2D) or trilinear (3D) interpolant f of samples: an oracle
+// for contours. It shares neither code nor method with the library.
 //
-// A cube is swept along one of its axes. In each plane across that axis f is bilinear, and the part of a square where a
-// bilinear function is >= 0 falls into contractible pieces, each with a corner of the square in it (a bilinear function
-// has its extremes over a set that it is constant around at corners). What the pieces are is told by the signs of the
-// four corners and, where high ones are across a diagonal, by the sign of q = f00 f11 - f10 f01. Along the sweep the
-// corners are linear and q is quadratic, so that the cube is a stack of finitely many levels, where one of them
-// vanishes, and of slabs between them, where nothing changes. All signs are decided in integers.
+// A cube is swept along one of its axes. In each plane across that axis f is bilinear. The part of a square where a
+// bilinear function is >= 0 consists of contractible components, each of which contains a corner of the square (its
+// extremes over a component lie at corners). The signs of the four corners determine the components; if high corners
+// lie on a diagonal, the sign of q = f00 f11 - f10 f01 does too. Along the sweep the corners are linear and q is
+// quadratic. So the cube is a stack of finitely many levels, at which one of them vanishes, and of slabs between
+// levels, in which no sign changes. All signs are computed in integer arithmetic.
 //
-// Euler characteristics come from the stack by additivity: a level counts as its slice, an open slab as minus its
-// slice. The pieces of the cube come from union-find over (layer, corner). Pieces in a field meet in samples, as each
-// has a corner in every cube that it is in. Which axis the sweep follows must not matter: tests compare all three.
+// Euler characteristics follow from the stack by additivity: a level counts as its slice, an open slab as minus its
+// slice. Union-find over (layer, corner) gives the components of the cube. Components in a field meet in samples, as
+// each has a corner in every cube that it enters. The result must not depend on the sweep's axis: tests compare all
+// three.
 //
 // Based on: Etiene, Nonato, Scheidegger, Tierny, Peters, Pascucci, Kirby and Silva, Topology verification for
-// isosurface extraction, 2012, for what is to be verified; their oracles are digital topology and stratified Morse
+// isosurface extraction, 2012, for the properties to verify; their oracles are digital topology and stratified Morse
 // theory.
 #pragma once
 
@@ -31,7 +32,7 @@
 
 namespace tegl::test {
 
-/// Euler characteristic and number of pieces.
+/// Euler characteristic and number of components.
 struct Topology {
   std::int64_t components = 0;
   std::int64_t euler = 0;
@@ -42,7 +43,7 @@ inline std::ostream& operator<<(std::ostream& out, const Topology& topology) {
   return out << topology.components << " components, Euler characteristic " << topology.euler;
 }
 
-/// Sets of numbers, joined two at a time.
+/// Disjoint sets of numbers (union-find).
 class Pieces {
  public:
   explicit Pieces(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
@@ -58,7 +59,7 @@ class Pieces {
 
 __extension__ using Wide = __int128;
 
-/// The largest magnitude of a sample: with it all signs fit 128 bits.
+/// Maximum magnitude of a sample: then all signs fit in 128 bits.
 inline constexpr std::int64_t kLargestSample = std::int64_t{1} << 29;
 
 inline int sign_of(Wide x) { return (x > 0) - (x < 0); }
@@ -69,19 +70,19 @@ struct Slice {
   int q = 0;
 };
 
-/// The part of a slice where f >= 0.
+/// The part of a slice with f >= 0.
 struct SlicePart {
   std::array<bool, 4> has{};
-  bool joined = false;  ///< the two across a diagonal, where these alone are in the part
+  bool joined = false;  ///< if only two corners on a diagonal are in the part: whether they are connected
 
   explicit SlicePart(const Slice& slice) {
     for (int v = 0; v < 4; ++v) has[v] = slice.corners[v] >= 0;
-    // The value at the saddle is q over a positive number if 00 and 11 are high and the others low, over a negative one
-    // the other way around.
+    // The value at the saddle is q divided by a number that is positive if 00 and 11 are high and the others low,
+    // negative in the opposite case.
     if (has[0] && has[3] && !has[1] && !has[2]) joined = slice.q >= 0;
     if (has[1] && has[2] && !has[0] && !has[3]) joined = slice.q <= 0;
   }
-  /// Calls join(v, w) for corners in one piece; enough of them for all.
+  /// Calls join(v, w) for pairs of corners that connect each component.
   template <class Join>
   void for_each_join(const Join& join) const {
     constexpr std::array<std::array<int, 2>, 4> kEdges{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
@@ -106,7 +107,7 @@ struct Quadratic {
 
   [[nodiscard]] int sign_at(std::int64_t p, std::int64_t q) const { return sign_of((a * p + b * q) * p + c * q * q); }
   [[nodiscard]] int slope_at(std::int64_t p, std::int64_t q) const { return sign_of(2 * a * p + b * q); }
-  /// The sign just after p / q (direction 1), or just before it (-1).
+  /// The sign just after p / q (direction 1) or just before it (-1).
   [[nodiscard]] int sign_beside(std::int64_t p, std::int64_t q, int direction) const {
     if (const int here = sign_at(p, q)) return here;
     if (const int slope = slope_at(p, q)) return direction * slope;
@@ -114,10 +115,10 @@ struct Quadratic {
   }
 };
 
-/// A cube as a stack of slices along one axis: levels at even places, slabs between them at odd ones.
+/// A cube as a stack of slices along one axis: levels at even positions, slabs between them at odd ones.
 class Stack {
  public:
-  /// `corners`: of the cube, corner v with coordinate v >> a & 1 on axis a. Throws std::invalid_argument for samples
+  /// `corners`: corner v of the cube has coordinate v >> a & 1 on axis a. Throws std::invalid_argument for samples
   /// beyond kLargestSample.
   Stack(const std::array<std::int64_t, 8>& corners, int axis) {
     constexpr std::array<std::array<int, 2>, 3> kOthers{{{1, 2}, {0, 2}, {0, 1}}};
@@ -140,10 +141,10 @@ class Stack {
   }
 
   [[nodiscard]] const std::vector<Slice>& layers() const { return layers_; }
-  /// No sample is 0, and neither is a critical value of f in the cube or in one of its squares at the ends.
+  /// True if no sample is 0 and no critical value of f in the cube or in its squares at the ends is 0.
   [[nodiscard]] bool regular() const { return regular_; }
 
-  /// The part where f >= 0: its Euler characteristic, and which corners are in one piece, through join(v, w).
+  /// The part with f >= 0: returns its Euler characteristic; reports corners in one component through join(v, w).
   template <class Join>
   int high_part(const Join& join) const {
     int euler = 0;
@@ -173,7 +174,7 @@ class Stack {
     return signs;
   }
 
-  /// Whether all corners rise, or all fall.
+  /// True if f rises at all corners, or falls at all.
   [[nodiscard]] bool same_slopes() const {
     const auto rising = std::count_if(slope_.begin(), slope_.end(), [](std::int64_t s) { return s > 0; });
     const auto falling = std::count_if(slope_.begin(), slope_.end(), [](std::int64_t s) { return s < 0; });
@@ -202,7 +203,8 @@ class Stack {
     }
   }
 
-  /// Between two neighbouring roots of corners: their signs stay, that of q may change up to twice.
+  /// Adds the layers between two neighbouring roots of corners: the corners' signs are constant, the sign of q changes
+  /// up to twice.
   void add_between(const Level& from, const Level& to) {
     const std::array<int, 4> corners = corners_at({from.p + to.p, from.q + to.q});
     const int first = q_.sign_beside(from.p, from.q, 1), last = q_.sign_beside(to.p, to.q, -1);
@@ -213,7 +215,7 @@ class Stack {
       add(corners, 0);
       add(corners, last);
     } else if (sign_of(q_.a) != 0 && q_.slope_at(from.p, from.q) * q_.slope_at(to.p, to.q) < 0) {
-      // The extreme of q is between them: 4 a c - b^2 has the sign of a times its value.
+      // The extreme of q lies between them: 4 a c - b^2 has the sign of a times the extreme value.
       const int extreme = sign_of(q_.a) * sign_of(4 * q_.a * q_.c - q_.b * q_.b);
       if (extreme == first) return;
       if (is_diagonal() && extreme == 0) regular_ = false;  // a critical point of f
@@ -232,7 +234,7 @@ class Stack {
     return c[0] * c[3] > 0 && c[1] * c[2] > 0 && c[0] * c[1] < 0;
   }
 
-  /// Corners of the cube whose pieces met in some layer.
+  /// Reports corners of the cube whose components meet in some layer.
   template <class Join>
   void report(Pieces& pieces, const Join& join) const {
     std::vector<std::pair<std::size_t, int>> found;
@@ -247,7 +249,7 @@ class Stack {
       if (found[i].first == found[i - 1].first) join(found[i - 1].second, found[i].second);
   }
 
-  std::array<int, 4> place_{};  ///< of the corners of the slice at 0
+  std::array<int, 4> place_{};  ///< corners of the cube in the slice at 0
   int along_ = 0;
   std::array<std::int64_t, 4> start_{}, slope_{};
   Quadratic q_;
@@ -255,27 +257,27 @@ class Stack {
   bool regular_ = true;
 };
 
-/// Samples less the isovalue, axis 0 fastest.
+/// Samples minus the isovalue, axis 0 fastest.
 template <int N>
 struct SampledField {
   std::array<std::size_t, N> sizes{};
   std::vector<std::int64_t> values;
 };
 
-/// What the interpolant of a field is at level 0.
+/// Topology of a field's interpolant at level 0.
 struct InterpolantTopology {
-  bool regular = true;  ///< see Stack::regular; the rest holds if so
+  bool regular = true;  ///< see Stack::regular; the other members are valid only if true
   Topology high;        ///< {f >= 0}
   Topology low;         ///< {f <= 0}
-  Topology contour;     ///< {f = 0}: a manifold, which ends at the border of the field
-  /// For each sample the number of one in its piece, of high or of low. A critical edge leads from one piece to
-  /// another: two are met by the same component of the contour if they lead from and to the same.
+  Topology contour;     ///< {f = 0}: a manifold with boundary at the border of the field
+  /// For each sample the representative of its high or low component. A critical edge connects a low to a high
+  /// component: two edges meet the same component of the contour if they connect the same pair.
   std::vector<std::size_t> pieces;
 };
 
 namespace multilinear {
 
-/// Euler characteristic and joins of the part of a face with these corners (1, 2, 4 or 8 of them) where f >= 0.
+/// Euler characteristic and joins of the part with f >= 0 of a face with these corners (1, 2, 4 or 8 of them).
 template <class Join>
 int face_part(const std::vector<std::int64_t>& corners, int axis, bool& regular, const Join& join) {
   const auto in = [&](std::size_t v) { return corners[v] >= 0; };
@@ -306,8 +308,8 @@ int face_part(const std::vector<std::int64_t>& corners, int axis, bool& regular,
   return stack.high_part(join);
 }
 
-/// {f >= 0} of a field, by inclusion and exclusion over its cells and the faces inside it that they share. Joins the
-/// samples in one piece.
+/// {f >= 0} of a field, by inclusion and exclusion over its cells and their common interior faces. Joins the samples of
+/// each component.
 template <int N>
 Topology high_part(const SampledField<N>& field, int axis, Pieces& pieces, bool& regular) {
   Topology result;
@@ -344,10 +346,10 @@ Topology high_part(const SampledField<N>& field, int axis, Pieces& pieces, bool&
 
 }  // namespace multilinear
 
-/// The topology of a field's interpolant at 0, found by sweeps along `axis` (3D). A box has no loop that is not
-/// bounded, so each component of the contour parts it, and the graph of parts and components is a tree: there is one
-/// component less than parts. The parts cover the box and have the contour in common: the Euler characteristics add up
-/// so. At least two samples along each axis.
+/// The topology of a field's interpolant at 0, computed by sweeps along `axis` (3D). A box is simply connected, so each
+/// component of the contour separates it, and the graph of regions and contour components is a tree: there is one
+/// component less than regions. The regions cover the box and intersect in the contour, so the Euler characteristics
+/// add up. At least two samples along each axis.
 template <int N>
 requires(N == 2 || N == 3) InterpolantTopology interpolant_topology(const SampledField<N>& field, int axis = N - 1) {
   InterpolantTopology result;

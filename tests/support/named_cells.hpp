@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Single cells that the literature on marching cubes tells apart, and degenerate ones: small integers, isovalue 0, and
-// what the contour of the trilinear (or bilinear) interpolant is in them, a value of 0 being high.
+// The cells that the literature on marching cubes distinguishes, and degenerate ones: small integers, isovalue 0 (a
+// value of 0 is high), and the topology of the contour of the trilinear (or bilinear) interpolant.
 //
 // Cases are numbered as in E. V. Chernyaev, Marching Cubes 33: construction of topologically correct isosurfaces, 1995.
-// The signs of a cell may be exchanged and the cell turned and mirrored: tests do so.
+// Tests also exchange the signs of a cell and apply rotations and reflections.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ template <std::size_t kCorners>
 struct NamedCell {
   const char* name;
   std::array<int, kCorners> values;
-  int components;  ///< of the contour
+  int components;  ///< components of the contour
   int euler;       ///< its Euler characteristic: 1 for each disc, 0 for a tunnel
-  /// 0 is no corner's value and no value of a saddle in a face or in the cell: then the contour with signs exchanged
-  /// is the same.
+  /// True if 0 is neither the value of a corner nor of a saddle in a face or in the cell. Then exchanging the signs
+  /// does not change the contour.
   bool regular;
 };
 
@@ -77,7 +77,7 @@ inline constexpr std::array<NamedCell<8>, 66> kNamedCubes = {{
     {"13.5.2, tunnel of high", {3, -1, -3, 4, -3, 4, 2, -3}, 2, 1, true},
     {"13.5.2, tunnel of low", {3, -2, -4, 3, -3, 3, 1, -4}, 2, 1, true},
     {"14", {1, -2, 1, 1, 1, -1, -1, -1}, 1, 1, true},
-    // The saddle of a face exactly at the isovalue: joined.
+    // The saddle of a face is exactly at the isovalue: joined.
     {"3, saddle", {-1, 1, 1, -1, -1, -1, -1, -1}, 1, 1, false},
     {"6, saddle", {1, -1, -1, 1, 1, -1, -1, -1}, 1, 1, false},
     {"7, three saddles", {-1, 1, 1, -1, 1, -1, -1, -1}, 1, 0, false},
@@ -85,7 +85,7 @@ inline constexpr std::array<NamedCell<8>, 66> kNamedCubes = {{
     {"12, two saddles", {-1, 1, 1, 1, 1, -1, -1, -1}, 2, 2, false},
     {"13, all saddles: three planes", {1, -1, -1, 1, -1, 1, 1, -1}, 4, 4, false},
     {"two planes that cross", {1, -1, -1, 1, 1, -1, -1, 1}, 2, 2, false},
-    // The saddle inside exactly at the isovalue: high parts meet in it, low ones do not.
+    // The body saddle is exactly at the isovalue: it joins high parts, not low ones.
     {"4, body saddle: a double cone", {-1, -1, -1, 3, 3, -1, -1, -1}, 1, 0, false},
     {"6, body saddle", {1, -2, -2, 3, 3, -1, -1, -1}, 1, 0, false},
     {"7, body saddle", {-1, 2, 1, -1, 2, -3, -1, -3}, 2, 2, false},

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Extraction as the definitions have it, tile by tile, to test the kernel against: each tile's facets from the
-// recursion over dimension (the generator's builder, no tables), each vertex found by its key in a sorted map (no bit
-// planes, no ranks), each point from its two samples. The order of the keys is the order that the library numbers
-// vertices in.
+// Extraction by definition, tile by tile, as a reference for the kernel. The facets of each tile come from the
+// recursion over dimension (the generator's builder, no tables), each vertex from its key in a sorted map (no bit
+// planes, no ranks), each point from its two samples. The order of the keys is the library's order of vertices.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +23,7 @@
 
 namespace tegl::test {
 
-/// The contours of a tile's signatures, each built when it is first asked for.
+/// The contours of a tile's signatures, built on demand.
 template <int N>
 class RecursiveBuilder {
  public:
@@ -39,7 +38,7 @@ class RecursiveBuilder {
     if (is_new) at->second = builder_.build(signature);
     return at->second;
   }
-  /// N = 4: the vertices of its own that the contour has in the 3-face `cube`.
+  /// N = 4: number of own vertices of the contour in the 3-face `cube`.
   unsigned cube_vertices(unsigned cube, unsigned signature) {
     return builder_.face_contour(cube, signature).cone_vertices;
   }
@@ -52,7 +51,7 @@ class RecursiveBuilder {
 
 template <int N, class Real>
 struct PlainContour {
-  /// An active tile: the end of its simplices, and the vertices [first_own, end_own) that belong to it alone.
+  /// An active tile: the end of its simplices, and its own vertices [first_own, end_own).
   struct Tile {
     std::size_t end;
     Index first_own;
@@ -60,7 +59,7 @@ struct PlainContour {
   };
 
   Contour<N, Real> contour;  ///< points that are not on edges of the grid are NaN
-  std::vector<Tile> tiles;   ///< in order
+  std::vector<Tile> tiles;   ///< active tiles, in order
 };
 
 template <int N, class Real, Value T>
@@ -86,7 +85,7 @@ class PlainExtraction {
 
  private:
   using Corner = std::array<std::size_t, N>;
-  /// Layer or slab (2 k, 2 k + 1); row; kind of cell; place in the row; number in the cell.
+  /// Layer (2 k) or slab (2 k + 1); row; kind of cell; position in the row; number in the cell.
   using Key = std::array<std::size_t, 5>;
 
   static Corner shifted(Corner corner, unsigned mask) {
@@ -95,7 +94,7 @@ class PlainExtraction {
   }
   bool is_high(const Corner& corner) const { return static_cast<double>(image_(corner)) >= isovalue_; }
 
-  /// All low for a tile with a missing corner.
+  /// The signature of a tile; 0 for a tile with a missing corner.
   unsigned signature(const Corner& tile) const {
     unsigned result = 0;
     for (unsigned v = 0; v < 1u << N; ++v) {
@@ -106,13 +105,13 @@ class PlainExtraction {
     return result;
   }
 
-  /// The key of a cell that starts at `base`: in its layer if it does not span the last axis, else in its slab.
+  /// The key of a cell that starts at `base`: in its slab if it spans the last axis, else in its layer.
   Key key(const Corner& base, bool in_slab, std::size_t kind, std::size_t slot) const {
     std::size_t row = 0;
     for (int a = N - 2; a > 0; --a) row = row * image_.size(a) + base[a];
     return {2 * base[N - 1] + (in_slab ? 1 : 0), row, kind, base[0], slot};
   }
-  /// Edges come first in their row, by axis; then 3-faces (N = 4), by the axis that they leave out; then tiles.
+  /// In a row, edges come first, by axis; then 3-faces (N = 4), by the axis orthogonal to them; then tiles.
   Key edge_key(const Corner& base, int axis) const {
     return key(base, axis == N - 1, axis == N - 1 ? 0 : static_cast<std::size_t>(axis), 0);
   }
@@ -176,7 +175,8 @@ class PlainExtraction {
     result_.tiles.push_back({result_.contour.simplices.size(), first, static_cast<Index>(first + own)});
   }
 
-  /// Whether the builder's "positive side faces high, in the frame of the grid" is not what was asked for.
+  /// True if the requested orientation is opposite to the builder's ("the positive side faces high in the grid's
+  /// frame").
   bool is_flipped() const {
     bool flip = options_.direction == GradientDirection::descent;
     for (const Axis& axis : image_.grid().axes) flip = flip != axis.is_descending();
@@ -209,8 +209,8 @@ class PlainExtraction {
     return vertex;
   }
 
-  /// Points between two layers of a 4D image are kept off both, by the least that shows (grids whose last axis stands
-  /// apart).
+  /// Keeps points between two layers of a 4D image off both layers, by the smallest representable distance (for grids
+  /// whose world map does not mix the last axis with others).
   void keep_inside(std::array<Real, N>& vertex, std::size_t k) const {
     for (int i = 0; i + 1 < N; ++i)
       if (image_.grid().linear(N - 1, i) != 0) return;
@@ -234,19 +234,19 @@ class PlainExtraction {
   PlainContour<N, Real> result_;
 };
 
-/// As `extract`, with open borders. Infinite samples and TooLarge are left out.
+/// As `extract`, with open borders. Does not support infinite samples and the error TooLarge.
 template <class Real, Value T, int N>
 PlainContour<N, Real> plain_contour(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
                                     RecursiveBuilder<N>& builder) {
   return PlainExtraction<N, Real, T>(image, isovalue, options, builder).run();
 }
 
-/// A simplex with ascending vertices, and the parity of the order that they were in.
+/// A simplex with ascending vertices, and the parity of the sorting permutation.
 template <int N>
 using SortedSimplex = std::pair<std::array<Index, N>, bool>;
 
-/// The simplices [first, tile.end) in canonical form and order. As tables may number a tile's own vertices in any
-/// order, such a vertex goes by the least of the other vertices that simplices join it with.
+/// The simplices [first, tile.end) in canonical form and order. Tables may number a tile's own vertices in any order,
+/// so an own vertex is named by the smallest other vertex that shares a simplex with it.
 template <int N, class Real>
 std::vector<SortedSimplex<N>> sorted_simplices(const Contour<N, Real>& contour, std::size_t first,
                                                const typename PlainContour<N, Real>::Tile& tile) {

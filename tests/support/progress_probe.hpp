@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How long a call works without asking whether to go on: what somebody waits for who has pressed Ctrl-C.
+// Measures the time between progress callbacks: the delay of a response to Ctrl-C.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,10 @@
 
 namespace tegl::test {
 
-/// What the progress of a call was like. Gaps are in processor time of the whole program, which no other program on
-/// the machine changes much.
+/// Progress of one call. Gaps are CPU times of the whole program, which other programs on the machine hardly influence.
 class ProgressProbe {
  public:
-  /// work(progress), from its start to its end. One call at a time.
+  /// Runs and measures work(progress). One call at a time.
   template <class Work>
   void watch(const Work& work) {
     *this = {};
@@ -24,14 +23,14 @@ class ProgressProbe {
     total_ = last_ - start_;
   }
 
-  /// Without a gap longer than this share of the whole there is none in which Ctrl-C is not seen for longer.
+  /// The longest gap between callbacks as a share of the total time; it bounds the delay of a response to Ctrl-C.
   [[nodiscard]] double longest_share() const { return longest_ / total_; }
-  /// The fraction that was told last before the longest gap: which part of the work it is.
+  /// The last fraction reported before the longest gap; identifies the phase of the work.
   [[nodiscard]] double longest_after() const { return longest_after_; }
-  [[nodiscard]] double seconds() const { return total_; }           ///< processor time of the whole
-  [[nodiscard]] bool falls() const { return falls_; }               ///< whether a fraction was below the one before
-  [[nodiscard]] double last_fraction() const { return fraction_; }  ///< 1, where the call ended as it should
-  [[nodiscard]] bool is_within_bounds() const { return within_; }   ///< whether all fractions were in [0, 1]
+  [[nodiscard]] double seconds() const { return total_; }  ///< CPU time of the whole call
+  [[nodiscard]] bool falls() const { return falls_; }      ///< true if a fraction was smaller than the previous one
+  [[nodiscard]] double last_fraction() const { return fraction_; }  ///< the last fraction; 1 if the call completed
+  [[nodiscard]] bool is_within_bounds() const { return within_; }   ///< true if all fractions were in [0, 1]
 
  private:
   static double now() {

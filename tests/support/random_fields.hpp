@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random fields of integers for the oracle (multilinear.hpp), and the same as images.
+// Random integer fields for the oracle (multilinear.hpp), and their images.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace tegl::test {
 
-/// Integers from -bound to bound, and around them, where `padded`, one layer below all.
+/// Integers from -bound to bound; if `padded`, surrounded by one layer lower than all.
 template <int N>
 SampledField<N> random_field(std::mt19937_64& bits, std::size_t samples, std::int64_t bound, bool padded = false) {
   SampledField<N> field;
@@ -42,7 +42,7 @@ OwnedImage<T, N> image_of(const SampledField<N>& field) {
   return image;
 }
 
-/// The two samples at the ends of the edge of the grid that a vertex lies on, if it lies inside one.
+/// The two samples at the ends of the grid edge whose interior contains the vertex, if any.
 template <int N, class Real>
 std::optional<std::array<std::size_t, 2>> edge_of(const std::array<Real, N>& vertex,
                                                   const std::array<std::size_t, N>& sizes) {
@@ -66,7 +66,7 @@ std::string describe(const SampledField<N>& field) {
   return text.str();
 }
 
-/// The field 2^24 times as large and raised by 1: at 0 it is what the field is just below 0. For values up to 16.
+/// The field times 2^24 plus 1: its contour at 0 is that of the field just below 0. For values up to 16.
 template <int N>
 SampledField<N> just_below(SampledField<N> field) {
   for (std::int64_t& value : field.values) value = (value * (1 << 24)) + 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Measured and simulated images for tests: parts of files, isovalues in them, and what the samples alone tell about the
-// contour.
+// Measured and simulated images for tests: parts of files, isovalues for them, and properties of the contour computed
+// from the samples only.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace tegl::test {
 
-/// The middle of an image, at most so many samples along each axis: enough to be real, fast enough to test.
+/// The middle of an image, with at most `most[a]` samples along axis a, to limit the time of tests.
 template <Value T, int N>
 Image<T, N> middle(Image<T, N> image, const std::type_identity_t<std::array<std::size_t, N>>& most) {
   for (int a = 0; a < N; ++a) {
@@ -28,7 +28,7 @@ Image<T, N> middle(Image<T, N> image, const std::type_identity_t<std::array<std:
   return image;
 }
 
-/// A value with the given share of the samples below it, that few samples equal.
+/// A value at the given quantile of the samples that few samples equal.
 template <Value T, int N>
 double isovalue_at(const Image<T, N>& image, double quantile) {
   std::vector<double> values;
@@ -41,7 +41,7 @@ double isovalue_at(const Image<T, N>& image, double quantile) {
   return std::is_floating_point_v<T> ? *at * (1 + 1e-4) + 1e-7 : *at + 0.5;
 }
 
-/// The same samples on the grid of unit steps from 0 on.
+/// The samples on a grid of unit steps from 0.
 template <Value T, int N>
 OwnedImage<T, N> on_unit_grid(const Image<T, N>& image) {
   OwnedImage<T, N> result;
@@ -52,7 +52,7 @@ OwnedImage<T, N> on_unit_grid(const Image<T, N>& image) {
   return result;
 }
 
-/// Pieces, joined one by one.
+/// Disjoint sets with a count (union-find).
 class Pieces {
  public:
   explicit Pieces(std::size_t count) : parents_(count), count_(count) {
@@ -75,10 +75,10 @@ class Pieces {
   std::size_t count_;
 };
 
-/// How many surfaces part high from low samples of an image without missing values that is closed at its border, from
-/// the samples alone. High samples hang together along edges of the grid, low ones also across the diagonals of its
-/// squares (Ambiguity::low), and at the border with the outside. Space hangs together without loops, so each surface
-/// has one piece on either side, and the pieces are a tree with the surfaces as its edges.
+/// Number of surfaces that separate high from low samples of an image without missing values, closed at its border;
+/// computed from the samples only. High samples are connected along edges of the grid. Low samples are also connected
+/// across diagonals of its squares (Ambiguity::low), and at the border with the outside. Space is simply connected, so
+/// each surface separates two regions, and the regions form a tree with the surfaces as edges.
 template <Value T, int N>
 std::size_t surfaces_by_samples(const Image<T, N>& image, double isovalue) {
   const auto is_high = [&](const std::array<std::size_t, N>& index) {
@@ -108,7 +108,7 @@ std::size_t surfaces_by_samples(const Image<T, N>& image, double isovalue) {
   return pieces.count() - 1;
 }
 
-/// In how many pieces the high corners of a face of the grid are (bit v of `high`: corner v), along its edges.
+/// Number of components of a grid face's high corners (bit v of `high`: corner v), connected along its edges.
 inline int high_pieces(unsigned high, int dim) {
   Pieces pieces(std::size_t{1} << dim);
   for (unsigned v = 0; v < 1u << dim; ++v)
@@ -117,9 +117,9 @@ inline int high_pieces(unsigned high, int dim) {
   return static_cast<int>(pieces.count()) - ((1 << dim) - std::popcount(high));
 }
 
-/// The Euler characteristic of the contour of a 3D image that is closed at its border, from the samples alone: twice
-/// that of what is high. That lies in each face of the grid in as many balls as the face's high corners are pieces, and
-/// these count with the sign of the face's codimension; faces beyond the border have no more than its corners.
+/// The Euler characteristic of the contour of a 3D image, closed at its border, computed from the samples only: twice
+/// that of the high set. In each face of the grid the high set consists of one ball per component of the face's high
+/// corners; these count with the sign of the face's codimension. Samples outside the image are low.
 template <Value T>
 std::int64_t euler_by_samples(const Image<T, 3>& image, double isovalue) {
   std::int64_t euler = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The comparison of a contour with the interpolant's (multilinear.hpp): how many components, what Euler characteristic,
-// and which critical edges each component meets.
+// Compares a contour with the interpolant's (multilinear.hpp): number of components, Euler characteristic, and the
+// critical edges that each component meets.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@
 
 namespace tegl::test {
 
-/// Whether the contour is what the interpolant's is: an oriented manifold with its components, each meeting the same
-/// critical edges, and with its Euler characteristic. For regular fields on grids of unit steps.
+/// True if the contour is an oriented manifold with the interpolant's Euler characteristic and components, each of
+/// which meets the same critical edges. For regular fields on grids of unit steps.
 template <int N, class Real>
 ::testing::AssertionResult has_topology_of(const Contour<N, Real>& contour, const SampledField<N>& field,
                                            const InterpolantTopology& expected) {
@@ -29,7 +29,7 @@ template <int N, class Real>
   const Topology found{static_cast<std::int64_t>(report.components), report.euler};
   if (!(found == expected.contour)) return failure() << found << "; the interpolant has " << expected.contour;
   const ComponentLabels labels = label_components(contour);
-  std::map<std::pair<std::size_t, std::size_t>, Index> component_between;  // a low and a high piece
+  std::map<std::pair<std::size_t, std::size_t>, Index> component_between;  // key: a low and a high component
   std::set<Index> seen;
   std::size_t edges = 0;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A slow contour by other means, to test against: every tile is cut into N! simplices (Kuhn), and in each of them the
-// contour is the product of the simplex of its high and that of its low corners, triangulated by staircases. Closed,
-// manifold and oriented by construction, without any table; topologically not the tile's contour where that is
-// ambiguous.
+// A slow independent contour as a reference. Every tile is divided into N! simplices (Kuhn). In each of them the
+// contour is the product of the simplices of its high and low corners, triangulated by staircases. It is closed,
+// manifold and oriented by construction, without any table. In ambiguous tiles its topology may differ from the tile's
+// contour.
 //
 // Based on: H. W. Kuhn, Some combinatorial lemmas in topology, 1960 (the triangulation of the cube); S. Eilenberg and
 // N. Steenrod, Foundations of algebraic topology, 1952, II.8 (the triangulation of products).
@@ -65,7 +65,7 @@ class SimplicialContour {
       (value >= isovalue_ ? high : low).push_back(corner);
     }
     if (high.empty() || low.empty()) return;
-    // A staircase: N - 1 steps, of which high.size() - 1 go along the high corners.
+    // A staircase has N - 1 steps, high.size() - 1 of them along the high corners.
     for (unsigned steps = 0; steps < (1u << (N - 1)); ++steps) {
       if (std::popcount(steps) + 1 != static_cast<int>(high.size())) continue;
       std::array<Pair, N> path;
@@ -80,7 +80,7 @@ class SimplicialContour {
     }
   }
 
-  /// Oriented by the midpoints, which are never degenerate.
+  /// Oriented by edge midpoints, which are never degenerate.
   void add_facet(const std::array<Pair, N>& path, const std::vector<Corner>& high, const std::vector<Corner>& low) {
     Eigen::Matrix<double, N, N> frame;
     const auto midpoint = [](const Pair& p, int a) { return 0.5 * static_cast<double>(p.first[a] + p.second[a]); };
@@ -122,8 +122,8 @@ Contour<N, Real> simplicial_contour(const Image<T, N>& image, double isovalue) {
   return SimplicialContour<N, Real, T>(image, isovalue).contour;
 }
 
-/// The layer i of the last axis as an image of one dimension less. Of a world map, which must leave the last axis
-/// apart, it keeps what concerns the others.
+/// Layer i of the last axis as an image of one dimension less. A world map must not mix the last axis with the others;
+/// its other rows and columns are kept.
 template <Value T, int N>
 Image<T, N - 1> last_axis_layer(const Image<T, N>& image, std::size_t i) {
   Grid<N - 1> grid;
@@ -135,7 +135,7 @@ Image<T, N - 1> last_axis_layer(const Image<T, N>& image, std::size_t i) {
   return Image<T, N - 1>(image.data() + static_cast<std::ptrdiff_t>(i) * image.strides()[N - 1], grid, strides);
 }
 
-/// The layer of an image across any axis, as an image of its other axes. For grids without a world map.
+/// The layer of an image across any axis, as an image of the other axes. For grids without a world map.
 template <Value T, int N>
 Image<T, N - 1> layer_across(const Image<T, N>& image, int axis, std::size_t i) {
   Grid<N - 1> grid;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What simplification must leave as it was.
+// Properties that simplification must preserve.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace tegl::test {
 
-/// The methods that keep the manifold.
+/// The methods that preserve the manifold.
 inline constexpr std::array kMethods = {SimplifyMethod::quadric, SimplifyMethod::facets, SimplifyMethod::vertices};
 
 inline std::string name(SimplifyMethod method) {
@@ -23,7 +23,8 @@ inline std::string name(SimplifyMethod method) {
   return kNames[static_cast<std::size_t>(method)];
 }
 
-/// Manifold, components, Euler characteristic; open or closed.
+/// Expects equal components and Euler characteristic, an oriented manifold, and a boundary if and only if there was
+/// one.
 inline void expect_same_topology(const MeshReport& before, const MeshReport& after) {
   EXPECT_TRUE(is_oriented_manifold(after));
   EXPECT_EQ(after.components, before.components);
@@ -32,7 +33,7 @@ inline void expect_same_topology(const MeshReport& before, const MeshReport& aft
   EXPECT_EQ(after.boundary_simplices == 0, before.boundary_simplices == 0);
 }
 
-/// The border as sets of points, so that numbering does not matter.
+/// The border as sets of points, independent of numbering.
 template <int N, class Real>
 auto border_points(const Contour<N, Real>& contour) {
   std::set<std::set<std::array<Real, N>>> result;

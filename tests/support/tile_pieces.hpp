@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A contour tile by tile, without its triangulation: which critical edges each of its pieces in each tile meets, and
-// each piece's Euler characteristic. Two contours with the same pieces are the same up to how facets are triangulated,
-// so that contours can be compared where a triangulation cannot be the same: of an image and of its mirror image, or
-// of a 4D contour's cut and the 3D contour.
+// A contour tile by tile, without its triangulation: per tile and component, the critical edges that it meets and its
+// Euler characteristic. Contours with equal pieces differ at most in the triangulation of facets. So contours can be
+// compared if their triangulations cannot be equal, such as those of an image and its mirror image, or a slice of a 4D
+// contour and the 3D contour.
 #pragma once
 
 #include <algorithm>
@@ -24,13 +24,13 @@ namespace tegl::test {
 template <int N>
 struct TilePiece {
   std::array<std::int64_t, N> tile{};                ///< index of its lowest sample
-  std::vector<std::array<std::int64_t, N>> edges{};  ///< where it meets the grid's edges, in units of 2^-20, sorted
+  std::vector<std::array<std::int64_t, N>> edges{};  ///< points on the grid's edges, in units of 2^-20, sorted
   std::int64_t euler = 0;
 
   auto operator<=>(const TilePiece&) const = default;
 };
 
-/// In units of 2^-20: what rounding makes of places differs by less, up to one in 10^9 that lies between two units.
+/// Rounds to units of 2^-20. Rounding errors are smaller and change the result for at most one coordinate in 10^9.
 template <int N, class Real>
 std::array<std::int64_t, N> in_small_units(const std::array<Real, N>& place) {
   std::array<std::int64_t, N> result;
@@ -38,7 +38,7 @@ std::array<std::int64_t, N> in_small_units(const std::array<Real, N>& place) {
   return result;
 }
 
-/// The simplices of each tile, by the tile that their centroids are in.
+/// The simplices of each tile, assigned by centroid.
 template <int N, class Real>
 std::map<std::array<std::int64_t, N>, std::vector<std::size_t>> simplices_by_tile(const Contour<N, Real>& contour) {
   std::map<std::array<std::int64_t, N>, std::vector<std::size_t>> result;
@@ -54,7 +54,7 @@ std::map<std::array<std::int64_t, N>, std::vector<std::size_t>> simplices_by_til
   return result;
 }
 
-/// The pieces of a contour of an image on a grid of unit steps, with no vertex at a sample; sorted.
+/// The pieces of a contour, sorted. For images on grids of unit steps without vertices at samples.
 template <int N, class Real>
 std::vector<TilePiece<N>> tile_pieces(const Contour<N, Real>& contour) {
   std::vector<TilePiece<N>> result;

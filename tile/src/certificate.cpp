@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The conditions of the certificate, one function each.
+// The conditions of a tile's certificate, one function per condition.
 #include "tegl/facets/certificate.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace tegl::facets {
 
-/// Memory is kept from tile to tile.
+/// Reuses its memory from tile to tile.
 class Certifier::Impl {
  public:
   Fault certify(const FaceLattice& lattice, const TileFacets& tile) {
@@ -34,7 +34,7 @@ class Certifier::Impl {
   }
 
  private:
-  /// What the other checks take for granted.
+  /// Preconditions of the other checks: sizes of simplices and ranges of indices.
   static void check_form(const FaceLattice& lattice, const TileFacets& tile) {
     const int n = lattice.dim();
     const auto check = [&](const Simplices& simplices, int vertices) {
@@ -72,7 +72,7 @@ class Certifier::Impl {
     return Fault::none;
   }
 
-  /// The sign with which a simplex induces an orientation on its face without vertex i.
+  /// Sign of the orientation that simplex j induces on its face without vertex i.
   [[nodiscard]] int induced(std::size_t j, std::size_t i) const { return i % 2 == 0 ? signs_[j] : -signs_[j]; }
 
   [[nodiscard]] int induced(std::size_t j, const Simplex& face) const {
@@ -81,7 +81,7 @@ class Certifier::Impl {
     return induced(j, i);
   }
 
-  /// Sigma from the contours in the faces; the builder's must be the same.
+  /// Collects Sigma from the contours in the faces and compares it with the builder's Sigma.
   Fault collect_sigma(const FaceLattice& lattice, const TileFacets& tile) {
     const Face& whole = lattice.faces()[lattice.tile()];
     sigma_.clear(), sigma_sign_.clear();
@@ -116,7 +116,7 @@ class Certifier::Impl {
     return map_.find(vertex_hash(s), [&](std::uint32_t k) { return sigma_[k] == s; });
   }
 
-  /// (1), (3) and branching, from the faces of codimension one.
+  /// Checks (1), (3) and branching on the faces of codimension one.
   Fault check_ridges() {
     if (!adjacency_.build(simplices_)) return Fault::branching;
     std::size_t boundary = 0;
@@ -138,7 +138,7 @@ class Certifier::Impl {
     return boundary == sigma_.size() ? fault : Fault::boundary;
   }
 
-  /// From the boundary every simplex is reached.
+  /// Every simplex must be reachable from the boundary.
   Fault check_components() {
     for (std::size_t k = 0; k < queue_.size(); ++k)
       for (std::size_t i = 0; i < adjacency_.vertices_per_simplex(); ++i)
@@ -147,9 +147,10 @@ class Certifier::Impl {
     return queue_.size() == simplices_.size() ? Fault::none : Fault::bubble;
   }
 
-  /// (2)
+  /// Checks (2) for every vertex.
   Fault check_links(const TileFacets& tile) {
     const std::size_t width = adjacency_.vertices_per_simplex();
+    // stars: count per vertex, prefix sum, write
     start_.assign(tile.vertices.size() + 1, 0);
     for (const Simplex& s : simplices_)
       for (std::size_t i = 0; i < width; ++i) ++start_[s[i] + std::size_t{1}];
@@ -158,16 +159,18 @@ class Certifier::Impl {
     next_.assign(start_.begin(), start_.end());
     for (std::uint32_t j = 0; j < simplices_.size(); ++j)
       for (std::size_t i = 0; i < width; ++i) star_[next_[simplices_[j][i]]++] = j;
+    // vertices on Sigma
     on_sigma_.assign(tile.vertices.size(), false);
     for (const Simplex& s : sigma_)
       for (int i = 0; i < size(s); ++i) on_sigma_[s[i]] = true;
+    // link of each vertex: by a shelling, else by collapses
     for (std::size_t v = 0; v < tile.vertices.size(); ++v) {
       const auto star = std::span(star_).subspan(start_[v], start_[v + 1] - start_[v]);
       if (star.empty()) continue;
       const Shape right = on_sigma_[v] ? Shape::ball : Shape::sphere;
       const auto vertex = static_cast<VertexId>(v);
       if (shelling_.shape(simplices_, adjacency_, star, vertex) == right) continue;
-      // Not every sphere of dimension 3 or more has a shelling that a few tries find.
+      // A sphere of dimension 3 or more need not have a shelling that a few tries find.
       if (width <= 4 || shape_of(link(star, vertex)) != right) return Fault::link;
     }
     return Fault::none;
@@ -182,17 +185,20 @@ class Certifier::Impl {
     return result;
   }
 
-  /// (4): of every simplex the part in each maximal face of the tile. Smaller parts then belong as well.
+  /// Checks (4): the part of every simplex in each maximal face of the tile. Its subsets belong as well, as `own_` is
+  /// closed under subsets.
   Fault check_tile_boundary(const FaceLattice& lattice, const TileFacets& tile) {
     const std::vector<std::uint32_t>& maximal = lattice.faces()[lattice.tile()].faces;
     collect_own(tile);
     inside_.clear();
+    // per face of the lattice: the maximal faces that contain it, as bits
     for (const Face& f : lattice.faces()) {
       std::uint64_t in = 0;
       for (std::size_t g = 0; g < maximal.size(); ++g)
         if ((f.corners & ~lattice.faces()[maximal[g]].corners) == 0) in |= std::uint64_t{1} << g;
       inside_.push_back(in);
     }
+    // per simplex and maximal face: the vertices in that face
     for (const Simplex& s : simplices_) {
       std::uint64_t in[kMaxVertices] = {}, any = 0;
       const int width = size(s);
@@ -217,7 +223,7 @@ class Certifier::Impl {
 
   static std::uint64_t hash(const Own& own) { return vertex_hash(own.simplex) + own.face * 0x9e3779b97f4a7c15u; }
 
-  /// All simplices, of every dimension, of the contours in the maximal faces.
+  /// Collects all simplices of every dimension of the contours in the maximal faces.
   void collect_own(const TileFacets& tile) {
     std::size_t total = 0;
     for (const Simplices& in_face : tile.in_face)

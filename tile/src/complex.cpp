@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Recognition of balls and spheres: by a shelling, else pseudomanifold, links by recursion, collapse.
+// Recognition of balls and spheres: by a shelling, otherwise by pseudomanifold test, recursion over links and collapse.
 #include "tegl/facets/complex.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace tegl::facets {
 
 namespace {
 
-/// All faces, of every dimension: faces[d] has those of d + 1 vertices, sorted.
+/// All faces, by dimension: faces[d] holds those with d + 1 vertices, sorted.
 std::vector<Simplices> all_faces(const Simplices& simplices) {
   std::vector<Simplices> faces(static_cast<std::size_t>(size(simplices.front())));
   faces.back() = simplices;
@@ -38,7 +38,7 @@ std::size_t index_in(const Simplices& sorted, const Simplex& s) {
   return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), s) - sorted.begin());
 }
 
-/// The faces of a complex as a graph of incidences, for collapses.
+/// Incidence graph of the faces of a complex, for collapses.
 class Collapse {
  public:
   explicit Collapse(const std::vector<Simplices>& faces) : start_(faces.size()) {
@@ -55,14 +55,16 @@ class Collapse {
         }
   }
 
-  /// Does the complex, without its first top simplex if `open`, collapse to a point in one of some seeded tries?
+  /// True if one of a few seeded tries collapses the complex to a point. If `open`, its first top simplex is removed
+  /// before.
   [[nodiscard]] bool to_a_point(bool open) const {
     for (unsigned seed = 0; seed < kTries; ++seed)
       if (const Left left = one_try(open, seed); left.vertices + left.edges + left.others == 1) return true;
     return false;
   }
 
-  /// What is left when no face is free has no ends: as many edges as vertices, and nothing else, are circles.
+  /// True if a try ends with circles only. A remainder without free faces has no ends, so one of dimension 1 with as
+  /// many edges as vertices consists of circles.
   [[nodiscard]] bool to_circles() const {
     for (unsigned seed = 0; seed < kTries; ++seed)
       if (const Left left = one_try(false, seed); left.others == 0 && left.edges > 0 && left.edges == left.vertices)
@@ -73,7 +75,7 @@ class Collapse {
  private:
   static constexpr unsigned kTries = 4;
 
-  /// How many faces remain when none is free any more.
+  /// Numbers of faces left when no face is free.
   struct Left {
     std::size_t vertices = 0, edges = 0, others = 0;
   };
@@ -88,19 +90,22 @@ class Collapse {
       for (const std::size_t g : down_[f])
         if (--cofaces[g] == 1) free.push_back(g);
     };
+    // initially free faces
     for (std::size_t f = 0; f < down_.size(); ++f)
       if (cofaces[f] == 1) free.push_back(f);
     if (open) remove(top_);
     std::mt19937 random(seed);
+    // collapse free faces in random order
     while (!free.empty()) {
       std::swap(free[random() % free.size()], free.back());
       const std::size_t f = free.back();
       free.pop_back();
       if (gone[f] || cofaces[f] != 1) continue;
       const std::size_t over = *std::find_if(up_[f].begin(), up_[f].end(), [&](std::size_t u) { return !gone[u]; });
-      remove(over);  // in no other face: with one above it, f would be in two
+      remove(over);  // no other coface: a face above `over` would give f two cofaces
       remove(f);
     }
+    // count the remaining faces
     Left left;
     for (std::size_t f = 0; f < down_.size(); ++f)
       if (!gone[f]) ++(f < start_[1] ? left.vertices : start_.size() == 2 || f < start_[2] ? left.edges : left.others);
@@ -112,7 +117,7 @@ class Collapse {
   std::size_t top_ = 0;
 };
 
-/// Every face of codimension one in one or two simplices? Gives the vertices of the boundary, and connectedness.
+/// Properties that follow from the faces of codimension one. Branching: one of them lies in more than two simplices.
 struct Ridges {
   bool branching = false;
   bool connected = true;
@@ -121,10 +126,12 @@ struct Ridges {
 
 Ridges ridges_of(const Simplices& simplices) {
   Ridges result;
+  // ridge incidences, sorted so that equal ridges are adjacent
   std::vector<std::pair<Simplex, std::size_t>> ridges;
   for (std::size_t j = 0; j < simplices.size(); ++j)
     for (int i = 0; i < size(simplices[j]); ++i) ridges.emplace_back(without(simplices[j], i), j);
   std::sort(ridges.begin(), ridges.end());
+  // union-find over simplices that share a ridge; a ridge in one simplex belongs to the boundary
   std::vector<std::size_t> parent(simplices.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   const auto root = [&](std::size_t v) {
@@ -159,7 +166,7 @@ bool links_are_right(const Simplices& simplices, const Simplices& vertices, cons
   return true;
 }
 
-/// Slower than a shelling, but finds what has none.
+/// Slower than a shelling, but recognises complexes for which no shelling is found.
 Shape shape_by_collapse(const Simplices& simplices) {
   const Ridges ridges = ridges_of(simplices);
   if (ridges.branching || !ridges.connected) return Shape::other;
@@ -167,7 +174,7 @@ Shape shape_by_collapse(const Simplices& simplices) {
   const std::vector<Simplices> faces = all_faces(simplices);
   const int even_sphere = faces.size() % 2 == 1 ? 2 : 0;
   if (euler_of(faces) != (closed ? even_sphere : 1)) return Shape::other;
-  if (!Collapse(faces).to_a_point(closed)) return Shape::other;  // before the links: it mostly fails, and is faster
+  if (!Collapse(faces).to_a_point(closed)) return Shape::other;  // before the links: faster, and fails in most cases
   if (!links_are_right(simplices, faces[0], ridges.boundary_vertices)) return Shape::other;
   return closed ? Shape::sphere : Shape::ball;
 }
@@ -188,7 +195,7 @@ Shape shape_of(const Simplices& simplices) {
 bool collapses_to_a_circle(const Simplices& simplices) {
   if (simplices.empty() || size(simplices.front()) < 2) return false;
   Adjacency adjacency;
-  // One circle if the complex is connected: collapses keep that.
+  // Collapses preserve connectedness, so a connected complex ends in a single circle.
   return adjacency.build(simplices) && ridges_of(simplices).connected && Collapse(all_faces(simplices)).to_circles();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Face lattices from the corner sets of the maximal faces: all intersections, graded, oriented.
+// Builds face lattices from the corner sets of the maximal faces: intersections, dimensions, order, orientation.
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
@@ -12,11 +12,11 @@ namespace tegl::facets {
 
 namespace {
 
-/// Do the ascending corners of a come before those of b?
+/// True if the ascending corners of a precede those of b lexicographically.
 bool corners_before(Signature a, Signature b) {
   const Signature differ = a ^ b, lowest = differ & (~differ + 1);
   const bool in_a = (a & lowest) != 0;
-  // The set without the lowest different corner comes later, unless it has nothing left.
+  // The set without the lowest differing corner comes later, unless it has no further corners.
   const Signature other = in_a ? b : a;
   const bool other_ends = (other & ~(lowest | (lowest - 1))) == 0;
   return in_a != other_ends;
@@ -31,7 +31,7 @@ std::vector<Signature> intersections(Signature whole, std::span<const Signature>
   return sets;
 }
 
-/// 1 ... 6, or a message.
+/// Returns n if it is `least` to 6, else throws std::invalid_argument.
 int checked(int n, int least) {
   if (n < least || n > 6)
     throw std::invalid_argument("dimension " + std::to_string(n) + ", expected " + std::to_string(least) + " to 6");
@@ -43,8 +43,10 @@ int checked(int n, int least) {
 FaceLattice::FaceLattice(int dim, std::span<const Signature> maximal_faces) {
   Signature whole = 0;
   for (const Signature m : maximal_faces) whole |= m;
+  // corner sets of all faces
   std::vector<Signature> sets = intersections(whole, maximal_faces);
   std::sort(sets.begin(), sets.end(), [](Signature a, Signature b) { return std::popcount(a) < std::popcount(b); });
+  // dimension: one more than the largest dimension of a proper face
   for (const Signature s : sets) {
     Face face{.dim = 0, .corners = s};
     for (const Face& below : faces_)
@@ -61,6 +63,7 @@ FaceLattice::FaceLattice(int dim, std::span<const Signature> maximal_faces) {
   if (dim > kMaxVertices - 1)
     throw std::invalid_argument("polytope of dimension " + std::to_string(dim) + ", expected at most " +
                                 std::to_string(kMaxVertices - 1));
+  // incidences and orientation
   for (Face& face : faces_) {
     for (std::uint32_t g = 0; g < faces_.size() && faces_[g].dim < face.dim; ++g)
       if (faces_[g].dim == face.dim - 1 && (faces_[g].corners & face.corners) == faces_[g].corners)
@@ -70,9 +73,9 @@ FaceLattice::FaceLattice(int dim, std::span<const Signature> maximal_faces) {
   }
 }
 
-/// What every polytope has: between a face and one two dimensions lower there are two others (the diamond property),
-/// and the faces of a boundary add up to a sphere's Euler characteristic. Not enough for a proof, but to find what was
-/// forgotten.
+/// Necessary conditions of a polytope: between a face and each face two dimensions lower there are exactly two others
+/// (the diamond property), and the boundary of each face has the Euler characteristic of a sphere. They are not
+/// sufficient, but they find forgotten faces.
 void FaceLattice::check(const Face& face) const {
   const auto refuse = [&](const std::string& what) {
     throw std::invalid_argument("face with corners " + std::to_string(face.corners) + ": " + what);
@@ -95,8 +98,8 @@ void FaceLattice::check(const Face& face) const {
     refuse("a boundary of Euler characteristic " + std::to_string(euler) + ", expected " + std::to_string(sphere));
 }
 
-/// The first face has the sign that outward-normal-first gives to cubes and simplices; two faces induce opposite
-/// orientations on the face that they share.
+/// The first face gets the sign that the outward-normal-first rule gives for cubes and simplices. Two faces induce
+/// opposite orientations on their common face; a breadth-first traversal propagates the signs.
 void FaceLattice::orient(Face& face) {
   if (face.dim == 0) return;
   face.signs.assign(face.faces.size(), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Faces of a lattice as lattices of their own: which faces they have, and their corners renumbered.
+// A face of a lattice as a lattice of its own: its faces, and its renumbered corners.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tegl::facets {
 
-/// The faces of a face, of every dimension, ascending, itself last.
+/// All faces of a face, of every dimension, ascending; the face itself is the last.
 inline std::vector<std::uint32_t> closure(const FaceLattice& lattice, std::uint32_t face) {
   std::vector<std::uint32_t> result;
   for (std::uint32_t g = 0; g <= face; ++g)
@@ -25,7 +25,7 @@ inline std::vector<int> corner_list(Signature corners) {
   return list;
 }
 
-/// The bits of a signature at these corners.
+/// The bits of a signature at the given corners, in their order.
 inline Signature compressed(Signature signature, const std::vector<int>& corners) {
   Signature result = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) result |= ((signature >> corners[i]) & 1u) << i;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles from the pieces of their faces. Pieces of equal faces (shape, signature, choices) are built once and kept.
+// Assembles tiles from the pieces of their faces. Faces of equal shape, signature and choices share one cached piece.
 #include "tegl/facets/facets.hpp"
 
 #include <algorithm>
@@ -17,12 +17,12 @@ namespace tegl::facets {
 
 namespace {
 
-/// How many bits say how a face is resolved: ambiguous squares have two ways, other faces up to four.
+/// Number of key bits for a face's resolution: an ambiguous square has two resolutions, other faces up to four.
 int choice_bits(int dim) { return dim < 2 ? 0 : dim == 2 ? 1 : 2; }
 
 }  // namespace
 
-/// Faces that an order-preserving renumbering of corners turns into each other share a cache.
+/// Faces share a cache if an order-preserving renumbering of corners maps one to the other.
 class FacetBuilder::Impl {
  public:
   Impl(FaceLattice lattice, std::size_t max_kept_bytes)
@@ -54,6 +54,7 @@ class FacetBuilder::Impl {
   [[nodiscard]] std::size_t kept_bytes() const { return large_bytes_; }
 
   const TileFacets& build(Signature signature, const Resolution& resolution, Geometry geometry) {
+    // pieces of all proper faces, by ascending dimension
     for (std::uint32_t f = 0; f < lattice_.tile(); ++f) pieces_[f] = piece_of(f, signature, resolution);
     const std::uint32_t tile = lattice_.tile();
     Piece& piece = transient_[tile];
@@ -66,7 +67,7 @@ class FacetBuilder::Impl {
 
  private:
   static constexpr int kDirectBits = 16;
-  static constexpr int kSmallDim = 3;  ///< there are few resolutions of faces up to this dimension
+  static constexpr int kSmallDim = 3;  ///< largest dimension with few resolutions per face
 
   struct Cache {
     int bits = 0;
@@ -78,7 +79,7 @@ class FacetBuilder::Impl {
     return resolution.choices.empty() ? Choice::separate : resolution.choices[face];
   }
 
-  /// Pieces of large faces are only worth their memory if few resolutions are in use.
+  /// Pieces of large faces are cached only without choices: they repay their memory only if few resolutions occur.
   [[nodiscard]] bool is_kept(const Cache& cache, int dim, const Resolution& resolution) const {
     return cache.bits <= 64 && (dim <= kSmallDim || resolution.choices.empty());
   }
@@ -96,7 +97,7 @@ class FacetBuilder::Impl {
       return &transient_[f];
     }
     const Piece* piece = kept_piece(cache, f, signature, choice, resolution.alternative);
-    // Where there is nothing to choose, all choices are one.
+    // If the face offers no choice, all choices share the piece of the default choice.
     if (codes_[f] != 0 && face.dim <= kSmallDim && nothing_to_choose(face.dim, *piece))
       piece = kept_piece(cache, f, signature, face.dim == 2 ? Choice::low : Choice::separate, Alternative::low);
     return piece;
@@ -117,6 +118,7 @@ class FacetBuilder::Impl {
   const Piece* kept_piece(Cache& cache, std::uint32_t f, Signature signature, Choice choice, Alternative alternative) {
     const int dim = lattice_.faces()[f].dim;
     codes_[f] = code_of(dim, choice, alternative);
+    // key: signature, then the choice codes of all faces of f
     std::uint64_t key = compressed(signature, corners_[f]);
     int shift = static_cast<int>(corners_[f].size());
     for (const std::uint32_t g : closures_[f]) {
@@ -157,6 +159,7 @@ class FacetBuilder::Impl {
   }
 
   void write(const Piece& tile, Geometry geometry) {
+    // vertices, and their origin if geometry is requested
     result_.vertices.clear();
     for (std::uint32_t f = 0; f < pieces_.size(); ++f) {
       const Piece& piece = *pieces_[f];
@@ -172,6 +175,7 @@ class FacetBuilder::Impl {
         for (std::uint32_t i = own.of_begin; i < own.of_end; ++i) vertex.of.push_back(carried(piece.of[i]));
       }
     }
+    // facets; a negative sign exchanges the first two vertices
     result_.facets.resize(tile.facets.size());
     for (std::size_t i = 0; i < tile.facets.size(); ++i) {
       const PieceFacet& from = tile.facets[i];
@@ -181,9 +185,11 @@ class FacetBuilder::Impl {
       for (std::size_t j = 0; j < to.simplices.size(); ++j)
         if (tile.sign[from.begin + j] < 0) std::swap(to.simplices[j][0], to.simplices[j][1]);
     }
+    // Sigma
     result_.sigma = builder_->sigma();
     builder_->euler_characteristics(result_.sigma_euler);
     result_.sigma_sign.assign(builder_->sigma_sign().begin(), builder_->sigma_sign().end());
+    // contours in the faces of codimension one
     const std::vector<std::uint32_t>& faces = lattice_.faces().back().faces;
     result_.in_face.resize(faces.size()), result_.in_face_sign.resize(faces.size());
     for (std::size_t j = 0; j < faces.size(); ++j) {
@@ -209,7 +215,7 @@ class FacetBuilder::Impl {
   std::size_t max_large_bytes_;
   std::size_t large_bytes_ = 0;
   std::unique_ptr<PieceBuilder> builder_;
-  // Of the tile at hand.
+  // State of the current tile.
   std::vector<const Piece*> pieces_;
   std::vector<Piece> transient_;
   std::vector<unsigned> codes_;

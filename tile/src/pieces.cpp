@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The step of the recursion over dimension: contour, high part and low part of a face from those of its own faces.
+// The step of the recursion over dimension: builds contour, high part and low part of a face from the pieces of its own
+// faces.
 #include "pieces.hpp"
 
 #include <algorithm>
@@ -15,22 +16,23 @@ namespace {
 Simplex mapped(const Simplex& simplex, const std::vector<VertexId>& map) {
   Simplex result = kNoSimplex;
   for (int i = 0; i < kMaxVertices && simplex[i] != kNoVertex; ++i) result[i] = map[simplex[i]];
-  return result;  // maps ascend
+  return result;  // maps are ascending
 }
 
-/// With a vertex beyond all others.
+/// Appends a vertex whose number exceeds all others.
 Simplex with_last(const Simplex& simplex, VertexId last) {
   Simplex result = simplex;
   result[static_cast<std::size_t>(size(simplex))] = last;
   return result;
 }
 
-/// Puts simplices in the order of their components; start[c] is where component c begins, its last entry their end.
+/// Sorts simplices by components. start[c] is the first position of component c; the last entry is the total.
 template <class Visit>
 void group(const Simplices& simplices, VertexSets& sets, std::vector<std::uint32_t>& number_of,
            std::vector<std::uint32_t>& start, const Visit& visit) {
   constexpr std::uint32_t kNew = ~std::uint32_t{0};
   start.assign(1, 0);
+  // count per component, in order of first appearance
   for (const Simplex& s : simplices) {
     std::uint32_t& number = number_of[sets.root(s[0])];
     if (number == kNew) {
@@ -39,16 +41,17 @@ void group(const Simplices& simplices, VertexSets& sets, std::vector<std::uint32
     }
     ++start[number + 1];
   }
+  // prefix sum, then write
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<std::uint32_t> next(start.begin(), start.end());
   for (std::size_t j = 0; j < simplices.size(); ++j) visit(j, next[number_of[sets.root(simplices[j][0])]]++);
 }
 
-/// Of a closed manifold, from its simplices; without a look at them for curves and 3-manifolds.
+/// Euler characteristic of a closed manifold. Constant time for points, curves, surfaces and 3-manifolds.
 int closed_euler_characteristic(std::span<const Simplex> simplices, std::size_t vertices) {
   switch (size(simplices.front())) {
     case 1:
-      return 2;  // with its other end
+      return 2;  // one point: with the other end of the curve
     case 2:
     case 4:
       return 0;
@@ -126,7 +129,8 @@ void PieceBuilder::number_vertices() {
 VertexId PieceBuilder::new_vertex(VertexKind kind, VertexId copied, std::span<const Simplex> of) {
   const std::size_t id = owner_.size();
   if (id >= kNoVertex) throw std::length_error("more than 65535 vertices in a tile");
-  // Centres are counted apart: the tile itself has none, and its contour has the same numbers as where it is a face.
+  // Centres are counted separately: the tile itself has none, and its contour keeps the numbers that it has in the role
+  // of a face.
   std::uint32_t& number = kind == VertexKind::centre ? next_centre_ : next_number_;
   const auto begin = static_cast<std::uint32_t>(piece_->of.size());
   piece_->of.insert(piece_->of.end(), of.begin(), of.end());
@@ -156,6 +160,7 @@ void PieceBuilder::build_edge() {
 }
 
 void PieceBuilder::collect_sigma() {
+  // contours of the faces in this face's numbering
   unsorted_.clear(), unsorted_sign_.clear();
   for (std::size_t j = 0; j < face().faces.size(); ++j) {
     const Piece& piece = *pieces_[face().faces[j]];
@@ -165,6 +170,7 @@ void PieceBuilder::collect_sigma() {
       unsorted_sign_.push_back(static_cast<std::int8_t>(piece.sign[i] * face().signs[j]));
     }
   }
+  // components
   sets_.reset(owner_.size());
   sets_.join(unsorted_);
   group_.assign(owner_.size(), ~std::uint32_t{0});
@@ -176,7 +182,7 @@ void PieceBuilder::collect_sigma() {
   for (std::size_t c = 0; c + 1 < start_.size(); ++c) components_.push_back({.begin = start_[c], .end = start_[c + 1]});
 }
 
-/// Regions, and which components of Sigma bound them.
+/// Collects the regions and, per region, the components of Sigma that bound it.
 void PieceBuilder::collect_regions() {
   regions_.clear();
   for (const bool high : {true, false}) {
@@ -204,7 +210,8 @@ void PieceBuilder::collect_regions() {
   }
 }
 
-/// By construction Sigma is a closed manifold; a connected curve is a circle, a surface is known by its Euler number.
+/// By construction Sigma is a closed manifold: a connected curve is a circle, and a surface is identified by its Euler
+/// characteristic.
 bool PieceBuilder::shown_to_be_sphere(const Component& component) {
   const std::span<const Simplex> simplices = sigma_of(component);
   const int vertices = size(simplices.front());
@@ -228,7 +235,7 @@ void PieceBuilder::euler_characteristics(std::vector<int>& result) {
   }
 }
 
-/// The vertices of these, in the order of their first use, to found_.
+/// Writes the vertices of the simplices, in order of first use, to found_.
 void PieceBuilder::find_vertices(std::span<const Simplex> simplices) {
   mark_.resize(std::max(mark_.size(), owner_.size()));
   ++epoch_;
@@ -238,7 +245,7 @@ void PieceBuilder::find_vertices(std::span<const Simplex> simplices) {
       if (mark_[s[i]] != epoch_) mark_[s[i]] = epoch_, found_.push_back(s[i]);
 }
 
-/// Do all vertices found lie in one proper face?
+/// True if all vertices in found_ lie in one proper face.
 bool PieceBuilder::in_one_face() const {
   Signature corners = 0;
   for (const VertexId v : found_) corners |= lattice_->faces()[owner_[v]].corners;
@@ -246,7 +253,7 @@ bool PieceBuilder::in_one_face() const {
                      [&](std::uint32_t g) { return (corners & ~lattice_->faces()[g].corners) == 0; });
 }
 
-/// The ball with this boundary: the simplex if it is one's, else a cone from a new vertex.
+/// Adds the ball with the given boundary: one simplex if the boundary is a simplex's, else a cone from a new vertex.
 void PieceBuilder::ball(std::span<const Simplex> boundary, VertexKind kind, Simplices& to) {
   find_vertices(boundary);
   const auto width = static_cast<std::size_t>(size(boundary[0]));
@@ -270,19 +277,19 @@ void PieceBuilder::cap(Component& component) {
   const int euler = closed_euler_characteristic(boundary, found_.size());
   if (component.cap_end - component.cap_begin == 1)
     return orient(component.cap_begin, euler, Filling::simplex, boundary, bounds_sign);
-  // Without its apex, the last vertex, a simplex of the cone is Sigma's.
+  // The apex is the last vertex, so the face opposite to it, a simplex of Sigma, gets the sign of that position.
   const int apex_sign = size(boundary[0]) % 2 == 0 ? 1 : -1;
   for (const int s : bounds_sign) piece_->sign.push_back(static_cast<std::int8_t>(s * apex_sign));
   piece_->facets.push_back({Filling::cone, euler, component.cap_begin, component.cap_end});
 }
 
-/// A copy of a region that one sphere bounds joins nothing: a cone is smaller.
+/// If one sphere bounds the region to be copied, the copy joins nothing. A cone has fewer simplices.
 void PieceBuilder::cap_what_stands_apart() {
   for (Component& c : components_)
     if (regions_[c.region[centre_high_ ? 0 : 1]].around.size() == 1 && shown_to_be_sphere(c)) cap(c);
 }
 
-/// A region with the caps of the components of Sigma around it that have one.
+/// Appends a region and the caps of the coned components of Sigma around it.
 void PieceBuilder::capped(const Region& region, Simplices& to) const {
   const Simplices& simplices = sides_[region.high ? 1 : 0];
   to.insert(to.end(), simplices.begin() + region.begin, simplices.begin() + region.end);
@@ -291,7 +298,7 @@ void PieceBuilder::capped(const Region& region, Simplices& to) const {
               piece_->contour.begin() + components_[c].cap_end);
 }
 
-/// Caps cut the face apart; each part is filled by itself.
+/// Caps divide the face into parts; each part is filled separately.
 void PieceBuilder::fill_parts() {
   for (const Component& c : components_) {
     if (c.coned()) continue;
@@ -300,7 +307,7 @@ void PieceBuilder::fill_parts() {
       if (region.part == from) region.part = to;
   }
   for (std::uint32_t r = 0; r < regions_.size(); ++r) {
-    // Once for each part: at its first region.
+    // Each part is processed at its first region.
     const std::uint32_t part = regions_[r].part;
     const auto same = [&](const Region& region) { return region.part == part; };
     const auto end = regions_.end(), here = regions_.begin() + r;
@@ -315,7 +322,8 @@ void PieceBuilder::fill_parts() {
   }
 }
 
-/// The regions of one sign are copied inwards; between the copies and the others lies the part with the centre.
+/// Copies the regions of one sign inwards. The remaining part, between the copies and the other regions, holds the
+/// centre and is coned.
 void PieceBuilder::fill_around_centre(std::uint32_t part) {
   around_.clear();
   for (const Region& region : regions_) {
@@ -331,7 +339,7 @@ void PieceBuilder::fill_around_centre(std::uint32_t part) {
   if (with_parts_) ball(around_, VertexKind::centre, side(centre_high_));
 }
 
-/// Dimension 2: a run of corners of one sign is cut off by the segment between its ends.
+/// Dimension 2: the segment between the ends of a run of corners of one sign cuts it off.
 void PieceBuilder::cut_corner(const Region& region) {
   Simplex segment = kNoSimplex;
   Simplex ends[2];
@@ -352,12 +360,14 @@ void PieceBuilder::cut_corner(const Region& region) {
   ball(original_, VertexKind::centre, side(region.high));
 }
 
-/// The copy keeps the vertices of Sigma that it bounds and has new ones else. Between region and copy lies a prism
-/// over each simplex, pinched where vertices are kept. From a region with a cap there are two prisms, one upon the
-/// other: a single one had edges from the cap to the copy, and the contour, which has both, were not full in the part.
+/// The copy keeps the vertices of the components of Sigma that it bounds; all other vertices are new. Between region
+/// and copy lies one prism per simplex, degenerate at the kept vertices. If the region has a cap, two prisms are
+/// stacked: a single one would have edges from the cap to the copy. Both belong to the contour, which would then not be
+/// a full subcomplex of the part.
 void PieceBuilder::copy_inwards(const Region& region) {
   original_.clear();
   capped(region, original_);
+  // boundary of the copy: the components without a cap
   unsorted_.clear(), unsorted_sign_.clear();
   bool has_cap = false;
   for (const std::uint32_t c : region.around) {
@@ -373,6 +383,7 @@ void PieceBuilder::copy_inwards(const Region& region) {
   image_.assign(owner_.size(), kNoVertex);
   for (const VertexId v : found_) image_[v] = v;
   between_ = image_;
+  // copy of each simplex, and the prisms below it
   const auto begin = static_cast<std::uint32_t>(piece_->contour.size());
   for (const Simplex& s : original_) {
     Simplex copy = image(s, image_, VertexKind::side);
@@ -389,7 +400,7 @@ void PieceBuilder::copy_inwards(const Region& region) {
   orient(begin, euler, Filling::side, unsorted_, unsorted_sign_);
 }
 
-/// The simplex of the images, not sorted; those that are missing are made.
+/// The simplex of the images, unsorted. Creates missing images.
 Simplex PieceBuilder::image(const Simplex& simplex, std::vector<VertexId>& images, VertexKind kind) {
   Simplex result = simplex;
   for (int i = 0; i < kMaxVertices && simplex[i] != kNoVertex; ++i) {
@@ -400,7 +411,7 @@ Simplex PieceBuilder::image(const Simplex& simplex, std::vector<VertexId>& image
   return result;
 }
 
-/// Between two simplices whose vertices correspond, in the order of the vertices.
+/// Adds the prism between two corresponding simplices, triangulated in vertex order.
 void PieceBuilder::add_prism(const Simplex& from, const Simplex& to, Simplices& part) {
   for (int i = 0; i + 1 < kMaxVertices && from[i] != kNoVertex; ++i) {
     if (from[i] == to[i]) continue;
@@ -411,8 +422,8 @@ void PieceBuilder::add_prism(const Simplex& from, const Simplex& to, Simplices& 
   }
 }
 
-/// Signs for the facet of the contour's simplices from `begin` on: one at Sigma agrees with it, two that share a face
-/// induce opposite ones.
+/// Orients the facet that consists of the contour's simplices from `begin` on. One simplex at Sigma takes its sign from
+/// Sigma; simplices that share a face induce opposite signs on it.
 void PieceBuilder::orient(std::uint32_t begin, int boundary_euler, Filling filling, std::span<const Simplex> bounds,
                           std::span<const std::int8_t> bounds_sign) {
   const std::span<const Simplex> simplices = std::span(piece_->contour).subspan(begin);
@@ -425,6 +436,7 @@ void PieceBuilder::orient(std::uint32_t begin, int boundary_euler, Filling filli
   };
   piece_->sign.resize(piece_->contour.size(), 0);
   std::int8_t* const sign = piece_->sign.data() + begin;
+  // first simplex with a face on Sigma
   all_.clear();
   for (std::uint32_t j = 0; j < simplices.size() && all_.empty(); ++j)
     for (std::size_t i = 0; i < width && all_.empty(); ++i) {
@@ -435,6 +447,7 @@ void PieceBuilder::orient(std::uint32_t begin, int boundary_euler, Filling filli
       sign[j] = static_cast<std::int8_t>(bounds_sign[static_cast<std::size_t>(at - bounds.begin())] * induced(j, face));
       all_.push_back(j);
     }
+  // propagate the sign to the neighbours
   for (std::size_t k = 0; k < all_.size(); ++k)
     for (std::size_t i = 0; i < width; ++i) {
       const std::uint32_t j = all_[k], n = adjacency_.neighbour(j, i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is built in one face of a tile, in a numbering of the face's own: equal faces have equal pieces, so that a piece
-// is built once and carried to wherever its face is found.
+// The piece of one face of a tile: its contour, high part and low part, in the face's own vertex numbering. Equal faces
+// have equal pieces, so a piece is built once and renumbered for each use.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@
 
 namespace tegl::facets {
 
-/// A vertex of a piece that is in none of the face's own faces. Vertices are numbered by the face's faces, in the
-/// lattice's order, the face itself last; within each in the order in which they were made.
+/// A vertex of a piece that lies in no proper face of the face. Vertices are ordered by the face that owns them, in the
+/// lattice's order, the face itself last; within one face in order of creation.
 struct OwnVertex {
   VertexKind kind = VertexKind::corner;
   std::uint32_t number = 0;
   VertexId copied = kNoVertex;
-  std::uint32_t of_begin = 0, of_end = 0;  ///< in Piece::of
+  std::uint32_t of_begin = 0, of_end = 0;  ///< range in Piece::of
 };
 
 struct PieceFacet {
   Filling filling = Filling::simplex;
   int boundary_euler = 0;
-  std::uint32_t begin = 0, end = 0;  ///< in Piece::contour
+  std::uint32_t begin = 0, end = 0;  ///< range in Piece::contour
 };
 
-/// Vertices of simplices ascend.
+/// Contour, high part and low part of one face. The vertices of every simplex ascend.
 struct Piece {
   std::vector<OwnVertex> own{};
   Simplices of{};
@@ -42,7 +42,7 @@ struct Piece {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Disjoint sets of vertices.
+/// Disjoint sets of vertices (union-find).
 class VertexSets {
  public:
   void reset(std::size_t vertices);
@@ -53,39 +53,40 @@ class VertexSets {
   std::vector<VertexId> parent_;
 };
 
-/// Builds the piece of a face from those of its own faces. Its memory is kept from use to use.
+/// Builds the piece of a face from the pieces of its own faces. Reuses its memory.
 class PieceBuilder {
  public:
-  /// For each face of the lattice the faces it has, of every dimension, ascending, itself last.
+  /// Per face of the lattice: all its faces, of every dimension, ascending, itself last.
   using Closures = std::vector<std::vector<std::uint32_t>>;
 
   PieceBuilder(const FaceLattice& lattice, const Closures& closures) : lattice_(&lattice), closures_(&closures) {}
 
-  /// `pieces`: those of all lower faces. `with_parts`: high and low part as well as the contour.
+  /// `pieces`: the pieces of all lower faces. `with_parts`: also builds the high and the low part, not only the
+  /// contour.
   void build(std::uint32_t face, std::span<const Piece* const> pieces, Choice choice, Alternative alternative,
              bool with_parts, Piece& piece);
 
-  // Of the face built last.
-  /// Sigma, by components, and its signs.
+  // Results for the last face built.
+  /// Sigma, ordered by components, and its signs.
   [[nodiscard]] const Simplices& sigma() const { return sigma_; }
   [[nodiscard]] const std::vector<std::int8_t>& sigma_sign() const { return sigma_sign_; }
   /// Euler characteristics of Sigma's components.
   void euler_characteristics(std::vector<int>& result);
-  /// Writes to `map` the face's numbers of the vertices of one of its faces.
+  /// Writes to `map` the numbers, in the last face built, of the vertices of `face`.
   void number(std::uint32_t face, std::vector<VertexId>& map) const;
 
  private:
   /// A component of Sigma.
   struct Component {
-    std::uint32_t begin = 0, end = 0;          ///< in sigma_
-    std::uint32_t region[2] = {0, 0};          ///< beside it: low, high
-    std::uint32_t cap_begin = 0, cap_end = 0;  ///< in the piece's contour, if it is coned
+    std::uint32_t begin = 0, end = 0;          ///< range in sigma_
+    std::uint32_t region[2] = {0, 0};          ///< the adjacent regions: low, high
+    std::uint32_t cap_begin = 0, cap_end = 0;  ///< its cone or simplex in the piece's contour, if any
     [[nodiscard]] bool coned() const { return cap_end > cap_begin; }
   };
   /// A component of the high or the low part of the face's boundary.
   struct Region {
     bool high = false;
-    std::uint32_t begin = 0, end = 0;  ///< in sides_[high]
+    std::uint32_t begin = 0, end = 0;  ///< range in sides_[high]
     std::vector<std::uint32_t> around{};
     std::uint32_t part = 0;
   };
@@ -121,21 +122,21 @@ class PieceBuilder {
   const Closures* closures_;
   std::span<const Piece* const> pieces_;
 
-  // Of the face at hand.
+  // State of the current face.
   std::uint32_t face_ = 0;
   bool with_parts_ = false;
   bool centre_high_ = false;
   Piece* piece_ = nullptr;
   std::uint32_t next_number_ = 0, next_centre_ = 0;
-  std::vector<VertexId> base_;        ///< by face of the lattice: its first own vertex
-  std::vector<std::uint32_t> owner_;  ///< by vertex: the face that has it
+  std::vector<VertexId> base_;        ///< by face of the lattice: number of its first own vertex
+  std::vector<std::uint32_t> owner_;  ///< by vertex: the face that owns it
   Simplices sigma_;
   std::vector<std::int8_t> sigma_sign_;
   std::vector<Component> components_;
-  Simplices sides_[2];  ///< low and high part of the boundary, by regions
+  Simplices sides_[2];  ///< low and high part of the boundary, ordered by regions
   std::vector<Region> regions_;
 
-  // Scratch.
+  // Scratch memory.
   VertexSets sets_;
   std::vector<VertexId> map_, found_, image_, between_;
   std::vector<std::uint32_t> group_, mark_, start_;

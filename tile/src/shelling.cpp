@@ -14,7 +14,8 @@ void SimplexMap::clear(std::size_t entries) {
     slots_.assign(std::max(needed, slots_.size()), Slot{0, 0, kNone});
     epoch_ = 0;
   }
-  // A small complex after a large one shall not walk through the large one's memory.
+  // The mask limits probing to the current size: a small complex after a large one does not scatter over the large
+  // table.
   mask_ = std::bit_ceil(2 * entries + 16) - 1;
   ++epoch_;
 }
@@ -55,7 +56,7 @@ Shape Shelling::shape(std::span<const Simplex> simplices, const Adjacency& adjac
   for (const std::uint32_t m : members)
     for (std::size_t i = 0; i < adjacency.vertices_per_simplex(); ++i)
       if (simplices[m][i] != apex) closed &= other_side(m, i) != Adjacency::kNone;
-  // In dimension 1 and 2 the first try decides.
+  // In dimensions 1 and 2 the first try is conclusive.
   const unsigned tries = own <= 3 ? 1 : 6;
   bool shelled = false;
   for (unsigned seed = 0; seed < tries && !shelled; ++seed) shelled = one_try(members, seed, closed);
@@ -63,7 +64,7 @@ Shape Shelling::shape(std::span<const Simplex> simplices, const Adjacency& adjac
   return !shelled ? Shape::other : closed ? Shape::sphere : Shape::ball;
 }
 
-/// kNone if that is no member.
+/// Returns kNone if the neighbour is not a member.
 std::uint32_t Shelling::other_side(std::uint32_t simplex, std::size_t vertex) const {
   const std::uint32_t n = adjacency_->neighbour(simplex, vertex);
   return n != Adjacency::kNone && state_[n] != State::outside ? n : Adjacency::kNone;
@@ -82,6 +83,7 @@ bool Shelling::one_try(std::span<const std::uint32_t> members, unsigned seed, bo
     if (seed != 0) std::swap(queue_[head], queue_[head + random() % (queue_.size() - head)]);
     const std::uint32_t m = queue_[head];
     if (state_[m] == State::done) continue;
+    // shared faces with taken simplices, and neighbours still waiting
     unsigned shared = 0;
     std::uint32_t waiting[kMaxVertices];
     std::size_t waiting_count = 0;
@@ -96,14 +98,14 @@ bool Shelling::one_try(std::span<const std::uint32_t> members, unsigned seed, bo
     }
     if (taken != 0 && !fits(m, shared, closed && taken + 1 == members.size())) continue;
     take(m), ++taken;
-    // Those that did not fit are tried again whenever they share one face more.
+    // A simplex that does not fit is queued again whenever a further neighbour is taken.
     queue_.insert(queue_.end(), waiting, waiting + waiting_count);
   }
   return taken == members.size();
 }
 
-/// The simplex meets those taken in the faces opposite to the vertices `shared`, and in nothing else, if and only if
-/// the face that these vertices span is not taken.
+/// The simplex meets the taken ones exactly in the faces opposite to the vertices `shared` if and only if the face
+/// spanned by these vertices is not in a taken simplex.
 bool Shelling::fits(std::uint32_t simplex, unsigned shared, bool last) const {
   const std::size_t width = adjacency_->vertices_per_simplex();
   const std::size_t own = width - (apex_ == kNoVertex ? 0 : 1);
@@ -137,7 +139,7 @@ void Shelling::take_large_faces(std::uint32_t simplex) {
     std::uint64_t hash = 0;
     for (int i = 0; i < own; ++i)
       if (((face >> i) & 1u) != 0) hash += hashes[i], ++count;
-    // `fits` never asks for others.
+    // `fits` needs no other sizes.
     if (count >= 2 && count <= own - 2) used_.at(hash, [](std::uint32_t) { return true; }).value = 0;
   }
 }

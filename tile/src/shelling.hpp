@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which simplices of a complex meet in a face of codimension one, and shellings: an order of the simplices in which
-// each meets those before it in a ball. A shellable complex without branching is a PL ball or sphere (G. Danaraj and
-// V. Klee, Shellings of spheres and polytopes, 1974), and on balls and spheres of dimension 2 no order runs into a
-// dead end (Danaraj and Klee, Which spheres are shellable?, 1978).
+// Adjacency of simplices through their faces of codimension one, and shellings: orders of the simplices in which each
+// one meets the union of its predecessors in a ball. A shellable complex without branching is a PL ball or sphere (G.
+// Danaraj and V. Klee, Shellings of spheres and polytopes, 1974). On balls and spheres of dimension 2 every partial
+// shelling can be completed (Danaraj and Klee, Which spheres are shellable?, 1978).
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 
 namespace tegl::facets {
 
-/// A hash of a set of vertices: the sum of one number per vertex, so that one vertex more or less is one addition.
+/// Hash of a set of vertices: the sum of one number per vertex, so that adding or removing a vertex is one addition.
 inline std::uint64_t vertex_hash(VertexId vertex) noexcept {
-  // The finaliser of splitmix64: sums of its values behave like random ones.
+  // The finaliser of splitmix64; sums of its values behave like random numbers.
   std::uint64_t x = (vertex + std::uint64_t{1}) * 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -29,18 +29,18 @@ inline std::uint64_t vertex_hash(const Simplex& simplex) noexcept {
   return sum;
 }
 
-/// Numbers of simplices by their vertices: open addressing, its memory kept from use to use.
+/// Hash map from simplices to numbers. Open addressing; reuses its memory.
 class SimplexMap {
  public:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  /// Empties it and makes room for so many entries.
+  /// Removes all entries and reserves room for `entries`.
   void clear(std::size_t entries);
   struct Slot {
     std::uint64_t hash;
     std::uint32_t epoch;
     std::uint32_t value;
   };
-  /// The slot of the first entry with this hash for which `equal(value)` holds, else a new one with kNone.
+  /// Returns the slot with this hash for which `equal(value)` holds, or a new slot with the value kNone.
   template <class Equal>
   Slot& at(std::uint64_t hash, const Equal& equal) {
     for (std::size_t i = (hash >> 20) & mask_;; i = (i + 1) & mask_) {
@@ -64,14 +64,14 @@ class SimplexMap {
   std::uint32_t epoch_ = 0;
 };
 
-/// For each simplex and each of its vertices, the simplex on the other side of the face opposite to that vertex.
+/// For each simplex and vertex: the simplex on the other side of the face opposite to that vertex.
 class Adjacency {
  public:
   static constexpr std::uint32_t kNone = SimplexMap::kNone;
-  /// Simplices of equal size, their vertices sorted. False if a face of codimension one is in more than two.
+  /// Simplices have equal sizes and sorted vertices. Returns false if a face of codimension one lies in more than two.
   bool build(std::span<const Simplex> simplices);
   [[nodiscard]] std::size_t vertices_per_simplex() const { return width_; }
-  /// kNone: no other simplex.
+  /// Number of the adjacent simplex, or kNone.
   [[nodiscard]] std::uint32_t neighbour(std::size_t simplex, std::size_t vertex) const {
     return neighbours_[simplex * width_ + vertex];
   }
@@ -82,11 +82,11 @@ class Adjacency {
   SimplexMap open_;
 };
 
-/// Searches for shellings. Its memory is kept from use to use.
+/// Searches for shellings. Reuses its memory.
 class Shelling {
  public:
-  /// The shape of the link of `apex` in a complex without branching, or with kNoVertex that of the complex itself.
-  /// `members`: the simplices with that vertex, or all. `other`: no shelling found in some seeded tries.
+  /// The shape of the link of `apex` in a complex without branching; with kNoVertex, the shape of the complex itself.
+  /// `members`: the simplices that contain `apex`, or all. `other`: none of a few seeded tries found a shelling.
   Shape shape(std::span<const Simplex> simplices, const Adjacency& adjacency, std::span<const std::uint32_t> members,
               VertexId apex);
 
@@ -103,8 +103,9 @@ class Shelling {
   VertexId apex_ = kNoVertex;
   std::vector<State> state_;
   std::vector<std::uint32_t> queue_;
-  // Faces of those taken. Larger ones by hash alone: one too many can only make a try fail.
-  std::vector<std::uint32_t> used_vertex_;  ///< by vertex: the try that took it last
+  // Faces of the simplices taken. Larger faces are stored by hash only: a collision can make a try fail, but never
+  // succeed wrongly.
+  std::vector<std::uint32_t> used_vertex_;  ///< by vertex: the last try that took it
   std::uint32_t try_ = 0;
   SimplexMap used_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The recursion of the certificate over the faces of a tile. Contours are compared by a digest of their vertices'
-// names: the face, the kind and the number, which do not depend on the tile.
+// The recursion of the certificate over the faces of a tile. Contours are compared by a digest of vertex names. A name
+// is made of face, kind and number, which do not depend on the tile.
 #include "tegl/facets/tile_certifier.hpp"
 
 #include <bit>
@@ -29,7 +29,7 @@ std::uint64_t name(std::uint32_t face, const Vertex& vertex) {
              0x9e3779b97f4a7c15u);
 }
 
-/// The lattice of a face, its corners renumbered in their order.
+/// The lattice of a face, its corners renumbered in ascending order.
 FaceLattice lattice_of(const FaceLattice& lattice, const Face& face) {
   const std::vector<int> corners = corner_list(face.corners);
   std::vector<Signature> maximal;
@@ -66,8 +66,8 @@ class TileCertifier::Impl {
  private:
   struct Below {
     std::vector<int> corners;
-    std::vector<std::uint32_t> faces;   ///< of this face, in the tile's numbers
-    std::vector<std::uint32_t> number;  ///< by face of the tile: its number in this face
+    std::vector<std::uint32_t> faces;   ///< its faces, by the tile's numbers
+    std::vector<std::uint32_t> number;  ///< by face of the tile: its number in this lattice
     std::size_t shape;
   };
 
@@ -89,12 +89,13 @@ class TileCertifier::Impl {
     const Below& below = below_[j];
     const Simplices& contour = tile_->in_face[j];
     const Signature own = compressed(signature, below.corners);
-    if (lattice().dim() == 2) {  // an edge: a point, positive if the second end is high, where its ends differ
+    if (lattice().dim() == 2) {  // an edge has a point if its ends differ: positive if the second end is high
       const bool differ = std::popcount(own) == 1;
       const bool right =
           contour.size() == (differ ? 1u : 0u) && (!differ || tile_->in_face_sign[j][0] == (own == 2 ? 1 : -1));
       return right ? Fault::none : Fault::sigma;
     }
+    // choices and digest of the contour in this face
     choices_.clear();
     if (!resolution.choices.empty())
       for (const std::uint32_t g : below.faces) choices_.push_back(resolution.choices[g]);
@@ -109,7 +110,7 @@ class TileCertifier::Impl {
     return fault != Fault::none ? fault : digest == expected ? Fault::none : Fault::sigma;
   }
 
-  /// The tile of this lattice by itself: its fault, and the digest of its contour.
+  /// Certifies the tile of this lattice on its own. Returns its fault and the digest of its contour.
   std::pair<Fault, std::uint64_t> alone(Signature signature, const Resolution& resolution) {
     if (lattice().dim() > kRememberedDim || lattice().faces().size() > 32) return alone_anew(signature, resolution);
     std::uint64_t key = resolution.alternative == Alternative::high ? 1 : 0;
@@ -140,8 +141,8 @@ class TileCertifier::Impl {
   Build build_;  ///< empty: builder_
   Certifier certifier_;
   const TileFacets* tile_ = nullptr;
-  std::vector<Below> below_;                   ///< by face of codimension one
-  std::vector<std::unique_ptr<Impl>> shapes_;  ///< the different lattices of these
+  std::vector<Below> below_;                   ///< one per face of codimension one
+  std::vector<std::unique_ptr<Impl>> shapes_;  ///< their distinct lattices
   std::vector<Choice> choices_;
   std::unordered_map<std::uint64_t, std::uint64_t> remembered_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Orientations of frames (private to the generator).
+// Floating-point determinant for orientations of frames (private to the generator).
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace tegl::gen {
 
-/// The determinant of the first n rows and columns.
+/// Determinant of the leading n x n submatrix, by Gaussian elimination with pivoting.
 inline double determinant(std::array<std::array<double, 4>, 4> m, int n) {
   double det = 1;
   for (int c = 0; c < n; ++c) {

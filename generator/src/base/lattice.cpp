@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles of every dimension by their kind: corners, edges, and the faces as tiles of one dimension less.
+// Builds the tiles of every kind and dimension: corners, edges, and faces as tiles of one dimension less.
 #include "base/lattice.hpp"
 
 #include <stdexcept>
@@ -65,7 +65,7 @@ Coordinates centre_of(const std::vector<Coordinates>& corners, const std::vector
   return sum;
 }
 
-/// Adds the pairs of corners for which `joined` holds as edges.
+/// Adds every pair of corners for which `joined` holds as an edge.
 template <class Joined>
 void add_edges(Tile& tile, const Joined& joined) {
   for (std::uint8_t a = 0; a < tile.corner_count(); ++a)
@@ -76,8 +76,7 @@ void add_edges(Tile& tile, const Joined& joined) {
       }
 }
 
-/// Adds the simplex with these corners, ascending, as a face. Its sign is that of its own frame behind the outward
-/// normal.
+/// Adds the simplex with these ascending corners as a face. Its sign is the orientation of (outward normal, own frame).
 void add_face(Tile& tile, const Tile* face, std::vector<std::uint8_t> corner) {
   std::vector<std::uint8_t> all;
   for (std::uint8_t v = 0; v < tile.corner_count(); ++v) all.push_back(v);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tiles as face lattices. A tile knows its corners, its edges, and its faces of codimension one as tiles of
-// their own, each with its embedding and its sign in the boundary. The recursion over dimension in
-// filling/ needs nothing else, so it serves any polytope that can be described so.
+// Tiles as face lattices. A tile holds its corners, its edges, and its faces of codimension one as tiles with their
+// embedding and their sign in the boundary. The recursion over dimension in filling/ uses only these data, so it works
+// for any polytope described this way.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ using Signature = std::uint32_t;
 
 struct Tile;
 
-/// What a tile is. All of a lattice's lower tiles follow from it: the faces of cubes are cubes, those of simplices and
-/// of the octahedron simplices.
+/// Shape of a tile. It determines all lower tiles of a lattice: faces of cubes are cubes; faces of simplices and of the
+/// octahedron are simplices.
 enum class TileKind { cube, simplex, octahedron };
 const char* tile_kind_name(TileKind kind) noexcept;  ///< "cube", "simplex", "octahedron"
 
@@ -31,20 +31,20 @@ struct SubTile {
   int sign;                          ///< incidence number in the tile's boundary, outward normal first
 };
 
-/// A tile of some dimension with all that is below it.
+/// A tile of some dimension.
 struct Tile {
   TileKind kind = TileKind::cube;                  ///< the kind of tile
-  int dim = 0;                                     ///< its dimension
-  std::vector<std::array<double, 4>> corners;      ///< coordinates; the first `dim` count
+  int dim = 0;                                     ///< dimension
+  std::vector<std::array<double, 4>> corners;      ///< coordinates; only the first `dim` are used
   std::vector<std::array<std::uint8_t, 2>> edges;  ///< from the end with coordinate 0 to the one with 1
   std::vector<std::string> edge_names;  ///< cubes: ternary, highest axis first, 'e' = free axis; else the two corners
   std::vector<SubTile> faces;           ///< codimension one; empty for dim 0
 
-  [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }  ///< how many
-  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }      ///< how many
+  [[nodiscard]] std::uint32_t corner_count() const { return static_cast<std::uint32_t>(corners.size()); }  ///< count
+  [[nodiscard]] std::uint32_t edge_count() const { return static_cast<std::uint32_t>(edges.size()); }      ///< count
   /// All corners.
   [[nodiscard]] Signature full() const { return ~Signature{0} >> (32 - corner_count()); }
-  /// The signature that `signature` leaves on face f.
+  /// The signature restricted to face f, in the numbering of the face's corners.
   [[nodiscard]] Signature restrict_to(std::uint32_t f, Signature signature) const;
 };
 
@@ -53,19 +53,19 @@ std::vector<std::uint8_t> edge_permutation(const Tile& tile, std::span<const std
 
 /// A tile of dimension n and the tiles of its faces, of every dimension down to 0. n <= 4; the octahedron has n = 3.
 ///
-/// Cubes are numbered as the table contract says. Simplices: corner 0 is the origin, corner i the unit point of axis
-/// i - 1; face i is the one without corner i. Octahedron: corner 2 a + side is the point -1 or +1 of axis a; face f has
-/// the corners 2 a + (f >> a & 1). Edges of both are the pairs (a, b), a < b, in ascending order, and their faces
+/// Cubes are numbered as in the table contract. Simplices: corner 0 is the origin, corner i the unit point of axis i -
+/// 1; face i lacks corner i. Octahedron: corner 2 a + side is the point -1 or +1 of axis a; face f has the corners 2 a
+/// + (f >> a & 1). Edges of simplices and octahedra are the pairs (a, b), a < b, in ascending order, and their faces
 /// keep the order of corners.
 class Lattice {
  public:
-  /// Throws std::invalid_argument for a dimension that the kind has not.
+  /// Throws std::invalid_argument if the kind does not exist in dimension n.
   Lattice(TileKind kind, int n);
   Lattice(const Lattice&) = delete;
   Lattice& operator=(const Lattice&) = delete;
 
-  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }                ///< the highest
-  [[nodiscard]] const Tile& tile(int k) const { return tiles_[static_cast<std::size_t>(k)]; }  ///< that of dimension k
+  [[nodiscard]] int dim() const { return static_cast<int>(tiles_.size()) - 1; }                ///< highest dimension
+  [[nodiscard]] const Tile& tile(int k) const { return tiles_[static_cast<std::size_t>(k)]; }  ///< of dimension k
 
  private:
   std::vector<Tile> tiles_;
@@ -74,7 +74,7 @@ class Lattice {
 /// The unit cubes of dimension 0 to n (n <= 4).
 class CubeLattice : public Lattice {
  public:
-  /// Cubes of dimension 0 to n.
+  /// Builds the cubes of dimension 0 to n.
   explicit CubeLattice(int n) : Lattice(TileKind::cube, n) {}
 };
 

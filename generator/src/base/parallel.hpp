@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work on all processors, in units of whole numbers.
+// A parallel loop over whole numbers on all processors.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,10 @@
 
 namespace tegl::gen {
 
-/// Calls `work(state, unit)` for units 0 ... count - 1, `chunk` of them at a time by one thread, each thread with a
-/// state of its own from `make_state()`; at the end `finish(state)`, one at a time. `threads`: 0 = one per processor.
-/// Of what `work` throws, that of the smallest unit is rethrown: chunks are taken in ascending order, and those that
+/// Calls `work(state, unit)` for the units 0 to count - 1. A thread takes `chunk` units at a time and has its own state
+/// from `make_state()`. At the end each thread calls `finish(state)`, one thread at a time. `threads`: 0 = one per
+/// processor. If several calls of `work` throw, the exception of the smallest unit is rethrown: chunks are taken in
+/// ascending order, and chunks already taken are finished.
 /// were taken are worked off.
 template <class MakeState, class Work, class Finish>
 void in_parallel(std::uint64_t count, std::uint64_t chunk, unsigned threads, const MakeState& make_state,
@@ -48,7 +49,7 @@ void in_parallel(std::uint64_t count, std::uint64_t chunk, unsigned threads, con
     std::vector<std::jthread> pool;
     try {
       for (unsigned t = 1; t < threads && t * chunk < count; ++t) pool.emplace_back(run);
-    } catch (const std::system_error&) {  // no more threads to be had: those that there are do the work
+    } catch (const std::system_error&) {  // no further threads available: the existing ones do the work
     }
     run();
   }

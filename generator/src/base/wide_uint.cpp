@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Schoolbook arithmetic on 32-bit limbs, carries in 64 bits.
+// Schoolbook arithmetic on 32-bit limbs with 64-bit carries.
 #include "base/wide_uint.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace tegl::gen {
 namespace {
 
 constexpr int kLimbBits = 32;
-constexpr std::uint64_t kNineDigits = 1'000'000'000;  ///< the largest power of ten that divide() takes
+constexpr std::uint64_t kNineDigits = 1'000'000'000;  ///< the largest power of ten that divide() accepts
 
 [[noreturn]] void overflow(const char* operation) {
   throw Error(ErrorCode::Internal,
@@ -52,7 +52,7 @@ WideUint& WideUint::operator+=(const WideUint& other) {
 }
 
 WideUint& WideUint::operator*=(std::uint64_t factor) {
-  // Two passes with 32-bit factors: x * factor = x * low + (x * high) shifted by one limb.
+  // Two passes with 32-bit factors: x * factor = x * low + (x * high shifted by one limb).
   const auto times = [](const WideUint& x, std::uint32_t small, std::size_t shift) {
     WideUint product;
     std::uint64_t carry = 0;
@@ -98,7 +98,7 @@ WideUint WideUint::exactly_divided_by(std::uint64_t divisor) const {
 }
 
 std::string WideUint::to_decimal() const {
-  std::vector<std::uint64_t> groups;  // of nine digits, least significant first
+  std::vector<std::uint64_t> groups;  // groups of nine digits, least significant first
   WideUint rest = *this;
   do {
     groups.push_back(rest.divide(kNineDigits));

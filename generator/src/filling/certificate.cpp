@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contours of the tables, put as what the certificate of tiles of any dimension takes.
+// Converts the contours of the tables to the form that facets::Certifier takes, for tiles of any dimension.
 #include "filling/certificate.hpp"
 
 #include <map>
@@ -25,13 +25,14 @@ TableCertifier::TableCertifier(const ContourBuilder& builder)
   const Tile& tile = builder.tile();
   const std::vector<facets::Face>& faces = lattice_.faces();
   const std::vector<std::uint32_t>& maximal = faces[lattice_.tile()].faces;
+  // the tile's number of each maximal face
   for (const std::uint32_t g : maximal)
     for (std::uint32_t f = 0; f < tile.faces.size(); ++f) {
       facets::Signature corners = 0;
       for (const std::uint8_t c : tile.faces[f].corner) corners |= facets::Signature{1} << c;
       if (corners == faces[g].corners) face_.push_back(f);
     }
-  // A local vertex lies in the smallest face that all of its maximal faces have in common.
+  // A local vertex lies in the smallest face common to all maximal faces that contain it.
   std::map<std::uint32_t, std::uint32_t> by_maximal;
   for (std::uint32_t g = 0; g < faces.size(); ++g) {
     std::uint32_t set = 0;
@@ -47,9 +48,11 @@ TableCertifier::TableCertifier(const ContourBuilder& builder)
 
 facets::Fault TableCertifier::certify(Signature signature, const TileContour& contour) {
   const int n = builder_.dim();
+  // the contour
   tile_.facets.assign(1, {});
   for (const Facet& facet : contour.facets)
     for (const Simplex& s : facet.simplices) tile_.facets[0].simplices.push_back(simplex_of(s, n));
+  // Sigma and the contours in the faces, from the builder
   tile_.sigma.clear(), tile_.sigma_sign.clear();
   const facets::Face& whole = lattice_.faces()[lattice_.tile()];
   for (std::size_t j = 0; j < face_.size(); ++j) {

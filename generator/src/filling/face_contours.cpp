@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sigma by recursion over dimension.
+// Sigma of a tile, assembled from the contours of its faces.
 #include "filling/face_contours.hpp"
 
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A tile with the contours of its faces: what is known of the tile's contour before Sigma is filled.
+// A tile with the contours of its faces: the input to filling Sigma.
 #pragma once
 
 #include <array>
@@ -11,28 +11,28 @@
 
 namespace tegl::gen {
 
-/// The contours of all faces of a tile, in the tile's numbers.
+/// The contours of all faces of a tile, in the tile's numbering.
 class FaceContours {
  public:
-  /// `of_faces`: the contour of every signature of the face's tile; empty for n = 1. The tile must outlive it.
+  /// `of_faces`: the contour of every signature of the face's tile; empty for n = 1. `tile` must outlive this object.
   FaceContours(const Tile& tile, Alternative alternative, Triangulation triangulation,
                std::vector<TileContour> of_faces);
 
-  [[nodiscard]] const Tile& tile() const { return *tile_; }                     ///< what is built
-  [[nodiscard]] int dim() const { return tile_->dim; }                          ///< of the tile
-  [[nodiscard]] Alternative alternative() const { return alternative_; }        ///< where squares are ambiguous
-  [[nodiscard]] Triangulation triangulation() const { return triangulation_; }  ///< how facets become simplices
+  [[nodiscard]] const Tile& tile() const { return *tile_; }                     ///< the tile
+  [[nodiscard]] int dim() const { return tile_->dim; }                          ///< dimension of the tile
+  [[nodiscard]] Alternative alternative() const { return alternative_; }        ///< resolution of ambiguous squares
+  [[nodiscard]] Triangulation triangulation() const { return triangulation_; }  ///< triangulation of facets
   /// Sign between the boundary of the contour and the lifted, signed contours of the faces.
   [[nodiscard]] int orientation() const { return orientation_; }
-  /// First local id of the tile's own vertices.
+  /// First local number of the tile's own vertices.
   [[nodiscard]] std::uint32_t own_base() const;
-  /// The contour of face f's own tile with the signature that it has under `signature`.
+  /// The contour of face f, as a tile of its own, for the restriction of `signature`.
   [[nodiscard]] const TileContour& face_contour(std::uint32_t f, Signature signature) const;
-  /// A local vertex of face f as a local vertex of the tile.
+  /// Converts a local vertex of face f to a local vertex of the tile.
   [[nodiscard]] std::uint8_t lift(std::uint32_t f, std::uint8_t vertex) const;
   /// The faces (bit f) that contain a local vertex; 0 for the tile's own vertices.
   [[nodiscard]] std::uint32_t faces_of(std::uint8_t vertex) const { return faces_of_[vertex]; }
-  /// A contour without facets: Sigma alone, which is the facets of all faces, lifted, with the signs of the boundary.
+  /// A contour without facets: only Sigma, the lifted facets of all faces with the signs of the boundary.
   [[nodiscard]] TileContour sigma(Signature signature) const;
 
  protected:
@@ -43,7 +43,7 @@ class FaceContours {
   Alternative alternative_;
   Triangulation triangulation_;
   int orientation_ = 1;                ///< sign that makes the positive side face high
-  std::vector<TileContour> contours_;  ///< of every signature one dimension lower
+  std::vector<TileContour> contours_;  ///< by signature of the tile of one dimension less
   std::array<std::uint32_t, 256> faces_of_{};
 };
 

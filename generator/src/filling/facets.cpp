@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The recursion over dimension, the contours of edges and polygons, and the orientation. How a component of the Sigma
-// of larger tiles is filled is in filling.cpp.
+// The recursion over dimension, the contours of edges and polygons, and the orientation. filling.cpp fills the
+// components of Sigma of larger tiles.
 #include "filling/facets.hpp"
 
 #include <array>
@@ -16,7 +16,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// The corners of a 2-tile in cyclic order: a ring walked along its edges.
+/// The corners of a 2-tile in cyclic order along its edges.
 std::vector<std::uint8_t> ring_of(const Tile& tile) {
   std::vector<std::uint8_t> ring{0};
   std::vector<bool> used(tile.edges.size(), false);
@@ -37,7 +37,7 @@ std::uint8_t edge_between(const Tile& tile, std::uint8_t a, std::uint8_t b) {
   throw std::logic_error("no edge between two corners of a ring");
 }
 
-/// Dimension 1: a critical edge has one point, signed like the boundary of its high part: + if the second end
+/// Dimension 1: a critical edge has one point. Its sign is that of the boundary of the high part: + if the second end
 /// is high.
 TileContour contour_of_edge(Signature signature) {
   TileContour result;
@@ -52,8 +52,8 @@ TileContour contour_of_edge(Signature signature) {
   return result;
 }
 
-/// Dimension 2 (section 6.2): each maximal run of high corners of the ring (low-connected: of low ones
-/// otherwise) is cut off by a segment between the two critical edges at its ends.
+/// Dimension 2 (section 6.2): each maximal run of high corners (low-connected; otherwise of low corners) is cut off by
+/// a segment between the critical edges at its ends.
 void cut_runs(const Tile& tile, Signature signature, Alternative alternative, TileContour& contour) {
   const auto ring = ring_of(tile);
   const std::size_t m = ring.size();
@@ -105,14 +105,14 @@ ContourBuilder::ContourBuilder(const Lattice& lattice, int n, Alternative altern
                    contours_of_faces(lattice, n, alternative, triangulation)) {
   if (n == 1) return;
   if (n >= 3 && triangulation == Triangulation::compact) hulls_ = std::make_unique<HullContours>(tile());
-  if (n == 4 && tile().kind == TileKind::cube) {  // a 4-simplex has no component that is no sphere
+  if (n == 4 && tile().kind == TileKind::cube) {  // 4-simplices have spherical components only
     const auto contours = contours_by_dimension(lattice, 3, Alternative::low, triangulation);
     side_regions_ = std::make_unique<SignatureRegions>(lattice, 3, contours, RegionStyle::cone);
   }
   find_orientation();
 }
 
-/// The contour around a single high corner is convex, so that one of its simplices fixes the sign for all.
+/// The contour around a single high corner is convex, so one of its simplices fixes the sign for all.
 void ContourBuilder::find_orientation() {
   const TileContour one = build(1);
   const Facet& facet = one.facets.at(0);
@@ -121,7 +121,7 @@ void ContourBuilder::find_orientation() {
   const auto on_edge = [&](std::uint8_t e, int i) {
     return 0.5 * (tile().corners[tile().edges[e][0]][i] + tile().corners[tile().edges[e][1]][i]);
   };
-  const auto midpoint = [&](std::uint8_t v, int i) {  // a barycentre: about the middle of the facet
+  const auto midpoint = [&](std::uint8_t v, int i) {  // a barycentre: approximately the middle of the facet
     if (v < tile().edge_count()) return on_edge(v, i);
     double sum = 0;
     for (const std::uint8_t e : facet.points) sum += on_edge(e, i);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Filling Sigma, component by component. A sphere is coned, from its barycentre (barycentric) or from one of
-// its own vertices (compact); a component of higher genus is filled by a copy of one side of the tile's
-// boundary. A simplex that lies in the tile's boundary must belong to Sigma's own triangulation, because the
-// neighbour may draw it too: that is what restricts the choice of chords and apexes below.
+// Fills Sigma component by component. A sphere is coned, from its barycentre (barycentric) or from one of its own
+// vertices (compact). A component of higher genus is filled by a copy of one side of the tile's boundary. A simplex in
+// the tile's boundary must belong to Sigma's own triangulation, because the neighbouring tile may contain it too. This
+// condition restricts the choice of chords and apexes below.
 //
 // Based on: M. Liversage, thesis, 1994, sections 8.1.18 and 10.1.3 (cones).
 #include "filling/filling.hpp"
@@ -29,7 +29,7 @@ struct Component {
   int euler = 0;
 };
 
-/// Disjoint sets over local vertices.
+/// Disjoint sets of local vertices (union-find).
 class VertexSets {
  public:
   VertexSets() { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -49,8 +49,9 @@ int euler_of(int vertices_per_simplex, const Component& c) {
   return vertices_per_simplex == 2 ? v - f : v - 3 * f / 2 + f;  // Sigma is closed: 3 F = 2 E
 }
 
-/// Components of Sigma by their smallest vertex; spheres first, so that cone vertices precede side vertices.
+/// Components of Sigma, ordered by smallest vertex; spheres first, so that cone vertices precede side vertices.
 std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary) {
+  // union-find over the vertices of each simplex
   VertexSets sets;
   for (const Simplex& s : boundary)
     for (int i = 1; i < n - 1; ++i) sets.join(s[0], s[i]);
@@ -62,6 +63,7 @@ std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary
   std::vector<std::uint8_t> roots(order);
   std::sort(roots.begin(), roots.end());
   roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  // number the components, then collect their simplices and vertices
   for (const std::uint8_t r : roots) {
     number[r] = static_cast<int>(components.size());
     components.emplace_back();
@@ -78,7 +80,7 @@ std::vector<Component> components_of(int n, const std::vector<Simplex>& boundary
   return components;
 }
 
-/// The closed polygon of a 3-tile's component, from its smallest vertex along its orientation.
+/// The polygon of a 3-tile's component, from its smallest vertex along its orientation.
 std::vector<std::uint8_t> cycle_of(const Component& c) {
   std::array<std::uint8_t, 256> next{};
   for (const Simplex& s : c.boundary) next[s[0]] = s[1];
@@ -88,9 +90,10 @@ std::vector<std::uint8_t> cycle_of(const Component& c) {
   return cycle;
 }
 
-/// Cuts a polygon by chords that do not lie in the tile's boundary: as a fan from its smallest vertex if that can be,
-/// else with the shortest chords (at the edges' midpoints; ties go to the first). A fan from the smallest vertex in
-/// every cube is what lets a convex facet of a 4-tile be coned from its own smallest vertex in turn.
+/// Triangulates a polygon by chords that do not lie in the tile's boundary: as a fan from its smallest vertex if its
+/// chords are allowed, else by chords of minimum total squared length (vertices at edge midpoints; ties go to the
+/// first). The fan from the smallest vertex in every cube allows a convex facet of a 4-tile to be coned from its own
+/// smallest vertex.
 class ChordTriangulation {
  public:
   ChordTriangulation(const FaceContours& faces, std::vector<std::uint8_t> polygon)
@@ -119,7 +122,7 @@ class ChordTriangulation {
   double chord(std::size_t i, std::size_t j) const {
     if (j == i + 1 || (i == 0 && j + 1 == polygon_.size())) return 0;  // a side
     const std::uint8_t a = polygon_[i], b = polygon_[j];
-    if ((faces_.faces_of(a) & faces_.faces_of(b)) != 0) return kForbidden;  // it would lie in a face
+    if ((faces_.faces_of(a) & faces_.faces_of(b)) != 0) return kForbidden;  // the chord would lie in a face
     const Tile& tile = faces_.tile();
     double sum = 0;
     for (int k = 0; k < tile.dim; ++k) {
@@ -153,8 +156,8 @@ class ChordTriangulation {
 };
 
 bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& cycle, Facet& facet) {
-  // Both orientations of a polygon must get the same triangles: start at the smallest vertex and walk
-  // towards the smaller neighbour; turn the triangles round where that was against the orientation.
+  // Both orientations of a polygon must get the same triangles: start at the smallest vertex, go towards its smaller
+  // neighbour, and reverse the triangles if that is against the orientation.
   std::vector<std::uint8_t> polygon(cycle);
   const bool turned = polygon.back() < polygon[1];
   if (turned) std::reverse(polygon.begin() + 1, polygon.end());
@@ -167,7 +170,7 @@ bool cut_by_chords(const FaceContours& faces, const std::vector<std::uint8_t>& c
   return !triangles.empty();
 }
 
-/// The cone from one of the component's own vertices: over all simplices that do not contain it.
+/// The cone from one of the component's own vertices over all simplices that do not contain it.
 std::vector<Simplex> pulled_cone(const Component& c, std::uint8_t apex) {
   std::vector<Simplex> cone;
   for (const Simplex& s : c.boundary)
@@ -199,7 +202,7 @@ std::vector<Simplex> cone(int n, const Component& c, std::uint8_t apex) {
 
 using SignedFace = std::pair<Simplex, int>;
 
-/// A simplex with ascending vertices and the sign of the permutation.
+/// The simplex with ascending vertices, and the sign of the permutation.
 SignedFace sorted_face(Simplex s, int count) {
   int sign = 1;
   for (int i = 1; i < count; ++i)
@@ -231,7 +234,7 @@ bool is_bounded_by(int n, const std::vector<Simplex>& simplices, const std::vect
   });
 }
 
-/// The part of the hull's contour that a component bounds, if it bounds one.
+/// Takes the part of the hull's contour that the component bounds. Returns false if there is none.
 bool take_from_hull(int n, const std::vector<Simplex>& hull, const Component& c, Facet& facet) {
   std::vector<Simplex> part;
   for (const Simplex& s : hull) {
@@ -239,14 +242,14 @@ bool take_from_hull(int n, const std::vector<Simplex>& hull, const Component& c,
       return std::binary_search(c.vertices.begin(), c.vertices.end(), v);
     });
     if (inside == n) part.push_back(s);
-    if (inside != 0 && inside != n) return false;  // the hull joins what the rule keeps apart
+    if (inside != 0 && inside != n) return false;  // the hull joins components that the rule keeps separate
   }
   if (!is_bounded_by(n, part, c.boundary)) return false;
   facet.simplices = std::move(part);
   return true;
 }
 
-/// The corners of `inside` that are joined with `corner` by edges and by the diagonals of squares.
+/// The corners of `inside` connected with `corner` by edges and diagonals of squares.
 Signature joined_with(const Tile& tile, Signature inside, std::uint8_t corner) {
   const auto near = [&](std::uint32_t a, std::uint32_t b) {
     int distance = 0;
@@ -266,8 +269,8 @@ Signature joined_with(const Tile& tile, Signature inside, std::uint8_t corner) {
   return reached;
 }
 
-/// Fills a component from the hull of the side that the alternative joins; where that hull joins more than the rule
-/// does, from the hull of the component's own part of that side.
+/// Fills a component from the hull of the side that the alternative joins. If that hull joins more than the rule does,
+/// uses the hull of the component's own part of that side.
 bool fill_from_hull(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
                     Facet& facet) {
   const Tile& tile = faces.tile();
@@ -277,7 +280,7 @@ bool fill_from_hull(const FaceContours& faces, const HullContours& hulls, Signat
   const Signature own = joined_with(tile, inside, ((inside >> a) & 1u) != 0 ? a : b);
   for (const Signature corners : {inside, own}) {
     auto hull = hulls.contour(corners);
-    if (!low)  // out of the hull is towards low
+    if (!low)  // the hull's outside is the low side
       for (Simplex& s : hull) std::swap(s[tile.dim - 1], s[tile.dim - 2]);
     if (take_from_hull(tile.dim, hull, c, facet)) return true;
   }
@@ -293,7 +296,7 @@ std::uint32_t facets_around(const FaceContours& faces, Signature signature, cons
   return count;
 }
 
-/// A component that is a simplex's boundary is filled by that simplex.
+/// Fills a component with one simplex if it is that simplex's boundary.
 bool fill_simplex(int n, const Component& c, Facet& facet) {
   if (c.vertices.size() != static_cast<std::size_t>(n)) return false;
   facet.simplices = n == 3 ? std::vector{Simplex{facet.points[0], facet.points[1], facet.points[2]}}
@@ -301,9 +304,10 @@ bool fill_simplex(int n, const Component& c, Facet& facet) {
   return true;
 }
 
-/// Orients tetrahedra that fill a component so that its triangles are their boundary.
+/// Orients tetrahedra that fill a component so that the component is their oriented boundary. Propagates signs over
+/// shared triangles.
 std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& c) {
-  std::map<Simplex, int> known;  // triangles by ascending vertices, with the sign that a tetrahedron on them needs
+  std::map<Simplex, int> known;  // triangle (ascending vertices) -> sign that a tetrahedron on it needs
   for (const Simplex& s : c.boundary) {
     const auto [key, sign] = sorted_face({s[0], s[1], s[2], 0}, 3);
     known[key] = sign;
@@ -324,7 +328,7 @@ std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& 
         if (found != known.end() && sign == 0) sign = found->second * faces[drop].second;
       }
       if (sign == 0) return false;
-      for (const auto& [face, own] : faces) known.try_emplace(face, -sign * own);  // for the one on the other side
+      for (const auto& [face, own] : faces) known.try_emplace(face, -sign * own);  // for the other side
       result.push_back(t);
       if (sign < 0) std::swap(result.back()[2], result.back()[3]);
       return true;
@@ -334,8 +338,8 @@ std::vector<Simplex> oriented(std::vector<Simplex> tetrahedra, const Component& 
   return result;
 }
 
-/// Fills without adding a vertex: from the hull, or as a cone from one of the component's own vertices (a polygon: by
-/// chords), whichever needs fewer simplices.
+/// Fills a component with few simplices: from the hull, as a cone from one of its own vertices (a polygon: by chords),
+/// or by a shelling, whichever gives the fewest. The shelling may add one cone vertex.
 bool fill_compact(const FaceContours& faces, const HullContours& hulls, Signature signature, const Component& c,
                   std::uint8_t own_vertex, Facet& facet) {
   Facet other;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Filling the components of Sigma (private to the generator).
+// Fills the components of Sigma (private to the generator).
 #pragma once
 
 #include "filling/face_contours.hpp"
@@ -10,10 +10,10 @@
 
 namespace tegl::gen {
 
-/// What fillings are taken from, beside Sigma.
+/// Auxiliary data for fillings, besides Sigma.
 struct FillingSources {
-  const HullContours* hulls = nullptr;             ///< of the tile; needed for compact contours
-  const SignatureRegions* side_regions = nullptr;  ///< of the tile's faces; needed for 4-cubes
+  const HullContours* hulls = nullptr;             ///< hulls of the tile; required for compact contours
+  const SignatureRegions* side_regions = nullptr;  ///< regions of the tile's faces; required for 4-cubes
 };
 
 /// Appends one facet per component of contour.boundary, for tiles of dimension 3 and 4.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hulls in exact integer arithmetic. A hyperplane through n of the midpoints that has all points on one side holds a
-// facet; the hyperplanes are few and the same for all signatures. Edge midpoints of a cube are in convex position and
-// no three are collinear, so a face of the hull is known by its set of vertices, and faces of faces are intersections.
+// Convex hulls in exact integer arithmetic. A hyperplane through n edge midpoints with all points on one side contains
+// a facet. The hyperplanes are few and the same for all signatures. Edge midpoints of a cube are in convex position and
+// no three are collinear, so a set of vertices identifies a face of the hull, and intersections of these sets give the
+// faces of faces.
 //
-// Based on: P. Bhaniramka, R. Wenger and R. Crawfis, Isosurface construction in any dimension using convex hulls,
-// 2004 (the hull); C. Lee, Regular triangulations of convex polytopes, 1991 (pulling).
+// Based on: P. Bhaniramka, R. Wenger and R. Crawfis, Isosurface construction in any dimension using convex hulls, 2004
+// (the hull); C. Lee, Regular triangulations of convex polytopes, 1991 (pulling).
 #include "filling/hull.hpp"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace {
 
 using Point = std::array<int, 4>;
 
-/// The determinant of the first n rows and columns, exactly (E. Bareiss, 1968: all divisions are without rest).
+/// Determinant of the leading n x n submatrix, exact (E. Bareiss, 1968: all divisions are without remainder).
 int determinant(std::array<Point, 4> m, int n) {
   int sign = 1, previous = 1;
   for (int k = 0; k + 1 < n; ++k) {
@@ -37,7 +38,7 @@ int determinant(std::array<Point, 4> m, int n) {
 
 int dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
 
-/// Number of affinely independent points, by elimination without division.
+/// Number of affinely independent points, by division-free elimination.
 int affine_rank(const std::vector<Point>& points) {
   std::vector<Point> rows;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -82,8 +83,9 @@ HullContours::HullContours(const Tile& tile) : tile_(tile) {
   add_hyperplanes(chosen);
 }
 
-/// All hyperplanes through n midpoints but the tile's faces, each once.
+/// Adds all hyperplanes through n midpoints, each once, except the hyperplanes of the tile's faces.
 void HullContours::add_hyperplanes(std::vector<std::uint8_t>& chosen) {
+  // choose n midpoints by recursion
   if (static_cast<int>(chosen.size()) < tile_.dim) {
     for (std::size_t e = chosen.empty() ? 0 : chosen.back() + std::size_t{1}; e < midpoints_.size(); ++e) {
       chosen.push_back(static_cast<std::uint8_t>(e));
@@ -92,6 +94,7 @@ void HullContours::add_hyperplanes(std::vector<std::uint8_t>& chosen) {
     }
     return;
   }
+  // skip dependent points, the tile's faces and known hyperplanes
   Edges set = 0;
   for (const std::uint8_t e : chosen) set |= Edges{1} << e;
   const auto covers = [set](Edges face) { return (set & ~face) == 0; };
@@ -99,6 +102,7 @@ void HullContours::add_hyperplanes(std::vector<std::uint8_t>& chosen) {
   if (normal == Point{} || std::any_of(tile_faces_.begin(), tile_faces_.end(), covers) ||
       std::any_of(hyperplanes_.begin(), hyperplanes_.end(), [&](const Hyperplane& h) { return covers(h.on); }))
     return;
+  // classify all midpoints and corners
   Hyperplane plane{normal};
   const int level = dot(normal, midpoints_[chosen[0]]);
   for (std::size_t e = 0; e < midpoints_.size(); ++e) {
@@ -113,7 +117,7 @@ void HullContours::add_hyperplanes(std::vector<std::uint8_t>& chosen) {
   hyperplanes_.push_back(plane);
 }
 
-/// The generalised cross product of the differences; zero if they are dependent.
+/// The generalised cross product of the differences; zero if they are linearly dependent.
 Point HullContours::normal_of(const std::vector<std::uint8_t>& chosen) const {
   std::array<Point, 4> m{};
   for (int r = 1; r < tile_.dim; ++r)
@@ -135,11 +139,13 @@ bool HullContours::spans_facet(Edges vertices) const {
 }
 
 std::vector<Simplex> HullContours::contour(Signature inside) const {
+  // critical edges
   Edges critical = 0;
   for (std::uint32_t e = 0; e < tile_.edge_count(); ++e) {
     const auto [a, b] = tile_.edges[e];
     if (((inside >> a) & 1u) != ((inside >> b) & 1u)) critical |= Edges{1} << e;
   }
+  // hyperplanes that contain a facet, with its outward normal
   std::vector<Facet> facets;
   for (const Hyperplane& h : hyperplanes_) {
     const bool above = (h.above & critical) != 0 || (h.corners_above & inside) != 0;
@@ -150,6 +156,7 @@ std::vector<Simplex> HullContours::contour(Signature inside) const {
       for (int& x : outward) x = -x;
     facets.push_back({h.on & critical, outward});
   }
+  // triangulate each facet
   std::vector<Edges> all;
   for (const Edges face : tile_faces_) all.push_back(face & critical);
   for (const Facet& facet : facets) all.push_back(facet.vertices);
@@ -161,7 +168,7 @@ std::vector<Simplex> HullContours::contour(Signature inside) const {
   return result;
 }
 
-/// Cones a face of dimension `dim` from its smallest vertex over its own faces that do not hold it.
+/// Cones a face of dimension `dim` from its smallest vertex over those of its facets that do not contain it.
 void HullContours::pull(Edges face, int dim, const std::vector<Edges>& all, int depth, Simplex& simplex,
                         const Point& outward, std::vector<Simplex>& result) const {
   const auto apex = static_cast<std::uint8_t>(std::countr_zero(face));

@@ -11,15 +11,15 @@
 
 namespace tegl::gen {
 
-/// All hyperplanes through the midpoints of a tile's edges, ready to be asked for the hulls of its signatures.
+/// All hyperplanes through the midpoints of a tile's edges; computes the hulls of signatures from them.
 class HullContours {
  public:
   explicit HullContours(const Tile& tile);
 
-  /// The facets of the convex hull of the `inside` corners and of the midpoints of the critical edges that do not lie
-  /// in the tile's boundary, triangulated without further vertices: every face of the hull is coned from its smallest
-  /// vertex, so the triangulation in a face of the tile is that of the face's own hull. Vertices are edges. Oriented
-  /// so that the positive side faces out of the hull.
+  /// Facets of the convex hull of the `inside` corners and the midpoints of the critical edges, except facets in the
+  /// tile's boundary. They are triangulated without further vertices: every face of the hull is coned from its smallest
+  /// vertex, so the triangulation in a face of the tile equals that of the face's own hull. Vertices are edge numbers.
+  /// The positive side faces out of the hull.
   [[nodiscard]] std::vector<Simplex> contour(Signature inside) const;
 
  private:
@@ -27,7 +27,7 @@ class HullContours {
   using Edges = std::uint64_t;  ///< set of edges
   struct Hyperplane {
     Point normal;
-    Edges on = 0, above = 0, below = 0;  ///< midpoints
+    Edges on = 0, above = 0, below = 0;  ///< sets of midpoints
     Signature corners_above = 0, corners_below = 0;
   };
   struct Facet {

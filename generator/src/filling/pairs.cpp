@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Chains of signed simplices: what a contour leaves on each side of a tile, and the sum of that of two neighbours.
+// Chains of signed simplices: the boundary of a contour on each face of its tile, and the sum over two neighbours.
 #include "filling/pairs.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using Chain = std::vector<SignedFace>;
 
-/// Adds up a chain: sorted, no simplex twice, none with the sum 0.
+/// Normalises a chain: sorted, each simplex once, none with sum 0.
 void add_up(Chain& chain) {
   std::sort(chain.begin(), chain.end());
   std::size_t kept = 0;
@@ -36,7 +36,7 @@ Simplex vertices_of(Key key) {
           static_cast<std::uint8_t>(key >> 8), static_cast<std::uint8_t>(key)};
 }
 
-/// What contours leave on the faces of their tiles, in the faces' own numbering of vertices.
+/// Boundaries of contours on the faces of their tiles, in the faces' own vertex numbering.
 class Traces {
  public:
   explicit Traces(const ContourBuilder& builder) : builder_(builder), local_(builder.tile().faces.size()) {
@@ -78,7 +78,7 @@ class Traces {
       if (((common >> f) & 1u) == 0) continue;
       for (int i = 0; i < count; ++i) s[i] = local_[f][s[i]];
       result[f].push_back({key_of(s, count), face.sign * parity(s, count)});
-      return;  // two faces have no (n-2)-simplex of a contour in common
+      return;  // an (n-2)-simplex of a contour lies in one face only
     }
     throw Error(ErrorCode::Internal,
                 fmt::format("a contour ends inside of its {}-tile, at {:08x}", builder_.dim(), face.key));
@@ -88,7 +88,7 @@ class Traces {
   std::vector<std::array<std::uint8_t, 256>> local_;
 };
 
-/// Chains by number: equal ones have the same.
+/// Numbers chains; equal chains get equal numbers.
 class Numbered {
  public:
   std::uint32_t operator()(const Chain& chain) {
@@ -106,7 +106,7 @@ Chain negated(Chain chain) {
   return chain;
 }
 
-/// The signatures of the tiles on one side of a face, by what they leave there.
+/// Signatures of the tiles on one side of a face, grouped by the number of their chain on that face.
 using Side = std::map<std::uint32_t, std::vector<Signature>>;
 
 /// Compares every tile below the face with every tile above it.
@@ -140,13 +140,15 @@ PairFigures certify_pairs(const ContourBuilder& builder, std::span<const TileCon
   const Tile& tile = builder.tile();
   const Traces traces(builder);
   Numbered number;
-  std::vector<std::vector<Side>> sides(tile.faces.size());  // face, its signature
+  std::vector<std::vector<Side>> sides(tile.faces.size());  // by face and its signature
   for (std::uint32_t f = 0; f < sides.size(); ++f) sides[f].resize(std::size_t{tile.faces[f].tile->full()} + 1);
+  // chains of every signature on every face; lower faces negated so that matching chains are equal
   for (Signature s = 0; s < contours.size(); ++s) {
     const auto chains = traces.of(contours[s]);
     for (std::uint32_t f = 0; f < chains.size(); ++f)
       sides[f][tile.restrict_to(f, s)][number(f % 2 == 1 ? chains[f] : negated(chains[f]))].push_back(s);
   }
+  // compare both sides of every face signature, per axis
   PairFigures figures;
   for (std::uint32_t axis = 0; 2 * axis < sides.size(); ++axis)
     for (std::size_t q = 0; q < sides[2 * axis].size(); ++q)
@@ -199,7 +201,7 @@ std::vector<TileContour> contours_by_class(const ContourBuilder& builder, GroupK
         if (g.reverses_orientation()) std::swap(simplex[n - 1], simplex[n - 2]);
       }
     }
-    contour.boundary.clear();  // of the representative
+    contour.boundary.clear();  // refers to the representative
     contour.boundary_sign.clear();
     result.push_back(std::move(contour));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contours of the tile and of its faces come from ContourBuilder.
+// Regions from the contours that ContourBuilder makes for the tile and its faces.
 #include "filling/regions.hpp"
 
 #include "filling/facets.hpp"

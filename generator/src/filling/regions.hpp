@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The regions of tiles with the contours that the tables have. Used to close contours at an image's border.
+// The regions of tiles bounded by the contours of the tables. They close contours at an image's border.
 #pragma once
 
 #include "filling/tile_regions.hpp"
 
 namespace tegl::gen {
 
-/// Builds the regions of any signature of the k-cube, k = 1, 2, 3.
+/// Builds the regions of every signature of the k-cube, k = 1, 2, 3.
 class RegionBuilder : public SignatureRegions {
  public:
-  /// For k-tiles of a lattice, which must outlive it.
+  /// Builds k-tiles of `lattice`, which must outlive this object.
   RegionBuilder(const Lattice& lattice, int k, Alternative alternative, Triangulation triangulation, RegionStyle style);
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work is cut into units that threads take one by one; figures are sums, so that their order does not matter.
+// Certifies many resolutions of tiles on several threads. Figures are sums, so their order does not matter.
 #include "filling/resolutions.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ std::string text_of(const FaceLattice& lattice, FacetSignature signature, const 
                      choices, resolution.alternative == Alternative::low ? "low" : "high", facets::fault_name(fault));
 }
 
-/// What one thread works with.
+/// State of one thread: a certifier and its sums.
 class Worker {
  public:
   explicit Worker(const FaceLattice& lattice) : certifier_(lattice), choices_(lattice.faces().size()) {}
@@ -45,7 +45,7 @@ class Worker {
   std::vector<Choice>& choices() { return choices_; }
   [[nodiscard]] const ResolutionFigures& figures() const { return figures_; }
 
-  /// Certifies one tile; each of its components counts `weight` times. Has it one that is no sphere?
+  /// Certifies one tile and counts each component of its Sigma `weight` times. True if a component is not a sphere.
   bool certify(FacetSignature signature, Alternative alternative, std::uint64_t weight) {
     const facets::Resolution resolution{choices_, alternative};
     const Fault fault = certifier_.certify(signature, resolution);
@@ -61,13 +61,13 @@ class Worker {
     bool others = false;
     for (const int euler : tile.sigma_euler) {
       if (weight > 0) figures_.euler[euler] += weight;
-      // Of a Sigma of odd dimension the Euler characteristic is 0, whatever it is.
+      // For a Sigma of odd dimension the Euler characteristic is always 0 and identifies nothing.
       others |= lattice.dim() % 2 == 0 && lattice.dim() > 2 && euler != 2;
     }
     return others;
   }
 
-  /// A pair that stands for `alike` ones of its signature, which has an orbit of `orbit`.
+  /// Counts a pair that represents `alike` resolutions of its signature, whose orbit has `orbit` signatures.
   void count_pair(std::uint64_t orbit, std::uint64_t alike, bool non_spherical) {
     figures_.pairs += orbit * alike;
     figures_.pairs_by_class += alike;
@@ -90,7 +90,7 @@ void add(ResolutionFigures& to, const ResolutionFigures& more) {
   for (const auto& [euler, count] : more.euler) to.euler[euler] += count;
 }
 
-/// Does `work(worker, unit)` for all units on some threads, and adds up.
+/// Calls `work(worker, unit)` for all units on several threads and adds up the figures.
 template <class Work>
 ResolutionFigures on_threads(const FaceLattice& lattice, std::uint64_t units, unsigned threads,
                              const Progress& progress, const Work& work) {
@@ -109,8 +109,8 @@ ResolutionFigures on_threads(const FaceLattice& lattice, std::uint64_t units, un
   return total;
 }
 
-/// The resolutions of one signature up to the symmetries that keep it: how its stabiliser moves the ambiguous polygons.
-/// A resolution is a set of polygons, those with a high centre, as bits.
+/// The resolutions of one signature up to its stabiliser, as permutations of the ambiguous polygons. A resolution is a
+/// bit set of the polygons with a high centre.
 class ResolutionOrbits {
  public:
   ResolutionOrbits(const FaceLattice& lattice, FacetSignature signature, const std::vector<std::uint32_t>& polygons,
@@ -130,7 +130,7 @@ class ResolutionOrbits {
                          [&](std::uint32_t h) { return lattice.faces()[h].corners == moved; }) -
             polygons.begin()));
       }
-      // By bytes, so that a set is moved by three look-ups.
+      // One table per byte, so that three look-ups map a set.
       Permutation& permutation = permutations_.emplace_back();
       for (std::size_t byte = 0; byte < permutation.size(); ++byte)
         for (std::uint32_t value = 0; value < 256; ++value)
@@ -139,7 +139,7 @@ class ResolutionOrbits {
     }
   }
 
-  /// How many resolutions the orbit has, if this is its smallest; else 0.
+  /// Length of the resolution's orbit if it is the orbit's smallest element, else 0.
   [[nodiscard]] std::uint64_t length_if_smallest(std::uint32_t resolution) const {
     std::uint64_t keep = 0;
     for (const Permutation& p : permutations_) {
@@ -156,13 +156,13 @@ class ResolutionOrbits {
   std::vector<Permutation> permutations_;
 };
 
-/// Some resolutions of one class's signature.
+/// A range of resolutions of one class's signature.
 struct Unit {
-  std::size_t index;  ///< of the class
+  std::size_t index;  ///< index of the class
   std::uint64_t begin, end;
 };
 
-/// A counter through a sequence of its own for every number: splitmix64.
+/// Random numbers (splitmix64); each `number` has its own sequence.
 class Sequence {
  public:
   using result_type = std::uint64_t;
@@ -213,10 +213,12 @@ ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads
   if (n < 2 || n > kMaxEnumeratedDim)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("all resolutions in dimension {}: expected 2 to {}", n, kMaxEnumeratedDim));
+  // classes of signatures
   const Lattice tiles(kind, n);
   const FaceLattice lattice = face_lattice(kind, n);
   const auto elements = symmetries(tiles.tile(n), GroupKind::Full, false);
   const Transversal classes = transversal(tiles.tile(n), elements);
+  // ambiguous polygons and orbits of each class; split resolutions into units
   std::vector<std::vector<std::uint32_t>> ambiguous;
   std::vector<ResolutionOrbits> orbits;
   std::vector<Unit> units;
@@ -228,6 +230,7 @@ ResolutionFigures certify_all_resolutions(TileKind kind, int n, unsigned threads
       units.push_back({c, begin, std::min(resolutions, begin + kUnit)});
   }
   std::vector<std::atomic<bool>> with_others(classes.representatives.size());
+  // one tile per orbit of resolutions; non-spherical ones with both alternatives
   const auto work = [&](Worker& worker, std::uint64_t number) {
     const auto& [c, begin, end] = units[number];
     const std::uint64_t orbit = classes.orbit_length[c];
@@ -256,8 +259,9 @@ ResolutionFigures certify_sample(TileKind kind, int n, std::uint64_t count, std:
   const auto work = [&](Worker& worker, std::uint64_t number) {
     for (std::uint64_t i = number * unit; i < std::min(count, (number + 1) * unit); ++i) {
       Sequence random(seed, i);
-      // Where half of the corners are high, nearly all of a tile of five or more dimensions hangs together: in every
-      // other tile fewer of them are, or fewer are low, so that there are tiles with several components, too.
+      // With half of the corners high, nearly all components of a tile of dimension 5 or more are connected. Half of
+      // the tiles therefore get fewer high or fewer low corners, so that the sample includes tiles with several
+      // components.
       FacetSignature signature = random();
       if (const std::uint64_t dice = random(); (dice & 1u) != 0) {
         for (std::uint64_t times = dice >> 1 & 3u; times > 0; --times) signature &= random();

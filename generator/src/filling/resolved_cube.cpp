@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Fillings of one or several polygons on a cube's boundary. A polygon that the compact table has is filled as there;
-// what is not in it is found by search: an open edge of the front takes every vertex in turn for the third one of its
-// triangle, until no edge is open. The number of triangles says what surface it is: a disc, or a sphere with holes.
-// Where every such surface has a chord in a square, it is a copy of the region between the polygons, pushed inwards.
-// The certificate has the last word.
+// Fills one or several polygons on a cube's boundary. A polygon of the compact table keeps its triangles. Others are
+// filled by search: for an open edge of the front, every vertex is tried as the third one of its triangle, until no
+// edge is open. The number of triangles determines the surface: a disc, or a sphere with holes. If every such surface
+// has a chord in a square, the filling is a copy of the region between the polygons, pushed inwards. Every filling must
+// pass the certificate.
 #include "filling/resolved_cube.hpp"
 
 #include <fmt/format.h>
@@ -30,21 +30,21 @@ using facets::TileFacets;
 using facets::VertexId;
 
 constexpr std::size_t kEdges = 12;
-constexpr std::size_t kOwn = kEdges;  ///< number of the first vertex that is no edge point
+constexpr std::size_t kOwn = kEdges;  ///< number of the first vertex that is not an edge point
 constexpr std::size_t kMaxOwn = 8;
 using Triangle = std::array<std::uint8_t, 3>;
-using Polygon = std::vector<std::uint8_t>;  ///< edges, high on the left seen from outside
+using Polygon = std::vector<std::uint8_t>;  ///< edges, with high on the left seen from outside
 using Filling = std::vector<Triangle>;
 
-/// The cube's edges and squares in the numbers of the table contract.
+/// The cube's edges and squares in the numbering of the table contract.
 struct Frame {
   FaceLattice lattice = FaceLattice::cube(3);
   CubeLattice tiles{3};
   std::vector<std::uint8_t> edge_of_face = std::vector<std::uint8_t>(lattice.faces().size());
   std::vector<std::uint32_t> face_of_square = std::vector<std::uint32_t>(6);
   std::vector<std::array<std::uint8_t, 4>> squares = std::vector<std::array<std::uint8_t, 4>>(6);
-  std::array<unsigned, kEdges + 1> squares_of{};             ///< set of the squares that contain an edge
-  std::array<std::array<double, 3>, kEdges + 1> position{};  ///< the middle of each edge
+  std::array<unsigned, kEdges + 1> squares_of{};             ///< by edge: set of the squares that contain it
+  std::array<std::array<double, 3>, kEdges + 1> position{};  ///< midpoint of each edge
 
   Frame() {
     const Tile& cube = tiles.tile(3);
@@ -70,7 +70,7 @@ struct Frame {
   }
 };
 
-/// The polygons of Sigma, each from its smallest edge on, in the order of these.
+/// The polygons of Sigma, each from its smallest edge on, in ascending order of these edges.
 std::vector<Polygon> polygons_of(const Frame& frame, const TileFacets& tile) {
   constexpr std::uint8_t kNone = 255;
   std::array<std::uint8_t, kEdges> next{};
@@ -93,7 +93,7 @@ std::vector<Polygon> polygons_of(const Frame& frame, const TileFacets& tile) {
   return polygons;
 }
 
-/// The tile with Sigma restricted to some polygons, for the certificate of what fills these alone.
+/// The tile with Sigma restricted to some polygons, for certifying a filling of only these.
 class Alone {
  public:
   Alone(const Frame& frame, const TileFacets& tile, const std::vector<Polygon>& boundary)
@@ -138,7 +138,7 @@ class Alone {
   facets::Certifier certifier_;
 };
 
-/// The search for one connected surface of genus 0 with given boundary.
+/// Search for a connected surface of genus 0 with the given boundary and the shortest inner edges.
 class Search {
  public:
   Search(const Frame& frame, Alone& alone, const std::vector<Polygon>& boundary, bool own_vertex)
@@ -150,7 +150,7 @@ class Search {
         vertices_.push_back(a);
       }
     const std::size_t points = vertices_.size();
-    // Euler's formula: V - E + F = 2 - holes.
+    // Number of triangles from Euler's formula, V - E + F = 2 - holes.
     triangles_ = points + 2 * boundary.size() - 4 + (own_vertex ? 2 : 0);
     if (!own_vertex) return;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -175,12 +175,12 @@ class Search {
     return sum;
   }
 
-  /// An edge closes an open one, or is a new one, which must not lie in a square.
+  /// True if the edge closes an open one, or is new and does not lie in a square.
   [[nodiscard]] bool possible(std::size_t from, std::size_t to) const {
     return open_[from][to] || (!used_[from][to] && (frame_.squares_of[from] & frame_.squares_of[to]) == 0);
   }
 
-  /// Puts an edge of a triangle; returns what takes it back.
+  /// Adds an edge of a triangle. Returns true if it closed an open edge; take_back() needs that value.
   bool put(std::size_t from, std::size_t to, double& cost) {
     if (open_[from][to]) return open_[from][to] = false, true;
     open_[to][from] = used_[from][to] = used_[to][from] = true;
@@ -195,6 +195,7 @@ class Search {
       open_[to][from] = used_[from][to] = used_[to][from] = false;
   }
 
+  // Extends the front at its first open edge. Prunes by cost.
   void advance(double cost) {
     constexpr double kEqual = 1e-9;
     if (best_ && cost > best_cost_ - kEqual) return;
@@ -236,21 +237,21 @@ class Search {
   std::array<std::array<double, 3>, kEdges + 1> position_;
   std::vector<std::uint8_t> vertices_;
   std::size_t triangles_ = 0;
-  bool open_[kEdges + 1][kEdges + 1] = {};  ///< a triangle must still come that has this directed edge
+  bool open_[kEdges + 1][kEdges + 1] = {};  ///< directed edges that still need a triangle
   bool used_[kEdges + 1][kEdges + 1] = {};
   Filling filling_;
   std::optional<Filling> best_;
   double best_cost_ = 0;
 };
 
-/// The copy of a region of the cube's boundary: in each square a fan from a corner, whose copies are vertices of their
-/// own, so that no edge is a chord between two edge points.
+/// A copy of a region of the cube's boundary: in each square a fan from a corner. Copies of corners are own vertices,
+/// so no edge is a chord between two edge points.
 class SideFilling {
  public:
   SideFilling(const Frame& frame, facets::Signature signature, unsigned high_squares, bool high)
       : frame_(frame), signature_(signature), high_squares_(high_squares), high_(high) {}
 
-  /// The triangles of the region that has these polygons around it, and to `corners` whose copies its own vertices are.
+  /// The triangles of the region bounded by these polygons. Writes to `corners` the corner of each own vertex.
   Filling run(const std::vector<Polygon>& boundary, std::vector<std::uint8_t>& corners) {
     for (std::size_t q = 0; q < 6; ++q) square(q);
     unsigned reached = 1u << boundary[0][0], before = 0;
@@ -285,11 +286,11 @@ class SideFilling {
   }
 
   void square(std::size_t q) {
-    // Around the square, all six in the same sense seen from outside.
+    // The square's corners in cyclic order, with the same orientation for all six squares seen from outside.
     std::array<std::uint8_t, 4> ring = {frame_.squares[q][0], frame_.squares[q][1], frame_.squares[q][3],
                                         frame_.squares[q][2]};
     if (frame_.tiles.tile(3).faces[q].sign < 0) std::reverse(ring.begin(), ring.end());
-    std::vector<std::uint8_t> outline;  // of the whole part inside: corner c is kEdges + c
+    std::vector<std::uint8_t> outline;  // of the inside part if joined; corner c is kEdges + c
     for (std::size_t i = 0; i < 4; ++i) {
       const std::uint8_t here = ring[i], next = ring[(i + 1) % 4];
       if (inside(here)) outline.push_back(static_cast<std::uint8_t>(kEdges + here));
@@ -304,7 +305,7 @@ class SideFilling {
       return;
     }
     if (count == 0) return;
-    // From a corner that has no edge point beside it if there are three, else from any.
+    // Fan from a corner without adjacent edge points if there are three corners, else from any corner.
     std::size_t from = 0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
       const bool better = is_corner(outline[i]) && (!is_corner(outline[from]) ||
@@ -316,7 +317,7 @@ class SideFilling {
       all_.push_back({outline[from], outline[(from + i) % outline.size()], outline[(from + i + 1) % outline.size()]});
   }
 
-  /// All triangles the other way round if they do not go with the boundary.
+  /// Reverses all triangles if they do not match the boundary's orientation.
   static void turn(Filling& filling, const std::vector<Polygon>& boundary) {
     const std::uint8_t a = boundary[0][0], b = boundary[0][1];
     const bool right = std::any_of(filling.begin(), filling.end(), [&](const Triangle& t) {
@@ -333,7 +334,7 @@ class SideFilling {
   Filling all_;
 };
 
-/// Writes entries.
+/// Collects the entries of the table.
 class Table {
  public:
   explicit Table(const Frame& frame) : frame_(frame), builder_(frame.lattice) { table_.squares = frame.squares; }
@@ -368,7 +369,7 @@ class Table {
   ResolvedCube& table() { return table_; }
 
  private:
-  /// The polygons that a facet of the tile has for its boundary.
+  /// The polygons that bound a facet of the tile.
   [[nodiscard]] std::vector<Polygon> around(const facets::Facet& facet, const std::vector<Polygon>& polygons) const {
     unsigned edges = 0;
     for (const facets::Simplex& s : facet.simplices)
@@ -381,8 +382,8 @@ class Table {
     return result;
   }
 
-  /// A polygon that the compact table has for this signature as well has the triangles that it has there: where nothing
-  /// is ambiguous, or all is resolved alike, both tables draw the same.
+  /// The triangles of a polygon that the compact table also has for this signature; empty if it has none. So both
+  /// tables agree if no square is ambiguous or all are resolved equally.
   [[nodiscard]] Filling as_in_compact_table(const Polygon& polygon) const {
     const bool all_high = high_squares_ != 0 && high_squares_ == table_.ambiguous.back();
     const ContourBuilder& first = all_high ? compact_high_ : compact_low_;
@@ -397,6 +398,8 @@ class Table {
     return {};
   }
 
+  // Fills a boundary by the first filling that passes the certificate: compact table, search without and with an own
+  // vertex, copy of the region.
   void fill(tables::ResolvedList& list, const std::vector<Polygon>& boundary, Choice choice) {
     Alone alone(frame_, tile_, boundary);
     if (boundary.size() == 1)
@@ -434,7 +437,7 @@ class Table {
   ContourBuilder compact_low_{frame_.tiles, 3, Alternative::low, Triangulation::compact};
   ContourBuilder compact_high_{frame_.tiles, 3, Alternative::high, Triangulation::compact};
   ResolvedCube table_;
-  // Of the entry at hand.
+  // State of the current entry.
   facets::Signature signature_ = 0;
   unsigned high_squares_ = 0;
   TileFacets tile_;
@@ -452,7 +455,7 @@ ResolvedCube make_resolved_cube() {
     for (unsigned q = 0; q < 6; ++q)
       if (std::find(polygons.begin(), polygons.end(), frame.face_of_square[q]) != polygons.end()) ambiguous |= 1u << q;
     table.open_signature(ambiguous);
-    // The subsets of the ambiguous squares in ascending order: those whose centre is high.
+    // All subsets of the ambiguous squares in ascending order; a subset holds the squares with a high centre.
     unsigned high = 0;
     do {
       for (unsigned q = 0; q < 6; ++q)

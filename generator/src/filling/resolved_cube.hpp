@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The complete table of the 3D cube: every signature, every resolution of its ambiguous squares, and in the cube every
-// way: its polygons kept apart, or joined as a low or a high centre joins them. 656 entries, as plain data that the
-// emitters write.
+// The complete table of the 3D cube: every signature, every resolution of its ambiguous squares, and for each the
+// polygons kept separate or joined by a low or a high centre. 656 entries, as plain data for the emitters.
 #pragma once
 
 #include <array>
@@ -13,24 +12,24 @@
 
 namespace tegl::gen {
 
-/// The table of the cube with every ambiguity resolved freely.
+/// The table of the cube with every ambiguity resolved independently.
 struct ResolvedCube {
   std::vector<std::array<std::uint8_t, 4>> squares;  ///< the corners of each of the 6 squares
-  std::vector<std::uint16_t> first_entry;            ///< by signature: its entry of resolution 0
+  std::vector<std::uint16_t> first_entry;            ///< by signature: index of its entry for resolution 0
   std::vector<std::uint8_t> ambiguous;               ///< by signature: set of its ambiguous squares
   std::vector<tables::ResolvedEntry> entries;        ///< the lists of every resolution
   std::vector<std::uint8_t> triangles;               ///< 3 local vertices each
-  std::vector<std::uint16_t> masks;                  ///< own vertex: set of the edges whose points it is the mean of
+  std::vector<std::uint16_t> masks;  ///< per own vertex: its corners (bit v) and edge points (bit 8 + e)
 };
 
-/// A polygon that the compact table has for the signature is triangulated as there. Else searches, for every entry and
-/// every way, the triangulation with no vertex but edge points whose inner edges are shortest (points halfway along
-/// their edges); where the certificate allows none, with one more vertex; where it allows none of these either, a copy
-/// of the region between the polygons. Each passes the certificate. Errors: CertificateFailed, naming signature and
+/// Builds the table. A polygon that the compact table has for the signature is triangulated as there. Otherwise the
+/// triangulation on edge points with the shortest inner edges is searched for (points at edge midpoints). If none
+/// passes the certificate, the search adds one vertex. If that fails as well, the filling is a copy of the region
+/// between the polygons. Every filling passes the certificate. Errors: CertificateFailed, with signature and
 /// resolution.
 [[nodiscard]] ResolvedCube make_resolved_cube();
 
-/// Digest (FNV-1a) of all numbers.
+/// FNV-1a digest of all numbers in the table.
 [[nodiscard]] std::uint64_t digest(const ResolvedCube& table);
 
 }  // namespace tegl::gen

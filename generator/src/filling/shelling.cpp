@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The search for a short order of tetrahedra that takes a ball apart.
+// Search for a short sequence of tetrahedra that dismantles a ball.
 #include "filling/shelling.hpp"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace tegl::gen {
 
 namespace {
 
-constexpr std::size_t kMost = 32;  // vertices of a component
+constexpr std::size_t kMost = 32;  // maximum number of vertices of a component
 constexpr std::uint8_t kNone = 0xff;
 
-/// Numbers that are the same everywhere (G. Marsaglia, Xorshift RNGs, 2003).
+/// Random numbers that are equal on all platforms (G. Marsaglia, Xorshift RNGs, 2003).
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : state_(seed) {}
@@ -31,7 +31,7 @@ class Dice {
   std::uint32_t state_;
 };
 
-/// The sphere around what is left of the ball.
+/// The boundary sphere of the remaining ball.
 class Front {
  public:
   Front(const std::vector<std::uint8_t>& vertices, const std::vector<std::array<std::uint8_t, 3>>& triangles,
@@ -45,7 +45,7 @@ class Front {
   [[nodiscard]] unsigned degree(std::uint8_t v) const { return degree_[v]; }
   [[nodiscard]] const std::vector<Simplex>& tetrahedra() const { return tetrahedra_; }
 
-  /// Takes off the tetrahedron around a vertex of degree 3; what is left is a tetrahedron if there were 4.
+  /// Removes the tetrahedron around a vertex of degree 3. If 4 vertices are left, the rest is one tetrahedron.
   bool remove(std::uint8_t v) {
     const std::uint8_t a = neighbour(v), b = third_[v][a], c = third_[v][b];
     if (left_ == 4) return take(v, a, b, c);
@@ -58,7 +58,7 @@ class Front {
     return true;
   }
 
-  /// Exchanges the edge v-w for the other diagonal.
+  /// Removes the tetrahedron at the edge v-w: replaces the edge by the other diagonal of its two triangles.
   bool flip(std::uint8_t v, std::uint8_t w) {
     const std::uint8_t a = third_[v][w], b = third_[w][v];
     if (a == b || used_edges_.test(a * kMost + b) || !take(v, w, a, b)) return false;
@@ -80,7 +80,7 @@ class Front {
     } while (at != first);
   }
 
-  /// Its triangles, by ascending vertices.
+  /// The triangles, each with ascending vertices.
   [[nodiscard]] std::vector<Simplex> triangles() const {
     std::vector<Simplex> result;
     for (std::uint8_t a = 0; a < vertices_.size(); ++a)
@@ -93,7 +93,7 @@ class Front {
     return result;
   }
 
-  /// A tetrahedron, when nothing but its boundary is left.
+  /// Removes the last tetrahedron, of which only the boundary is left.
   bool take_last() {
     for (std::uint8_t v = 0; v < vertices_.size(); ++v)
       if (degree_[v] == 3) return remove(v);
@@ -135,14 +135,15 @@ class Front {
   const std::vector<std::uint8_t>& vertices_;
   const SigmaComplex* sigma_;
   std::size_t left_;
-  std::array<std::array<std::uint8_t, kMost>, kMost> third_;  ///< by directed edge: the triangle's other vertex
+  std::array<std::array<std::uint8_t, kMost>, kMost> third_;  ///< by directed edge: third vertex of its triangle
   std::array<std::uint8_t, kMost> degree_{};
-  std::bitset<kMost * kMost> used_edges_;  ///< that the ball has, or had
+  std::bitset<kMost * kMost> used_edges_;  ///< edges of the front, now or earlier
   std::bitset<kMost * kMost * kMost> used_triangles_;
   std::vector<Simplex> tetrahedra_;
 };
 
-/// One step: the vertex of least degree, or often so, loses an edge, or goes. False at a dead end.
+/// One step at a vertex of minimum degree (in one of four steps: up to one more): removes it or one of its edges.
+/// Returns false at a dead end.
 bool step(Front& front, std::size_t vertices, Dice& dice) {
   unsigned least = kMost;
   const unsigned slack = dice.below(4) == 0 ? 1 : 0;
@@ -165,7 +166,7 @@ bool step(Front& front, std::size_t vertices, Dice& dice) {
   return false;
 }
 
-/// The triangles with consistent orientation, in an order and with a sign that do not depend on how they were given.
+/// The triangles with consistent orientation, in an order and with a sign that do not depend on the input order.
 std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<Simplex>& sphere,
                                                    const std::vector<std::uint8_t>& vertices) {
   const auto number = [&](std::uint8_t v) {
@@ -178,7 +179,7 @@ std::vector<std::array<std::uint8_t, 3>> canonical(const std::vector<Simplex>& s
     triangles.push_back(t);
   }
   std::sort(triangles.begin(), triangles.end());
-  // Of the two orientations: the one in which the first triangle, by its vertices, ascends.
+  // Of the two orientations, take the one in which the smallest triangle (by its vertex set) has ascending vertices.
   const auto first = *std::min_element(triangles.begin(), triangles.end(), [](auto a, auto b) {
     std::sort(a.begin(), a.end());
     std::sort(b.begin(), b.end());
@@ -201,6 +202,7 @@ Shelling shell_sphere(const std::vector<Simplex>& sphere, const SigmaComplex& si
   constexpr int kTries = 40;
   Dice dice(0x9e3779b9u);
   Shelling best;
+  // random descents; a new best result lowers the limit
   for (int i = 0; i < kTries && limit + 3 >= vertices.size(); ++i) {
     Front front = start;
     while (front.tetrahedra().size() + front.vertices_left() <= limit + 3) {

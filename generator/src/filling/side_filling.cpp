@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Side filling. With the tile's centre low, the contour inside the tile is a copy of the high part of the
-// tile's boundary, pushed inwards and kept fast where it meets Sigma: a manifold with boundary Sigma whatever
-// Sigma looks like. The high part is triangulated cube by cube (tile_regions.hpp); what lies on Sigma keeps its
-// vertices, every other vertex becomes one of the tile's own.
+// Side filling. If the tile's centre is low, the contour inside the tile is a copy of the high part of the tile's
+// boundary, pushed inwards and fixed at Sigma. It is a manifold with boundary Sigma for any Sigma. The high part is
+// triangulated cube by cube (tile_regions.hpp). Vertices on Sigma are kept; every other vertex becomes an own vertex of
+// the tile.
 #include "filling/side_filling.hpp"
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace tegl::gen {
 
 namespace {
 
-/// A vertex of the side: a contour vertex (local id), or a place of the tile's boundary known by the corners
-/// and edges whose mean it is (corners: bit v, edges: bit 16 + e). The cube's number tells regions of different
-/// cubes apart; -1 for what cubes share.
+/// A vertex of the side: a contour vertex (local number), or a point of the tile's boundary given by the corners (bit
+/// v) and edges (bit 16 + e) of which it is the mean. `cube` distinguishes regions of different cubes; -1 for points
+/// that cubes share.
 struct Place {
   int contour_vertex = -1;
   std::uint64_t mask = 0;
@@ -52,7 +52,7 @@ Place place_of(const FaceContours& faces, const SignatureRegions& regions, std::
 
 using Tetrahedron = std::array<Place, 4>;
 
-/// The high part of the tile's boundary (of ~signature: the low part), oriented as its boundary is.
+/// The high part of the tile's boundary (for ~signature: the low part), with the boundary's orientation.
 std::vector<Tetrahedron> side_of(const FaceContours& faces, const SignatureRegions& regions, Signature signature) {
   std::vector<Tetrahedron> side;
   for (std::uint32_t f = 0; f < faces.tile().faces.size(); ++f) {
@@ -67,7 +67,7 @@ std::vector<Tetrahedron> side_of(const FaceContours& faces, const SignatureRegio
   return side;
 }
 
-/// Keeps what is connected with the given contour vertex.
+/// Keeps the connected component of the given contour vertex.
 void keep_connected(std::vector<Tetrahedron>& side, int contour_vertex) {
   std::map<Place, bool> reached{{Place{contour_vertex, 0, -1}, true}};
   for (bool grown = true; grown;) {
@@ -81,7 +81,7 @@ void keep_connected(std::vector<Tetrahedron>& side, int contour_vertex) {
   std::erase_if(side, [&](const Tetrahedron& t) { return !reached.contains(t[0]); });
 }
 
-/// +1 if `tetrahedra` induce on the triangle the orientation that it has, -1 if the other, 0 if it is no face.
+/// +1 if `tetrahedra` induce the triangle's orientation on it, -1 if the opposite one, 0 if it is not a face of them.
 int induced_sign(const std::vector<Simplex>& tetrahedra, const Simplex& triangle) {
   static constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   for (const Simplex& t : tetrahedra)
@@ -98,11 +98,12 @@ int induced_sign(const std::vector<Simplex>& tetrahedra, const Simplex& triangle
 
 void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Signature signature,
                   const std::vector<Simplex>& component, TileContour& contour, Facet& facet) {
-  // The low side of the high-connected alternative is the high side of the low-connected one after inversion.
+  // The low side in the high-connected alternative is the high side in the low-connected one after inversion.
   const Signature high = faces.alternative() == Alternative::low ? signature : ~signature & faces.tile().full();
   auto side = side_of(faces, regions, high);
   keep_connected(side, component.front()[0]);
 
+  // number the vertices: those on Sigma keep their number, others are own vertices
   std::map<Place, std::uint8_t> number;
   for (const Tetrahedron& t : side)
     for (const Place& p : t) number.emplace(p, 0);
@@ -118,12 +119,14 @@ void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Si
       contour.side_masks.push_back(place.mask);
     }
   }
+  // the side must meet Sigma in this component only
   std::map<int, int> sigma_vertices;
   for (const Simplex& s : component)
     for (int i = 0; i < 3; ++i) sigma_vertices[s[i]] = 1;
   if (sigma_vertices.size() != on_sigma)
     throw std::logic_error("a side is bounded by more than one component: joining them is not the consistent method");
 
+  // write, with the component's orientation
   for (const Tetrahedron& t : side)
     facet.simplices.push_back({number.at(t[0]), number.at(t[1]), number.at(t[2]), number.at(t[3])});
   if (induced_sign(facet.simplices, component.front()) < 0)

@@ -11,11 +11,10 @@
 
 namespace tegl::gen {
 
-/// Fills a component of a 4-tile's Sigma of any genus by a copy of one side of the tile's boundary: its high
-/// side for the low-connected alternative, its low side for the high-connected one. Appends the masks of the
-/// vertices that it adds to contour.side_masks; all cone vertices must have been numbered before. `regions`: of the
-/// tile's faces.
-/// Throws std::logic_error if that side is bounded by more than the component.
+/// Fills a component of a 4-tile's Sigma of any genus by a copy of one side of the tile's boundary: the high side for
+/// the low-connected alternative, the low side for the high-connected one. Appends the masks of added vertices to
+/// contour.side_masks; all cone vertices must be numbered before. `regions`: regions of the tile's faces. Throws
+/// std::logic_error if other components bound that side too.
 void fill_by_side(const FaceContours& faces, const SignatureRegions& regions, Signature signature,
                   const std::vector<Simplex>& component, TileContour& contour, Facet& facet);
 

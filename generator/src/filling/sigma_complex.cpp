@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The simplices of Sigma's own triangulation, face by face, for certificate (4).
+// Look-up of the simplices of Sigma's own triangulation, face by face, for certificate (4).
 #include "filling/sigma_complex.hpp"
 
 #include <algorithm>

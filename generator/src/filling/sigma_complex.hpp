@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sigma as a complex (private to the generator).
+// Sigma as a simplicial complex (private to the generator).
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@
 
 namespace tegl::gen {
 
-/// The triangulation of one component of a 4-tile's Sigma, to be asked what a filling may draw.
+/// The triangulation of one component of a 4-tile's Sigma. Decides which tetrahedra a filling may contain.
 class SigmaComplex {
  public:
   SigmaComplex(const FaceContours& faces, const std::vector<Simplex>& component);
 
-  /// True if no edge, triangle or whole of the tetrahedron lies in a face of the tile without being Sigma's.
+  /// True if every edge and triangle of the tetrahedron that lies in a face of the tile belongs to Sigma, and the whole
+  /// tetrahedron lies in no face.
   [[nodiscard]] bool allows(const Simplex& tetrahedron) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Simplices as keys that compare, for chains: a boundary is a sorted list of signed keys.
+// Simplices as comparable keys, for chains: a boundary is a sorted list of signed keys.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tegl::gen {
 
-/// A set of up to four vertices in ascending order, packed: 0xff fills up.
+/// A set of up to four vertices in ascending order, one per byte; unused bytes are 0xff.
 using Key = std::uint32_t;
 
 inline Key key_of(std::array<std::uint8_t, 4> v, int count) {
@@ -23,7 +23,7 @@ inline Key key_of(std::array<std::uint8_t, 4> v, int count) {
   return Key{v[0]} << 24 | Key{v[1]} << 16 | Key{v[2]} << 8 | v[3];
 }
 
-/// +1 or -1: the parity of the permutation that sorts the first `count` vertices.
+/// Parity of the permutation that sorts the first `count` vertices: +1 or -1.
 inline int parity(const std::array<std::uint8_t, 4>& v, int count) {
   int sign = 1;
   for (int i = 0; i < count; ++i)
@@ -39,7 +39,7 @@ inline Simplex without(const Simplex& s, int drop, int n) {
   return face;
 }
 
-/// A simplex in a chain.
+/// A simplex of a chain, with its coefficient.
 struct SignedFace {
   Key key;
   int sign;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Regions by the same recursion as facets: the high parts of a tile's faces and the tile's own facets close up
-// to spheres; each is coned.
+// Regions by the recursion used for facets: the high parts of a tile's faces and the tile's own facets close up to
+// spheres; each sphere is coned.
 #include "filling/tile_regions.hpp"
 
 #include <algorithm>
@@ -49,8 +49,8 @@ std::uint32_t SignatureRegions::mask_of(Signature signature, std::uint8_t vertex
   return mask;
 }
 
-/// The oriented boundary of the high part: the faces' regions, and the tile's facets. As the boundary of the
-/// high part a facet has the sign (-1)^k: its own convention puts the direction towards high last.
+/// The oriented boundary of the high part: the faces' regions and the tile's facets. A facet gets the sign (-1)^k,
+/// because the orientation of facets puts the direction towards high last.
 std::vector<Simplex> SignatureRegions::boundary(Signature signature, const TileContour& contour) const {
   const int k = tile_->dim;
   std::vector<Simplex> result;
@@ -81,7 +81,7 @@ TileRegions regions_of_edge(Signature signature) {
   return result;
 }
 
-/// Splits a closed complex into connected components, by smallest vertex.
+/// Splits a closed complex into connected components, ordered by smallest vertex.
 std::vector<std::vector<Simplex>> split(std::vector<Simplex> rest, int vertices_per_simplex) {
   std::vector<std::vector<Simplex>> components;
   while (!rest.empty()) {
@@ -114,6 +114,7 @@ TileRegions SignatureRegions::build(Signature signature, const TileContour& cont
   if (k == 1) return regions_of_edge(signature);
   TileRegions result;
   for (const auto& component : split(boundary(signature, contour), k)) {
+    // mask, smallest vertex and number of vertices of the component
     std::uint32_t mask = 0;
     std::uint8_t lowest = 255;
     std::array<bool, 256> seen{};
@@ -125,6 +126,7 @@ TileRegions SignatureRegions::build(Signature signature, const TileContour& cont
         lowest = std::min(lowest, s[i]);
         if (s[i] < tile_->corner_count() + tile_->edge_count()) mask |= 1u << s[i];
       }
+    // cone from the smallest vertex or an own vertex
     const bool simplex = vertices == static_cast<std::size_t>(k) + 1 && component.size() == vertices;
     const bool from_own_vertex = simplex || (k == 2 && style_ == RegionStyle::fan);
     std::uint8_t apex = lowest;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The high part of a tile, triangulated: what a contour bounds. Made from the contours of the tile and of its faces.
+// The triangulated high part of a tile, built from the contours of the tile and of its faces.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace tegl::gen {
 
-/// cone: every region that is no simplex is coned from its barycentre; no chord ever joins two points of the
-/// contour. fan: regions of squares are fans from a corner instead.
+/// cone: every region that is not a simplex is coned from its barycentre, so no chord joins two contour points. fan:
+/// regions of squares are fans from a corner instead.
 enum class RegionStyle { cone, fan };
 
-/// The high part of a k-tile (k <= 3): disjoint balls. Local vertices as in the table contract.
+/// The high part of a k-tile (k <= 3): disjoint balls. Local vertices as in the table contract (RegionTable).
 struct TileRegions {
   std::vector<Simplex> simplices;        ///< k + 1 vertices each, det > 0
   std::vector<std::uint32_t> own_masks;  ///< one per own vertex: corners (bit v) and edges (bit 2^k + e)
@@ -25,17 +25,17 @@ struct TileRegions {
 /// The regions of every signature of a k-tile, k = 1, 2, 3.
 class SignatureRegions {
  public:
-  /// For k-tiles of a lattice, which must outlive it. `contours[d - 1]`: those of every signature of the d-tile, for d
-  /// = 1 to k.
+  /// Builds k-tiles of `lattice`, which must outlive this object. `contours[d - 1]`: the contours of every signature of
+  /// the d-tile, d = 1 to k.
   SignatureRegions(const Lattice& lattice, int k, std::span<const std::vector<TileContour>> contours,
                    RegionStyle style);
 
-  /// Those of a signature.
+  /// The regions of a signature.
   [[nodiscard]] const TileRegions& regions(Signature signature) const { return regions_[signature]; }
-  [[nodiscard]] const Tile& tile() const { return *tile_; }  ///< what is built
+  [[nodiscard]] const Tile& tile() const { return *tile_; }  ///< the tile
   [[nodiscard]] std::uint32_t own_base() const;              ///< first local number of a tile's own vertices
-  /// The corners (bit v) and edge points (bit 2^k + e) whose mean a local vertex is, for any but the barycentres of
-  /// the contour's facets.
+  /// The corners (bit v) and edge points (bit 2^k + e) of which a local vertex is the mean. Not defined for the
+  /// barycentres of the contour's facets.
   [[nodiscard]] std::uint32_t mask_of(Signature signature, std::uint8_t vertex) const;
 
  private:

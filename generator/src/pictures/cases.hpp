@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The catalogue of cases: a page for each dimension, with every class of signatures and what the tables do in it, drawn
-// from the same builders as the tables.
+// The catalogue of cases: one page per dimension with every class of signatures and its contours in the tables, drawn
+// by the builders of the tables.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace tegl::gen {
 
-/// The page `<dim>d.md` (Markdown) and its pictures `<dim>d/*.svg`. 2D and 3D: each class in both alternatives. 4D: all
-/// classes as a table; of those with a torus, cuts through the tile at five times. dim = 2, 3, 4.
+/// Returns the page `<dim>d.md` (Markdown) and its pictures `<dim>d/*.svg`. 2D and 3D: each class in both alternatives.
+/// 4D: a table of all classes; for classes with a torus also cuts of the tile at five times. Errors: InvalidArgument
+/// unless dim is 2, 3 or 4.
 [[nodiscard]] std::vector<EmittedFile> emit_cases(int dim);
 
 }  // namespace tegl::gen

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Hidden lines of a convex tile need no more than the signs of its faces' normals; its facets are painted from the far
-// to the near.
+// Draws tiles as SVG. The normals of a convex tile's faces determine its hidden lines. Facets are painted from far to
+// near.
 #include "pictures/picture.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// How things are drawn, by class.
+/// Styles of all elements, by class.
 constexpr const char* kStyle =
     "<style>.edge,.rim,.segment,.mark{stroke-linecap:round}.edge{stroke:#555;stroke-width:1.4}.hidden{stroke:#8a8a8a;"
     "stroke-width:1.1;"
@@ -52,7 +52,7 @@ Place mean_of(const std::vector<Place>& places) {
   return 1 / static_cast<double>(places.size()) * sum;
 }
 
-/// Orthographic view.
+/// Orthographic view: the direction to the eye, and the axes of the picture.
 struct View {
   Place right, up, eye;
 
@@ -63,7 +63,7 @@ struct View {
   }
 };
 
-/// Which faces of a tile turn towards the eye, and with them which edges and corners can be seen.
+/// Visible corners and edges of a tile: those of the faces that point towards the eye.
 struct Visible {
   std::vector<bool> corners, edges;
 
@@ -85,7 +85,7 @@ struct Visible {
   }
 };
 
-/// The SVG in the making: elements in picture coordinates, the frame found at the end.
+/// Collects SVG elements in picture coordinates and their bounding box.
 class Canvas {
  public:
   Canvas(const View& view, double scale) : view_(view), scale_(scale) {}
@@ -108,7 +108,7 @@ class Canvas {
     add("<polygon points=\"{}\" {}/>\n", points, style);
   }
 
-  /// The element, alone or at a place within another one; its size is added to what `width` and `height` cover so far.
+  /// The SVG element, standalone or placed at x inside another one. Grows `width` and `height` to include it.
   [[nodiscard]] std::string svg(const Picture& picture, bool alone, double x, double& width, double& height) const {
     constexpr double kMargin = 12, kCaption = 18;
     const double w = std::ceil(high_[0] - low_[0]) + 2 * kMargin;
@@ -151,13 +151,14 @@ const std::vector<Facet>& facets_of(const PlacedTile& placed) {
   return placed.contour == nullptr ? none : placed.contour->facets;
 }
 
-/// Facets of one tile, far triangles first; then the facets' outlines.
+/// Draws the facets of one tile, far triangles first, then their outlines.
 void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
   struct Triangle {
     double depth;
     std::vector<Place> places;
     std::string style;
   };
+  // collect the triangles of facets and patches
   std::vector<Triangle> triangles;
   std::vector<std::array<Place, 3>> all;
   for (const Facet& facet : facets_of(placed))
@@ -165,6 +166,7 @@ void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
       all.push_back({place_of(*placed.tile, facet, s[0]), place_of(*placed.tile, facet, s[1]),
                      place_of(*placed.tile, facet, s[2])});
   all.insert(all.end(), placed.patches.begin(), placed.patches.end());
+  // shade each triangle; count triangles per side: a side of one triangle is a rim
   std::map<std::pair<Place, Place>, int> sides;
   for (const auto& corners : all) {
     for (std::size_t i = 0; i < 3; ++i) ++sides[std::minmax(corners[i], corners[(i + 1) % 3])];
@@ -180,6 +182,7 @@ void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
     t.style = fmt::format("fill=\"{0}\" stroke=\"{0}\" class=\"side\"", colour);
     triangles.push_back(std::move(t));
   }
+  // paint from far to near
   std::stable_sort(triangles.begin(), triangles.end(),
                    [](const Triangle& a, const Triangle& b) { return a.depth < b.depth; });
   for (const Triangle& t : triangles) canvas.polygon(t.places, t.style);
@@ -187,7 +190,7 @@ void draw_facets(const PlacedTile& placed, const View& view, Canvas& canvas) {
     canvas.line(placed.at + ends.first, placed.at + ends.second, count == 1 ? "rim" : "mesh");
 }
 
-/// In the plane: segments, with a short stroke to their high side.
+/// 2D: draws segments, with a short stroke to their high side.
 void draw_segments(const PlacedTile& placed, Canvas& canvas) {
   for (const Facet& facet : facets_of(placed))
     for (const Simplex& s : facet.simplices) {
@@ -208,7 +211,7 @@ void draw_edges(const PlacedTile& placed, const Visible& visible, bool hidden, C
                   hidden ? "hidden" : "edge");
 }
 
-/// Hidden corners are drawn over the facets as well, paler: which ones are high is what the picture is about.
+/// Hidden corners are drawn paler, above the facets, so that the signature stays readable.
 void draw_corners(const PlacedTile& placed, const Visible& visible, bool hidden, Canvas& canvas) {
   for (std::uint32_t v = 0; v < placed.tile->corner_count(); ++v) {
     if (visible.corners[v] == hidden) continue;
@@ -232,13 +235,14 @@ Place place_of(const Tile& tile, const Facet& facet, std::uint8_t vertex) {
 
 namespace {
 
-/// One picture as an element at x.
+/// Draws one picture as an SVG element at x.
 std::string drawn(const Picture& picture, bool alone, double x, double& width, double& height) {
   const int dim = picture.tiles.empty() ? 0 : picture.tiles.front().tile->dim;
   if (dim != 2 && dim != 3)
     throw Error(ErrorCode::Internal, fmt::format("a picture of tiles of dimension {}: expected 2 or 3", dim));
   const View view(dim);
   Canvas canvas(view, picture.scale);
+  // tiles from far to near
   std::vector<PlacedTile> tiles = picture.tiles;
   std::stable_sort(tiles.begin(), tiles.end(), [&view](const PlacedTile& a, const PlacedTile& b) {
     return dot(a.at, view.eye) < dot(b.at, view.eye);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where the contour of one tile is cut by a hyperplane of time, for the pictures.
+// Cuts the contour of one 4-tile at a time, for the pictures.
 #include "pictures/tile_cut.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ Point mean_of(const std::vector<Point>& points) {
   return sum;
 }
 
-/// Where local vertices lie: barycentres about the middle of their facets.
+/// Positions of local vertices; barycentres are approximated by the means of their facets' edge points.
 class Places {
  public:
   Places(const ContourBuilder& builder, Signature signature, const TileContour& contour)
@@ -52,7 +52,7 @@ class Places {
     for (const std::uint8_t e : edges) points.push_back(on_edge(e));
     return mean_of(points);
   }
-  /// The barycentre of a cube's facet: slot j is its j-th cone.
+  /// The barycentre of a cube's facet; slot j belongs to the j-th coned facet of the cube.
   [[nodiscard]] Point of_slot(std::uint32_t slot) const {
     const std::uint32_t f = slot / tables::kFaceSlots;
     std::uint32_t cones = 0;
@@ -72,7 +72,7 @@ class Places {
 
 Point difference(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]}; }
 
-/// The part within the cut of the normal that faces high.
+/// The spatial part of the normal that faces high.
 Place normal_of(const std::array<Point, 4>& t) {
   std::array<Point, 4> rows{difference(t[1], t[0]), difference(t[2], t[0]), difference(t[3], t[0]), Point{}};
   Place normal{};
@@ -91,7 +91,7 @@ Place crossing(const Point& below, const Point& above, double time) {
   return p;
 }
 
-/// Adds a triangle, turned so that it faces along the normal.
+/// Adds a triangle, oriented along the normal.
 void add(std::array<Place, 3> t, const Place& normal, std::vector<std::array<Place, 3>>& result) {
   const Place u{t[1][0] - t[0][0], t[1][1] - t[0][1], t[1][2] - t[0][2]};
   const Place v{t[2][0] - t[0][0], t[2][1] - t[0][1], t[2][2] - t[0][2]};

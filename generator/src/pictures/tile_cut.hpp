@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contour of a 4-tile cut at one value of its last coordinate, for pictures (private to the generator).
+// Cuts the contour of a 4-tile at a value of its last coordinate, for pictures (private to the generator).
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace tegl::gen {
 
-/// Triangles in the unit cube, the right-hand normal towards high. Edge points lie half way, barycentres about the
-/// middle of their facets; time is in (0, 1).
+/// Returns triangles in the unit cube; their right-hand normals point towards high. Edge points lie at the middle of
+/// edges, barycentres approximately in the middle of their facets. time is in (0, 1).
 [[nodiscard]] std::vector<std::array<Place, 3>> cut(const ContourBuilder& builder, Signature signature,
                                                     const TileContour& contour, double time);
 

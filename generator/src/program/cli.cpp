@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The parser is one table of options: what each is called, whether it takes a value, which commands know it, and
-// what it does to Options. The generator links nothing but fmt, hence no parser library.
+// The parser of the command line. One table of options holds for each its name, whether it takes a value, the commands
+// that accept it, and its effect on Options. The generator depends only on fmt, so it uses no parser library.
 #include "program/cli.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace {
   throw Error(ErrorCode::InvalidArgument, message + "; see gen --help");
 }
 
-/// The value among `choices` that has this name.
+/// Returns the value with the given name.
 template <typename Value, std::size_t Count>
 Value choose(std::string_view option, std::string_view given,
              const std::array<std::pair<std::string_view, Value>, Count>& choices) {
@@ -102,7 +102,7 @@ void set_triangulation(Options& options, std::string_view given) {
                         Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}});
 }
 
-/// Names separated by commas, in any order, each once.
+/// Parses names separated by commas, in any order, each at most once.
 void set_languages(Options& options, std::string_view given) {
   options.languages.clear();
   for (std::size_t first = 0; first <= given.size();) {
@@ -139,8 +139,8 @@ struct OptionSpec {
   std::string_view name;
   bool takes_value;
   std::optional<Command> command;  ///< set if the option is itself a command
-  unsigned known_to;               ///< otherwise: the commands that know it
-  Apply apply;                     ///< null where naming the command is all it does
+  unsigned known_to;               ///< otherwise: the commands that accept it
+  Apply apply;                     ///< null if the option only selects the command
 };
 
 constexpr std::array kOptions{
@@ -171,7 +171,7 @@ constexpr std::array kOptions{
     OptionSpec{"--triangulation", true, std::nullopt, kOut, set_triangulation},
 };
 
-/// The names of the options for which `wanted` holds, for messages.
+/// Names of the options for which `wanted` holds, for messages.
 template <typename Predicate>
 std::string names_of(Predicate wanted) {
   std::vector<std::string_view> names;
@@ -183,7 +183,7 @@ std::string names_of(Predicate wanted) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// An option as given, and its value if it takes one.
+/// An option of the command line, with its value if it takes one.
 struct Given {
   const OptionSpec* spec;
   std::string_view value;
@@ -217,7 +217,7 @@ std::vector<Given> split(std::span<const std::string_view> arguments) {
   return result;
 }
 
-/// The one option that is a command. Refuses none and several.
+/// The only option that is a command; refuses none and several.
 const OptionSpec& command_of(const std::vector<Given>& given) {
   const OptionSpec* command = nullptr;
   for (const Given& option : given) {
@@ -236,10 +236,10 @@ const OptionSpec& command_of(const std::vector<Given>& given) {
   return *command;
 }
 
-/// Highest dimension in which single tiles are built.
+/// Highest dimension in which single tiles can be built.
 constexpr int kMaxSampledDim = 6;
 
-/// The dimensions that a command works in.
+/// Checks --dim against the range of the command.
 void check_dim(const Options& options, std::string_view command) {
   if (options.command == Command::Version) {
     return;
@@ -258,7 +258,7 @@ void check_dim(const Options& options, std::string_view command) {
   }
 }
 
-/// The dimensions that a tile other than the cube has, and what it goes with.
+/// Checks the dimension and the options that a tile other than the cube allows.
 void check_tile(const Options& options) {
   if (options.tile == TileKind::cube) {
     return;
@@ -280,8 +280,8 @@ void check_tile(const Options& options) {
   }
 }
 
-/// What goes with what in `--certify`: groups with the table by class alone, and that table in the dimensions that have
-/// one; a seed with a sample; threads with what takes time.
+/// Checks the combinations of options of `--certify`: --group and --inversion only with --table-by-class, which exists
+/// for dimensions 2 and 3; --seed only with --sample; --threads only with --all or --sample.
 void check_certify(const Options& options, const std::vector<const OptionSpec*>& seen) {
   if (options.command != Command::Certify) {
     return;
@@ -313,14 +313,17 @@ void check_certify(const Options& options, const std::vector<const OptionSpec*>&
 
 Options parse(std::span<const std::string_view> arguments) {
   Options options;
+  // --help overrides everything else
   for (const std::string_view argument : arguments) {
     if (argument == "--help" || argument == "-h") {
       return options;
     }
   }
+  // the command
   const std::vector<Given> given = split(arguments);
   const OptionSpec& command = command_of(given);
   options.command = *command.command;
+  // its options, each at most once
   std::vector<const OptionSpec*> seen;
   for (const Given& option : given) {
     if (std::find(seen.begin(), seen.end(), option.spec) != seen.end()) {
@@ -337,6 +340,7 @@ Options parse(std::span<const std::string_view> arguments) {
       option.spec->apply(options, option.value);
     }
   }
+  // values that depend on each other
   const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
   if (!has_dim && options.command != Command::Version) {
     refuse(fmt::format("{} without --dim: expected --dim N", command.name));

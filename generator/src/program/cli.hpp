@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The command line of `gen`: text in, checked Options out. Prints nothing itself.
+// The command line of `gen`: converts text to checked Options. Prints nothing.
 #pragma once
 
 #include <span>
@@ -11,16 +11,16 @@
 
 namespace tegl::gen {
 
-/// Reads the arguments (without the program's name). `--name value` and `--name=value` are the same; the order does not
-/// matter; `--help` or `-h` anywhere makes the rest irrelevant.
-/// Errors: InvalidArgument, naming what was given and what is expected, for an unknown or repeated option, a missing or
-/// invalid value, no command or two, and an option that the command does not take.
+/// Parses the arguments (without the program's name). `--name value` and `--name=value` are equivalent, the order does
+/// not matter, and `--help` or `-h` anywhere overrides all other arguments. Errors: InvalidArgument, with actual and
+/// expected text, for an unknown or repeated option, a missing or invalid value, no command or two, and an option that
+/// the command does not accept.
 [[nodiscard]] Options parse(std::span<const std::string_view> arguments);
 
-/// What `--help` shows: usage, options, examples, exit codes.
+/// The text of `--help`: usage, options, examples, exit codes.
 [[nodiscard]] std::string help_text();
 
-/// What `--version` shows.
+/// The text of `--version`.
 [[nodiscard]] std::string version_text();
 
 }  // namespace tegl::gen

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `gen --certify`: of tables, of tables by class, of tiles whose ambiguities are resolved freely.
+// `gen --certify` for tables, for tables by class, and for tiles with freely resolved ambiguities.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ std::string figures_json(const CertifiedFigures& f) {
       static_cast<double>(f.simplices) / static_cast<double>(f.signatures), f.pairs.pairs, f.pairs.unmatched);
 }
 
-/// `--certify --table-by-class`: prints the figures of its pairs, then throws if there are holes.
+/// `--certify --table-by-class`: prints the figures of all pairs, then throws if any pair leaves a hole.
 int certify_by_class(const Options& options) {
   const CubeLattice lattice(options.dim);
   const ContourBuilder builder(lattice, options.dim, Alternative::low, Triangulation::compact);
@@ -60,7 +60,7 @@ int certify_by_class(const Options& options) {
   return 0;
 }
 
-/// Genus g of a closed oriented surface with Euler characteristic 2 - 2 g.
+/// Name of a closed oriented surface by its Euler characteristic 2 - 2 g, g the genus.
 std::string surface_name(int euler) {
   if (euler == 2) return "sphere";
   if (euler == 0) return "torus";
@@ -120,7 +120,7 @@ void print_resolutions_json(const Options& options, const ResolutionFigures& f, 
       f.by_filling[0], f.by_filling[1], f.by_filling[2], f.simplices, f.max_simplices, fmt::join(euler, ", "), seconds);
 }
 
-/// Per cent on standard error, if somebody looks at it.
+/// Writes the percentage done to standard error if that is a terminal.
 class ProgressLine {
  public:
   ~ProgressLine() {

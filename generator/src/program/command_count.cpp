@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `gen --count`: the number of classes, counted twice by ways that share no code beyond the group's order: Burnside's
-// lemma over pairs of partitions, and orbits of all signatures under the closed group.
+// `gen --count`: the number of classes, counted in two ways that share only the group's order: Burnside's lemma over
+// pairs of partitions, and orbits of all signatures under the closed group.
 #include <fmt/format.h>
 
 #include "program/commands.hpp"
@@ -13,7 +13,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// The result, for people or machines.
+/// Prints the result as text or JSON.
 void print_count(const Options& options, std::size_t order, const std::string& orbits, bool enumerated) {
   const char* const group_name = options.group == GroupKind::Full ? "full" : "rotations";
   if (options.json) {
@@ -27,7 +27,7 @@ void print_count(const Options& options, std::size_t order, const std::string& o
   }
 }
 
-/// Tiles other than cubes: both counts from the permutations of their corners.
+/// Tiles other than cubes: both counts use the permutations of the tile's corners.
 int count_of_tile(const Options& options) {
   const Lattice lattice(options.tile, options.dim);
   const Tile& tile = lattice.tile(options.dim);

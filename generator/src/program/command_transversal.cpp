@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `gen --transversal`: one signature of every class. Checked twice: their number by Burnside's lemma, and the lengths
-// of their orbits by their sum.
+// `gen --transversal`: one signature of every class. Two checks: the number of classes by Burnside's lemma, and the sum
+// of the orbit lengths.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -16,11 +16,11 @@ namespace tegl::gen {
 
 namespace {
 
-/// What is counted on the way.
+/// Counts of classes, signatures and orbit lengths.
 struct Census {
   std::uint64_t classes = 0;
   std::uint64_t signatures = 0;
-  std::map<std::uint32_t, std::uint64_t> by_length;  ///< orbit length: classes
+  std::map<std::uint32_t, std::uint64_t> by_length;  ///< orbit length -> number of classes
 };
 
 void check(const Census& census, const Options& options) {

@@ -69,7 +69,7 @@ std::string text_of(const Tile& tile, const ClassReport& c) {
                      fmt::format("{}", fmt::join(ambiguous, " ")), fmt::join(facets, " "));
 }
 
-/// Seconds since the last call.
+/// Measures the seconds since the last call.
 class Stopwatch {
  public:
   double lap() {
@@ -81,13 +81,13 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// A file to write, and the seconds that its text took.
+/// A file to write, and the seconds spent on generating and writing its text.
 struct TimedFile {
   EmittedFile file;
   double seconds;
 };
 
-/// The files of all languages, each once.
+/// Generates the files of all languages; a file that two languages share is listed once.
 std::vector<TimedFile> emit_all(const TableSet& set, const std::vector<Language>& languages) {
   std::vector<TimedFile> files;
   for (const Language language : languages) {
@@ -97,18 +97,18 @@ std::vector<TimedFile> emit_all(const TableSet& set, const std::vector<Language>
     double bytes = 0;
     for (const EmittedFile& file : emitted) bytes += static_cast<double>(file.text.size());
     for (EmittedFile& file : emitted) {
-      // The words for a shader's storage buffer are the same file in GLSL and WGSL.
+      // GLSL and WGSL use the same file of words for a storage buffer.
       const auto same = [&file](const TimedFile& other) { return other.file.name == file.name; };
       if (std::any_of(files.begin(), files.end(), same)) continue;
-      const double share = static_cast<double>(file.text.size()) / bytes;  // texts take time by their length
+      const double share = static_cast<double>(file.text.size()) / bytes;  // time is divided by length of text
       files.push_back({std::move(file), seconds * share});
     }
   }
   return files;
 }
 
-/// Writes every file beside its target first and renames at the end: a failure leaves no half-written table. Adds the
-/// time that writing takes.
+/// Writes all files under temporary names beside their targets and renames them at the end, so a failure while writing
+/// leaves no incomplete table. Adds the writing times.
 void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& files) {
   const auto part = [&](const TimedFile& timed) { return folder / (timed.file.name + ".part"); };
   const auto fail = [&](const std::filesystem::path& path, const std::string& why) {
@@ -121,6 +121,7 @@ void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& fi
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail(folder, "cannot make the folder: " + error.message());
+  // write temporary files
   for (TimedFile& timed : files) {
     const auto target = folder / timed.file.name;
     std::filesystem::create_directories(target.parent_path(), error);
@@ -133,6 +134,7 @@ void write_files(const std::filesystem::path& folder, std::vector<TimedFile>& fi
     if (!out) fail(target, "cannot be written");
     timed.seconds += watch.lap();
   }
+  // rename
   for (const TimedFile& timed : files) {
     std::filesystem::rename(part(timed), folder / timed.file.name, error);
     if (error) fail(folder / timed.file.name, error.message());
@@ -177,6 +179,7 @@ int run_cases(const Options& options) {
 }
 
 int run_out(const Options& options) {
+  // request and command line for the banner
   TableRequest request;
   request.tile = options.tile;
   request.dim = options.dim;
@@ -197,6 +200,7 @@ int run_out(const Options& options) {
     request.layout = [layout](Triangulation) { return layout; };
     request.command += fmt::format(" --layout {}", layout_name(layout));
   }
+  // tables
   Stopwatch watch;
   const TableSet set = make_table_set(request);
   for (const CertifiedFigures& f : set.figures) print_figures(options.tile, options.dim, f);
@@ -204,6 +208,7 @@ int run_out(const Options& options) {
     fmt::print("{}-tile, every ambiguity resolved freely\n  certified    {} entries, 3 ways each\n", options.dim,
                set.resolved->entries.size());
   fmt::print("made and certified in {:.2f} s\n", watch.lap());
+  // files
   std::vector<TimedFile> files = emit_all(set, options.languages);
   write_files(options.out, files);
   for (const auto& [file, seconds] : files)

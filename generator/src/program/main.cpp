@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The program `gen`: parses, dispatches, and turns errors into a message and an exit status.
+// The program `gen`: parses the command line, runs the command, and converts errors to a message and an exit status.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   } catch (const Error& error) {
     fmt::print(stderr, "gen: {}\n", error.what());
     return static_cast<int>(error.code());
-  } catch (const std::system_error& error) {  // fmt's, when a long output fills its buffer
+  } catch (const std::system_error& error) {  // thrown by fmt when flushing its buffer fails
     fmt::print(stderr, "gen: standard output could not be written: {}\n", error.code().message());
     return static_cast<int>(ErrorCode::WriteFailed);
   } catch (const std::exception& error) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the command line of `gen` asks for, as plain data. Filled and checked by parse() (cli.hpp), read by
-// the commands (commands.hpp). A member that its comment ties to certain commands cannot be given with
-// another one: the parser refuses it, so a command may rely on every option it gets being meant.
+// The options of `gen` as plain data. parse() (cli.hpp) fills and checks them; the commands (commands.hpp) read them.
+// The parser refuses an option that the command does not use, so a command may rely on every option it gets.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,7 @@
 
 namespace tegl::gen {
 
-/// What to do. Exactly one is given.
+/// The command; exactly one per command line.
 enum class Command {
   Help,         ///< --help
   Version,      ///< --version
@@ -32,15 +31,15 @@ enum class Command {
 enum class LayoutChoice {
   Class,  ///< one list per symmetry class and a group element per signature
   Flat,   ///< one list per signature
-  Auto,   ///< the one that measured faster for this dimension
+  Auto,   ///< the layout that measured faster for the dimension
 };
 
 /// Which triangulations are emitted.
 enum class TriangulationChoice { Barycentric, Compact, All };
 
-/// One checked command line. Defaults are those of the command line.
+/// A checked command line. Defaults equal those of the command line.
 struct Options {
-  Command command = Command::Help;                               ///< what to do
+  Command command = Command::Help;                               ///< the command
   int dim = 0;                                                   ///< --dim; 0 for --help and --version
   TileKind tile = TileKind::cube;                                ///< --tile; not for --transversal
   GroupKind group = GroupKind::Full;                             ///< --group; --count, --transversal, table_by_class
@@ -51,7 +50,7 @@ struct Options {
   std::uint64_t seed = 1;                                        ///< --seed; with --sample
   unsigned threads = 0;                                          ///< --threads; with --all or --sample; 0: all
   bool list = false;                                             ///< --list; --transversal only
-  bool json = false;                                             ///< --json; all but --out, and not with --list
+  bool json = false;                                             ///< --json; not for --out and --cases, not with --list
   Alternative alternative = Alternative::low;                    ///< --alternative; --classes only
   std::string out;                                               ///< DIR of --out and --cases
   LayoutChoice layout = LayoutChoice::Auto;                      ///< --layout; --out only

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Polya-Burnside for the n-cube from cycle types.
+// Polya-Burnside count for the n-cube from cycle types.
 //
 // A conjugacy class of B_n is a pair of partitions, of a and of n - a: the lengths of the positive and of the
 // negative cycles of axes. All that Burnside's lemma needs follows from them:
@@ -38,8 +38,8 @@ std::vector<std::vector<int>> partitions(int n, int largest) {
   return result;
 }
 
-/// Product of (2k)^m m! over the distinct lengths k, with m cycles each: what the elements of B_n that commute with
-/// g do to the cycles of one sign.
+/// Product of (2k)^m m! over the distinct lengths k, with m cycles each: the number of ways in which elements of B_n
+/// that commute with g act on the cycles of one sign.
 std::uint64_t centraliser_factor(const std::vector<int>& lengths) {
   std::uint64_t factor = 1;
   std::uint64_t repeats = 0;
@@ -50,7 +50,7 @@ std::uint64_t centraliser_factor(const std::vector<int>& lengths) {
   return factor;
 }
 
-/// Number of corners that g^m leaves in place.
+/// Number of corners fixed by g^m.
 std::uint64_t fixed_corners(const CycleType& type, int m) {
   std::uint64_t fixed = 1;
   for (const int k : type.positive) {

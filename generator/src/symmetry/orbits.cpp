@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Orbits of signatures in ascending order: the first signature not yet reached is the smallest of its orbit.
+// Orbits of signatures in ascending order: the first unreached signature is the smallest of its orbit.
 //
 // Based on: M. Liversage, thesis, 1994, algorithm 7.4.9.
 #include "symmetry/orbits.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A corner at a time is given its image, one that has the right edges to the corners before it; what is found at the
-// end is kept if it carries every face to a face.
+// Backtracking search: assigns corners one by one to images with matching edges to the earlier corners, and keeps a
+// complete assignment if it maps every face to a face.
 #include "symmetry/tile_symmetry.hpp"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ double volume(const Tile& tile, const std::vector<std::uint32_t>& corners) {
   return determinant(rows, tile.dim);
 }
 
-/// n + 1 corners in general position: the first in ascending order.
+/// The lexicographically first n + 1 corners in general position.
 std::vector<std::uint32_t> frame_of(const Tile& tile) {
   const auto size = static_cast<std::size_t>(tile.dim) + 1;
   std::vector<bool> chosen(tile.corner_count(), false);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The symmetries of any tile from their definition: the permutations of its corners that carry faces to faces. Counting
-// and enumeration of classes for them. For cubes symmetry.hpp knows the same group by its structure, for every
-// dimension; the two are held against each other.
+// The symmetries of any tile by definition: the permutations of its corners that map faces to faces. Counts and
+// enumerates classes under them. symmetry.hpp derives the same group for cubes of every dimension from its structure;
+// tests compare the two.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +16,25 @@
 
 namespace tegl::gen {
 
-/// A symmetry of a tile, by what it does to the corners.
+/// A symmetry of a tile, as a permutation of corners.
 struct TileSymmetry {
   std::vector<std::uint32_t> corner;  ///< the images of the corners
-  int det = 1;                        ///< -1 for one that reverses the orientation of space
+  int det = 1;                        ///< -1 if it reverses the orientation of space
   bool inverts = false;               ///< also exchanges high and low
 };
 
-/// All of them, in ascending order of (inverts, images): the identity is the first. A search with the edges to cut it
-/// short: immediate for every tile of up to four dimensions.
+/// All symmetries in ascending order of (inverts, images); the identity is the first. A backtracking search pruned by
+/// edges: immediate for every tile of up to four dimensions.
 [[nodiscard]] std::vector<TileSymmetry> symmetries(const Tile& tile, GroupKind kind, bool inversion);
 
 /// The number of orbits by Burnside's lemma, from the cycles of each permutation.
 [[nodiscard]] WideUint burnside_orbits(std::span<const TileSymmetry> group);
 
-/// The orbits of the 2^corners signatures of a tile of at most 16 corners. Errors: as transversal(n, group).
+/// The orbits of the 2^corners signatures of a tile. Errors: InvalidArgument for more than 16 corners; Internal as
+/// orbits().
 [[nodiscard]] Transversal transversal(const Tile& tile, std::span<const TileSymmetry> group);
 
-/// Counts the classes a second time, by Burnside's lemma. Errors: CountMismatch if the two numbers differ.
+/// Counts the classes again by Burnside's lemma. Errors: CountMismatch if the numbers differ.
 void require_burnside_count(const Transversal& classes, std::span<const TileSymmetry> group);
 
 }  // namespace tegl::gen

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The orbits under a group of symmetries of the cube, and their number by Burnside's lemma.
+// Orbits under a group of symmetries of the cube, checked against Burnside's lemma.
 #include "symmetry/transversal.hpp"
 
 #include <fmt/format.h>

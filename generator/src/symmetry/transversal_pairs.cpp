@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Representatives of dimension n from those of dimension n - 1.
+// Representatives of dimension n from the classes of dimension n - 1.
 //
-// The largest half of the bits of a signature is its upper face along the last axis. So the smallest signature of an
-// orbit has as its upper face the smallest signature that any face gets under the group: the least of its faces'
-// representatives, r. Which of the symmetries that bring a face with that representative up give the least lower face
-// is a matter of the coset of r's stabiliser that leads there.
+// The upper half of a signature's bits is its upper face along the last axis. So the smallest signature of an orbit has
+// as its upper face the smallest signature that any face gets under the group, which is the smallest of the faces'
+// representatives, r. The symmetries that map a face with representative r to the upper face form cosets of r's
+// stabiliser; the minimum over these determines the lower face.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// A symmetry of the (n-1)-cube on signatures, by table: each byte of the signature gives bits of the image.
+/// A symmetry of the (n-1)-cube on signatures, with one look-up table per byte of the signature.
 class SignatureMap {
  public:
   SignatureMap(const Element& g, int dim) : bytes_(std::max(1, (1 << dim) / 8)) {
@@ -47,7 +47,7 @@ class SignatureMap {
 /// The bits of a signature of dimension n at corners with x_axis = side, in the face's own numbering.
 std::uint32_t face_of(std::uint64_t signature, int n, int axis, unsigned side) {
   std::uint64_t bits = signature >> (side << axis);
-  // Runs of 2^axis bits with gaps as long: pairs of runs move together, then pairs of those.
+  // Compress runs of 2^axis bits separated by gaps of equal length: merge pairs of runs, then pairs of the results.
   for (int k = axis; k < n - 1; ++k) {
     const std::uint64_t run = (std::uint64_t{1} << (1u << k)) - 1;
     std::uint64_t kept = 0;
@@ -69,8 +69,8 @@ class PairEnumeration {
       const auto found = std::find(elements_.begin(), elements_.end(), inverse(g));
       inverse_of_.push_back(static_cast<std::uint32_t>(found - elements_.begin()));
     }
-    // A face comes up by a cyclic exchange of axes and a flip; where the group has rotations alone, one more flip, of
-    // axis 0, makes a rotation of every second of these.
+    // A cyclic exchange of axes and a flip map a face to the upper face. Half of these maps are reflections; for
+    // rotations an additional flip of axis 0 makes them rotations.
     Element mirror;
     mirror.flip = 1;
     mirror.det = -1;
@@ -103,9 +103,9 @@ class PairEnumeration {
       if (maps_[g](r) == r) stabiliser_.push_back(g);
   }
 
-  /// How many symmetries leave the signature as it is; 0 if one makes it smaller.
+  /// The number of symmetries that fix the signature, or 0 if one of them maps it to a smaller one.
   std::uint32_t symmetries(std::uint32_t c, std::uint64_t signature, std::uint32_t lower) const {
-    // The upper face itself first: most signatures fall here.
+    // The upper face first: it rejects most signatures.
     std::uint32_t same = 0;
     for (const std::uint32_t k : stabiliser_) {
       const std::uint32_t image = maps_[k](lower);

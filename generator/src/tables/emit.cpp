@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The way from a language to its emitter.
+// Selects the emitter of a language.
 #include "tables/emit.hpp"
 
 namespace tegl::gen {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The C++ tables and the manifest.
+// Emits the C++ tables and the manifest.
 #include "tables/emit.hpp"
 #include "tables/emit_text.hpp"
 
@@ -8,7 +8,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// `const TYPE NAME[] = {...};`, some 110 columns wide.
+/// Writes `const TYPE NAME[] = {...};` in lines of about 110 columns.
 template <class T>
 void array(std::string& text, const char* type, const char* name, const char* comment, const std::vector<T>& values) {
   if (values.empty()) return;
@@ -24,7 +24,7 @@ void array(std::string& text, const char* type, const char* name, const char* co
   text += "};\n";
 }
 
-/// Bytes as string literals: compilers read these a hundred times faster than lists of numbers.
+/// Writes bytes as string literals, which compilers read a hundred times faster than lists of numbers.
 void bytes(std::string& text, const char* name, const std::string& comment, const std::vector<std::uint8_t>& values,
            std::size_t per_line) {
   fmt::format_to(Out(text), "\n// {}\nconst char {}[] =", comment, name);
@@ -35,7 +35,7 @@ void bytes(std::string& text, const char* name, const std::string& comment, cons
   text += values.empty() ? " \"\";\n" : "\";\n";
 }
 
-/// The banner and what every C++ file of tables begins with.
+/// The beginning of every C++ file of tables: banner, include, version check.
 std::string opening(const TableSet& set, const std::string& what) {
   const char* const header = set.tile == TileKind::cube ? "tegl/generated/tables.hpp" : "tegl/table_contract.hpp";
   return banner(set, Language::cpp, what) +

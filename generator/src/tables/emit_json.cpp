@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables as JSON: the contract's arrays by their names there. The schema is in docs/tables.md.
+// Emits tables as JSON: the contract's arrays by name. The schema is in docs/tables.md.
 #include <fmt/ranges.h>
 
 #include "tables/emit.hpp"
@@ -10,7 +10,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// `"name": [...]` in lines of some 110 columns.
+/// Writes `"name": [...]` in lines of about 110 columns.
 template <class T>
 void array(std::string& text, const char* name, const std::vector<T>& values) {
   fmt::format_to(Out(text), ",\n  \"{}\": [", name);
@@ -26,7 +26,7 @@ void array(std::string& text, const char* name, const std::vector<T>& values) {
   text += ']';
 }
 
-/// Rows of numbers under their names' list: `"name": {"columns": [...], "rows": [[...], ...]}`.
+/// Writes `"name": {"columns": [...], "rows": [[...], ...]}`.
 template <class T, class Row>
 void rows(std::string& text, const char* name, const char* columns, const std::vector<T>& values, const Row& row) {
   fmt::format_to(Out(text), ",\n  \"{}\": {{\"columns\": [{}], \"rows\": [", name, columns);
@@ -36,7 +36,7 @@ void rows(std::string& text, const char* name, const char* columns, const std::v
   text += "]}";
 }
 
-/// What every file begins with: an object, opened.
+/// The beginning of every file: an open object with the common members.
 std::string opening(const TableSet& set, const char* kind, int dim) {
   std::string text;
   fmt::format_to(Out(text),
@@ -57,7 +57,7 @@ std::string opening(const TableSet& set, const char* kind, int dim) {
   return text;
 }
 
-/// Corners, edges and faces, so that the numbering need not be known from elsewhere.
+/// Corners, edges and faces, so that a file documents its own numbering.
 void shape(std::string& text, const TileTables& table) {
   std::vector<std::string> corners, edges, faces;
   for (const auto& x : table.corners)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables for GPUs: GLSL, WGSL and CUDA. The look-up is written once, in a notation of which each language is a
-// substitution: expressions on unsigned integers are the same in all three if every shift stands in parentheses.
+// Emits tables for GPUs in GLSL, WGSL and CUDA. The look-up is written once, in a notation that substitution converts
+// to each language. Expressions on unsigned integers are equal in all three if every shift is in parentheses.
 #include "base/error.hpp"
 #include "tables/emit.hpp"
 #include "tables/emit_text.hpp"
@@ -11,12 +11,12 @@ namespace tegl::gen {
 
 namespace {
 
-/// How a language writes what differs.
+/// Differences between the languages.
 struct Dialect {
   Language language;
-  const char* suffix;    ///< of the file
-  const char* let;       ///< declares a local that is not assigned again
-  const char* variable;  ///< declares one that is
+  const char* suffix;    ///< file name extension
+  const char* let;       ///< declares a constant local
+  const char* variable;  ///< declares a variable local
 };
 
 const Dialect& dialect_of(Language language) {
@@ -29,7 +29,7 @@ const Dialect& dialect_of(Language language) {
               fmt::format("packed tables in {}: expected glsl, wgsl or cuda", language_name(language)));
 }
 
-/// One file in the making: text of one dialect, names prefixed with the table's.
+/// Builds one file in one dialect; names get the table's prefix.
 class Writer {
  public:
   Writer(const Dialect& dialect, std::string prefix) : dialect_(dialect), prefix_(std::move(prefix)) {}
@@ -50,7 +50,7 @@ class Writer {
     }
   }
 
-  /// The words as a constant array `<prefix>_words`.
+  /// Writes the words as a constant array `<prefix>_words`.
   void words(const std::vector<std::uint32_t>& words) {
     const std::size_t count = words.size();
     if (dialect_.language == Language::glsl)
@@ -73,8 +73,8 @@ class Writer {
                                                    : "};\n";
   }
 
-  /// A function from unsigned numbers to one. In `body`: LET and VAR declare locals, W[i] is a word, a name behind @
-  /// gets the table's prefix.
+  /// Writes a function of unsigned parameters with an unsigned result. In `body`, LET and VAR declare locals, W[i] is a
+  /// word, and @ before a name stands for the table's prefix.
   void function(const std::string& about, const char* name, std::initializer_list<const char*> parameters,
                 const std::string& body) {
     std::string list;
@@ -207,7 +207,7 @@ void side_function(Writer& out, const TileTables& table, const PackedTable& pack
                                 packed.signatures));
 }
 
-/// What constant arrays need before them.
+/// Macros that constant arrays need.
 void array_macros(Writer& out, const Dialect& dialect) {
   if (dialect.language == Language::glsl)
     out.raw("#ifndef TEGL_ARRAY_BEGIN\n#define TEGL_ARRAY_BEGIN uint[](\n#define TEGL_ARRAY_END )\n#endif\n\n");
@@ -220,7 +220,7 @@ void array_macros(Writer& out, const Dialect& dialect) {
         "#else\n#define TEGL_TABLE_DATA static const\n#define TEGL_TABLE_FUNCTION static inline\n#endif\n#endif\n\n");
 }
 
-/// The array of words, or how to get at it.
+/// The array of words, or the instructions for binding it.
 void data(Writer& out, const Dialect& dialect, const TileTables& table, const PackedTable& packed,
           const std::string& name) {
   if (dialect.language == Language::cuda || table.dim < 4) array_macros(out, dialect);
@@ -245,10 +245,11 @@ void data(Writer& out, const Dialect& dialect, const TileTables& table, const Pa
   out.words(packed.words);
 }
 
-/// The complete table of the cube: 256 words by signature (first entry | ambiguous squares << 16), six words per entry
-/// (for separate, low and high: first triangle | triangles << 16 | own vertices << 24, then the first mask), a word per
-/// triangle (a byte per vertex), a word per mask.
+/// The complete table of the cube. Words: 256 by signature (first entry | ambiguous squares << 16); six per entry (for
+/// separate, low and high: first triangle | triangles << 16 | own vertices << 24, then the first mask); one per
+/// triangle (a byte per vertex); one per mask.
 EmittedFile resolved_file(const TableSet& set, const Dialect& dialect, const ResolvedCube& table) {
+  // words
   std::vector<std::uint32_t> words;
   for (std::size_t s = 0; s < table.first_entry.size(); ++s)
     words.push_back(table.first_entry[s] | std::uint32_t{table.ambiguous[s]} << 16);
@@ -265,6 +266,7 @@ EmittedFile resolved_file(const TableSet& set, const Dialect& dialect, const Res
   const std::size_t masks = words.size();
   words.insert(words.end(), table.masks.begin(), table.masks.end());
 
+  // constants
   Writer out(dialect, "tegl_tile3_resolved");
   out.raw(banner(set, dialect.language, "The cube with every ambiguity resolved freely."));
   out.comment(resolved_certificate(table));
@@ -276,6 +278,7 @@ EmittedFile resolved_file(const TableSet& set, const Dialect& dialect, const Res
   out.constant("WORDS", static_cast<std::uint32_t>(words.size()));
   out.raw("\n");
   out.words(words);
+  // functions
   out.function("The set of a signature's ambiguous squares.", "ambiguous_squares", {"signature"},
                "  return W[signature] >> 16u;\n");
   out.function("The entry of a signature with these squares' centres high (a set; of the ambiguous ones).", "entry",

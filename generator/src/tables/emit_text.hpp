@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the emitters of several languages share: names and the banner (private to the generator).
+// Names and the banner, common to the emitters (private to the generator).
 #pragma once
 
 #include <cctype>
@@ -24,18 +24,18 @@ inline std::string upper_camel(const std::string& name) {
   return result;
 }
 
-/// What a tile's tables are called: "tile3", "simplex3", "octahedron3".
+/// Name of a tile's tables: "tile3", "simplex3", "octahedron3".
 inline std::string tile_name(TileKind kind, int dim) {
   return fmt::format("{}{}", kind == TileKind::cube ? "tile" : tile_kind_name(kind), dim);
 }
 
-/// The generated-file banner in `//` comments: command, licence, `what`, and the certificate.
+/// The banner of a generated file in `//` comments: command, licence, `what`, and the certificate.
 std::string banner(const TableSet& set, Language language, const std::string& what);
 
-/// What was proved of the complete table of the cube, for banners.
+/// One line on the certificate of the complete table of the cube, for banners.
 std::string resolved_certificate(const ResolvedCube& table);
 
-/// The command that writes this language, for banners: the C++ one is the command's default.
+/// The command that writes `language`, for banners. C++ is the default of --language.
 std::string command_for(const TableSet& set, Language language);
 
 }  // namespace tegl::gen

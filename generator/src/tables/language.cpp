@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The languages by name.
+// The names of the languages.
 #include "tables/language.hpp"
 
 namespace tegl::gen {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The words of a packed table, part by part; every number is checked against the bits it has.
+// Packs the parts of a table into words; checks every number against its number of bits.
 #include "tables/packed_table.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace tegl::gen {
 
 namespace {
 
-/// Puts `value` into `bits` bits from `shift` on.
+/// Places `value` into `bits` bits at position `shift`. Throws if it does not fit.
 std::uint32_t field(std::uint64_t value, int bits, int shift, const char* what) {
   if (value >> bits != 0)
     throw Error(ErrorCode::Internal, fmt::format("packed table: {} is {}, expected less than 2^{}", what, value, bits));
@@ -64,10 +64,11 @@ void pack_lists(const TileTables& table, PackedTable& packed) {
 
 PackedTable pack(const TileTables& table) {
   PackedTable packed;
-  packed.list_stride = table.dim < 4 ? 1 : 3;  // side vertices are in 4D alone
+  packed.list_stride = table.dim < 4 ? 1 : 3;  // only 4D has side vertices
   if (packed.list_stride == 1 && !table.side_masks.empty())
     throw Error(ErrorCode::Internal, fmt::format("packed table: {} side masks in dimension {}, expected none",
                                                  table.side_masks.size(), table.dim));
+  // parts after the header
   packed.words.assign(kPackedHeader, 0);
   if (table.layout == Layout::by_class) pack_class_layout(table, packed);
   pack_lists(table, packed);
@@ -83,6 +84,7 @@ PackedTable pack(const TileTables& table) {
     packed.words.push_back(static_cast<std::uint32_t>(mask));
     packed.words.push_back(static_cast<std::uint32_t>(mask >> 32));
   }
+  // header
   const std::uint32_t header[kPackedHeader] = {kPackedMagic,
                                                tables::kContractVersion,
                                                static_cast<std::uint32_t>(table.dim),

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A tile table as one array of 32-bit words: what shaders and GPU kernels read, which know neither bytes nor
-// structs in constant data. GLSL, WGSL and CUDA tables are this array and the same few lines of look-up.
+// A tile table as one array of 32-bit words, for shaders and GPU kernels, whose constant data has neither bytes nor
+// structs. GLSL, WGSL and CUDA tables consist of this array and a few lines of look-up.
 //
-// Words, all little-endian where they are written to a file:
+// Words; little-endian in files:
 //   0  kPackedMagic ("TEGL")        6  group elements, 0 if flat         12  offset of the lists
 //   1  table contract version       7  bytes per permutation row         13  offset of the simplices
 //   2  dimension n                  8  most simplices of a signature     14  offset of the permutations
 //   3  0 barycentric, 1 compact     9  most own vertices of a signature  15  offset of the reversal bits
 //   4  lists                       10  words per list, 1 or 3            16  offset of the side masks
 //   5  simplices                   11  offset of the signatures          17  side masks
-// An offset is 0 where there is nothing to be found. At the offsets:
+// The offset of an empty part is 0. At the offsets:
 //   signatures    by class only: list | element << 12 | slot swaps << 24, one word per signature
 //   lists         1 word (n < 4): first simplex | simplices << 16 | cone vertices << 24
 //                 3 words: first simplex, simplices | cone vertices << 16 | side vertices << 24, first side mask
@@ -18,7 +18,7 @@
 //   permutations  bytes, four to a word, lowest first; row g starts at byte g x (word 7)
 //   reversal      bit g: group element g reverses the orientation
 //   side masks    two words each, bits 0-31 first
-// What the entries mean is in table_contract.hpp.
+// The meaning of the entries is documented in table_contract.hpp.
 #pragma once
 
 #include <cstdint>
@@ -29,27 +29,27 @@
 
 namespace tegl::gen {
 
-/// The first word.
+/// The first word of a table.
 inline constexpr std::uint32_t kPackedMagic = 0x4c474554;
-/// Words of the header.
+/// Number of words in the header.
 inline constexpr std::uint32_t kPackedHeader = 18;
 
-/// The words, and where their parts are (the header's numbers again, by name).
+/// The words and the offsets of their parts, which the header holds too.
 struct PackedTable {
-  std::uint32_t list_stride = 0;     ///< words from a list to the next
-  std::uint32_t signatures = 0;      ///< where the entries of signatures begin, in words
-  std::uint32_t lists = 0;           ///< where lists begin, in words
-  std::uint32_t simplices = 0;       ///< where simplices begin, in words
-  std::uint32_t permutations = 0;    ///< where permutations begin, in words
-  std::uint32_t reversals = 0;       ///< where reversals begin, in words
-  std::uint32_t side_masks = 0;      ///< where side masks begin, in words
+  std::uint32_t list_stride = 0;     ///< words per list
+  std::uint32_t signatures = 0;      ///< offset of the entries of signatures, in words
+  std::uint32_t lists = 0;           ///< offset of the lists, in words
+  std::uint32_t simplices = 0;       ///< offset of the simplices, in words
+  std::uint32_t permutations = 0;    ///< offset of the permutations, in words
+  std::uint32_t reversals = 0;       ///< offset of the reversal bits, in words
+  std::uint32_t side_masks = 0;      ///< offset of the side masks, in words
   std::vector<std::uint32_t> words;  ///< the table
 };
 
-/// Errors: Internal if a number does not fit its bits (none does for n <= 4).
+/// Packs a table. Errors: Internal if a number exceeds its bits (never for n <= 4).
 [[nodiscard]] PackedTable pack(const TileTables& table);
 
-/// The words as bytes, little-endian on every machine.
+/// The words as little-endian bytes on every platform.
 [[nodiscard]] std::string to_bytes(const std::vector<std::uint32_t>& words);
 
 }  // namespace tegl::gen

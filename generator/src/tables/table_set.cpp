@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The order of things: contours, certificates, tables, regions.
+// Builds a table set in order: contours, certificates, tables, regions.
 #include "tables/table_set.hpp"
 
 #include <bit>
@@ -19,14 +19,15 @@ namespace tegl::gen {
 
 namespace {
 
-/// Throws unless every pair of neighbours matches.
+/// Certifies every pair of neighbours; throws if one does not match.
 PairFigures matching_pairs(const ContourBuilder& builder, const std::vector<TileContour>& contours) {
   const PairFigures pairs = certify_pairs(builder, contours);
   if (pairs.unmatched != 0) throw Error(ErrorCode::CertificateFailed, unmatched_text(builder.dim(), pairs));
   return pairs;
 }
 
-/// Both alternatives of one triangulation, certified and compared; returns the low-connected one.
+/// Builds and certifies both alternatives of one triangulation and checks their inversion. Returns the low-connected
+/// contours.
 std::vector<TileContour> certified_low(const ContourBuilder& low, const ContourBuilder& high, bool pairs,
                                        std::vector<CertifiedFigures>& figures) {
   CertifiedFigures of_low, of_high;
@@ -50,6 +51,7 @@ Layout preferred_layout(TileKind tile, int dim, Triangulation triangulation) {
 }
 
 TableSet make_table_set(const TableRequest& request) {
+  // symmetries, counted twice
   const Lattice lattice(request.tile, request.dim);
   TableSet set;
   set.tile = request.tile;
@@ -60,13 +62,14 @@ TableSet make_table_set(const TableRequest& request) {
   const Transversal classes = transversal(lattice.tile(request.dim), elements);
   require_burnside_count(classes, elements);
   set.orbits = classes.representatives.size();
+  // tables and regions of each triangulation
   for (const Triangulation t : request.triangulations) {
     const ContourBuilder low(lattice, request.dim, Alternative::low, t);
     const ContourBuilder high(lattice, request.dim, Alternative::high, t);
     const auto contours = certified_low(low, high, false, set.figures);
     set.tiles.push_back(make_tile_tables(
         low, contours, request.layout ? request.layout(t) : preferred_layout(request.tile, request.dim, t)));
-    if (request.tile != TileKind::cube) continue;  // regions close the contours of images, whose tiles are cubes
+    if (request.tile != TileKind::cube) continue;  // regions close contours of images, whose tiles are cubes
     for (const Alternative a : {Alternative::low, Alternative::high}) {
       const RegionStyle style = t == Triangulation::compact ? RegionStyle::fan : RegionStyle::cone;
       set.regions.push_back(make_region_tables(RegionBuilder(lattice, request.dim - 1, a, t, style), t, a));
@@ -87,7 +90,7 @@ std::vector<CertifiedFigures> certify_all(int dim, TileKind tile) {
 
 std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Signature signature) {
   const auto is_diagonal = [](const Tile& tile, Signature s) {
-    if (std::popcount(s) != 2) return false;  // the two ends, and the tile's centre between them
+    if (std::popcount(s) != 2) return false;  // the two ends, with the tile's centre between them
     for (std::size_t i = 0; i < 4; ++i) {
       double ends = 0, all = 0;
       for (std::uint32_t v = 0; v < tile.corner_count(); ++v) {
@@ -99,13 +102,14 @@ std::vector<std::uint32_t> ambiguous_faces(const Lattice& lattice, int dim, Sign
     return true;
   };
   struct Face {
-    std::vector<std::uint8_t> corners;  // as the whole tile numbers them
+    std::vector<std::uint8_t> corners;  // in the whole tile's numbering
     Signature own;                      // in the face's own frame
   };
   std::vector<std::uint32_t> result(static_cast<std::size_t>(dim) + 1, 0);
   std::vector<std::uint8_t> all(lattice.tile(dim).corner_count());
   std::iota(all.begin(), all.end(), std::uint8_t{0});
   std::map<Signature, Face> level{{lattice.tile(dim).full(), {all, signature}}};  // by set of corners
+  // faces from dimension dim down to 2, each once
   for (int k = dim; k >= 2; --k) {
     const Tile& tile = lattice.tile(k);
     std::map<Signature, Face> next;

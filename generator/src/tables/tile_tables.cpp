@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours into flat arrays: lists by signature or by class, with the group elements that carry these.
+// Converts contours to flat arrays: lists by signature or by class, with the group elements that map classes to
+// signatures.
 #include "tables/tile_tables.hpp"
 
 #include <algorithm>
@@ -23,10 +24,10 @@ const char* layout_name(Layout l) noexcept { return l == Layout::flat ? "flat" :
 
 namespace {
 
-/// Signatures that a thread takes at a time.
+/// Number of signatures that a thread takes at a time.
 constexpr std::uint64_t kChunk = 64;
 
-/// A simplex in ascending order with its sign in front: equal for equal oriented simplices.
+/// A sign, then the simplex's vertices in ascending order: equal for equal oriented simplices.
 using Canonical = std::array<std::uint32_t, 5>;
 
 template <class Name>
@@ -54,8 +55,8 @@ std::vector<Simplex> all_simplices(const TileContour& contour) {
   return result;
 }
 
-/// Names for a tile's own vertices that do not depend on their numbering: a cone vertex by the smallest vertex of
-/// its component, a side vertex by its mask.
+/// Names for a tile's own vertices, independent of their numbering: a cone vertex by the smallest vertex of its
+/// component, a side vertex by its mask.
 class OwnNames {
  public:
   OwnNames(int n, std::uint32_t own_base, std::uint32_t cones, const std::vector<Simplex>& simplices,
@@ -86,7 +87,7 @@ void append_list(TileTables& table, const TileContour& contour) {
     ++list.simplex_count;
     table.simplices.insert(table.simplices.end(), s.begin(), s.begin() + table.dim);
   }
-  // Masks are built for n = 4, where bit 2^n + e is bit 16 + e.
+  // Only n = 4 has side masks: bit 2^n + e is bit 16 + e.
   table.side_masks.insert(table.side_masks.end(), contour.side_masks.begin(), contour.side_masks.end());
   table.max_simplices = std::max<std::uint32_t>(table.max_simplices, list.simplex_count);
   table.max_tile_vertices =
@@ -94,7 +95,7 @@ void append_list(TileTables& table, const TileContour& contour) {
   table.lists.push_back(list);
 }
 
-/// Corners, edges and cube slots moved by a symmetry: a row of TileTable::permutations.
+/// The images of corners, edges and cube slots under a symmetry: a row of TileTable::permutations.
 std::vector<std::uint8_t> permutation_row(const Tile& tile, const Element& g) {
   const auto corner = corner_permutation(g, tile.dim);
   std::vector<std::uint8_t> row(corner.begin(), corner.end());
@@ -123,7 +124,7 @@ std::vector<const Facet*> slots_of(const ContourBuilder& builder, std::uint32_t 
   return result;
 }
 
-/// Cubes (of the image) in which the two slots change places under g.
+/// Cubes (of the image) whose two slots are exchanged by g.
 std::uint8_t swaps_of(const ContourBuilder& builder, Signature from, Signature to,
                       const std::vector<std::uint8_t>& row) {
   const Tile& tile = builder.tile();
@@ -145,7 +146,7 @@ std::uint8_t swaps_of(const ContourBuilder& builder, Signature from, Signature t
   return swaps;
 }
 
-/// The representative's contour as the runtime will carry it to a signature.
+/// The representative's contour mapped to a signature, in the way the runtime does it.
 TileContour carried(const ContourBuilder& builder, const TileContour& contour, const std::vector<std::uint8_t>& row,
                     std::uint8_t swaps, bool reverse) {
   const std::uint32_t corners = builder.tile().corner_count(), edges = builder.tile().edge_count();
@@ -184,6 +185,7 @@ void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>
   const int n = builder.dim();
   const auto elements = group(n, GroupKind::Full, false);
   const Transversal classes = transversal(n, elements);
+  // group elements and lists of the representatives
   std::vector<std::vector<std::uint8_t>> rows;
   for (const Element& g : elements) {
     rows.push_back(permutation_row(builder.tile(), g));
@@ -192,11 +194,13 @@ void pack_by_class(const ContourBuilder& builder, const std::vector<TileContour>
   }
   table.permutation_stride = static_cast<std::uint32_t>(rows.front().size());
   for (const auto r : classes.representatives) append_list(table, contours[r]);
+  // class and element of each signature
   table.slot_swaps.resize(contours.size());
   for (std::size_t s = 0; s < contours.size(); ++s) {
     table.list_of.push_back(static_cast<std::uint16_t>(classes.class_of[s]));
     table.element_of.push_back(static_cast<std::uint16_t>(classes.element_of[s]));
   }
+  // slot swaps; check that the mapped contour equals the signature's own
   const auto carry = [&](int, std::uint64_t number) {
     const auto s = static_cast<std::uint32_t>(number);
     const Signature r = classes.representatives[table.list_of[s]];
@@ -258,6 +262,7 @@ tables::TileTable TileTables::view() const {
 
 std::vector<TileContour> certified_contours(const ContourBuilder& builder, CertifiedFigures& figures) {
   const std::uint32_t count = builder.tile().full() + 1;
+  // build and certify on all processors
   std::vector<TileContour> contours(count);
   const auto build = [&](TableCertifier& certifier, std::uint64_t number) {
     const auto s = static_cast<std::uint32_t>(number);
@@ -268,6 +273,7 @@ std::vector<TileContour> certified_contours(const ContourBuilder& builder, Certi
   };
   in_parallel(
       count, kChunk, 0, [&] { return TableCertifier(builder); }, build, [](const TableCertifier&) {});
+  // figures
   figures = CertifiedFigures{};
   figures.alternative = builder.alternative();
   figures.triangulation = builder.triangulation();

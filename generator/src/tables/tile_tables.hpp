@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables as plain data: what the emitters write, whatever the language. Built from contours and regions,
-// certified, and checked against each other before anything is written.
+// Tables as plain data, the input of all emitters. Built from certified contours and regions and checked against each
+// other before anything is written.
 #pragma once
 
 #include <array>
@@ -18,84 +18,84 @@
 
 namespace tegl::gen {
 
-/// How lists are stored: one for each class, or one for each signature.
+/// Storage of lists: one per class, or one per signature.
 enum class Layout { by_class, flat };
 const char* layout_name(Layout l) noexcept;  ///< "class", "flat"
 
-/// The owning form of tables::TileTable; see there for every member's meaning.
+/// Owning counterpart of tables::TileTable, which documents the members.
 struct TileTables {
   TileKind tile = TileKind::cube;                            ///< the kind of tile
-  std::vector<std::array<double, 4>> corners;                ///< coordinates; the first `dim` count
+  std::vector<std::array<double, 4>> corners;                ///< coordinates; only the first `dim` are used
   std::vector<std::array<std::uint8_t, 2>> edges;            ///< corners at the lower and upper end
   std::vector<std::vector<std::uint8_t>> faces;              ///< corners of each face
   std::uint32_t first_tile_vertex = 0;                       ///< first local number of a tile's own vertices
-  int dim = 0;                                               ///< of the tile
-  Triangulation triangulation = Triangulation::barycentric;  ///< how facets become simplices
-  Layout layout = Layout::flat;                              ///< how lists are stored
+  int dim = 0;                                               ///< dimension of the tile
+  Triangulation triangulation = Triangulation::barycentric;  ///< triangulation of facets
+  Layout layout = Layout::flat;                              ///< storage of lists
   std::uint32_t permutation_stride = 0;                      ///< as in tables::TileTable
-  std::uint32_t max_simplices = 0;                           ///< of a tile
-  std::uint32_t max_tile_vertices = 0;                       ///< of a tile
-  std::uint64_t total_simplices = 0;                         ///< over all signatures, whatever the layout
+  std::uint32_t max_simplices = 0;                           ///< maximum over all signatures
+  std::uint32_t max_tile_vertices = 0;                       ///< maximum over all signatures
+  std::uint64_t total_simplices = 0;                         ///< sum over all signatures in either layout
   std::vector<std::uint16_t> list_of;                        ///< as in tables::TileTable
-  std::vector<std::uint16_t> element_of;                     ///< likewise
-  std::vector<std::uint8_t> slot_swaps;                      ///< likewise
-  std::vector<std::uint8_t> permutations;                    ///< likewise
-  std::vector<std::uint8_t> reverses;                        ///< likewise
-  std::vector<tables::List> lists;                           ///< likewise
-  std::vector<std::uint8_t> simplices;                       ///< likewise
-  std::vector<std::uint64_t> side_masks;                     ///< likewise
+  std::vector<std::uint16_t> element_of;                     ///< as in tables::TileTable
+  std::vector<std::uint8_t> slot_swaps;                      ///< as in tables::TileTable
+  std::vector<std::uint8_t> permutations;                    ///< as in tables::TileTable
+  std::vector<std::uint8_t> reverses;                        ///< as in tables::TileTable
+  std::vector<tables::List> lists;                           ///< as in tables::TileTable
+  std::vector<std::uint8_t> simplices;                       ///< as in tables::TileTable
+  std::vector<std::uint64_t> side_masks;                     ///< as in tables::TileTable
 
-  /// The same as the runtime's tables are; valid while this one lives.
+  /// A view in the runtime's form, valid while this object lives and is not modified.
   [[nodiscard]] tables::TileTable view() const;
 };
 
-/// The owning form of tables::RegionTable.
+/// Owning counterpart of tables::RegionTable.
 struct RegionTables {
-  int dim = 0;                                               ///< of the tile whose regions these are
-  Triangulation triangulation = Triangulation::barycentric;  ///< how regions become simplices
-  Alternative alternative = Alternative::low;                ///< where squares are ambiguous
-  std::uint32_t max_own_vertices = 0;                        ///< of a tile
+  int dim = 0;                                               ///< dimension of the tile
+  Triangulation triangulation = Triangulation::barycentric;  ///< triangulation of regions
+  Alternative alternative = Alternative::low;                ///< resolution of ambiguous squares
+  std::uint32_t max_own_vertices = 0;                        ///< maximum over all signatures
   std::vector<tables::RegionList> lists;                     ///< as in tables::RegionTable
-  std::vector<std::uint8_t> simplices;                       ///< likewise
-  std::vector<std::uint32_t> masks;                          ///< likewise
+  std::vector<std::uint8_t> simplices;                       ///< as in tables::RegionTable
+  std::vector<std::uint32_t> masks;                          ///< as in tables::RegionTable
 };
 
-/// What was counted while certifying one triangulation of one alternative.
+/// Counts made while certifying one triangulation of one alternative.
 struct CertifiedFigures {
-  Alternative alternative = Alternative::low;                ///< where squares are ambiguous
-  Triangulation triangulation = Triangulation::barycentric;  ///< how facets become simplices
-  std::uint64_t signatures = 0;                              ///< certified, all of them
-  std::uint64_t simplices = 0;                               ///< over all signatures
-  std::uint32_t max_simplices = 0;                           ///< of a signature
-  std::uint64_t facets = 0;                                  ///< over all signatures
-  std::uint32_t max_facets = 0;                              ///< of a signature
-  std::uint64_t spheres = 0;                                 ///< components of Sigma
-  std::uint64_t others = 0;                                  ///< components of Sigma that are no spheres
-  std::uint32_t highest_genus = 0;                           ///< n = 4
-  std::uint64_t signatures_with_others = 0;                  ///< signatures with a facet that is no ball
+  Alternative alternative = Alternative::low;                ///< resolution of ambiguous squares
+  Triangulation triangulation = Triangulation::barycentric;  ///< triangulation of facets
+  std::uint64_t signatures = 0;                              ///< number of signatures; all are certified
+  std::uint64_t simplices = 0;                               ///< sum over all signatures
+  std::uint32_t max_simplices = 0;                           ///< maximum over all signatures
+  std::uint64_t facets = 0;                                  ///< sum over all signatures
+  std::uint32_t max_facets = 0;                              ///< maximum over all signatures
+  std::uint64_t spheres = 0;                                 ///< spherical components of Sigma
+  std::uint64_t others = 0;                                  ///< non-spherical components of Sigma
+  std::uint32_t highest_genus = 0;                           ///< of a component of Sigma; n = 4
+  std::uint64_t signatures_with_others = 0;                  ///< signatures with a facet that is not a ball
   std::vector<Signature> classes_with_others;                ///< representatives, ascending
-  std::uint64_t by_filling[5] = {};                          ///< facets by Filling
-  PairFigures pairs;                                         ///< of neighbours; all 0 where pairs were not looked at
+  std::uint64_t by_filling[5] = {};                          ///< number of facets by Filling
+  PairFigures pairs;                                         ///< pairs of neighbours; all 0 if pairs were not certified
 };
 
-/// The contours of all signatures of one builder, each with its certificate. Uses all processors; the result does
-/// not depend on their number. Throws Error{CertificateFailed} naming the first signature that fails.
+/// Builds the contours of all signatures and certifies each. Uses all processors; the result does not depend on their
+/// number. Throws Error{CertificateFailed} with the first signature that fails.
 std::vector<TileContour> certified_contours(const ContourBuilder& builder, CertifiedFigures& figures);
 
-/// Throws Error{Internal} unless, for every signature s, the contour `high[s]` is `low[~s]` with the orientation
-/// reversed, vertex by vertex: what lets one table serve both alternatives.
+/// Throws Error{Internal} unless, for every signature s, the contour `high[s]` is `low[~s]` with reversed orientation,
+/// vertex by vertex. This property lets one table serve both alternatives.
 void check_inversion(int dim, const std::vector<TileContour>& low, const std::vector<TileContour>& high);
 
-/// Packs contours. By class: checks that the symmetry group carries the representative's list to every signature's,
-/// orientation included, and throws Error{Internal} if not (compact tables are not equivariant).
+/// Packs contours. For the class layout, checks that the symmetry group maps the representative's list to every
+/// signature's list, orientation included; throws Error{Internal} if not (compact tables are not equivariant).
 TileTables make_tile_tables(const ContourBuilder& builder, const std::vector<TileContour>& contours, Layout layout);
 
-/// Regions of the k-tile for closing the contours of (k+1)-dimensional images.
+/// Packs the regions of the k-tile that close the contours of (k+1)-dimensional images.
 RegionTables make_region_tables(const RegionBuilder& builder, Triangulation triangulation, Alternative alternative);
 
-/// FNV-1a (64 bit) over all entries of a table: what MANIFEST.json records.
+/// FNV-1a digest (64 bit) over all entries of a table, as recorded in the manifest.
 std::uint64_t digest(const TileTables& table);
-/// Likewise.
+/// FNV-1a digest (64 bit) over all entries of a region table.
 std::uint64_t digest(const RegionTables& table);
 
 }  // namespace tegl::gen

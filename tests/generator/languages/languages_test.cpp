@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables in other languages than C++: what each was emitted as is compiled (or parsed), run, and held against what the
-// runtime reads, for every signature.
+// Tables in languages other than C++: the emitted text is compiled (or parsed), run, and compared with the runtime's
+// tables for every signature.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> words_of(int triangulation) {
   return words;
 }
 
-/// A signature's contour by the emitted functions.
+/// A signature's contour from the emitted functions.
 Decoded look_up(const Lookups& table, int dim, std::uint32_t signature) {
   Decoded result;
   result.cones = table.cone_vertices(signature);
@@ -135,7 +135,7 @@ TEST(PackedWords, BeginWithWhatTheyAre) {
   EXPECT_EQ(1u, words_of(1)[3]);
 }
 
-/// What the runtime's own reader of tables finds is what the tests' reader finds.
+/// Expects the runtime's table reader and the tests' reader to agree.
 template <int N>
 void expect_same_reading(const tables::TileTable& table) {
   for (std::uint32_t s = 0; s < 1u << (1u << N); ++s) {
@@ -158,7 +158,7 @@ TEST(RuntimeReader, FindsWhatTheContractSays) {
   }
 }
 
-/// A JSON file read back into the contract's structs.
+/// The contract's structs, read back from a JSON file.
 struct FromJson {
   explicit FromJson(const nlohmann::json& file)
       : list_of(file.at("list_of")),
@@ -256,7 +256,7 @@ TEST(Emission, IsTheSameTextEveryTimeInEveryLanguage) {
   }
 }
 
-/// An entry with one of its lists, as numbers: triangles' vertices, then masks of own vertices.
+/// One list of an entry as numbers: triangle vertices, then masks of own vertices.
 std::vector<std::uint32_t> resolved_list(const tables::ResolvedList& list) {
   const tables::ResolvedTable& table = tables::kTile3Resolved;
   std::vector<std::uint32_t> numbers;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The look-up functions of one emitted table, whatever language it was emitted in, behind one set of pointers.
+// The look-up functions of one emitted table in any language, as function pointers.
 #pragma once
 
 #include <cstdint>
 
 namespace tegl::test {
 
-/// Null where a table has none: side vertices are in 4D alone.
+/// Functions that a table lacks are null: only 4D has side vertices.
 struct Lookups {
   std::uint32_t (*simplex_count)(std::uint32_t signature);
   std::uint32_t (*cone_vertices)(std::uint32_t signature);
@@ -18,13 +18,13 @@ struct Lookups {
   std::uint32_t corners, edges, first_tile_vertex, max_simplices, max_tile_vertices, words;
 };
 
-/// Triangulation 0: barycentric, 1: compact. For glsl and wgsl in 4D, `words` is what a shader's storage buffer would
-/// hold; it is not copied.
+/// Triangulation 0: barycentric, 1: compact. For glsl and wgsl in 4D, `words` is the content of a shader's storage
+/// buffer; it is not copied.
 Lookups glsl_lookups(int dim, int triangulation, const std::uint32_t* words);
 Lookups wgsl_lookups(int dim, int triangulation, const std::uint32_t* words);
 Lookups cuda_lookups(int dim, int triangulation);
 
-/// Those of the complete table of the cube.
+/// The look-up functions of the complete table of the cube.
 struct ResolvedLookups {
   std::uint32_t (*ambiguous_squares)(std::uint32_t signature);
   std::uint32_t (*entry)(std::uint32_t signature, std::uint32_t high_squares);
@@ -46,7 +46,7 @@ ResolvedLookups cuda_resolved_lookups();
         tegl_tile3_resolved_vertex, tegl_tile3_resolved_own_vertices, tegl_tile3_resolved_own_mask        \
   }
 
-// A table's Lookups from its prefix; `sides` are its two functions of side vertices or nullptr, nullptr.
+// A table's Lookups from its prefix; `sides` are its two functions for side vertices, or nullptr, nullptr.
 #define TEGL_LOOKUPS(prefix, ...)                                                                       \
   Lookups {                                                                                             \
     prefix##_simplex_count, prefix##_cone_vertices, prefix##_vertex, prefix##_edge_corner, __VA_ARGS__, \

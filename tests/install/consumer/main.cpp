@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Uses the core from outside: the contour of a ball in 4D, its cut at a time between two steps, and their
-// invariants; single tiles, their certificate and the recognition of spheres. Returns 0 only if these are as they must
-// be.
+// Uses the installed core library: the contour of a ball in 4D, its slice between two time steps, and their invariants;
+// single tiles, their certificate and the recognition of spheres. Returns 0 only if all are correct.
 #include <cstdio>
 #include <vector>
 
@@ -15,7 +14,7 @@
 #include "tegl/slice.hpp"
 #include "tegl/tile_facets.hpp"
 
-/// A cube with two high corners across and a high centre: a tunnel, of the shape of a cylinder.
+/// A cube with two opposite high corners and a high centre: a tunnel, topologically a cylinder.
 bool tunnel_is_sound() {
   using namespace tegl::facets;
   std::vector<Choice> signs(tegl::kFaceCount<3>);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Uses the file formats from outside: consumer_io IMAGE OUT writes the contour at 20 of a 4D image, cut at t = 7.3.
+// Uses the installed file formats: consumer_io IMAGE OUT writes the contour of a 4D image at 20, sliced at t = 7.3.
 #include <cstdio>
 
 #include "tegl/io.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files that are missing, empty, folders, of the wrong kind or cut short, for every format: the error names the file.
+// Files that are missing, empty, folders, of the wrong kind or truncated, for every format: the error names the file.
 #include "images/netcdf_files.hpp"
 #include "images/nifti_files.hpp"
 #include "io_support.hpp"
@@ -12,7 +12,7 @@ const std::vector<std::string> kImageNames = {"a.nii", "a.nii.gz", "a.hdr", "a.n
                                               "a.mhd", "a.nc",     "a.cdf", "a.nc4",  "a.nc.gz"};
 const std::vector<std::string> kMeshNames = {"a.ply", "a.gltf", "a.glb", "a.vtkhdf", "a.stl", "a.obj"};
 
-/// Runs a check for every format; `read` reads the file in question.
+/// Runs a check for every format; `read` reads the given file.
 template <class Check>
 void for_each_format(Check&& check) {
   for (const std::string& name : kImageNames) {

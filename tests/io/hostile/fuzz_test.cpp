@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every reader against mutations of sound files, and of the hostile files that once broke it: in children that are
-// watched, and through the program. Reading must succeed or throw a tegl::Error that names the file, print nothing, end
-// within ten seconds, and need no more than twice the memory of the sound files and 64 MiB. The sound files (seeds/,
+// Every reader against mutations of valid files and of hostile files that once broke it, in watched child processes and
+// through the program. Reading must succeed or throw a tegl::Error that names the file. It must print nothing, end
+// within ten seconds, and need at most twice the memory of the valid files plus 64 MiB. The valid files (seeds/,
 // make_seeds.py) come from several writers.
 //
-// A mutation is known by its number. TEGL_FUZZ_ROUNDS sets how many there are for each format (1 000 by default),
-// TEGL_FUZZ_FIRST the first one's number, and TEGL_FUZZ_KEEP a folder for those that fail.
+// A mutation is identified by its number. TEGL_FUZZ_ROUNDS sets the number of mutations per format (default 1 000),
+// TEGL_FUZZ_FIRST the first number, and TEGL_FUZZ_KEEP a folder for failing files.
 #include <spawn.h>
 
 #include <cstdlib>
@@ -25,7 +25,7 @@ namespace tegl::test {
 namespace {
 
 struct Seed {
-  std::string name;  ///< with the extension that readers go by
+  std::string name;  ///< with the extension that selects the reader
   std::string bytes;
 };
 
@@ -35,13 +35,13 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
 }
 std::uint64_t rounds() { return number_of("TEGL_FUZZ_ROUNDS", 1000); }
 
-/// Seeds of these extensions: those of other writers, and hostile files of up to 100 kB where they are there.
+/// Seeds with these extensions: files of other writers and, if present, hostile files of up to 100 kB.
 std::vector<Seed> seeds_with(const std::vector<std::string>& extensions, std::vector<Seed> own) {
   constexpr std::uintmax_t kMost = 100'000;
   for (const fs::path& folder :
        {fs::path(TEGL_SOURCE_DIR "/tests/io/seeds"), fs::path(TEGL_SHARED_DATA_DIR "/hostile")}) {
     if (!fs::is_directory(folder)) continue;
-    std::set<fs::path> files;  // in order, so that a number means the same mutation everywhere
+    std::set<fs::path> files;  // ordered, so that a number means the same mutation everywhere
     for (const auto& entry : fs::directory_iterator(folder)) files.insert(entry.path());
     for (const fs::path& file : files) {
       const std::string name = file.filename().string();
@@ -53,7 +53,7 @@ std::vector<Seed> seeds_with(const std::vector<std::string>& extensions, std::ve
   return own;
 }
 
-/// The files that seeds name beside themselves.
+/// Copies the files to which seeds refer.
 void write_companions(const fs::path& folder) {
   fs::copy_file(TEGL_SOURCE_DIR "/tests/io/seeds/assimp.bin", folder / "assimp.bin",
                 fs::copy_options::overwrite_existing);
@@ -75,7 +75,7 @@ class Mutations {
     const Seed& seed = seeds_[number % seeds_.size()];
     Mutator mutator(number, others_);
     const auto content = inflated_.find(seed.name);
-    // What is compressed as a whole is mutated inside every other time.
+    // Compressed files are mutated after decompression every other time.
     const bool inside = content != inflated_.end() && number / seeds_.size() % 2 == 0;
     const fs::path path = fs::path(folder_) / ("m_" + seed.name);
     write_file(path, inside ? compressed(mutator.mutated(content->second)) : mutator.mutated(seed.bytes));
@@ -121,9 +121,9 @@ void expect_clean(const char* how, const WatchedSummary& summary, std::uint64_t 
   if (summary.failures.empty()) {
     EXPECT_EQ(summary.runs, wanted);
   }
-  // A mutation that no reader notices tests little.
+  // If readers accepted nearly all mutations, the test would be weak.
   EXPECT_GT(summary.refused, wanted / 10) << how;
-  // Beyond gtest's output, for those who run many rounds.
+  // Additional output for runs with many rounds.
   std::printf("  %s: %zu mutations, %zu refused, slowest %.3f s, most memory %zu KiB\n", how, summary.runs,
               summary.refused, summary.slowest_seconds, summary.most_memory >> 10);
 }
@@ -143,12 +143,12 @@ WatchedResult result_of(const Read& read, const fs::path& path) {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-constexpr std::size_t kMemoryFactor = 8;  // shadow memory, and what is freed stays for a while
+constexpr std::size_t kMemoryFactor = 8;  // shadow memory, and delayed release of freed memory
 #else
 constexpr std::size_t kMemoryFactor = 1;
 #endif
 
-/// In watched children: the sound files first, whose memory sets the limit.
+/// Runs in watched children; the valid files run first, and their memory sets the limit.
 void fuzz_in_process(const std::vector<Seed>& seeds, const Mutations& mutations, const fs::path& folder,
                      const Read& read) {
   WatchedLimits limits;
@@ -166,7 +166,7 @@ void fuzz_in_process(const std::vector<Seed>& seeds, const Mutations& mutations,
   keep(mutations, summary);
 }
 
-/// Runs the program; its exit status, or 128 + signal.
+/// Runs the program; returns its exit status, or 128 + signal.
 int status_of_program(std::vector<std::string> words) {
   words.insert(words.begin(), TEGL_PROGRAM);
   std::vector<char*> pointers;
@@ -184,7 +184,7 @@ int status_of_program(std::vector<std::string> words) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-/// Every 50th mutation through the program, by each of its commands in turn.
+/// Runs every 50th mutation through the program, alternating between its commands.
 void fuzz_program(const std::vector<Seed>& seeds, const Mutations& mutations, const fs::path& folder,
                   const std::vector<std::vector<std::string>>& commands) {
   const auto run = [&](const std::vector<std::string>& command, const fs::path& file) -> WatchedResult {
@@ -233,7 +233,7 @@ void fuzz(const std::vector<std::string>& extensions, std::vector<Seed> own, con
   fuzz_program(seeds, mutations, dir.path(), commands);
 }
 
-/// As an image, as a list of variables, and by its first layer.
+/// Reads the file as an image, as a list of variables, and its first layer.
 void read_as_image(const fs::path& path) {
   ReadImageOptions options;
   options.separate_process = true;
@@ -359,7 +359,7 @@ TEST(Fuzz, VtkHdf) {
        read_as_mesh, kMeshCommands);
 }
 
-/// The image that the index files of the test belong to.
+/// The image of the test's index files.
 OwnedImage<float, 3> indexed_image() {
   OwnedImage<float, 3> image{Grid<3>::unit({12, 10, 9}), {}};
   std::mt19937_64 random(3);
@@ -372,7 +372,7 @@ TEST(Fuzz, Index) {
   std::vector<Seed> seeds;
   TempDir dir;
   for (const ActiveMethod method : active_methods()) {
-    if (method == ActiveMethod::full_scan) continue;  // has nothing to write
+    if (method == ActiveMethod::full_scan) continue;  // has no file
     write_active_tiles(*build_active_tiles(image.view(), method), dir / "a.tindex");
     seeds.push_back({"method_" + std::to_string(seeds.size()) + ".tindex", read_file(dir / "a.tindex")});
   }

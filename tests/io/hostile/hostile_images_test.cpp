@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Image files that are made to break their readers: each is refused with a message that names the value and the one
-// that was expected, in little time and memory.
+// Malicious image files: each is refused with a message that has the actual and the expected value, with little time
+// and memory.
 #include <cstdlib>
 
 #include "images/nifti_files.hpp"
@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 
-/// Reads an image in a child process and expects an error of a kind that the program reports as exit code 4.
-/// `held`: the bytes of samples that the file really has.
+/// Reads an image in a child process and expects an error for which the program's exit code is 4. `held`: bytes of
+/// samples that the file contains.
 void expect_refused(const fs::path& path, const std::vector<std::string>& parts, std::uint64_t held = 0) {
   SCOPED_TRACE(path.filename());
   const ChildResult result = in_limited_child([&] { read_image(path); });
@@ -31,7 +31,7 @@ void expect_refused(const fs::path& path, const std::vector<std::string>& parts,
   EXPECT_LT(result.peak_bytes, 2 * (held + fs::file_size(path)) + 16 * kMebibyte);
 }
 
-/// A hostile file: its name, content, and parts of the message.
+/// A hostile file: name, content, and parts of the error message.
 struct Hostile {
   std::string name;
   std::string bytes;
@@ -175,7 +175,7 @@ struct Classic {
   std::uint64_t dimensions = 2;
   std::uint64_t rank = 2;
   std::uint64_t first_dimension = 0;
-  std::uint64_t name_bytes = 0;  ///< of the first dimension; 0: as many as it has
+  std::uint64_t name_bytes = 0;  ///< length of the first dimension's name; 0: the actual one
   std::optional<std::uint64_t> begin = {};
 
   [[nodiscard]] std::string count(std::uint64_t value) const { return big_endian(value, version == 5 ? 8 : 4); }
@@ -245,7 +245,7 @@ TEST(HostileImages, CompressedZerosBeyondTheImageCostNothing) {
   expect_refused(dir / "bomb_hdf.nc.gz", {"HDF5 superblock"});
   write_file(dir / "bomb_any.nc.gz", bomb("", kZeros));
   expect_refused(dir / "bomb_any.nc.gz", {"starts with '\\x00"});
-  // The images before the zeros are read.
+  // The images before the zeros can be read.
   write_file(dir / "bomb.nii.gz", bomb(NiftiHeader({2, 2, 2}, 2, 8).bytes(), kZeros));
   write_file(dir / "image.nc.gz", bomb(Classic{}.bytes(), kZeros));
   write_file(dir / "bomb.nrrd", nrrd("", "gzip", bomb("1234", kZeros)));
@@ -263,7 +263,7 @@ TEST(HostileImages, CompressedZerosBeyondTheImageCostNothing) {
 
 TEST(HostileImages, HeadersThatPromiseMoreThanTheStreamHasTakeNoMemory) {
   TempDir dir;
-  // 200 MB are promised and, as far as the ratio of deflate goes, possible; 1 MB is there.
+  // The header promises 200 MB, which deflate's ratio permits; the file contains 1 MB.
   std::mt19937 random(1);
   std::string noise(1 << 20, '\0');
   for (char& c : noise) c = static_cast<char>(random());

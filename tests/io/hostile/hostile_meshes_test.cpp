@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Mesh files, HDF5 files and DICOM files that are made to break a reader: small ones that ask for much memory, time or
-// stack, and ones that name files elsewhere. Each is read in a child process, and must be refused by an error that
-// names the file and the value, within a second and within twice the memory of the file and 64 MiB.
+// Malicious mesh, HDF5 and DICOM files: small files that require much memory, time or stack, and files that refer to
+// other files. Each is read in a child process and must be refused with an error that has the file and the value,
+// within a second and within twice the memory of the file plus 64 MiB.
 #include <hdf5.h>
 
 #include <functional>
@@ -21,7 +21,7 @@ void as_mesh(const fs::path& path) { read_mesh(path); }
 void as_image(const fs::path& path) { read_image(path); }
 void as_layers(const fs::path& path) { open_layers(path); }
 
-/// Seconds of processors that children of this process have taken: a busy machine makes none of them longer.
+/// CPU seconds of the children of this process, which do not depend on the machine's load.
 double seconds_of_children() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
@@ -33,7 +33,7 @@ double seconds_of_children() {
 
 constexpr double kMostSeconds = kHasSanitizer ? 10.0 : 1.0;
 
-/// Reads a file in a child process, which must end with this error, soon and in little memory.
+/// Reads a file in a child process; expects this error within the limits of time and memory.
 void expect_refused(const fs::path& path, ErrorCode code, const std::vector<std::string>& parts, const Read& read) {
   SCOPED_TRACE(path.string());
   const double before = seconds_of_children();
@@ -63,7 +63,7 @@ std::string raw(T value) {
 
 // --- glTF
 
-/// A binary glTF file of these members of its JSON and these bytes.
+/// A binary glTF file with these members of its JSON and these bytes.
 std::string glb(std::string json, const std::string& bytes) {
   json = R"({"asset":{"version":"2.0"},)" + json + "}";
   json.resize((json.size() + 3) / 4 * 4, ' ');
@@ -72,14 +72,14 @@ std::string glb(std::string json, const std::string& bytes) {
          std::string("BIN\0", 4) + bytes;
 }
 
-/// Items of a list of JSON.
+/// A JSON list of `count` equal items.
 std::string list(const std::string& item, std::size_t count) {
   std::string result = repeated(item + ",", count);
   if (!result.empty()) result.pop_back();
   return "[" + result + "]";
 }
 
-/// One mesh of `primitives` primitives with `points` points each in `nodes` nodes.
+/// `nodes` nodes of one mesh of `primitives` primitives with `points` points each.
 std::string instances(std::size_t nodes, std::size_t primitives, std::size_t points) {
   const std::size_t bytes = 12 * points;
   std::string scene = "[0";
@@ -93,7 +93,7 @@ std::string instances(std::size_t nodes, std::size_t primitives, std::size_t poi
              std::string(bytes, '\0'));
 }
 
-/// A triangle whose points are in a file of this URI.
+/// A triangle whose points are in the file of this URI.
 std::string triangle_at(const std::string& uri) {
   return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{)"
          R"("attributes":{"POSITION":0}}]}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)"
@@ -111,7 +111,7 @@ TEST(HostileMeshes, NestedJsonIsRefusedBeforeItIsParsed) {
   write_file(dir / "many.gltf", start + list(R"("KHR_draco_mesh_compression")", 10000) + "}");
   expect_refused(dir / "many.gltf", ErrorCode::UnsupportedData,
                  {"10000 extensions", "'KHR_draco_mesh_compression'", "expected none"}, as_mesh);
-  // Brackets in texts are none.
+  // Brackets inside strings do not count.
   write_file(dir / "text.gltf", R"({"x":")" + std::string(1000, '[') + R"(\"{","asset":{"version":"1.0"}})");
   expect_refused(dir / "text.gltf", ErrorCode::MalformedFile, {"asset.version"}, as_mesh);
 }
@@ -121,7 +121,7 @@ TEST(HostileMeshes, BuffersOfTheSameBytesShareThem) {
   const std::string all = R"("buffers":)" + list(R"({"byteLength":1})", 5000);
   write_file(dir / "buffers.glb", glb(all, std::string(1000000, '\0')));
   expect_refused(dir / "buffers.glb", ErrorCode::MalformedFile, {"no scene"}, as_mesh);
-  // A file that is named often, in different ways, is read once.
+  // A file that is named repeatedly, in different ways, is read once.
   write_file(dir / "b.bin", std::string(std::size_t{10} << 20, '\0'));
   write_file(dir / "files.gltf", R"({"asset":{"version":"2.0"},"buffers":)" +
                                      list(R"({"byteLength":1,"uri":"b.bin"},{"byteLength":1,"uri":"./b.bin"})", 500) +
@@ -251,7 +251,7 @@ TEST(HostileMeshes, AttributesOfPolygonsAreNotCopiedWithoutLimit) {
 
 TEST(HostileMeshes, CountsOfPlyGetNoMemoryThatTheFileCannotFill) {
   TempDir dir;
-  // 100 million faces of no corner, a byte each.
+  // 20 million faces without corners, one byte each.
   std::string file = "ply\nformat binary_little_endian 1.0\nelement vertex 0\n" + kXyz + "element face 20000000\n" +
                      kFaces + "end_header\n" + std::string(20000000, '\0');
   write_file(dir / "faces.ply", file);
@@ -292,7 +292,7 @@ TEST(HostileMeshes, TextOfStlIsReadByItsWords) {
 
 // --- HDF5
 
-/// Closes a handle of HDF5.
+/// Closes an HDF5 handle.
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) { EXPECT_GE(id, 0); }
@@ -306,7 +306,7 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// A triangle as VTKHDF, to which more is added; without its points if these are to be elsewhere.
+/// A VTKHDF file with a triangle, to which the test adds more; without points if these are to be in another file.
 class TriangleFile {
  public:
   explicit TriangleFile(const fs::path& path, bool with_points = true) {
@@ -325,7 +325,7 @@ class TriangleFile {
   TriangleFile(const TriangleFile&) = delete;
   TriangleFile& operator=(const TriangleFile&) = delete;
   [[nodiscard]] hid_t id() const { return file_; }
-  /// A dataset of doubles with these properties for its creation.
+  /// A dataset of doubles with these creation properties.
   void add(const char* name, const std::vector<hsize_t>& size, hid_t properties, const double* values) const {
     const Id space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
     const Id dataset(H5Dcreate2(file_, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
@@ -343,7 +343,7 @@ constexpr std::array<double, 9> kPoints = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 TEST(HostileMeshes, DatasetsOfHdf5AreBoundedByWhatTheFileStores) {
   TempDir dir;
   {
-    const TriangleFile file(dir / "links.vtkhdf");  // one array by many names
+    const TriangleFile file(dir / "links.vtkhdf");  // one array under many names
     const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     const std::vector<double> values(3 * 1000, 1.0);
     file.add("VTKHDF/PointData/wide", {3, 1000}, properties, values.data());
@@ -354,7 +354,7 @@ TEST(HostileMeshes, DatasetsOfHdf5AreBoundedByWhatTheFileStores) {
   expect_refused(dir / "links.vtkhdf", ErrorCode::MalformedFile, {"of which the file stores", "expected at most"},
                  as_mesh);
   {
-    const TriangleFile file(dir / "unwritten.vtkhdf");  // arrays that the file promises and does not hold
+    const TriangleFile file(dir / "unwritten.vtkhdf");  // arrays declared in the file but not stored
     const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     for (int i = 0; i < 100; ++i)
       file.add(("VTKHDF/PointData/w" + std::to_string(i)).c_str(), {3, 60000}, properties, nullptr);
@@ -448,7 +448,7 @@ TEST(HostileMeshes, GroupsThatAreNoTreeAreRefusedBeforeNetCdfFollowsThem) {
   }
 }
 
-/// VTKHDF files whose points are in another file, in each way that HDF5 has.
+/// VTKHDF files whose points are in another file, for each mechanism of HDF5.
 struct PointsElsewhere {
   const char* way;
   std::function<void(const fs::path& path, const std::string& other)> write;
@@ -483,7 +483,7 @@ void store_points(const fs::path& path, const std::string& other) {
   file.add("VTKHDF/Points", {3, 3}, properties, nullptr);
 }
 
-/// Each row from a file of its own, with its number in the name.
+/// Maps each row to a file of its own, with its number in the name.
 void view_blocks(const fs::path& path, const std::string& other) {
   const TriangleFile file(path, false);
   const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -523,7 +523,7 @@ TEST(HostileMeshes, Hdf5LeadsToFilesInItsFolderOnly) {
       EXPECT_TRUE(std::equal(kPoints.begin(), kPoints.end(), mesh.coordinates.begin(), mesh.coordinates.end()));
     }
   }
-  link_points(path, "nowhere.h5");  // HDF5 looks for it in the current folder as well
+  link_points(path, "nowhere.h5");  // HDF5 also searches the current folder
   expect_error(ErrorCode::UnsupportedData, {path.string(), "'nowhere.h5', which does not exist"},
                [&] { read_mesh(path); });
   view_blocks(path, "points%b.h5");
@@ -575,7 +575,7 @@ TEST(HostileMeshes, NetcdfLeadsToFilesInItsFolderOnly) {
 
 // --- DICOM
 
-/// An element of a type with a short length, or with a long one.
+/// A DICOM element with a type of short or long length field.
 std::string element(std::uint16_t group, std::uint16_t number, const std::string& type, const std::string& value) {
   return raw(group) + raw(number) + type + raw(static_cast<std::uint16_t>(value.size())) + value;
 }
@@ -592,7 +592,7 @@ std::string sequence(Syntax syntax, const std::string& type, std::uint32_t lengt
   return tag + type + std::string(2, '\0') + raw(length);
 }
 
-/// Sequences in each other, with lengths or with end marks.
+/// Nested sequences, with lengths or with end marks.
 std::string nested(Syntax syntax, int depth, bool with_lengths, const std::string& type) {
   const Syntax inner = type == "UN" ? Syntax::implicit_little : syntax;
   std::string body;
@@ -605,7 +605,7 @@ std::string nested(Syntax syntax, int depth, bool with_lengths, const std::strin
   return body;
 }
 
-/// Deflate without a frame.
+/// Raw deflate data without a frame.
 std::string deflated(const std::string& bytes) {
   const std::string framed = compressed(bytes, true);
   return framed.substr(2, framed.size() - 6);
@@ -621,7 +621,7 @@ std::string dicom(Syntax syntax, const std::string& data) {
          (syntax == Syntax::deflated ? deflated(data) : data);
 }
 
-/// Bytes of two and four turned around: tags and lengths, all that `nested` makes.
+/// Converts the output of `nested` to big endian: swaps bytes of two-byte and four-byte numbers.
 std::string as_big_endian(const std::string& bytes) {
   std::string result = bytes;
   for (std::size_t at = 0; at + 8 <= result.size();) {

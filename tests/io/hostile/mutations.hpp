@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Mutations of files for the fuzz tests: bits and bytes, numbers in binary and in text that are at the edge of a type,
-// words of the formats, blocks that are repeated, removed or taken from another file, deep nesting, and cuts.
+// Mutations of files for the fuzz tests: bits and bytes, binary and text numbers at the limits of a type, keywords of
+// the formats, repeated, removed or foreign blocks, deep nesting, and truncation.
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@
 
 namespace tegl::test {
 
-/// Mutates the bytes of one file. Deterministic for a seed.
+/// Mutates the bytes of a file. Deterministic for a seed.
 class Mutator {
  public:
-  /// `others`: sound files of the same format, to take blocks from.
+  /// `others`: valid files of the same format, as a source of blocks.
   Mutator(std::uint64_t seed, std::span<const std::string* const> others) : random_(seed), others_(others) {}
 
   std::string mutated(std::string bytes) {
@@ -31,7 +31,7 @@ class Mutator {
   static constexpr std::size_t kHeader = 600;  ///< most headers end within this many bytes
 
   std::size_t below(std::size_t n) { return static_cast<std::size_t>(random_() % std::max<std::size_t>(1, n)); }
-  /// A place in the file; two of three are in the first bytes.
+  /// A position in the file; two of three are in the first bytes.
   std::size_t place(const std::string& bytes) {
     return below(below(3) != 0 ? std::min(bytes.size(), kHeader) : bytes.size());
   }
@@ -61,7 +61,7 @@ class Mutator {
       case 7:
         bytes.erase(at, 1 + below(below(2) == 0 ? 4 : 64));
         return;
-      case 8: {  // a block again, once or often
+      case 8: {  // repeats a block once or often
         const std::string block = bytes.substr(at, 1 + below(64));
         std::string repeated;
         for (std::size_t n = below(4) == 0 ? 1 + below(2000) : 1; n > 0; --n) repeated += block;
@@ -80,7 +80,7 @@ class Mutator {
     }
   }
 
-  /// A number of 1, 2, 4 or 8 bytes at the edge of its range, or near the one that is there.
+  /// Overwrites a number of 1, 2, 4 or 8 bytes by one at the limit of its range, or near the existing one.
   void overwrite_binary_number(std::string& bytes, std::size_t at) {
     const std::size_t size = std::size_t(1) << below(4);
     at -= at % size;
@@ -100,7 +100,7 @@ class Mutator {
     std::memcpy(bytes.data() + at, stored.data(), size);
   }
 
-  /// The next number in text after `at`, if there is one, becomes one at the edge of a type.
+  /// Replaces the next text number after `at`, if any, by one at the limit of a type.
   void replace_text_number(std::string& bytes, std::size_t at) {
     static constexpr std::array<std::string_view, 20> kNumbers = {
         "0",          "-1",         "1",   "3",     "255",   "256",  "32768", "65536", "2147483647",
@@ -124,7 +124,7 @@ class Mutator {
       bytes.replace(at, block.size(), block);
   }
 
-  /// Brackets, quotes, long words, and lines of the text formats.
+  /// Inserts brackets, quotes, long words, or lines of the text formats.
   void insert_text(std::string& bytes, std::size_t at) {
     static constexpr std::array<std::string_view, 16> kWords = {"[",
                                                                 "{\"a\":",

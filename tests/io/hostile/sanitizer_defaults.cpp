@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How the sanitizers are to treat what libraries do with damaged files: they may ask for absurd amounts of memory, as
-// long as they bear the refusal, and keep memory when they give up, which is not to hide leaks of ours.
+// Sanitizer options for other libraries on damaged files: they may request absurd amounts of memory if they handle the
+// failure, and may leak memory when they give up, which must not hide leaks of tegl.
 extern "C" {
 const char* __asan_default_options();       // NOLINT: the names are the sanitizers'
 const char* __lsan_default_suppressions();  // NOLINT

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs numbered pieces of work in child processes and watches each: a signal that ends it, the time that it takes, the
-// memory that it needs beyond what was resident before, and what it prints. A faulty piece is reported by its number,
-// and the rest goes on in another child.
+// Runs numbered tasks in child processes and monitors each: the signal that ends it, its time, its memory beyond what
+// was resident before, and its output. A faulty task is reported by its number, and another child continues with the
+// rest.
 #pragma once
 
 #include <fcntl.h>
@@ -29,7 +29,7 @@
 
 namespace tegl::test {
 
-/// What a piece of work did; work of its own process fills in `failure` if it is not as it should be.
+/// Result of a task. The task itself sets `failure` if its result is wrong.
 struct WatchedResult {
   bool refused = false;      ///< ended with the expected kind of error
   std::string failure = {};  ///< not empty: a fault
@@ -37,23 +37,23 @@ struct WatchedResult {
 
 struct WatchedLimits {
   std::chrono::milliseconds time = std::chrono::seconds(10);
-  std::size_t memory = 64u << 20;  ///< bytes beyond what is resident before the work
+  std::size_t memory = 64u << 20;  ///< bytes beyond those resident before the task
 };
 
 struct WatchedSummary {
   std::size_t runs = 0;
   std::size_t refused = 0;
   double slowest_seconds = 0;
-  std::size_t most_memory = 0;                  ///< bytes beyond what was resident before the work
+  std::size_t most_memory = 0;                  ///< bytes beyond those resident before the task
   std::vector<std::string> failures = {};       ///< "number: what happened", the first ones
-  std::vector<std::uint64_t> failed_runs = {};  ///< the numbers of these
+  std::vector<std::uint64_t> failed_runs = {};  ///< the numbers of the first failing tasks
 };
 
 namespace watched_detail {
 
-/// What child and parent share.
+/// Memory shared between child and parent.
 struct Shared {
-  std::atomic<std::uint64_t> current;  ///< number of the piece that runs
+  std::atomic<std::uint64_t> current;  ///< number of the running task
   std::atomic<std::int64_t> begun;     ///< nanoseconds of the steady clock; 0: none runs
   std::atomic<std::uint64_t> refused;
   std::atomic<std::int64_t> slowest;  ///< nanoseconds
@@ -79,7 +79,7 @@ inline std::int64_t now() {
       .count();
 }
 
-/// Bytes of a line such as "VmHWM: 1234 kB" of /proc/self/status.
+/// The value in bytes of a line such as "VmHWM: 1234 kB" in /proc/self/status.
 inline std::size_t status_bytes(const char* key) {
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);)
@@ -87,7 +87,7 @@ inline std::size_t status_bytes(const char* key) {
   return 0;
 }
 
-/// Sets the peak of resident memory to what is resident now.
+/// Resets the peak of resident memory to the current value.
 inline void reset_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 inline std::size_t peak_of_children() {
@@ -96,10 +96,10 @@ inline std::size_t peak_of_children() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// In the child: the pieces [first, last), one after the other.
+/// Runs the tasks [first, last) in the child, one after the other.
 inline void run_pieces(Shared& shared, std::uint64_t first, std::uint64_t last, const WatchedLimits& limits,
                        const std::function<WatchedResult(std::uint64_t)>& work, int output) {
-  mallopt(M_MMAP_THRESHOLD, 1 << 17);  // large blocks go back to the system when they are freed
+  mallopt(M_MMAP_THRESHOLD, 1 << 17);  // large blocks are returned to the system when freed
   dup2(output, 1);
   dup2(output, 2);
   for (std::uint64_t number = first; number < last; ++number) {
@@ -119,7 +119,7 @@ inline void run_pieces(Shared& shared, std::uint64_t first, std::uint64_t last, 
     if (used > limits.memory) {
       shared.fail(number, std::to_string(used >> 20) + " MiB of memory, with a limit of " +
                               std::to_string(limits.memory >> 20));
-      _exit(1);  // the peak of children stays; go on in another child
+      _exit(1);  // the peak of children cannot be reset; continue in another child
     }
     if (lseek(output, 0, SEEK_END) > 0) {
       std::array<char, 300> text{};
@@ -131,7 +131,7 @@ inline void run_pieces(Shared& shared, std::uint64_t first, std::uint64_t last, 
   _exit(0);
 }
 
-/// Waits for the child; kills it when a piece takes too long. Returns what went wrong, or "".
+/// Waits for the child; kills it if a task takes too long. Returns a description of the fault, or "".
 inline std::string wait_for(pid_t child, Shared& shared, const WatchedLimits& limits) {
   for (;;) {
     int status = 0;
@@ -152,7 +152,7 @@ inline std::string wait_for(pid_t child, Shared& shared, const WatchedLimits& li
 
 }  // namespace watched_detail
 
-/// Runs work(0) ... work(count - 1) in children, and ends early after 20 failures.
+/// Runs work(0) to work(count - 1) in children; stops after 20 failures.
 inline WatchedSummary run_watched(std::uint64_t count, const WatchedLimits& limits,
                                   const std::function<WatchedResult(std::uint64_t)>& work) {
   using watched_detail::Shared;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Prints an image as JSON, coordinates and all values: for tests by other readers of the same files. Arguments: the
-// series or variable (may be empty), "whole" or "layers", and the files. Reads them in this process and in a child
-// process, which has to give the same; of an error but which layers were read together.
+// Prints an image as JSON, coordinates and all values, for comparison with other readers. Arguments: the series or
+// variable (may be empty), "whole" or "layers", and the files. Reads them both in this process and in a child process,
+// and expects equal results; of error messages the range of layers read together is ignored.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -72,7 +72,7 @@ json layers(std::span<const std::filesystem::path> files, const tegl::SeriesOpti
   return std::visit([&](auto& typed) { return std::visit(of_layers, typed); }, opened.layers);
 }
 
-/// A message without the layers that were read together, of which there are more in a child process.
+/// The message without the range of layers read together, which is larger in a child process.
 std::string without_layers(const std::string& message) { return message.substr(0, message.find(" (layer")); }
 
 }  // namespace

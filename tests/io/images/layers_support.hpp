@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Layers that come one by one, held against the image that was read whole.
+// Compares layers read one by one with the image read as a whole.
 #pragma once
 
 #include "io_support.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images read layer by layer are those that are read whole.
+// Images read layer by layer equal those read as a whole.
 #include <netcdf.h>
 
 #include <cstdlib>
@@ -20,7 +20,8 @@ void expect_same(const fs::path& path) { expect_layers_of(read_image(path).image
 
 enum class Order { time_first, time_last };
 
-/// t(7) y(4) x(5) of a type, time at the place that `order` says; stored in blocks of three time steps if `blocks`.
+/// A variable t(7) y(4) x(5) of a type, with time at the position in `order`; stored in blocks of three time steps if
+/// `blocks`.
 void write_sample(const fs::path& path, int format, nc_type type, Order order, bool blocks, bool packed) {
   NcWriter file(path, format);
   const int t = file.dimension("time", 7);

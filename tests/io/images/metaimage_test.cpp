@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// MetaImage: attached and detached data, compression, text, geometry by hand, and broken headers.
+// MetaImage: attached and detached data, compression, text, geometry computed by hand, and malformed headers.
 #include <cmath>
 #include <limits>
 

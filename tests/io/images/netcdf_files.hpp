@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// netCDF files through the netCDF library, for the tests.
+// Writes netCDF files for the tests with the netCDF library.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace tegl::test {
 
-/// A file being defined; every call must succeed. Written when it goes out of scope.
+/// A file being defined; every call must succeed. The destructor writes the file.
 class NcWriter {
  public:
   explicit NcWriter(const std::filesystem::path& path, int format = 0) {
@@ -38,7 +38,7 @@ class NcWriter {
   void number(int variable, const std::string& name, nc_type type, const std::vector<double>& values) {
     ok(nc_put_att_double(id_, variable, name.c_str(), type, values.size(), values.data()));
   }
-  /// Ends the definitions; values after this.
+  /// Ends the definitions; values follow.
   void end() { ok(nc_enddef(id_)); }
   void values(int variable, const std::vector<double>& values) { ok(nc_put_var_double(id_, variable, values.data())); }
   void values(int variable, const std::vector<std::size_t>& count, const std::vector<double>& values) {

@@ -224,7 +224,7 @@ TEST(NetCdf, SaysWhichAxesPointDown) {
       const int zv = file.variable("level", NC_FLOAT, {z});
       if (!unit.empty()) file.text(zv, "units", unit);
       if (!positive.empty()) file.text(zv, "positive", positive);
-      // Time is not the slowest here, so that axes are put into another order.
+      // Time is not the slowest dimension here, so the axes are reordered.
       const int v = file.variable("v", NC_INT, {z, t, x});
       file.end();
       file.values(zv, {1, 2});
@@ -301,7 +301,7 @@ TEST(NetCdf, SeveralVariablesMustBeChosenFrom) {
   EXPECT_EQ(info.variable, "temp");
   EXPECT_THAT(info.variables, ElementsAre("salt", "temp"));
   EXPECT_EQ((image_as<std::int16_t, 2>(any).values.size()), 6U);
-  // One that is no candidate can be asked for by name.
+  // A variable that is not a candidate can be selected by name.
   EXPECT_EQ(read_image(dir / "a.nc", {"lat2d", {}}).info.variable, "lat2d");
   expect_error(ErrorCode::UnsupportedData, {"'profile' is 3; expected 2 to 4 axes"}, [&] {
     read_image(dir / "a.nc", {"profile", {}});
@@ -384,7 +384,8 @@ TEST(NetCdf, RankAndSizesOutsideOfImagesAreNamed) {
   expect_error(ErrorCode::UnsupportedData, {"it has no variables"}, [&] { read_image(dir / "c.nc"); });
 }
 
-/// v(member 3, t 2, z 4, y 5, x 6) = its number in the file, with coordinates of members 10, 20, 30.
+/// A variable v(member 3, t 2, z 4, y 5, x 6) whose values are their positions in the file; members have coordinates
+/// 10, 20, 30.
 void write_ensemble(const fs::path& path, int format) {
   NcWriter file(path, format);
   std::vector<int> dimensions;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NIfTI: values, every value type, scaling, orientation computed by hand, time, and files that break their word.
+// NIfTI: values, every value type, scaling, orientation computed by hand, time, and inconsistent files.
 #include <cmath>
 #include <limits>
 
@@ -61,7 +61,7 @@ TEST(Nifti, SformWithShearIsExact) {
   TempDir dir;
   const std::array<float, 12> rows = {2, 0.5F, 0, 10, 0, 1.5F, 0.25F, -20, 0, -0.75F, 3, 30};
   auto header = NiftiHeader({4, 5, 6}, kUint8, 8).sform(rows).units(2);
-  // A qform that says otherwise, which the sform outranks.
+  // The sform has priority over a different qform.
   header.qform({0, 0, 0, 1, 2, 3}, 1);
   write_file(dir / "a.nii", header.bytes() + std::string(120, 'x'));
   const auto [any, info] = read_image(dir / "a.nii");
@@ -139,7 +139,7 @@ TEST(Nifti, TrailingAxesOfOneSampleAreDropped) {
   write_file(dir / "a.nii", NiftiHeader({5, 4, 1, 1}, kUint8, 8).bytes() + std::string(20, 'x'));
   EXPECT_EQ((image_as<std::uint8_t, 2>(read_image(dir / "a.nii").image).grid.sizes()),
             (std::array<std::size_t, 2>{5, 4}));
-  // One that lies obliquely in space has only its own plane left.
+  // An oblique single slice keeps only its own plane.
   auto header = NiftiHeader({5, 4, 1}, kUint8, 8).sform({3, 0, 0, 7, 0, 0.8F, -0.6F, 8, 0, 0.6F, 0.8F, 9});
   write_file(dir / "b.nii", header.bytes() + std::string(20, 'x'));
   const auto [any, info] = read_image(dir / "b.nii");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NRRD: encodings, detached data, spacings and spaces computed by hand, lists as time, and broken headers.
+// NRRD: encodings, detached data, spacings and spaces computed by hand, lists as time, and malformed headers.
 #include "io_support.hpp"
 
 namespace tegl::test {
@@ -110,7 +110,7 @@ TEST(Nrrd, TimeBesideSpaceStaysDecoupled) {
 
 TEST(Nrrd, ListOfImagesBecomesTheLastAxisWhereverItIs) {
   TempDir dir;
-  // Value of sample (x, y, z) in image l: 8 l + its number.
+  // The value of sample (x, y, z) in image l is 8 l + its number.
   std::string first;
   std::string last;
   for (int i = 0; i < 8; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every real file of the shared data whose format is read here: sizes, spacing, value range and number of missing
-// values as the list of the data states them. Skipped where the data are not there.
+// Every measured file of the shared data in a supported format: sizes, spacing, value range and number of missing
+// values as in the list of the data. Skipped if the data are not present.
 #include <cmath>
 #include <limits>
 
@@ -18,7 +18,7 @@ struct RealFile {
   double high;
   double mean;
   std::size_t missing;
-  std::vector<double> steps;  ///< lengths of the steps; 0 where they vary
+  std::vector<double> steps;  ///< step lengths; 0 if they vary
 };
 
 std::vector<RealFile> real_files() {
@@ -61,7 +61,7 @@ void expect_as_listed(const OwnedImage<T, N>& image, const RealFile& file) {
     high = std::max(high, number);
     sum += number;
   }
-  // The list gives six digits of the range and four of the mean and the steps.
+  // The list has six digits of the range and four of the mean and the steps.
   EXPECT_NEAR(low, file.low, 1e-5 * (1 + std::abs(file.low)));
   EXPECT_NEAR(high, file.high, 1e-5 * (1 + std::abs(file.high)));
   EXPECT_NEAR(sum / static_cast<double>(image.values.size() - missing), file.mean, 2e-3 * (1 + std::abs(file.mean)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Series of files as one image: values, coordinates and order; and what does not fit together.
+// Series of files as one image: values, coordinates and order; and inconsistent files.
 #include "tegl/io/series.hpp"
 
 #include "images/layers_support.hpp"
@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 
-/// An NRRD of int16 with these sizes; sample i is `first` + i. `extra`: lines of the header.
+/// An NRRD of int16 with these sizes; sample i is `first` + i. `extra`: further header lines.
 std::string nrrd(const std::vector<std::size_t>& sizes, int first, const std::string& extra = "",
                  const std::string& type = "short") {
   std::string text = "NRRD0004\ntype: " + type +
@@ -30,7 +30,7 @@ std::string nrrd(const std::vector<std::size_t>& sizes, int first, const std::st
 
 class Series : public testing::Test {
  protected:
-  /// Writes an NRRD and lists it.
+  /// Writes an NRRD and adds it to the list.
   void add(const std::string& name, const std::string& bytes) {
     files_.push_back(dir_ / name);
     write_file(files_.back(), bytes);
@@ -175,7 +175,7 @@ TEST_F(Series, LiesWhereTheHeadersSay) {
   EXPECT_THAT(last_axis(options), ElementsAre(1, 4, 9));
   EXPECT_EQ(image.values[0], 1);
   EXPECT_EQ(image.values[16], 3);
-  options.coordinates = {1, 2, 3};  // those that are given win over the headers'
+  options.coordinates = {1, 2, 3};  // given coordinates have priority over the headers'
   options.order = SeriesOrder::given;
   EXPECT_THAT(last_axis(options), ElementsAre(1, 2, 3));
 }
@@ -204,11 +204,11 @@ TEST_F(Series, OfNetcdfLiesAtItsTimes) {
   expect_layers_of(read.image, open_series(files_).layers);
 }
 
-/// Files of a day each often count from that day: at 0, all of them.
+/// Files of one day each often count time from that day: all of them are at 0.
 TEST_F(Series, OfFilesThatCountFromDaysOfTheirOwnLiesOnOneAxis) {
   struct Case {
     std::vector<std::pair<std::string, double>> times;  // unit, value
-    std::vector<double> expected;                       // in the first unit; none: refused
+    std::vector<double> expected;                       // in the first unit; empty: refused
   };
   const std::vector<Case> cases = {
       {{{"days since 2000-01-01", 0}, {"days since 2000-01-02", 0}, {"days since 2000-01-09", 0}}, {0, 1, 8}},
@@ -249,7 +249,7 @@ TEST_F(Series, OfFilesThatCountFromDaysOfTheirOwnLiesOnOneAxis) {
   }
 }
 
-/// What the files say of an axis of one sample each is so of the axis that they make, where all of them say it.
+/// A direction that all files give to their axis of one sample becomes the direction of the combined axis.
 TEST_F(Series, OfNetcdfHasTheDirectionThatAllFilesGiveItsNewAxis) {
   struct Case {
     std::vector<std::string> positive;
@@ -278,7 +278,7 @@ TEST_F(Series, OfNetcdfHasTheDirectionThatAllFilesGiveItsNewAxis) {
     }
     const std::vector<AxisDirection> expected = {AxisDirection::unknown, AxisDirection::unknown, one.direction};
     EXPECT_EQ(read_series(files_).info.axis_directions, expected);
-    SeriesOptions given;  // places that are given are not those that the files speak of
+    SeriesOptions given;  // given coordinates differ from those in the files
     given.step = 2.5;
     EXPECT_EQ(read_series(files_, given).info.axis_directions.back(), AxisDirection::unknown);
   }
@@ -318,7 +318,7 @@ TEST_F(Series, ConvertsTheTimesOfHeadersAndNeverTheirUnitAlone) {
   EXPECT_THAT(last_axis(options), ElementsAre(0, 0.001, 0.003));
   options.unit = "ms";
   EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 3));
-  options.unit = "h";  // of what is given there is no other unit
+  options.unit = "h";  // given coordinates have no other unit
   options.coordinates = {0, 1, 2};
   EXPECT_THAT(last_axis(options), ElementsAre(0, 1, 2));
   EXPECT_EQ(unit_of(options), "h");
@@ -378,7 +378,7 @@ TEST_F(Series, OfFilesThatAreTurnedOrShiftedInSpaceIsRefused) {
   add("b.nrrd", placed("(0.8,0.6,0) (-0.6,0.8,0) (0,0,2)", "(0,1,0)"));
   expect_refused(ErrorCode::UnsupportedData, {"b.nrrd"});
   add("b.nrrd", placed("(0.80000001,0.6,0) (-0.6,0.8,0) (0,0,2)", "(0,1e-7,0)"));
-  EXPECT_EQ(read_series(files_).image.index(), 2U);  // what writers lose by rounding
+  EXPECT_EQ(read_series(files_).image.index(), 2U);  // writers' rounding errors are tolerated
 }
 
 TEST_F(Series, OfFourAxesIsRefused) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes: round trips, what the files contain seen by other programs' readers, combinations that no format holds,
-// and writing that leaves nothing behind.
+// Meshes: round trips, file contents in other programs' readers, combinations that no format supports, and failed
+// writes that leave no files.
 #include <sys/resource.h>
 
 #include <assimp/postprocess.h>
@@ -112,7 +112,7 @@ TEST(Mesh, EqualMeshesMakeEqualFilesWheneverTheyAreWritten) {
   TempDir dir;
   const Mesh mesh = random_mesh(3, 4, 100, 200, 5, true);
   write_mesh(mesh, dir / "first.vtkhdf");
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts times in seconds
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 time stamps are in seconds
   write_mesh(mesh, dir / "second.vtkhdf");
   EXPECT_EQ(read_file(dir / "first.vtkhdf"), read_file(dir / "second.vtkhdf"));
 }
@@ -170,7 +170,7 @@ TEST(Mesh, ColorsAreThoseThatViewersShow) {
   const aiScene* scene = importer.ReadFile((dir / "a.gltf").string(), 0);
   ASSERT_NE(scene, nullptr) << importer.GetErrorString();
   ASSERT_NE(scene->mMeshes[0]->mColors[0], nullptr);
-  // Others are kept, as numbers alone.
+  // Other values are stored as plain numbers.
   mesh.vertex_attributes[0].values[1] = 0.123;
   expect_same((write_mesh(mesh, dir / "b.ply"), read_mesh(dir / "b.ply")), mesh);
   mesh.vertex_attributes[0].values[1] = -7;
@@ -238,7 +238,7 @@ TEST(Mesh, GltfNormalsTurnWithTheirNodes) {
   for (std::size_t v = 0; v < 3; ++v) mesh.normals[3 * v] = mesh.normals[3 * v + 1] = std::sqrt(0.5);
   write_mesh(mesh, dir / "a.gltf");
   auto json = nlohmann::json::parse(read_file(dir / "a.gltf"));
-  json["nodes"][0]["scale"] = {2.0, -1.0, 1.0};  // a plane x + y = c becomes x / 2 - y = c
+  json["nodes"][0]["scale"] = {2.0, -1.0, 1.0};  // maps a plane x + y = c to x / 2 - y = c
   write_file(dir / "b.gltf", json.dump());
   const Mesh read = read_mesh(dir / "b.gltf");
   ASSERT_EQ(read.normals.size(), 9U);
@@ -351,7 +351,7 @@ TEST(Mesh, GltfStatesWhatTheSpecificationAsks) {
   EXPECT_EQ(position["min"][1].get<double>(), low);
   EXPECT_EQ(json["accessors"][1]["count"], 12);
   EXPECT_EQ(json["meshes"][0]["primitives"][0]["mode"], 4);
-  // A .glb is a header and chunks, each a multiple of 4 bytes long.
+  // A .glb consists of a header and chunks, each a multiple of 4 bytes long.
   write_mesh(mesh, dir / "a.glb");
   const std::string glb = read_file(dir / "a.glb");
   std::uint32_t total = 0;
@@ -375,10 +375,10 @@ TEST(Mesh, ReadsPlyOfOtherPrograms) {
   EXPECT_EQ(mesh.coordinates[11], 0.5);
   EXPECT_EQ((std::vector<Index>(mesh.simplices.begin(), mesh.simplices.end())),
             (std::vector<Index>{0, 1, 2, 0, 2, 3, 0, 2, 1}));
-  // Other properties are attributes; a polygon's goes to all of its triangles.
+  // Other properties become attributes; a polygon's value is copied to all of its triangles.
   expect_same(mesh.vertex_attributes, {{"red", "", 1, {255, 255, 255, 255}}});
   expect_same(mesh.simplex_attributes, {{"flag", "", 1, {7, 7, 8}}});
-  // Big-endian, with an element to pass over in front.
+  // Big-endian, preceded by an element to be skipped.
   std::string bytes =
       "ply\nformat binary_big_endian 1.0\nelement extra 1\nproperty list int double list\nelement vertex 2\n"
       "property short x\nproperty double y\nproperty float z\nelement edge 1\nproperty int vertex1\n"
@@ -481,7 +481,7 @@ TEST(Mesh, FailedWritingLeavesNothingAndKeepsTheOldFile) {
   }
 }
 
-/// Writes where files may have 100 kB; exits with 7 if that is reported as it should be.
+/// Writes with a file size limit of 100 kB; exits with 7 if the error is reported correctly.
 [[noreturn]] void exit_with_limited_files(const Mesh& mesh, const TempDir& dir, const std::string& name) {
   signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{100000, 100000};
@@ -496,7 +496,7 @@ TEST(Mesh, FailedWritingLeavesNothingAndKeepsTheOldFile) {
 }
 
 TEST(Mesh, FullDisksAreReported) {
-  // A limit on the size of files stands for the full disk: the same errno path, without a mount.
+  // A limit on file size simulates a full disk: the same errno path, without a mount.
   TempDir dir;
   const Mesh mesh = random_mesh(2, 3, 20000, 40000, 1);
   for (const char* name : {"a.ply", "a.glb", "a.gltf", "a.vtkhdf", "a.stl", "a.obj"})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// OBJ read: what was written comes back bit by bit, what other programs write is understood, and what is broken is
-// named with its line.
+// Reading OBJ: written files are read back bit by bit, files of other programs are understood, and errors name the
+// line.
 #include "invariants.hpp"
 #include "io_support.hpp"
 #include "tegl/extract.hpp"
@@ -9,7 +9,7 @@
 namespace tegl::test {
 namespace {
 
-/// OBJ has no names and units; in the plane its z is 0.
+/// OBJ has no names and units; a mesh in the plane gets z = 0.
 Mesh as_obj_has_it(const Mesh& mesh) {
   Mesh expected = mesh;
   expected.axis_names.assign(3, "");
@@ -24,7 +24,8 @@ Mesh as_obj_has_it(const Mesh& mesh) {
   return expected;
 }
 
-/// Of a mesh in single precision the text has the digits of its floats, and is read in double precision.
+/// Expects a mesh to be read back. The text of a mesh in single precision has the digits of its floats and is read as
+/// double.
 void expect_comes_back(const Mesh& mesh) {
   TempDir dir;
   write_mesh(mesh, dir / "a.obj");
@@ -34,13 +35,12 @@ void expect_comes_back(const Mesh& mesh) {
     for (const auto rows : {&Mesh::coordinates, &Mesh::normals})
       for (double& value : rounded.*rows) value = static_cast<double>(static_cast<float>(value));
   expect_same(rounded, as_obj_has_it(mesh));
-  // Written again it is the same file.
+  // Writing it again gives the same file.
   write_mesh(read, dir / "b.obj");
   EXPECT_EQ(read_file(dir / "b.obj"), read_file(dir / "a.obj"));
 }
 
-/// Noise with integers of a small range, on axes that begin at `origin`: at an integer isovalue many vertices are at
-/// the place of others.
+/// Noise of integers of a small range, on axes that begin at `origin`. At an integer isovalue many vertices coincide.
 template <int N>
 OwnedImage<int, N> integer_noise(const std::array<std::size_t, N>& sizes, double origin, double step) {
   OwnedImage<int, N> image{Grid<N>::unit(sizes), {}};
@@ -101,7 +101,7 @@ TEST(ObjReader, MeshesOfAnyBitsComeBack) {
   Mesh mesh = random_mesh(2, 3, 4, 1, 1);
   mesh.coordinates = {-0.0, 5e-324,   1.7976931348623157e308, 0.1, -1.0 / 3, 2.2250738585072014e-308, 1e23, 0, -1e-310,
                       1,    1e15 + 1, 9007199254740993.0};
-  expect_comes_back(mesh);  // with a vertex or more in no triangle
+  expect_comes_back(mesh);  // with at least one vertex in no triangle
 }
 
 std::vector<Index> simplices_of(const Mesh& mesh) { return {mesh.simplices.begin(), mesh.simplices.end()}; }

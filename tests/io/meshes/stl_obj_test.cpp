@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// STL and OBJ: what is written is what is read again, as far as the formats go. What other programs make of the files
-// is in meshio_reads_test.py.
+// STL and OBJ: written meshes are read back as far as the formats permit. meshio_reads_test.py checks the files with
+// other programs.
 #include <charconv>
 #include <sstream>
 
@@ -28,7 +28,7 @@ Contour<3, Real> closed_noise(std::uint64_t seed, const std::array<double, 3>& s
   return extract<Real>(image.view(), 0.0, options);
 }
 
-/// The corners of all triangles, as float.
+/// The corners of all triangles, as floats.
 std::vector<float> corners_of(const Mesh& mesh) {
   std::vector<float> corners;
   for (const Index v : mesh.simplices)

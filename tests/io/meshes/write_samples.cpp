@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Writes small meshes of every kind into a folder, for readers that are not ours.
+// Writes small meshes of every kind into a folder, for the readers of other programs.
 #include <array>
 #include <filesystem>
 #include <iostream>
@@ -43,7 +43,7 @@ tegl::FacetHierarchy<N, Real> facets_of_plane() {
   return tegl::extract_facets<Real>(image.view(), 0.0, options);
 }
 
-/// A closed surface of noise, many components and tunnels, with normals. No sample is near the isovalue.
+/// A closed surface of noise with many components, tunnels and normals. No sample is near the isovalue.
 tegl::Contour<3, double> closed_noise() {
   tegl::OwnedImage<float, 3> image{tegl::Grid<3>::unit({12, 13, 14}), {}};
   std::mt19937 random(7);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work in a child process that crashes, loops, takes memory or sends nonsense on purpose: the parent gets an error that
-// names the file, and keeps nothing of the child.
+// Work in a child process that deliberately crashes, loops, exhausts memory or sends invalid data: the parent gets an
+// error that names the file and keeps nothing of the child.
 #include "process/child_process.hpp"
 
 #include <fcntl.h>
@@ -41,7 +41,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
   for (std::atomic<unsigned> i = 0;;) ++i;
 }
 
-/// What `work` in a child leads to.
+/// The error that results from `work` in a child.
 Error error_of_child(const ChildProcess::Work& work, const ChildLimits& limits = {}) {
   return error_of([&] {
     ChildProcess child(kFile, work, limits);
@@ -91,7 +91,7 @@ TEST(ChildProcess, SendsNumbersTextsAndArraysOfAllSizes) {
     unpacker.array(received);
     EXPECT_EQ(received, values);
     EXPECT_NO_THROW(unpacker.require_end());
-    received.push_back(1);  // grows into other memory
+    received.push_back(1);  // reallocates in other memory
     received_buffer.push_back(1);
     EXPECT_EQ(received.back() + received_buffer.back(), 2);
   }
@@ -143,7 +143,7 @@ TEST(ChildProcess, LoopsEnd) {
   const auto start = Clock::now();
   expect_damaged(error_of_child([](const ParentLink&) { loop(); }, {.seconds = 0.3}),
                  "took more than 0.3 s of processor time without progress");
-  EXPECT_LT(seconds_since(start), 20);  // on a busy machine
+  EXPECT_LT(seconds_since(start), 20);  // allows for a busy machine
 }
 
 TEST(ChildProcess, WaitingAndProgressAreNoLoop) {
@@ -212,7 +212,7 @@ TEST(ChildProcess, CancellingEndsIt) {
   EXPECT_EQ(errno, ESRCH);
 }
 
-/// All that the child could write to: the connection is among it.
+/// Sends the bytes to all open descriptors of the child; the connection is among them.
 void send_to_all(const std::string& bytes) {
   for (int descriptor = 3; descriptor < 200; ++descriptor) send(descriptor, bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }

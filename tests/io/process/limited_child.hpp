@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work in a process of its own under limits of time and memory, so that a test survives whatever the work does and can
-// measure what it took.
+// Runs work in a child process with limits of time and memory, so that a test survives any fault and can measure time
+// and memory.
 #pragma once
 
 #include <signal.h>
@@ -20,17 +20,17 @@
 
 namespace tegl::test {
 
-/// How the work in a child process ended, and what it took.
+/// Result of work in a child process, with its time and memory.
 struct ChildResult {
-  int signal = 0;                 ///< that ended it; SIGALRM: it ran for longer than it may
-  std::optional<ErrorCode> code;  ///< of the tegl::Error that it threw; none: it threw nothing, or something else
+  int signal = 0;                 ///< signal that ended it; SIGALRM: time limit exceeded
+  std::optional<ErrorCode> code;  ///< of a thrown tegl::Error; none: nothing or another exception was thrown
   std::string message;            ///< of any exception
-  double seconds = 0;             ///< of processor time, so that other work on the machine does not count
+  double seconds = 0;             ///< CPU time, which does not depend on the machine's load
   std::uint64_t peak_bytes = 0;   ///< resident memory beyond that at the beginning
 };
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kHasSanitizer = true;  // which reserves terabytes of addresses, and slows everything down
+inline constexpr bool kHasSanitizer = true;  // sanitizers reserve terabytes of addresses and slow everything down
 #else
 inline constexpr bool kHasSanitizer = false;
 #endif
@@ -52,9 +52,9 @@ inline void write_all(int file, const void* data, std::size_t size) {
   }
 }
 
-/// What the child sends back ahead of the message.
+/// The child's report, sent before the message.
 struct Report {
-  int code = -1;  ///< of the ErrorCode
+  int code = -1;  ///< value of the ErrorCode
   std::uint64_t peak_bytes = 0;
 };
 
@@ -86,8 +86,8 @@ template <class Work>
 
 }  // namespace limited_child_detail
 
-/// Runs `work` in a child process with at most `address_space` bytes (not under sanitizers), for at most `seconds` of
-/// the clock.
+/// Runs `work` in a child process with at most `address_space` bytes (not under sanitizers) and at most `seconds` of
+/// wall time.
 template <class Work>
 ChildResult in_limited_child(Work&& work, std::uint64_t address_space = std::uint64_t{4} << 30, unsigned seconds = 10) {
   namespace detail = limited_child_detail;

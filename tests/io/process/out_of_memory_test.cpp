@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files when memory runs out: whichever allocation fails, nothing half-written is left, and everything is given back.
-// (glTF is left out: the JSON library asks for memory in its destructors, which nobody can refuse it.)
+// Out of memory during file access: for every failing allocation, no partial file is left and all memory is released.
+// (Not for glTF: the JSON library allocates in destructors, where a failure cannot be handled.)
 #include "failing_memory.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class OutOfMemory : public testing::Test {
     GTEST_SKIP() << "the thread sanitizer has its own memory";
 #endif
   }
-  /// `work` writes `name`, which is gone before and after.
+  /// `work` writes `name`, which does not exist before and is removed afterwards.
   void expect_whole_or_none(const std::string& name, const std::function<void(const fs::path&)>& work) {
     const fs::path path = folder_ / name;
     const auto run = [&] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Files that a child process reads: the same images, layers and meshes as in this process, and errors for what brings
-// the child down. (DICOM: dicom_test.py, whose dump_image reads both ways.)
+// Files read by a child process: images, layers and meshes equal those read in this process, and crashes become errors.
+// (DICOM: dicom_test.py, whose dump_image reads in both ways.)
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -27,7 +27,7 @@ std::size_t open_descriptors() {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
 }
 
-/// A process whose parent is this one.
+/// A process whose parent is this one, if any.
 std::optional<pid_t> child_of_this() {
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const std::string name = entry.path().filename().string();
@@ -41,7 +41,7 @@ std::optional<pid_t> child_of_this() {
   return std::nullopt;
 }
 
-/// How a variable v(time, y, x) is stored, in netCDF-4 unless `format` says otherwise.
+/// Storage of a variable v(time, y, x); netCDF-4 unless `format` is set.
 struct Storage {
   nc_type type = NC_FLOAT;
   std::array<std::size_t, 3> sizes = {40, 150, 200};  ///< 4.8 MB of float
@@ -50,7 +50,7 @@ struct Storage {
   bool packed = false;
   bool time_first = true;
   int format = NC_NETCDF4;
-  double offset = 0;  ///< of all values
+  double offset = 0;  ///< added to all values
 };
 
 void write_image(const fs::path& path, const Storage& storage) {
@@ -137,7 +137,7 @@ TEST(SeparateReading, ImagesAndLayersAreTheSame) {
       {.sizes = {3, 4, 5}},
       {.chunk = {1, 150, 200}, .deflate = 1},
       {.chunk = {7, 31, 64}, .deflate = 1},
-      {.sizes = {20000, 2, 2}, .chunk = {1, 1, 2}},  // as old netCDF-4 chunks an unlimited dimension
+      {.sizes = {20000, 2, 2}, .chunk = {1, 1, 2}},  // chunks of old netCDF-4 libraries for an unlimited dimension
       {.type = NC_SHORT, .chunk = {40, 150, 200}, .deflate = 1, .packed = true},
       {.type = NC_DOUBLE, .sizes = {50, 90, 60}, .time_first = false},
       {.type = NC_BYTE, .sizes = {300, 90, 100}, .packed = true},
@@ -156,7 +156,7 @@ TEST(SeparateReading, ManyVariablesHaveMemoryForTheirTables) {
   GTEST_SKIP() << "sanitizers take memory of their own";
 #endif
   TempDir dir;
-  constexpr int kVariables = 1500;  // 64 MiB is too little for them
+  constexpr int kVariables = 1500;  // need more than 64 MiB
   {
     NcWriter file(dir / "many.nc", NC_NETCDF4);
     const std::vector<int> dimensions = {file.dimension("y", 4), file.dimension("x", 5)};
@@ -193,7 +193,7 @@ TEST(SeparateReading, ValuesBelongToTheImage) {
   for (std::size_t i = 0; i < copy.values.size(); ++i) ASSERT_EQ(image.values[i], copy.values[i] + 1);
   const std::vector<float> moved = std::move(image.values);
   EXPECT_EQ(moved.back(), 7);
-  EXPECT_TRUE(image.values.empty());  // NOLINT(bugprone-use-after-move): that is what it says
+  EXPECT_TRUE(image.values.empty());  // the test of the moved-from state
 }
 
 TEST(SeparateReading, SeriesAreTheSame) {
@@ -309,7 +309,7 @@ TEST(SeparateReading, LeavesNothingBehindAndWorksWhileOtherThreadsDo) {
   write_image(dir / "a.nc", {.sizes = {3, 4, 5}});
   write_image(dir / "b.nc", {});
   std::atomic<bool> done = false;
-  std::thread busy([&] {  // with all threads that TBB has
+  std::thread busy([&] {  // occupies all threads of TBB
     OwnedImage<float, 3> image{Grid<3>::unit({60, 60, 60}), std::vector<float>(60 * 60 * 60)};
     std::mt19937 random(1);
     for (float& value : image.values) value = static_cast<float>(random() % 100);
@@ -325,7 +325,7 @@ TEST(SeparateReading, LeavesNothingBehindAndWorksWhileOtherThreadsDo) {
   EXPECT_FALSE(child_of_this().has_value());
 }
 
-/// Files that end this process, loop, or take more than a gigabyte when it reads them itself.
+/// Files that crash this process, loop, or take more than a gigabyte if it reads them itself.
 TEST(SeparateReading, HostileFilesAreErrors) {
   const fs::path root = fs::path(TEGL_SHARED_DATA_DIR) / "hostile";
   if (!fs::exists(root)) GTEST_SKIP() << "no " << root;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of measured and simulated images, at every value that occurs: active tiles as a count of all ranges has them,
-// and contours as without an index. Where the folder with the files is there. With TEGL_ALL_ISOVALUES in the
-// environment (minutes) at every isovalue of every image of 8 bits, and of floats at 1 000 and at extremes and saddles,
-// thinned to 2 000 or so; else at some of those of the large ones.
+// Indexes of measured and simulated images at every value that occurs: the number of active tiles agrees with a count
+// over all ranges, and contours equal those without an index. Skipped if the folder with the files does not exist. With
+// TEGL_ALL_ISOVALUES in the environment (minutes), every isovalue of every 8-bit image is tested, and for floats 1 000
+// values and about 2 000 of the extremes and saddles; otherwise some isovalues of the large images.
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,12 +35,12 @@ const bool kAllIsovalues = wants_all_isovalues();
 
 struct File {
   std::string path;
-  std::size_t most;  ///< isovalues, unless all are asked for; 0: none then, as the definition takes long
+  std::size_t most;  ///< number of isovalues by default; 0: none, as the reference is slow
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
 
-/// Values at which components of samples at and above them begin or meet, and of samples at and below them: extremes
-/// and saddles. From the largest value down, and from the smallest up, by joining each sample with its neighbours.
+/// Values at which components of samples at or above, or at or below, appear or merge: extremes and saddles. Found by
+/// union-find of each sample with its neighbours, from the maximum downwards and from the minimum upwards.
 template <Value T, int N>
 std::vector<double> critical_values(const OwnedImage<T, N>& image) {
   const auto sizes = image.grid.sizes();
@@ -78,13 +78,13 @@ std::vector<double> critical_values(const OwnedImage<T, N>& image) {
   return critical;
 }
 
-/// Every value that occurs (images of 8 bits), or quantiles of them, and between them; of floats, critical ones too:
-/// of more than some thousand as many, evenly.
+/// Every value that occurs (8-bit images) or quantiles, and values between them; for floats also critical values. If
+/// there are more than some thousand, an even selection.
 template <Value T, int N>
 std::vector<double> isovalues_of(const OwnedImage<T, N>& image, std::size_t most) {
   std::vector<double> values = distinct_values(image);
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (sizeof(T) > 1 && kAllIsovalues) most = 500;  // and as many between them
+  if (sizeof(T) > 1 && kAllIsovalues) most = 500;  // and the same number between them
   const std::size_t step = kAllIsovalues && sizeof(T) == 1 ? 1 : (values.size() + most - 1) / most;
   std::vector<double> isovalues;
   for (std::size_t i = 0; i < values.size(); i += step) {
@@ -98,7 +98,7 @@ std::vector<double> isovalues_of(const OwnedImage<T, N>& image, std::size_t most
   return isovalues;
 }
 
-/// How many tiles are active, from sorted ends of ranges: written apart from all methods.
+/// The number of active tiles, from sorted ends of ranges; independent of all index methods.
 class ActiveCounts {
  public:
   template <int N>
@@ -106,7 +106,7 @@ class ActiveCounts {
     std::sort(least_.begin(), least_.end());
     std::sort(greatest_.begin(), greatest_.end());
   }
-  /// Those that begin below less those that end below.
+  /// The ranges that begin below minus those that end below.
   [[nodiscard]] std::size_t at(double isovalue) const {
     const auto below = [&](const std::vector<double>& values) {
       return static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), isovalue) - values.begin());
@@ -138,7 +138,7 @@ void expect_right(const OwnedImage<T, N>& image, std::size_t most) {
   for (const ActiveMethod method : active_methods()) indexes.push_back(build_active_tiles(view, method));
   const auto isovalues = isovalues_of(image, most);
   std::atomic<std::size_t> next{0};
-  std::vector<std::thread> workers;  // as many isovalues at a time: an index is only read
+  std::vector<std::thread> workers;  // several isovalues at a time: an index is only read
   for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
     workers.emplace_back([&] {
       for (std::size_t at; !::testing::Test::HasFailure() && (at = next++) < isovalues.size();)
@@ -147,7 +147,7 @@ void expect_right(const OwnedImage<T, N>& image, std::size_t most) {
   for (std::thread& worker : workers) worker.join();
 }
 
-/// Some contours by each method, against those without.
+/// Expects some contours by each method to equal those without an index.
 template <Value T, int N>
 void expect_same_contours(const OwnedImage<T, N>& image) {
   const auto view = image.view();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elements in files: text and HDF5 hold the same numbers, in the order and with the signs that were asked for, and
-// nothing is left of what could not be written.
+// Files of elements: text and HDF5 hold the same numbers in the requested order and with the requested signs, and a
+// failed write leaves no file.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -129,7 +129,7 @@ TEST_F(ElementsFile, OfHdf5IsTheSameEveryTimeAndSaysUnits) {
 
 TEST_F(ElementsFile, OfManyElementsIsWrittenWhole) {
   Elements<3> elements;
-  constexpr std::size_t kMany = 150000;  // more than a block
+  constexpr std::size_t kMany = 150000;  // more than one block
   for (std::size_t e = 0; e < kMany; ++e) {
     const auto x = static_cast<double>(e);
     elements.centroids.push_back({x, x + 0.5, -x});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seed sets of the images that the literature measures them on: their sizes, those of the thesis of 2005 beside them,
-// and that propagation from them finds what there is, at every isovalue with TEGL_ALL_ISOVALUES in the environment,
-// else at some. Where the folder with the files is there.
+// Seed sets of the images used in the literature: their sizes, compared with those of the thesis of 2005, and
+// propagation from them, which must find all active tiles, at every isovalue with TEGL_ALL_ISOVALUES in the
+// environment, otherwise at some. Skipped if the folder with the files does not exist.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -29,8 +29,8 @@ struct Sizes {
   std::string path;
   std::array<std::size_t, 3> whole1;  ///< F, F+E, F+E+V
   std::array<std::size_t, 3> cover;
-  std::size_t bound_off;  ///< the lower bound is below `cover` by this much at most
-  bool every_isovalue;    ///< small enough
+  std::size_t bound_off;  ///< maximum of `cover` minus the lower bound
+  bool every_isovalue;    ///< tests every isovalue: the image is small enough
 };
 std::ostream& operator<<(std::ostream& out, const Sizes& sizes) { return out << sizes.path; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Graphs of the parts of real data, held against cuts of the contour; and what of them is written.
+// Graphs of the components of measured data, compared with slices of the contour; and files of graphs.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -28,7 +28,7 @@ Contour<4, double> contour_of(const std::string& path, const std::string& variab
   return std::visit([&](const auto& owned) { return extract<double>(owned.view(), isovalue); }, images);
 }
 
-/// Parts, and their Euler characteristics, at some times are those of the cuts.
+/// Expects the components and their Euler characteristics at some times to equal those of the slices.
 void expect_right(const Contour<4, double>& contour, double first, double last) {
   TrackOptions options;
   options.times = even_times(first, last, 5);
@@ -68,7 +68,7 @@ TEST(TrackFiles, ViscousFingersPartsAreThoseOfTheirCuts) {
   expect_right(contour_of(path, "", 30), 0, 23);
 }
 
-/// A line that rises and forks, with names that markup and JSON have to hide.
+/// A line that rises and forks, with names that need escaping in markup and JSON.
 TrackGraph fork() {
   Contour<2, double> contour;
   contour.vertices = {{0, 0}, {0, 1}, {-1, 2}, {1, 3}};
@@ -113,7 +113,7 @@ TrackGraph graph_of_the_ocean() {
                options);
 }
 
-/// All that a pattern finds in a text: the whole, then its groups.
+/// All matches of a pattern in a text: the whole match, then its groups.
 std::vector<std::vector<std::string>> all_of(const std::string& text, const char* pattern) {
   std::vector<std::vector<std::string>> result;
   const std::regex regex(pattern);

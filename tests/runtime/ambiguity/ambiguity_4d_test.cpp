@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// 4D contours of noise with ambiguities resolved from the data, and at random: closed oriented 3-manifolds, whose cuts
-// are closed oriented surfaces; the cut at a whole t is the contour of that layer.
+// 4D contours of noise with ambiguities resolved from the data or at random: closed oriented 3-manifolds whose slices
+// are closed oriented surfaces; the slice at an integer t is the contour of that layer.
 #include <cmath>
 #include <random>
 
@@ -19,7 +19,7 @@
 namespace tegl::test {
 namespace {
 
-/// Noise with a border that is low everywhere.
+/// Noise with a low border.
 OwnedImage<float, 4> enclosed_noise(std::size_t samples, std::uint64_t seed) {
   auto image = noise<float, 4>(samples, seed);
   for_each_sample<4>(image.grid, [&](std::size_t i, const std::array<std::size_t, 4>& index) {
@@ -98,7 +98,7 @@ Image<float, 3> layer_across(const OwnedImage<float, 4>& image, int axis, std::s
 
 TEST(Ambiguity4d, AtAWholePlaceAlongAnyAxisItIsTheContourOfTheLayer) {
   const auto image = noise<float, 4>(6, 8);
-  // A caller's estimator sees the image's own axes: in the layer a face's corners come in the same order.
+  // A custom estimator sees the image's axes; in the layer a face's corners have the same order.
   for (const auto& [name, options] : all_ways())
     for (int axis = 0; axis < 4; ++axis)
       for (const std::size_t at : {1u, 4u}) {
@@ -109,7 +109,7 @@ TEST(Ambiguity4d, AtAWholePlaceAlongAnyAxisItIsTheContourOfTheLayer) {
       }
 }
 
-/// Between layers the direct cut against that of the contour.
+/// Between layers, the direct slice equals the slice of the contour.
 TEST(Ambiguity4d, DirectCutsAreThoseOfTheContour) {
   const auto image = noise<float, 4>(6, 6);
   for (const auto& [name, options] : all_ways()) {
@@ -120,7 +120,7 @@ TEST(Ambiguity4d, DirectCutsAreThoseOfTheContour) {
   }
 }
 
-/// Images of small whole numbers, whose points on edges are at few places, and of uniform noise.
+/// Images of small integers, whose edge points lie at few positions, and of uniform noise.
 OwnedImage<double, 4> small_image(std::uint64_t seed) {
   const Grid<4> grid = Grid<4>::unit({3, 3, 4, 4});
   if (seed % 4 == 0) return noise<double, 4>(grid, seed);

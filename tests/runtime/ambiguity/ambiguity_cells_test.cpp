@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The cells that the literature on marching cubes tells apart, and degenerate ones (support/named_cells.hpp): alone and
-// inside a larger grid, in every position, the contour by Ambiguity::saddle is the interpolant's.
+// The cells that the literature on marching cubes distinguishes, and degenerate ones (support/named_cells.hpp). For
+// each cell on its own and inside a larger grid, in every orientation, the contour by Ambiguity::saddle has the
+// interpolant's topology.
 #include <algorithm>
 #include <random>
 
@@ -17,7 +18,7 @@
 namespace tegl::test {
 namespace {
 
-/// Vertices are kept off the samples, so that each is on one edge.
+/// Vertices are kept off the samples, so that each lies on one edge.
 ExtractOptions by_saddle() {
   ExtractOptions options = by_ambiguity(Ambiguity::saddle);
   options.epsilon = 0.05;
@@ -62,7 +63,7 @@ TEST(NamedCells, AloneHaveTheirTopologyInEveryPosition) {
   }
 }
 
-/// Exchanging the signs exchanges the sides, and leaves the contour of a cell without ties what it is.
+/// Exchanging the signs exchanges the sides and preserves the contour of a cell without ties.
 TEST(NamedCells, WithSignsExchangedHaveTheSameContour) {
   for (auto cell : kNamedCubes) {
     if (!cell.regular) continue;
@@ -72,7 +73,7 @@ TEST(NamedCells, WithSignsExchangedHaveTheSameContour) {
   }
 }
 
-/// In the middle of 4^N samples around which all is low.
+/// Embeds a cell in the middle of 4^N samples that are otherwise low.
 template <int N, std::size_t kCorners>
 void expect_embedded(const NamedCell<kCorners>& cell, std::mt19937_64& bits, const GridSymmetry<N>& symmetry) {
   auto field = random_field<N>(bits, 4, 9, true);

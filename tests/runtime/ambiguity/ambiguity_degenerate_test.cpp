@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where samples and saddles equal the isovalue: however ambiguities are resolved, the contour is a closed manifold, and
-// with `epsilon` no simplex has size zero. Saddle resolves ties as what is at the isovalue is high: the topology is
-// that just below the isovalue. All fields with TEGL_FULL_TOPOLOGY=1 in the environment, by default a share.
+// Samples and saddles equal to the isovalue: for every way to resolve ambiguities the contour is a closed manifold, and
+// with `epsilon` no simplex has size zero. Saddle treats values at the isovalue as high: the topology is that just
+// below the isovalue. A share of the fields by default, all with TEGL_FULL_TOPOLOGY=1 in the environment.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace tegl::test {
 namespace {
 
-/// Integers from -2 to 2, as they are; masks of -1 and 1, which are at the midpoint.
+/// Integers from -2 to 2; if `mask`, values -1 and 1, whose edge points are midpoints.
 template <int N>
 SampledField<N> degenerate_field(std::mt19937_64& bits, std::size_t samples, bool mask, bool padded) {
   SampledField<N> field = random_field<N>(bits, samples, mask ? 1 : 2, padded);
@@ -27,7 +27,7 @@ SampledField<N> degenerate_field(std::mt19937_64& bits, std::size_t samples, boo
   return field;
 }
 
-/// Alternately closed by a padding and by options.close.
+/// Closed alternately by padding and by options.close.
 template <int N>
 void expect_closed_manifolds(std::uint64_t seed, std::size_t count, std::size_t samples, bool mask) {
   std::mt19937_64 bits(seed);
@@ -59,7 +59,7 @@ TEST(Degenerate, MasksIn3dHaveClosedManifolds) { expect_closed_manifolds<3>(4, c
 TEST(Degenerate, IntegersIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(5, cases_to_test(100, 2), 3, false); }
 TEST(Degenerate, MasksIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(6, cases_to_test(100, 2), 3, true); }
 
-/// `expected` is of the field just below the isovalue; epsilon keeps the vertices on their edges.
+/// `expected` is the topology of the field just below the isovalue; epsilon keeps the vertices inside their edges.
 template <int N>
 void expect_high_at_ties(std::uint64_t seed, std::size_t count, std::size_t samples, bool mask, bool padded) {
   std::mt19937_64 bits(seed);

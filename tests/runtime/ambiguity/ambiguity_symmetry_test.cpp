@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contour of the mirrored or turned image is the mirrored or turned contour, for every way to resolve ambiguities
-// that is itself symmetric. Facet by facet: the pieces in each tile, which edges each meets, and the Euler
-// characteristic of each. With the barycentric tables simplex by simplex as well; all others choose diagonals by the
-// numbers of corners, which no symmetry keeps.
+// Equivariance under reflections and rotations, for every symmetric way to resolve ambiguities: the contour of the
+// transformed image is the transformed contour. Compared per piece in each tile: the edges that it meets and its Euler
+// characteristic. With the barycentric tables also per simplex; other triangulations choose diagonals by corner
+// numbers, which symmetries do not preserve.
 #include <cmath>
 #include <random>
 #include <set>
@@ -20,7 +20,7 @@
 namespace tegl::test {
 namespace {
 
-/// With coordinates in units of 2^-20: mirrored places are rounded otherwise.
+/// Coordinates in units of 2^-20: mirrored positions are rounded differently.
 template <int N, class Real>
 Contour<N, double> rounded(const Contour<N, Real>& contour) {
   Contour<N, double> result;
@@ -44,7 +44,8 @@ SampledField<N> random_box(std::mt19937_64& bits, const std::array<std::size_t, 
   return field;
 }
 
-/// `every`: one of how many symmetries is looked at. Small bounds make ties; epsilon keeps the vertices on their edges.
+/// `every`: tests one of this number of symmetries. Small bounds cause ties; epsilon keeps the vertices inside their
+/// edges.
 template <int N>
 void expect_equivariant(const std::array<std::size_t, N>& sizes, std::uint64_t seed, std::size_t every) {
   std::mt19937_64 bits(seed);

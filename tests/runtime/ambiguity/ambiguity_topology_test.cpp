@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// With Ambiguity::saddle the contour has the topology of the bilinear or trilinear interpolant's: in random cells and
-// in random fields, as in Etiene et al., Topology verification for isosurface extraction, 2012. By default a share of
-// the fields; all of them with TEGL_FULL_TOPOLOGY=1 in the environment.
+// With Ambiguity::saddle the contour has the topology of the bilinear or trilinear interpolant's, in random cells and
+// fields, as in Etiene et al., Topology verification for isosurface extraction, 2012. A share of the fields by default;
+// all with TEGL_FULL_TOPOLOGY=1 in the environment.
 #include <algorithm>
 #include <array>
 #include <random>
@@ -29,12 +29,12 @@ ExtractOptions by_saddle(Triangulation triangulation) {
   return options;
 }
 
-/// The isovalue that a field's samples are less than: those of images that have room for it are raised by that much.
+/// The isovalue that is subtracted in a field: images of types with enough range are raised by it.
 template <Value T>
 constexpr std::int32_t kShift = sizeof(T) >= 4 && !std::is_same_v<T, float> ? 123'456'789 : 0;
 
-/// The contour of a regular field, as an image of type T, against the oracle. Returns whether it is regular. Images of
-/// doubles are of fractions.
+/// Compares the contour of a regular field, as an image of type T, with the oracle. Returns true if the field is
+/// regular. Images of doubles have fractional values.
 template <Value T, int N>
 bool is_regular_and_exact(const SampledField<N>& field, Triangulation triangulation) {
   const InterpolantTopology expected = interpolant_topology(field);
@@ -51,7 +51,7 @@ constexpr Triangulation in_turn(std::size_t i) {
   return i % 2 == 0 ? Triangulation::compact : Triangulation::barycentric;
 }
 
-/// Random fields, as images of type T, in turn in both triangulations.
+/// Random fields as images of type T, alternating between the triangulations.
 template <Value T, int N>
 void expect_exact(std::uint64_t seed, std::size_t count, std::size_t samples, std::int64_t bound, bool padded) {
   std::mt19937_64 bits(seed);
@@ -69,18 +69,18 @@ TEST(Saddle, HasTheTrilinearTopologyInRandomCells) {
   expect_exact<float, 3>(3, cases_to_test(100'000, 10'000), 2, 1 << 23, false);
 }
 
-/// Small integers are near to being degenerate, or are, and are then left out.
+/// Small integers are often nearly degenerate; degenerate ones are skipped.
 TEST(Saddle, HasTheTrilinearTopologyInCellsOfSmallIntegers) {
   expect_exact<std::int8_t, 3>(4, cases_to_test(100'000, 10'000), 2, 60, false);
   expect_exact<std::int16_t, 3>(5, cases_to_test(100'000, 10'000), 2, 300, false);
 }
 
-/// Positive integers a, b, c, d with a d - b c = 1, a and b of 28 bits.
+/// Positive integers a, b, c, d with a d - b c = 1; a and b have 28 bits.
 std::array<std::int64_t, 4> nearly_equal_products(std::mt19937_64& bits) {
   for (;;) {
     const auto a = static_cast<std::int64_t>((1u << 27) + random_below(bits, 1 << 27));
     const auto b = static_cast<std::int64_t>((1u << 27) + random_below(bits, 1 << 27));
-    // Euclid's algorithm keeps r = a s modulo b.
+    // Euclid's algorithm preserves r = a s modulo b.
     std::int64_t r0 = b, r1 = a % b, s0 = 0, s1 = 1;
     while (r1 > 1) {
       const std::int64_t quotient = r0 / r1;
@@ -93,7 +93,7 @@ std::array<std::int64_t, 4> nearly_equal_products(std::mt19937_64& bits) {
   }
 }
 
-/// Squares whose saddles differ from the isovalue by less than what the rounding of doubles hides.
+/// Squares whose saddles differ from the isovalue by less than the rounding errors of doubles.
 TEST(Saddle, IsExactWhereRoundingWouldDecide) {
   std::mt19937_64 bits(11);
   const std::size_t tested = cases_to_test(100'000, 10'000);

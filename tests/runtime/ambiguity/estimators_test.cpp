@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ambiguity resolved from the data: what each estimator draws, on noise of every value type, against tiles that are
-// built one by one; and that contours stay closed manifolds, the same from every entry point.
+// Ambiguity resolved from the data: the contours of each estimator, on noise of every value type, against tiles built
+// one by one; and contours are closed manifolds, equal from every entry point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ const char* name_of(Ambiguity ambiguity) {
   return kNames[static_cast<int>(ambiguity)];
 }
 
-/// Options with this estimator; `custom` decides by the parity of the place and a hash of the values.
+/// Options with this estimator; `custom` decides by the parity of the position and a hash of the values.
 ExtractOptions with(Ambiguity ambiguity) {
   ExtractOptions options;
   options.ambiguity = ambiguity;
@@ -56,7 +56,7 @@ Grid<N> odd_grid(std::size_t samples) {
   return grid;
 }
 
-/// A mean of a face's corners, as anyone would write it.
+/// A straightforward mean of a face's corners.
 bool has_high_mean(std::span<const double> values, double isovalue) {
   double sum = 0;
   for (const double value : values) sum += value;
@@ -70,8 +70,8 @@ void expect_same_bytes(const Contour<N, Real>& a, const Contour<N, Real>& b) {
   EXPECT_TRUE(std::equal(a.normals.begin(), a.normals.end(), b.normals.begin(), b.normals.end()));
 }
 
-/// Tile by tile: the contour that FacetBuilder makes with the sign of the mean for every face. Vertices are known by
-/// the face of the grid that they lie in and their number there; where they are means nothing.
+/// The contour built tile by tile by FacetBuilder with the sign of the mean for every face. Vertices are identified by
+/// the face of the grid that contains them and their number there; their positions have no meaning.
 template <Value T, int N>
 Contour<N, float> by_tiles(const OwnedImage<T, N>& image, double isovalue) {
   facets::FacetBuilder builder(facets::FaceLattice::cube(N));
@@ -150,7 +150,7 @@ struct Collector final : ContourSink<N, Real> {
   }
 };
 
-/// Decides by what is around a face, and counts what it is told that is not so.
+/// Decides by the samples around a face, and counts inconsistent arguments.
 template <Value T, int N>
 struct Neighbourhood {
   const OwnedImage<T, N>& image;
@@ -313,7 +313,7 @@ TYPED_TEST(Estimators, OfTheCallersSeeWhatIsAroundAFace) {
     expect_same_bytes(collector.contour, contour);
     EXPECT_GT(around.asked, 0u);
     EXPECT_EQ(around.wrong, 0u);
-    // Of tiles that lie beside the cut, and do not matter, less is seen.
+    // Estimators see fewer samples around tiles beside the slice, which do not affect it.
     if constexpr (N > 2)
       for (int axis = 0; axis < N; ++axis) {
         const Axis& across = image.grid.axes[axis];
@@ -345,7 +345,7 @@ TYPED_TEST(Estimators, CloseContoursUpToMissingValues) {
 }
 
 TEST(Mean, IsComparedWithTheIsovalueExactly) {
-  // The mean is 2^-60 beside 1, which no sum of doubles shows; in whatever order the corners come.
+  // The mean differs from the isovalue 1 by 2^-60, which sums of doubles do not resolve, for any order of the corners.
   const double tiny = 0x1p-58;
   for (unsigned turn = 0; turn < 4; ++turn) {
     for (const double sign : {-1.0, 1.0}) {
@@ -374,7 +374,7 @@ TEST(EstimatorsOfTheCaller, ThatThrowEndTheExtraction) {
   }
 }
 
-/// Another answer each time, whatever the face.
+/// An estimator whose choice changes with each call, whatever the face.
 ExtractOptions with_changing_answers() {
   ExtractOptions options;
   options.ambiguity = Ambiguity::custom;
@@ -385,8 +385,8 @@ ExtractOptions with_changing_answers() {
   return options;
 }
 
-/// All numbers of vertices are there, so that nothing was written elsewhere; or the error names what is wrong. Returns
-/// whether it did.
+/// All vertex numbers are in range, so nothing was written elsewhere; or the error names the fault. Returns true after
+/// an error.
 template <Value T, int N>
 bool is_found_out(const OwnedImage<T, N>& image, const ExtractOptions& options) {
   try {
@@ -560,7 +560,7 @@ TEST(BarycentricContoursOf4dImages, HaveTheTopologyOfCompactOnesNextToMissingVal
     for (TileNumber tile = 0; tile < 27 * 3; ++tile)
       if ((tile * 2654435761u >> 7) % 3 != 0) tiles.push_back(tile);
     const auto chosen = choose_tiles(whole.view(), tiles);
-    // Of an image with missing values, tiles without any.
+    // For images with missing values, only tiles without missing corners.
     std::erase_if(tiles, [&](TileNumber tile) {
       const std::size_t first = tile % 3 + tile / 3 % 3 * 4 + tile / 9 % 3 * 16 + tile / 27 * 64;
       for (unsigned v = 0; v < 16; ++v)

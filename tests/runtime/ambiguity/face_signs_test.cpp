@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Faces of many tiles decided at once (face_signs.hpp) against the same faces decided one by one, exactly.
+// Batched decisions on the faces of many tiles (face_signs.hpp) against exact single decisions.
 #include "ambiguity/face_signs.hpp"
 
 #include <gtest/gtest.h>
@@ -22,12 +22,12 @@
 namespace tegl::detail {
 namespace {
 
-/// Kinds of samples, and an isovalue.
+/// A kind of samples, with an isovalue.
 struct Kind {
   const char* name;
   std::function<double(std::mt19937_64&)> sample;
   double isovalue;
-  bool is_sure;  ///< all is to be decided at once: nothing is so near that rounding could decide, or nothing is rounded
+  bool is_sure;  ///< the batch must decide all faces: no case is within rounding errors, or nothing is rounded
 };
 
 double uniform(std::mt19937_64& random) { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
@@ -69,7 +69,7 @@ FaceBlock<N> random_block(const Kind& kind, std::size_t tiles, std::mt19937_64& 
   return block;
 }
 
-/// The values at the corners of a face of tile `bit`, in the order of its own corners.
+/// The values at the corners of a face of tile `bit`, in the face's own order.
 template <int N>
 std::vector<double> face_values(const FaceBlock<N>& block, std::size_t bit, unsigned axes, unsigned base) {
   std::vector<double> values;
@@ -78,7 +78,7 @@ std::vector<double> face_values(const FaceBlock<N>& block, std::size_t bit, unsi
   return values;
 }
 
-/// As face_signs.hpp says.
+/// Face numbers as documented in face_signs.hpp.
 template <int N>
 unsigned number_of(unsigned axes, unsigned base) {
   const unsigned across = ((1u << N) - 1) & ~axes;
@@ -158,7 +158,7 @@ TEST(FaceSigns, SaddlesAreThoseOfEachSquareByItself) {
   }
 }
 
-/// The entry of the table of a cube whose squares are decided.
+/// The table entry of a cube with decided squares.
 unsigned entry_of(unsigned signature, unsigned high_squares) {
   unsigned entry = tables::kTile3Resolved.first_entry[signature], bit = 1;
   for (unsigned q = 0; q < 6; ++q) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The oracle of the interpolant's topology (support/multilinear.hpp) against what is known: shapes, cells of the
-// literature, its own sweeps along the other axes, and stratified Morse theory.
+// The oracle of the interpolant's topology (support/multilinear.hpp) against known results: shapes, cells of the
+// literature, sweeps along the other axes, and stratified Morse theory.
 #include <cmath>
 #include <random>
 #include <vector>
@@ -58,7 +58,7 @@ TEST(MultilinearOracle, KnowsPlanesAndCorners) {
 }
 
 TEST(MultilinearOracle, KnowsTheTwoSidesOfTheSquaresSaddle) {
-  // The saddle of 3, -1, -1, 1 is (3 - 1) / 6: above 0. High is one, low two.
+  // The saddle of 3, -1, -1, 1 is (3 - 1) / 6 > 0: one high component, two low ones.
   const auto joined = interpolant_topology(SampledField<2>{{2, 2}, {3, -1, -1, 1}});
   EXPECT_EQ(joined.high.components, 1);
   EXPECT_EQ(joined.low.components, 2);
@@ -70,7 +70,8 @@ TEST(MultilinearOracle, KnowsTheTwoSidesOfTheSquaresSaddle) {
 }
 
 TEST(MultilinearOracle, KnowsTheTunnelBetweenTwoCornersAcrossTheCube) {
-  // f = k on all samples but two across the cube: with -k small against these, they hang together through the body.
+  // Equal samples except two at opposite corners of the cube: if the others are small, the two are connected through
+  // the body.
   EXPECT_EQ(interpolant_topology(cell_of({100, -1, -1, -1, -1, -1, -1, 100})).contour, (Topology{1, 0}));
   EXPECT_EQ(interpolant_topology(cell_of({100, -90, -90, -90, -90, -90, -90, 100})).contour, (Topology{2, 2}));
   // Two high and two low corners in every square: discs around the high corners, or around the low ones.
@@ -81,7 +82,7 @@ TEST(MultilinearOracle, KnowsTheTunnelBetweenTwoCornersAcrossTheCube) {
   EXPECT_EQ(together.high.components, 1);
 }
 
-/// Along which axis a cube is swept must not matter, be it regular or not.
+/// The result must not depend on the sweep's axis, whether the cube is regular or not.
 TEST(MultilinearOracle, IsTheSameAlongEveryAxis) {
   std::mt19937_64 bits(1);
   for (const std::int64_t bound : {1, 2, 3, 9, 100, 1 << 29}) {
@@ -105,7 +106,7 @@ TEST(MultilinearOracle, SeesWhatIsNotRegular) {
   std::mt19937_64 bits(3);
   EXPECT_TRUE(interpolant_topology(random_field<3>(bits, 5, 1 << 28)).regular);
   EXPECT_FALSE(interpolant_topology(cell_of({0, 1, 2, 3, -4, 5, 6, 7})).regular);
-  // The saddle of a square at 0.
+  // A square's saddle has the value 0.
   EXPECT_FALSE(interpolant_topology(cell_of({1, -1, -1, 1, 5, -7, -8, 9})).regular);
   // 27 x y z - 3 (x + y + z) + 2 in [-1, 1]^3 has a critical point of value 0 at (1/3, 1/3, 1/3).
   const auto body = [](std::int64_t level) {
@@ -120,9 +121,9 @@ TEST(MultilinearOracle, SeesWhatIsNotRegular) {
 
 // ---- stratified Morse theory ----
 
-/// Sums, over the critical points of f and of its restrictions to squares, what each adds to the Euler characteristic
-/// of {f >= c} as c falls past its value: 1 less that of what is above in its link. In real numbers, hence for
-/// generic fields alone.
+/// Euler characteristic of {f >= c} by Morse theory: the sum, over the samples and the critical points of f and of its
+/// restrictions to squares, of the change when c falls below their values: 1 minus the Euler characteristic of the
+/// upper link. Uses floating point, so only for generic fields.
 class MorseSum {
  public:
   explicit MorseSum(const SampledField<3>& field) : field_(field) {}
@@ -163,7 +164,7 @@ class MorseSum {
     }
     return product;
   }
-  /// A saddle along the square, and on either side up or down.
+  /// A saddle in the square; f rises or falls on either side of it.
   [[nodiscard]] std::int64_t square(const Place& at, int normal) const {
     const int a = (normal + 1) % 3, b = (normal + 2) % 3;
     if (at[a] + 1 == field_.sizes[a] || at[b] + 1 == field_.sizes[b]) return 0;
@@ -184,7 +185,7 @@ class MorseSum {
     if (at[normal] + 1 < field_.sizes[normal]) above += at_saddle(bilinear(moved(at, normal, 1))) > at_saddle(f);
     return -(1 - above);
   }
-  /// Moved to the centre of symmetry, f is k x y z + a x + b y + c z + d.
+  /// After a translation to the centre of symmetry, f is k x y z + a x + b y + c z + d.
   [[nodiscard]] std::int64_t body(const Place& at) const {
     std::array<long double, 8> m{};  // coefficients by monomial: bit a for x_a
     for (unsigned v = 0; v < 8; ++v) {
@@ -217,7 +218,7 @@ class MorseSum {
           if ((v >> i & 1u) != 0) monomial *= place[i];
         f += monomial;
       }
-      // The Hessian has trace 0 and determinant 2 k^3 x y z: one direction up or two.
+      // The Hessian has trace 0 and determinant 2 k^3 x y z: one or two positive eigenvalues.
       if (f >= 0) sum -= k * local[0] * local[1] * local[2] > 0 ? 1 : -1;
     }
     return sum;

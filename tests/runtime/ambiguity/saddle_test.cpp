@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the bilinear and the trilinear interpolant make of a square and a cube, decided by signs of polynomials: held
-// against sweeps through the cube, grids in it and the cases of the literature; the fast way against the exact one.
+// The decisions for the bilinear and the trilinear interpolant in a square and a cube, by signs of polynomials:
+// compared with sweeps, fine grids and the cases of the literature; and the fast decision against the exact one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ unsigned ambiguous_squares(unsigned signature) {
   return result;
 }
 
-/// Regions of the high corners on the surface of a cube, and of the low ones, with squares decided as said.
+/// Components of the high and of the low corners on the surface of a cube with decided squares.
 struct Surface {
   test::Pieces pieces{8};
   std::size_t high = 0, low = 0;
@@ -69,7 +69,7 @@ struct Surface {
   }
 };
 
-/// Pieces of {f >= 0} in the cube, by a sweep.
+/// Components of {f >= 0} in the cube, by a sweep.
 std::size_t high_pieces(const Cube& cube) {
   test::Pieces pieces(8);
   const test::Stack stack(cube, 2);
@@ -79,8 +79,8 @@ std::size_t high_pieces(const Cube& cube) {
   return count;
 }
 
-/// The same of {f < 0}, which is {f <= -1 / scale}, with the largest scale that the sweep takes. A critical value of
-/// samples up to 20 is 0 or larger than that.
+/// Components of {f < 0}, which equals {f <= -1 / scale}, with the largest scale that the sweep supports. For samples
+/// up to 20 a critical value is 0 or larger than 1 / scale.
 std::size_t low_pieces(const Cube& cube) {
   std::int64_t most = 1;
   for (const std::int64_t value : cube) most = std::max(most, std::abs(value));
@@ -92,7 +92,7 @@ std::size_t low_pieces(const Cube& cube) {
 
 using Counts = std::pair<std::size_t, std::size_t>;
 
-/// What the decision of a cube says: pieces of high and low.
+/// Components of high and low according to the decision of a cube.
 Counts decided_pieces(const Values& values) {
   const CubeDecision decision = decide_cube<double>(values, 0.0);
   const Surface surface(signature_of(values), decision.high_squares);
@@ -120,8 +120,8 @@ TEST(Saddle, PiecesOfRandomCubesAreThoseOfTheTrilinearInterpolant) {
   for (const int count : choices) EXPECT_GT(count, 50);
 }
 
-/// Pieces of high and low by neighbours in a grid of n^3 small cubes. Where f is linear two neighbours of a sign are
-/// joined: so there are at least as many pieces as there are.
+/// Components of high and low by neighbours in a grid of n^3 small cubes. Only neighbours between which f is linear are
+/// joined, so the numbers are upper bounds.
 Counts grid_pieces(const Cube& cube, std::int64_t n) {
   const std::int64_t m = n + 1;
   std::vector<bool> is_high(static_cast<std::size_t>(m * m * m));
@@ -166,7 +166,7 @@ TEST(Saddle, PiecesInGridsAreThoseDecidedOrTooThinForTheGrid) {
   EXPECT_LT(thin, 60);
 }
 
-/// Ways to join regions of `signature`'s high corners by the planes across an axis: each as a list of regions.
+/// Ways to join components of `signature`'s high corners by the planes across an axis: each as a list of components.
 using Outcome = std::array<std::size_t, 8>;
 std::set<Outcome> outcomes_of(unsigned signature, const Surface& surface, unsigned axis, int& pairs) {
   const auto has = [&](unsigned v) { return (signature >> v & 1u) != 0; };
@@ -228,7 +228,7 @@ TEST(Saddle, OnlyTwoRegionsAreEverJoinedAndOnePairOfEdgesTellsWhether) {
   EXPECT_EQ(with_both, 8);
 }
 
-/// Corner v goes to corner_of(v): axes exchanged and reversed.
+/// Maps corner v to corner_of(v): exchanges and reverses axes.
 struct Symmetry {
   std::array<unsigned, 3> axes;
   unsigned flip;
@@ -266,14 +266,14 @@ CubeDecision moved(const Symmetry& symmetry, CubeDecision decision) {
   return decision;
 }
 
-/// Values where rounding matters: a product of a difference and a factor, a few last places off.
+/// Values for which rounding matters: a product of a difference and a factor, changed by a few units in the last place.
 Values nearly_degenerate(std::mt19937_64& random, double isovalue) {
   const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
   const double size = std::ldexp(1.0, pick(3) == 0 ? pick(600) - 300 : 0);
   std::uniform_real_distribution<double> uniform(-size, size);
   Values f;
   for (auto& x : f) x = pick(4) == 0 ? size * (pick(5) - 2) : uniform(random);
-  if (pick(2) == 0)  // as good as degenerate in a square, or in all of those across an axis
+  if (pick(2) == 0)  // nearly degenerate in one square, or in all squares across an axis
     f[3] = f[1] * f[2] / f[0];
   if (pick(2) == 0) {
     const double slope = uniform(random) / size;
@@ -339,7 +339,7 @@ TEST(Saddle, ScalesAndOffsetsThatRoundNothingChangeNothing) {
   for (int i = 0; i < 3000; ++i) {
     const Values values = as_values(random_cube(random, 1 + i % 100));
     const CubeDecision decision = decide_cube<double>(values, 0.0);
-    // Products of two values near 2^-537 are the least doubles, coarsely rounded.
+    // Products of two values near 2^-537 are near the smallest doubles and coarsely rounded.
     for (const int exponent : {-1070, -700, -539, -538, -537, -1, 1, 500, 1000}) {
       Values scaled, shifted;
       for (unsigned v = 0; v < 8; ++v) {
@@ -418,7 +418,7 @@ TEST(Saddle, InfiniteValuesAreLargeAndNothingIsUndefined) {
   }
 }
 
-/// Components and Euler characteristic of the contour that a decision stands for.
+/// Components and Euler characteristic of the contour that a decision describes.
 std::pair<int, int> contour_of(const Values& values) {
   const CubeDecision decision = decide_cube<double>(values, 0.0);
   const Surface surface(signature_of(values), decision.high_squares);

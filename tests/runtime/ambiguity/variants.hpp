@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The four kinds of tables that an extraction can use, for tests that hold for each of them.
+// The four kinds of tables of an extraction, for tests that hold for each.
 #pragma once
 
 #include <string>

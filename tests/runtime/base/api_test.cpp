@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the compiler accepts of the public headers: dimensions and types within their limits, no view of a temporary,
-// and designated initialisers of any subset of an options struct. The checks are static; headers_test compiles this
-// file again, with the warnings and the compilers of users.
+// Constraints of the public headers: dimensions and types within their limits, no view of a temporary, and designated
+// initialisers of any subset of an options struct. The checks are static; headers_test compiles this file again with
+// the warnings and compilers of users.
 #include <concepts>
 #include <type_traits>
 #include <utility>
@@ -37,8 +37,8 @@ namespace {
 
 using namespace tegl;
 
-// --- Dimensions and types. `allowed<kLeast, kMost>(test)`: whether test.operator()<N>() holds exactly from kLeast to
-// kMost, of the dimensions 1 to 7.
+// --- Dimensions and types. `only_in<kLeast, kMost>(test)`: true if test.operator()<N>() holds exactly for N = kLeast
+// to kMost, out of the dimensions 1 to 7.
 template <int kLeast, int kMost, class Test>
 consteval bool only_in(Test test) {
   return []<int... I>(std::integer_sequence<int, I...>, Test has) {
@@ -47,7 +47,7 @@ consteval bool only_in(Test test) {
   (std::make_integer_sequence<int, 7>(), test);
 }
 
-// `using` in requires-expressions: a type that violates a constraint makes the expression false.
+// `using` in requires-expressions: a violated constraint makes the expression false.
 static_assert(only_in<2, 5>([]<int N>() {
   return requires { typename Grid<N>; };
 }));
@@ -118,7 +118,7 @@ static_assert(only_in<3, 4>([]<int N>() {
   return requires { typename Scrubber<N, float>; };
 }));
 
-// Functions that do not exist in all dimensions of their arguments: by the dimension of a contour C or an image I.
+// Functions that do not exist in all dimensions, by the dimension of a contour C or an image I.
 template <class C>
 concept Sliced = requires(const C& c, double at) {
   slice(c, at);
@@ -218,7 +218,7 @@ concept HasBorderPlanes = requires(const Grid<N>& grid) {
   border_planes(grid);
 };
 
-// For all of them: from 2 to 5, so that contours and images themselves are there; `kLeast` to `kMost` are expected.
+// Tests dimensions 2 to 5, in which contours and images exist; the function is expected in `kLeast` to `kMost`.
 template <int kLeast, int kMost, class Test>
 consteval bool of_2_to_5_only(Test test) {
   return []<int... I>(std::integer_sequence<int, I...>, Test has) {
@@ -273,7 +273,7 @@ static_assert(!ContourCoordinate<long double> && !ContourCoordinate<int> && !Ext
               !ExtractedAs<int>);
 
 // --- Temporaries: members that return a reference or a view of their object. `is_safe_of_temporaries(call)`: the call
-// is there for an object with a name, and of a temporary, const or not, it is deleted or gives a value of its own.
+// works for a named object; for a temporary, const or not, it is deleted or returns a value.
 template <class Object, class Call>
 consteval bool is_safe_of_temporaries(Call) {
   static_assert(std::invocable<Call, Object&>);
@@ -283,14 +283,14 @@ consteval bool is_safe_of_temporaries(Call) {
     else {
       using Result = std::invoke_result_t<Call, Temporary>;
       using OfNamed = std::remove_cvref_t<std::invoke_result_t<Call, Object&>>;
-      // A value of its own, where objects with a name give a reference; a view would still refer to the temporary.
+      // Returns a value if named objects return a reference; a view would still refer to the temporary.
       return !std::is_reference_v<Result> && std::is_reference_v<std::invoke_result_t<Call, Object&>> &&
              std::same_as<Result, OfNamed>;
     }
   };
   return is_safe(std::type_identity<Object&&>{}) && is_safe(std::type_identity<const Object&&>{});
 }
-// Calls a member; `decltype(auto)` keeps references, and the constraint shows whether there is such a member.
+// Calls a member. `decltype(auto)` keeps references, and the constraint tests whether the member exists.
 #define CALL(member)                                                                           \
   [](auto&& object) -> decltype(std::forward<decltype(object)>(object).member) requires true { \
     return std::forward<decltype(object)>(object).member;                                      \
@@ -318,7 +318,7 @@ static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(lattice())));
 static_assert(is_safe_of_temporaries<facets::TileCertifier>(CALL(tile())));
 #undef CALL
 
-// Constructors that keep a reference to an argument.
+// Constructors that store a reference to an argument.
 static_assert(std::constructible_from<Scrubber<4, float>, const Contour<4>&>);
 static_assert(!std::constructible_from<Scrubber<4, float>, Contour<4>&&>);
 static_assert(!std::constructible_from<Scrubber<4, float>, const Contour<4>&&>);
@@ -329,8 +329,9 @@ unsigned, std::span<const double>, double, Around > ;
 static_assert(FaceOf<const AmbiguousFace::Surroundings&> && FaceOf<AmbiguousFace::Surroundings&>);
 static_assert(!FaceOf<AmbiguousFace::Surroundings&&> && !FaceOf<const AmbiguousFace::Surroundings&&>);
 
-// --- Options: an aggregate, and one of its fields by name, the others left out, without a warning (-Wextra has
-// -Wmissing-field-initializers). The first field and one from the middle: fields behind it are what would warn.
+// --- Options: aggregates with any single field initialised by name, without a warning (-Wextra includes
+// -Wmissing-field-initializers). Tested for the first field and one in the middle, as fields after it would cause the
+// warning.
 [[maybe_unused]] void options_by_name() {
   const auto progress = [](double) { return true; };
   [[maybe_unused]] const WorkOptions work[] = {{.threads = 2}, {.progress = progress}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How much memory an extraction takes beside its image and its contour: every allocation of this program is counted.
-// (Blocks of 2 MiB and more come from the system, past the counter; extract_into_test watches the process itself.)
+// Working memory of an extraction besides its image and contour: counts every allocation of this program. (Blocks of 2
+// MiB and more come from the system and are not counted; extract_into_test measures the process.)
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,7 @@
 namespace tegl::test {
 namespace {
 
-/// The kinds of tables, and one that the data choose from, in either way.
+/// The kinds of tables, and an estimator from the data in both triangulations.
 std::vector<ExtractOptions> all_variants() {
   auto result = variants();
   for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle}) {
@@ -26,7 +26,7 @@ std::vector<ExtractOptions> all_variants() {
   return result;
 }
 
-/// With 1 and 4 threads, without normals and with them.
+/// Tests 1 and 4 threads, without and with normals.
 template <Value T, int N>
 void expect_at_most(std::size_t bytes, const OwnedImage<T, N>& image, double isovalue,
                     const std::vector<ExtractOptions>& all) {
@@ -51,7 +51,7 @@ TEST(Memory, BesideImageAndContourIsASixteenthOfTheImageIn4d) {
   expect_a_sixteenth(noise<float, 4>({64, 16, 16, 72}, 3), 0.98);
 }
 
-/// 128 KiB and what is not by slabs, however small the image.
+/// 128 KiB and the memory that does not depend on slabs, for any small image.
 TEST(Memory, BesideASmallImageIsAnEighthOfAMebibyte) {
   constexpr std::size_t kMost = (std::size_t{1} << 17) + 8192;
   expect_at_most(kMost, noise<float, 3>(64, 5), 0.5, all_variants());
@@ -63,13 +63,13 @@ TEST(Memory, BesideAnImageOfAFewMebibytesIsASixteenthOfIt) {
   expect_a_sixteenth(noise<float, 3>(96, 9), 0.5);
 }
 
-/// Of few long rows, a thread's lists of edges are the most.
+/// For a few long rows, the lists of edges of a thread dominate.
 TEST(Memory, BesideLongRows) {
   const auto image = noise<float, 2>({50000, 50}, 10);
   for (const auto& o : variants()) expect_at_most(image.values.size() * sizeof(float) / 3, image, 0.5, {o});
 }
 
-/// What is needed beside a long image is a few slabs' worth: a longer one needs no more.
+/// The working memory of a long image is that of a few slabs; a longer image needs no more.
 TEST(Memory, DoesNotGrowWithTheContour) {
   const auto image = noise<float, 4>({64, 16, 16, 72}, 3);
   for (ExtractOptions options : variants()) {

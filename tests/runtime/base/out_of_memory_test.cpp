@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whichever allocation fails, and whether memory is back after it or not: the caller gets std::bad_alloc or the whole
-// result, and everything is given back.
+// For every failing allocation, followed by further failures or not: the caller gets std::bad_alloc or the complete
+// result, and all memory is released.
 #include "failing_memory.hpp"
 
 #ifdef __linux__
@@ -28,7 +28,7 @@
 namespace tegl::test {
 namespace {
 
-/// A number that differs where results do.
+/// A number that differs for different results.
 template <class Range>
 std::uint64_t digest(const Range& rows, std::uint64_t sum) {
   const auto* const bytes = reinterpret_cast<const unsigned char*>(rows.data());
@@ -40,7 +40,7 @@ std::uint64_t digest(const Contour<N, Real>& contour) {
   return digest(contour.normals, digest(contour.simplices, digest(contour.vertices, 14695981039346656037u)));
 }
 
-/// Keeps what it can without memory of its own.
+/// A sink that stores a digest without allocating.
 template <int N>
 struct DigestSink final : ContourSink<N, float> {
   using typename ContourSink<N, float>::Vertex;
@@ -92,7 +92,7 @@ void expect_all_ways_survive(const std::array<std::size_t, N>& sizes, unsigned t
     options.normals = missing == 0.0;
     options.close = missing != 0.0;
     options.triangulation = missing == 0.0 ? Triangulation::compact : Triangulation::barycentric;
-    // Threads keep what they took for themselves.
+    // Threads keep memory of their own.
     const bool alone = threads == 1;
     EXPECT_GT(expect_survives(
                   "extract", [&] { return digest(extract<float>(image.view(), 0.5, options)); }, alone),
@@ -142,7 +142,7 @@ TEST(OutOfMemory, IsSurvivedIn5d) {
 TEST(OutOfMemory, IsSurvivedBySeveralThreads) { expect_all_ways_survive<3>({30, 20, 9}, 3); }
 
 #ifdef __linux__
-/// Contours of a size that comes from the system in large blocks, reserved beforehand or grown.
+/// Contours so large that the system supplies their memory in large blocks, reserved beforehand or grown.
 TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "the thread sanitizer has its own memory";
@@ -162,8 +162,8 @@ TEST(OutOfMemory, OfLargeBlocksIsSurvived) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-/// More room never makes a contour impossible that less room allows: address space that is reserved beforehand, so that
-/// outputs need not move, is not missed elsewhere.
+/// More address space never makes a contour fail that succeeds with less: reserving address space, so that outputs need
+/// not move, does not exhaust it elsewhere.
 TEST(OutOfMemory, NeverComesFromMoreAddressSpace) {
   const auto image = sample_field<float, 3>(centred_grid<3>(90, 1.0), Ball<3>{{}, 0.7});
   ExtractOptions options;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is done with contours asks often enough whether to go on: no part of the work, neither at its beginning nor at
-// its end, keeps somebody waiting who has pressed Ctrl-C. Bounds are shares of the whole, in processor time.
+// Operations on contours call their progress functions often enough that Ctrl-C is handled without a noticeable delay,
+// at any phase. Bounds are shares of the total CPU time.
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -30,10 +30,10 @@ namespace {
 struct Operation {
   std::string name;
   std::function<void(const Progress&)> run;
-  double share = 0.1;  ///< no gap may be longer than this share of the whole
+  double share = 0.1;  ///< maximum gap as a share of the total
 };
 
-/// A contour of noise: components, handles and events without end, as bad as contours get.
+/// A contour of noise with very many components, handles and events: the worst case.
 class ProgressGaps : public testing::Test {
  protected:
   static constexpr int kN = 4;
@@ -112,7 +112,7 @@ void expect_sound(const ProgressProbe& probe) {
 TEST_F(ProgressGaps, AreShortAndFractionsRiseToOne) {
   for (const Operation& operation : operations(1)) {
     SCOPED_TRACE(operation.name);
-    // Other programs on the machine take caches away, now and then: twice the same is the operation's own.
+    // Other programs on the machine sometimes evict caches; a gap that repeats is the operation's own.
     ProgressProbe probe;
     for (int attempt = 0; attempt < 3 && (attempt == 0 || probe.longest_share() > operation.share); ++attempt) {
       probe.watch(operation.run);
@@ -142,7 +142,7 @@ TEST_F(ProgressGaps, AnyCallCanEndTheWork) {
         operation.run([&](double) { return ++calls > 0; });
         ASSERT_GE(calls, 3u);
       }
-      // With several threads the number of calls differs from run to run: the first two are there always.
+      // With several threads the number of calls varies; the first two always occur.
       for (const std::size_t last : {std::size_t{1}, (calls + 1) / 2, calls}) {
         std::size_t seen = 0;
         expect_error(ErrorCode::Cancelled, "cancelled", [&] { operation.run([&](double) { return ++seen < last; }); });
@@ -151,10 +151,10 @@ TEST_F(ProgressGaps, AnyCallCanEndTheWork) {
     }
 }
 
-/// Files too, of every format that holds the contour; in text and in numbers.
+/// Also for files of every format that can hold the contour, in text and binary.
 TEST_F(ProgressGaps, OfReadingFilesAreShort) {
   const auto surface = extract<float>(view_of(noise<float, 3>(48, 3)), 0.5);
-  // A .gltf is one text that is taken apart as a whole: nothing is expected of its gaps.
+  // A .gltf is parsed as one text, so its gaps are not limited.
   const std::vector<std::pair<std::string, double>> files = {
       {"gaps.ply", 0.5}, {"gaps.glb", 0.5}, {"gaps.gltf", 1.0}, {"gaps.vtkhdf", 0.5}};
   for (const auto& [name, share] : files) {

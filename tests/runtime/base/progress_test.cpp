@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Progress is told of every slab, by the thread that asked, with fractions that do not fall; and a contour that is no
-// longer wanted ends where it is, whichever way it is made and however many threads make it.
+// Progress is reported for every slab, on the calling thread, with non-decreasing fractions. Cancelling ends the
+// extraction at any time, for every entry point and number of threads.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -33,7 +33,7 @@ struct NoSink final : ContourSink<N, float> {
   void replace_corner(std::uint64_t /*simplex*/, int /*corner*/, std::uint64_t /*vertex*/) override {}
 };
 
-/// A way to make a contour, and in how many slabs.
+/// A way to make a contour, with its number of slabs.
 struct Way {
   std::string name;
   std::size_t slabs;
@@ -70,7 +70,7 @@ std::vector<Way> ways(const OwnedImage<float, N>& image) {
   return result;
 }
 
-/// The fractions that a way tells.
+/// The fractions that a way reports.
 std::vector<double> told(const Way& way, ExtractOptions options) {
   std::vector<double> fractions;
   const auto caller = std::this_thread::get_id();
@@ -105,7 +105,7 @@ TEST(Progress, IsToldOfEverySlabByTheThreadThatAsked) {
   expect_told_of_every_slab<4>({12, 9, 8, 11});
 }
 
-/// A slab of a million samples and more does not keep quiet until it is done.
+/// A slab of a million samples or more also reports progress before it is finished.
 TEST(Progress, IsToldWithinLargeSlabs) {
   const auto image = noise_with_missing<float, 3>(Grid<3>::unit({1500, 1500, 2}), 3, 0.0);
   ExtractOptions options;
@@ -123,7 +123,7 @@ void expect_stopped_whenever(const std::array<std::size_t, N>& sizes) {
       SCOPED_TRACE(testing::Message() << way.name << ", " << threads << " threads");
       ExtractOptions options;
       options.threads = threads;
-      // With several threads the number of calls differs from run to run.
+      // With several threads the number of calls varies.
       const std::size_t calls = threads == 1 ? told(way, options).size() : way.slabs;
       for (std::size_t last = 1; last <= calls; last += 1 + calls / 40) {
         std::size_t seen = 0;
@@ -162,9 +162,9 @@ TEST(Progress, WhatItThrowsReachesTheCaller) {
     }
 }
 
-#ifndef __SANITIZE_THREAD__  // it does not see how TBB, which is not built for it, orders things
+#ifndef __SANITIZE_THREAD__  // it does not see the synchronisation of TBB, which is not built for it
 
-/// Work for several threads, for which the one that asks has to wait.
+/// Work for several threads, for which the calling thread waits.
 void wait_for_others() {
   std::atomic<std::uint64_t> sum = 0;
   tbb::parallel_for(0, 8, [&](int i) {
@@ -174,7 +174,7 @@ void wait_for_others() {
   });
 }
 
-/// While a caller's function waits, its thread may take up other work: none that calls it once more.
+/// While a caller's function waits, its thread may execute other tasks, but none that calls the function again.
 TEST(Progress, IsNotAskedForWhileItWaitsForTasksOfItsOwn) {
   const auto image = noise<float, 3>({60, 50, 40}, 11);
   for (const Way& way : ways(image)) {

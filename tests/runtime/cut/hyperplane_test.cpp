@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts by any hyperplane: frames, cuts across any axis against cuts across the last and against contours of layers,
-// oblique cuts against analytic ones, closedness whatever the hyperplane meets, attributes, and stacks.
+// Slices by arbitrary hyperplanes: frames, slices across any axis against slices across the last and contours of
+// layers, oblique slices against analytic ones, closedness in all degenerate positions, attributes, and stacks.
 #include "tegl/hyperplane.hpp"
 
 #include <cmath>
@@ -37,8 +37,8 @@ Vector<N> random_normal(std::mt19937_64& bits) {
   return normal;
 }
 
-/// Values of 0 … levels - 1 with a low border, so that the contour at the middle level is closed, and many of its
-/// vertices lie where others do.
+/// Values 0 … levels - 1 with a low border. The contour at the middle level is closed, and many of its vertices
+/// coincide.
 template <int N>
 OwnedImage<std::uint8_t, N> bordered_noise(std::size_t samples, std::uint64_t levels, std::uint64_t seed) {
   std::array<std::size_t, N> sizes;
@@ -143,7 +143,7 @@ TEST(SliceByHyperplane, AcrossTheLastAxisIsTheSameBitByBit) {
   }
 }
 
-/// The contour with the coordinates in the order of `axes`, oriented as it was.
+/// The contour with coordinates permuted by `axes` and its orientation preserved.
 Contour<4, double> permuted(const Contour<4, double>& contour, const std::array<int, 4>& axes, bool is_odd) {
   Contour<4, double> result = contour;
   for (std::size_t v = 0; v < contour.vertices.size(); ++v)
@@ -203,7 +203,7 @@ TEST(SliceByHyperplane, NormalsOfAnyLengthGiveTheSameCut) {
        {Hyperplane<4>{{1, 2, -3, 4}, 2.25}, Hyperplane<4>{{0, 0, -2, 0}, -2.75}, Hyperplane<4>{{1, 1, 0, 0}, 2.25}}) {
     const auto cut = slice(whole, Hyperplane<4>{normal, offset});
     ASSERT_FALSE(cut.simplices.empty());
-    for (const int exponent : {-1030, -1000, -1, 1000, 1021}) {  // sums at the last would be beyond all numbers
+    for (const int exponent : {-1030, -1000, -1, 1000, 1021}) {  // at the last exponent sums would overflow
       const Hyperplane<4> hyperplane{(normal.array() * std::ldexp(1.0, exponent)).matrix(),
                                      std::ldexp(offset, exponent)};
       EXPECT_TRUE(same_bytes(slice(whole, hyperplane), cut)) << exponent;
@@ -233,7 +233,7 @@ void expect_closed_cuts(std::uint64_t levels, std::uint64_t seed) {
   std::size_t not_empty = 0;
   for (int i = 0; i < 60; ++i) {
     Hyperplane<N> hyperplane{random_normal<N>(bits), 0.0};
-    // Normals of small whole numbers have many vertices on their hyperplanes.
+    // Normals of small integers, so that many vertices lie on the hyperplanes.
     if (i % 2 == 0)
       for (double& x : hyperplane.normal) x = std::round(2.4 * x);
     if (hyperplane.normal.isZero()) continue;
@@ -270,7 +270,7 @@ TEST(SliceByHyperplane, OfABallIsABallThatFacesOutwards) {
     const auto report = expect_closed_manifold(cut);
     EXPECT_EQ(report.euler, 2);
     EXPECT_EQ(report.components, 1u);
-    // The sphere's centre is the frame's origin.
+    // The sphere's centre is the origin of the frame.
     EXPECT_GT(test::share_facing(cut, [](const Point<3>& y) { return y; }), 0.999);
     const test::Ball<3> expected{{}, std::sqrt(0.64 - distance * distance)};
     EXPECT_NEAR(test::enclosed_content(cut), expected.content(), 0.03);
@@ -296,7 +296,7 @@ TEST(SliceByHyperplane, OfASphereIsACircleThatFacesOutwards) {
   }
 }
 
-/// An affine function of the place, and which simplex it is.
+/// Adds an affine function of the position, and the simplex number, as attributes.
 void add_attributes(Contour<4, double>& contour) {
   Attribute& affine = contour.vertex_attributes.emplace_back(Attribute{"affine", "K", 2, {}});
   for (const auto& x : contour.vertices) {
@@ -400,7 +400,7 @@ TEST(ScaleAxes, StretchesPointsAndTurnsNormals) {
   scale_axes(contour, Vector<3>(1, 2, 10));
   for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
     EXPECT_EQ(contour.vertices[v][2], 10 * before.vertices[v][2]);
-    // The normal of an ellipsoid x² + (y/2)² + (z/10)² = r².
+    // The normal of the ellipsoid x² + (y/2)² + (z/10)² = r².
     const auto& x = contour.vertices[v];
     const Eigen::Vector3d expected = Eigen::Vector3d(x[0], x[1] / 4, x[2] / 100).normalized();
     ASSERT_LT((Eigen::Map<const Eigen::Vector3d>(contour.normals[v].data()) - expected).norm(), 0.02);
@@ -409,7 +409,7 @@ TEST(ScaleAxes, StretchesPointsAndTurnsNormals) {
   EXPECT_THROW(scale_axes(contour, Vector<3>(1, -1, 1)), Error);
 }
 
-/// The largest difference between components of normals of vertices at the same place.
+/// The maximum difference between components of normals of vertices at equal positions.
 template <int N, class Real>
 double furthest_normal(const Contour<N, Real>& a, const Contour<N, Real>& b) {
   const auto rows = [](const Contour<N, Real>& contour) {

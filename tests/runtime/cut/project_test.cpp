@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Projections of 4D contours: against the swept regions of analytic fields, and closed whatever the contour.
+// Projections of 4D contours: compared with the swept regions of analytic fields, and closed for any contour.
 #include "tegl/project.hpp"
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using test::expect_closed_manifold;
 using test::Point;
 
-/// A ball of radius 0.5 that moves along x from -0.6 to 0.6 as t goes from -1 to 1.
+/// A ball of radius 0.5 that moves along x from -0.6 to 0.6 for t = -1 to 1.
 struct MovingBall {
   double operator()(const Point<4>& x) const { return 0.5 - std::hypot(x[0] - 0.6 * x[3], x[1], x[2]); }
 };
@@ -41,7 +41,7 @@ TEST(Outline, OfAMovingBallIsTheSurfaceOfACapsule) {
   EXPECT_EQ(report.euler, 2);
   EXPECT_NEAR(test::enclosed_content(surface), kPi * 0.25 * 1.2 + 4.0 / 3.0 * kPi * 0.125, 0.08);
   EXPECT_NEAR(test::measure(surface), kPi * 1.2 + kPi, 0.3);
-  // The time when each place was touched: the tube's at x / 0.6.
+  // The time at which each position was touched: for the tube at x / 0.6.
   ASSERT_EQ(surface.vertex_attributes.size(), 1u);
   EXPECT_EQ(surface.vertex_attributes[0].name, "time");
   EXPECT_EQ(surface.vertex_attributes[0].unit, "s");
@@ -127,7 +127,7 @@ TEST(Project, GivesHeightsAndSides) {
     for (int a = 0; a < 3; ++a) ASSERT_EQ(projected.vertices[v][a], contour.vertices[v][a]);
     ASSERT_EQ(projected.vertex_attributes[0].values[v], contour.vertices[v][3]);
   }
-  // What the ball moves towards it enters, what lies behind it leaves.
+  // The ball enters regions ahead of it and leaves regions behind it.
   double told = 0, as_expected = 0;
   ASSERT_EQ(projected.simplex_attributes[0].name, "side");
   for (std::size_t s = 0; s < contour.simplices.size(); ++s) {
@@ -137,7 +137,7 @@ TEST(Project, GivesHeightsAndSides) {
     ++told;
     as_expected += projected.simplex_attributes[0].values[s] == (ahead > 0 ? -1.0 : 1.0);
   }
-  // Crooked pieces of the contour have tetrahedra that face elsewhere.
+  // Tetrahedra of distorted parts of the contour face other directions.
   EXPECT_GT(told, 1000.0);
   EXPECT_GT(as_expected, 0.8 * told);
 }

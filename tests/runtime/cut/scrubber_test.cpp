@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts by a scrubber against cuts by `slice`, bit by bit, and what its index finds against a look at all simplices.
+// Slices by Scrubber against `slice`, bit by bit, and its index against a scan of all simplices.
 #include "tegl/scrubber.hpp"
 
 #include <cmath>
@@ -81,7 +81,7 @@ TEST(Scrubber, CutsAlongAnyDirectionAndOfSurfaces) {
   for (double offset = -1.0; offset < 17.0; offset += 0.25) expect_same_cut(scrubber, surface, up, offset);
 }
 
-/// Times that floats tell apart badly: steps of an hour in milliseconds since 1970.
+/// Times that floats resolve poorly: steps of an hour in milliseconds since 1970.
 TEST(Scrubber, TimesMayBeFarFromZero) {
   Grid<4> grid = Grid<4>::unit({5, 5, 5, 5});
   grid.axes[3] = Axis::uniform(5, 1.7e12, 3.6e6);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of measured and simulated data in four dimensions, where the folder with the files is there.
+// Slices of measured and simulated 4D data. Skipped if the folder with the files does not exist.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -28,8 +28,8 @@ using test::same_surface;
 
 struct File {
   std::string path;
-  double quantile;     ///< of the values; the isovalue is a little above the value there
-  bool closes = true;  ///< no missing values, so the closed contour is closed
+  double quantile;     ///< of the values; the isovalue is slightly above it
+  bool closes = true;  ///< no missing values, so that a contour with `close` is closed
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
 
@@ -43,7 +43,7 @@ double time_of(const Image<T, 4>& image, double index) {
 
 class SliceOfFile : public ::testing::TestWithParam<File> {
  protected:
-  /// Calls with a part of the file's image.
+  /// Calls `visit` with a part of the file's image.
   template <class Visit>
   void with_image(const Visit& visit) {
     const std::filesystem::path path = std::filesystem::path(TEGL_SHARED_DATA_DIR) / "fourd" / GetParam().path;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of contours: of simplices made by hand, and of contours that the slow simplicial contour makes, so that what
-// `slice` does is tested apart from the extraction.
+// Slices of hand-made simplices and of contours from the slow simplicial contour, so that `slice` is tested
+// independently of the extraction.
 #include "tegl/slice.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ using test::Point;
 using test::same_surface;
 using test::simplicial_contour;
 
-/// Noise whose border is low, so that its contour is closed.
+/// Noise with a low border, so that its contour is closed.
 template <Value T, int N>
 OwnedImage<T, N> bordered_noise(std::size_t samples, std::uint64_t seed) {
   OwnedImage<T, N> image = test::noise<T, N>(samples, seed);
@@ -41,7 +41,7 @@ Contour<4, double> one_tetrahedron(const std::array<double, 4>& t) {
   return contour;
 }
 
-/// The direction in 4-space that a tetrahedron is positive towards.
+/// A vector in 4-space on the positive side of a tetrahedron.
 Eigen::Vector4d positive_normal(const Contour<4, double>& contour) {
   const auto edges = test::edge_vectors(contour, 0);
   Eigen::Vector4d normal;
@@ -64,7 +64,7 @@ TEST(Slice, OfATetrahedronIsATriangleOrAQuadrilateral) {
 }
 
 TEST(Slice, KeepsTheSideThatTheContourFaces) {
-  // Every pattern of heights, in every order of the vertices: the triangle's normal agrees with the tetrahedron's.
+  // For every pattern of heights in every vertex order, the triangle's normal agrees with the tetrahedron's.
   for (unsigned pattern = 1; pattern < 15; ++pattern) {
     std::array<Index, 4> order{0, 1, 2, 3};
     do {
@@ -86,20 +86,22 @@ TEST(Slice, KeepsTheSideThatTheContourFaces) {
 }
 
 TEST(Slice, AVertexOnTheHyperplaneIsItsOwnPoint) {
-  // 2-2 with one upper vertex on: the quadrilateral becomes a triangle with that vertex.
+  // Two vertices on each side, one of the upper ones on the hyperplane: the quadrilateral becomes a triangle with that
+  // vertex.
   const Contour<3, double> cut = slice(one_tetrahedron({0, 0, 0.5, 1}), 0.5);
   ASSERT_EQ(cut.simplices.size(), 1u);
   EXPECT_EQ(cut.vertices.size(), 3u);
   EXPECT_EQ(std::count(cut.vertices.begin(), cut.vertices.end(), (std::array<double, 3>{0, 1, 0})), 1);
-  // One vertex on and the others below: the triangle collapses.
+  // One vertex on the hyperplane, the others below: the triangle collapses.
   EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 0.5}), 0.5).simplices.size(), 0u);
   EXPECT_EQ(slice(one_tetrahedron({0, 0, 0, 0.5}), 0.5).vertices.size(), 0u);
-  // Two on: a segment, dropped.
+  // Two vertices on the hyperplane: a segment, dropped.
   EXPECT_EQ(slice(one_tetrahedron({0, 0, 0.5, 0.5}), 0.5).simplices.size(), 0u);
-  // A face on, met from below; and, as it bounds the contour, one met from above alone.
+  // A face on the hyperplane: kept if its simplex is below, and, for a face on the contour's boundary, also if it is
+  // above.
   EXPECT_EQ(slice(one_tetrahedron({0, 0.5, 0.5, 0.5}), 0.5).simplices.size(), 1u);
   EXPECT_EQ(slice(one_tetrahedron({1, 0.5, 0.5, 0.5}), 0.5).simplices.size(), 1u);
-  // All on: no face is met from below or above.
+  // All vertices on the hyperplane: no simplex is below or above.
   EXPECT_EQ(slice(one_tetrahedron({0.5, 0.5, 0.5, 0.5}), 0.5).simplices.size(), 0u);
 }
 
@@ -146,11 +148,11 @@ TEST(Slice, OfAClosedContourIsAClosedManifoldAtAnyTime) {
     expect_closed_manifold(cut);
     not_empty += !cut.simplices.empty();
   }
-  EXPECT_GT(not_empty, 150u);  // the rest is beside the contour, at the low ends of the axis
+  EXPECT_GT(not_empty, 150u);  // the others are outside the contour's range, at the low ends of the axis
 }
 
 TEST(Slice, StaysAManifoldWhereSamplesEqualTheIsovalue) {
-  // Many vertices lie on the hyperplane without belonging to a layer, and many coincide.
+  // Many vertices lie on the hyperplane between layers, and many coincide.
   for (const std::uint64_t levels : {2u, 3u, 5u, 50u}) {
     auto owned = test::coarse_noise<std::uint8_t, 4>(Grid<4>::unit({7, 7, 7, 7}), levels, levels);
     test::for_each_sample<4>(owned.grid, [&](std::size_t i, const std::array<std::size_t, 4>& index) {
@@ -180,7 +182,7 @@ TEST(Slice, OfAClosedSurfaceIsClosedCurvesAtAnyHeight) {
 }
 
 TEST(Slice, OfABallIsABallThatFacesOutwards) {
-  // The 4-ball's cut at t is the ball of radius sqrt(r^2 - t^2).
+  // The slice of the 4-ball at t is the ball of radius sqrt(r^2 - t^2).
   const test::Ball<4> ball{{}, 0.8};
   const auto owned = test::sample_field<double>(test::centred_grid<4>(17, 1.0), ball);
   const auto whole = simplicial_contour<double>(owned.view(), 0.0);
@@ -272,7 +274,7 @@ TEST(Slice, RefusesAHyperplaneThatIsNotFinite) {
 
 TEST(Slice, MeetsVerticesAtCoordinatesThatFloatsRound) {
   Grid<4> grid = Grid<4>::unit({5, 5, 5, 5});
-  grid.axes[3] = Axis::uniform(5, 0.1, 0.1);  // 0.1, 0.2, 0.30000000000000004 …: none of them is a float
+  grid.axes[3] = Axis::uniform(5, 0.1, 0.1);  // 0.1, 0.2, 0.30000000000000004 …: none is a float
   const auto owned = test::noise<float, 4>(grid, 12);
   const auto whole = simplicial_contour(owned.view(), 0.5);
   for (std::size_t k = 0; k < 5; ++k)

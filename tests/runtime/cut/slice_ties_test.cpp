@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts where many vertices lie on the hyperplane: of contours of images whose samples equal the isovalue, open at the
-// image's sides and beside missing values, across all axes and by oblique hyperplanes.
+// Slices with many vertices on the hyperplane: contours of images whose samples equal the isovalue, open at the image's
+// sides and beside missing values, sliced across all axes and by oblique hyperplanes.
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -28,7 +28,7 @@ OwnedImage<float, N> few_values(std::size_t samples, std::uint64_t seed, double 
   return image;
 }
 
-/// Hyperplanes at the layers from both sides, and oblique ones through vertices.
+/// Hyperplanes at the layers, in both directions, and oblique ones through vertices.
 template <int N>
 std::vector<Hyperplane<N>> hyperplanes_through_vertices(const Contour<N, double>& contour, std::uint64_t seed) {
   std::vector<Hyperplane<N>> result;
@@ -80,8 +80,8 @@ TEST(SliceThroughTies, IsAManifoldBesideMissingValues) {
   expect_manifold_cuts<4>(4, 0.1);
 }
 
-/// The contour with its vertices at x_axis = at a little higher, or lower where their group has no simplex below; with
-/// the sign -1, the other way round.
+/// The contour with its vertices at x_axis = at moved slightly up, or down if no simplex of their group is below; with
+/// the sign -1, in the opposite directions.
 Contour<4, double> moved_off(Contour<4, double> contour, int axis, double at, double sign) {
   std::vector<Index> group(contour.vertices.size());
   std::iota(group.begin(), group.end(), Index{0});
@@ -151,7 +151,8 @@ TEST(SliceThroughTies, OfAnImageAcrossAnyAxisIsTheContourOfTheLayer) {
 }
 
 TEST(SliceThroughTies, AcrossAnyAxisShowsAWholeLayerWhereTheOneBelowIsMissingInPart) {
-  // No sample equals the isovalue: layer 2 is met from below beside the missing values, and from above over them.
+  // No sample equals the isovalue. The slice at layer 2 is the limit from below; above missing values it is the limit
+  // from above.
   for (int axis = 0; axis < 4; ++axis) {
     auto image = test::noise<float, 4>(5, 20);
     const int other = (axis + 1) % 4;
@@ -160,7 +161,7 @@ TEST(SliceThroughTies, AcrossAnyAxisShowsAWholeLayerWhereTheOneBelowIsMissingInP
       if (index[axis] == 1 && index[other] < 3) image.values[i] = std::numeric_limits<float>::quiet_NaN();
     });
     const auto cut = slice(extract<double>(image.view(), 0.5), Hyperplane<4>::across(axis, 2.0));
-    // The same layer of the image without missing values, which has all of its tiles below.
+    // The layer of an image without missing values, all of whose tiles exist below.
     const auto expected = slice(extract<double>(has_values.view(), 0.5), Hyperplane<4>::across(axis, 2.0));
     EXPECT_TRUE(test::same_surface(cut, expected)) << axis;
     EXPECT_GT(cut.simplices.size(), 100u);

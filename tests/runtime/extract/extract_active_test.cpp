@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Extraction by an index gives the contour that extraction without one gives, byte by byte; by chosen tiles, the part
-// of it that passes them.
+// Extraction by an index gives the contour of extraction without an index, byte by byte. Extraction by chosen tiles
+// gives its part in these tiles.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -39,7 +39,7 @@ template <int N, class Real>
                                        << " simplices against " << b.vertices.size() << " and " << b.simplices.size();
 }
 
-/// All methods at some isovalues, with all options that may make a difference.
+/// Tests all methods at some isovalues with all relevant options.
 template <class Real, Value T, int N>
 void expect_same(const OwnedImage<T, N>& image, const std::vector<double>& isovalues) {
   for (const ActiveMethod method : active_methods()) {
@@ -68,7 +68,7 @@ using ValueTypes =
     ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::int32_t, float, double>;
 TYPED_TEST_SUITE(ExtractActiveOf, ValueTypes);
 
-/// A few small balls, far from each other: most rows have no active tile.
+/// A few small distant balls, so that most rows have no active tile.
 template <Value T, int N>
 OwnedImage<T, N> sparse_image(const Grid<N>& grid) {
   Metaballs<N> field;
@@ -86,7 +86,7 @@ TYPED_TEST(ExtractActiveOf, NoiseIsTheSame) {
   expect_same<float>(noise<TypeParam, 4>({5, 4, 3, 4}, 3), {noise_isovalue<TypeParam>()});
 }
 TYPED_TEST(ExtractActiveOf, ImagesWithFewActiveRowsAreTheSame) {
-  // Rows of several chunks, and of several lines in a chunk.
+  // Rows of several chunks, and several rows per chunk.
   expect_same<double>(sparse_image<TypeParam>(centred_grid<2>(130, 1.0)), {20.0, 60.0, 97.0});
   expect_same<float>(sparse_image<TypeParam>(centred_grid<3>(41, 1.0)), {1.0, 60.0, 90.0, 127.0});
   expect_same<double>(sparse_image<TypeParam>(centred_grid<4>(14, 1.0)), {2.0, 50.0});
@@ -161,7 +161,7 @@ TEST(ExtractActive, RefusesWhatExtractRefuses) {
 
 // ---- chosen tiles ----
 
-/// Active tiles brought together by shared corners, each set ascending.
+/// Active tiles grouped by shared corners; each set is ascending.
 template <int N>
 std::vector<std::vector<TileNumber>> connected_tiles(const TileGrid<N>& grid, const std::vector<TileNumber>& tiles) {
   std::vector<bool> todo(grid.count(), false);
@@ -193,7 +193,7 @@ std::vector<std::vector<TileNumber>> connected_tiles(const TileGrid<N>& grid, co
   return parts;
 }
 
-/// Corners' coordinates by simplex.
+/// Corner coordinates by simplex.
 template <int N, class Real>
 std::vector<std::array<std::array<Real, N>, N>> corners(const Contour<N, Real>& contour) {
   std::vector<std::array<std::array<Real, N>, N>> result(contour.simplices.size());
@@ -213,7 +213,7 @@ bool is_within_in_order(const Items& part, const Items& whole) {
   return true;
 }
 
-/// Each connected set of tiles has its part of the contour, in the order of the whole; together they are all of it.
+/// Each connected set of tiles gives its part of the contour, in the order of the whole; together they give the whole.
 template <Value T, int N>
 void expect_parts(const OwnedImage<T, N>& image, double isovalue, std::size_t least_parts) {
   for (const ExtractOptions& options : variants()) {
@@ -246,7 +246,7 @@ TEST(ExtractChosenTiles, OfAPartGivesItsShareOfTheContour) {
   expect_parts(sparse_image<double>(centred_grid<4>(13, 1.0)), 40.0, 3);
 }
 
-/// Whoever chooses tiles need not know what is missing.
+/// The chosen tiles may include tiles with missing corners.
 template <int N>
 void expect_whole_of_all_tiles(const OwnedImage<float, N>& image, double isovalue) {
   std::vector<TileNumber> all(TileGrid<N>(image.grid.sizes()).count());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sizes beforehand, contours in memory of the caller's, vertex numbers of 64 bits, and what an extraction needs of
-// memory beside its output.
+// Sizes computed in advance, contours in caller-supplied memory, 64-bit vertex numbers, and the working memory of an
+// extraction.
 #ifdef __linux__
 #include <malloc.h>
 #endif
@@ -28,7 +28,7 @@ void expect_same(const Image<T, N>& image, double isovalue, const ExtractOptions
   const auto contour = extract<Real>(image, isovalue, options);
   const ContourSize size = count(image, isovalue, options);
   EXPECT_EQ(size, (ContourSize{contour.vertices.size(), contour.simplices.size()}));
-  // Room for one more of each: what is there stays as it is.
+  // Room for one more of each; the additional elements must not change.
   std::array<Real, N> vertex;
   vertex.fill(Real{-77});
   std::array<I, N> simplex;
@@ -125,7 +125,7 @@ TEST(Count, OfAnImageWithoutTilesOrWithoutContourIsZero) {
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-/// A figure of /proc/self/status in bytes.
+/// A value of /proc/self/status in bytes.
 std::size_t process_memory(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -142,9 +142,9 @@ void expect_little_memory(const OwnedImage<T, N>& image, double isovalue) {
     std::vector<std::array<float, N>> vertices(size.vertices);
     std::vector<std::array<Index, N>> simplices(size.simplices);
     const ContourRoom<N, float> room{vertices, simplices};
-    extract_into(image.view(), isovalue, room, options);  // the library's code and its threads are there
+    extract_into(image.view(), isovalue, room, options);  // loads the library's code and starts its threads
     malloc_trim(0);
-    std::ofstream("/proc/self/clear_refs") << "5";  // the peak starts anew
+    std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak
     const std::size_t before = process_memory("VmRSS");
     if (process_memory("VmHWM") > before + 65536) GTEST_SKIP() << "the peak of the memory cannot be set back here";
     EXPECT_EQ(extract_into(image.view(), isovalue, room, options), size);
@@ -152,7 +152,7 @@ void expect_little_memory(const OwnedImage<T, N>& image, double isovalue) {
   }
 }
 
-/// At most a sixteenth of the image (of large ones: two layers and a slab are the least).
+/// At most a sixteenth of the image (for large images; the minimum is two layers and a slab).
 TEST(Memory, BesideImageAndContourIsLittle) {
   expect_little_memory(noise<float, 2>(4096, 1), 0.5);
   expect_little_memory(noise<float, 3>(208, 2), 0.9);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A component that is picked is one of the whole contour's, byte by byte, and the one that the rule says.
+// A picked component equals one of the whole contour's components byte by byte, and is the one that the rule defines.
 #include <cmath>
 #include <random>
 #include <vector>
@@ -23,7 +23,7 @@ bool same(const Contour<N, Real>& a, const Contour<N, Real>& b) {
          a.axis_names == b.axis_names && a.axis_units == b.axis_units && a.direction == b.direction;
 }
 
-/// The nearest active tile, by looking at all.
+/// The nearest active tile, by exhaustive search.
 template <int N>
 TileNumber nearest_by_trial(const TileGrid<N>& grid, const std::vector<TileNumber>& active, const Point<N>& at) {
   TileNumber nearest = 0;
@@ -54,7 +54,7 @@ double squared_distance(const Contour<N, double>& contour, const std::array<doub
   return least;
 }
 
-/// The tiles of a contour's simplices, as far as these do not lie in a tile's face.
+/// The tiles of a contour's simplices, except simplices in a face of tiles.
 template <int N>
 std::vector<TileNumber> tiles_of(const Contour<N, double>& contour, const TileGrid<N>& grid) {
   std::vector<TileNumber> tiles;
@@ -69,7 +69,7 @@ std::vector<TileNumber> tiles_of(const Contour<N, double>& contour, const TileGr
   return tiles;
 }
 
-/// For grids of step 1 from the origin.
+/// For grids of step 1 with origin 0.
 template <Value T, int N>
 void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions options, int picks) {
   const auto whole = extract<double>(image.view(), isovalue, options);
@@ -78,7 +78,7 @@ void expect_picks(const OwnedImage<T, N>& image, double isovalue, ExtractOptions
   const TileGrid<N> grid(image.view().grid().sizes());
   const auto active = PlainRanges<N>(image.view()).active(isovalue);
   ExtractOptions apart = options;
-  apart.epsilon = 0.3;  // where no simplex lies in a tile's face
+  apart.epsilon = 0.3;  // so that no simplex lies in a tile's face
   std::vector<std::vector<TileNumber>> tiles;
   for (const auto& part : split_components(extract<double>(image.view(), isovalue, apart), labels))
     tiles.push_back(tiles_of<N>(part, grid));
@@ -150,8 +150,8 @@ TEST(Pick, NextToMissingValuesIsAComponentOfTheWhole) {
   expect_picks(noise_with_missing<float, 3>(Grid<3>::unit({12, 11, 10}), 10, 0.02), 0.92, {}, 30);
 }
 
-/// Vertices at edges that tiles of several components share, with missing values between: in the whole contour they are
-/// doubled, and come first or last.
+/// Vertices at edges that tiles of several components share, separated by missing values. In the whole contour they are
+/// duplicated, and come first or last.
 TEST(Pick, AcrossMissingValuesFromOthersHasTheOrderOfTheWhole) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(seed);
@@ -163,7 +163,8 @@ TEST(Pick, AcrossMissingValuesFromOthersHasTheOrderOfTheWhole) {
   }
 }
 
-/// 0, 1 and missing: at 0 and 1 the vertices are samples, and simplices may have no size, or lie in faces of tiles.
+/// Values 0, 1 and missing: at isovalues 0 and 1 the vertices are samples, and simplices may be degenerate or lie in
+/// faces of tiles.
 template <int N>
 void expect_picks_of_ties(const std::array<std::size_t, N>& sizes, std::uint64_t seed, double missing, bool close) {
   auto image = noise_with_missing<float, N>(Grid<N>::unit(sizes), seed, missing);
@@ -190,8 +191,8 @@ TEST(Pick, WhereSamplesEqualTheIsovalueIsAComponentOfTheWhole) {
 
 TEST(Pick, In5dIsAComponentOfTheWhole) { expect_picks(noise<float, 5>({5, 4, 3, 4, 3}, 11), 0.995, {}, 3); }
 
-/// Coordinates of single precision far from 0: vertices in the border come to lie outside of the grid, by more than
-/// what rounding is allowed elsewhere.
+/// Single-precision coordinates far from 0: vertices on the border are rounded to positions outside the grid, by more
+/// than the tolerance elsewhere.
 TEST(Pick, OfVerticesThatRoundingPutsOutsideOfTheGridIsTheNearest) {
   constexpr std::size_t kSize = 12;
   Grid<3> grid;
@@ -255,7 +256,7 @@ TEST(Pick, OutsideOfTheImageIsAnError) {
 }
 
 TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
-  // High all over but for a wall of missing values: what there is lies in the border, on both sides of it.
+  // High everywhere except a wall of missing values: the contour lies in the border, on both sides of the wall.
   OwnedImage<float, 3> image{Grid<3>::unit({9, 5, 5}), std::vector<float>(9 * 5 * 5, 1.0f)};
   for (std::size_t i = 0; i < image.values.size(); ++i)
     if (i % 9 == 5) image.values[i] = std::nanf("");
@@ -271,7 +272,7 @@ TEST(Pick, ClosedWithoutActiveTilesIsTheNearestPieceOfTheBorder) {
   EXPECT_EQ(report.components, parts.size());
   EXPECT_FALSE(same(left, right));
   for (const auto& picked : {left, right}) {
-    expect_oriented_manifold(picked);  // open where values are missing
+    expect_oriented_manifold(picked);  // open at missing values
     EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return same(part, picked); }));
   }
 }

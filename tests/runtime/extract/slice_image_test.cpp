@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Cuts of extracted contours against contours of layers, and the direct cut against the cut of the whole contour.
+// Slices of contours against contours of layers, and the direct slice against the slice of the whole contour.
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -43,7 +43,7 @@ std::string describe(const ExtractOptions& options) {
          (options.direction == GradientDirection::descent ? " descent" : " ascent") + (options.close ? " closed" : "");
 }
 
-/// At every sample of the last axis: the cut of the whole contour, and the direct cut, are the layer's contour.
+/// At every sample of the last axis, the slice of the whole contour and the direct slice equal the layer's contour.
 template <class Real, Value T, int N>
 void expect_cuts_are_layers(const Image<T, N>& image, double isovalue, const ExtractOptions& options) {
   const auto whole = extract<Real>(image, isovalue, options);
@@ -55,7 +55,7 @@ void expect_cuts_are_layers(const Image<T, N>& image, double isovalue, const Ext
   }
 }
 
-/// The direct cut is the cut of the whole contour, at the given places.
+/// At the given positions the direct slice equals the slice of the whole contour.
 template <class Real = float, Value T, int N>
 void expect_direct_is_whole(const Image<T, N>& image, double isovalue, const ExtractOptions& options,
                             const std::vector<double>& places) {
@@ -123,7 +123,7 @@ TEST(SliceImage, AtALayerEqualsItsContourWhereSamplesEqualTheIsovalueWithEpsilon
 }
 
 TEST(SliceImage, AtATimeStepEqualsThe3dContourWhereSamplesAlmostEqualTheIsovalue) {
-  // So close that points between layers round to the layers, at times of any size.
+  // Points between layers that are close enough to be rounded to the layers, at times of any magnitude.
   for (const double origin : {0.0, 1e-3, 17.0, 86400.0, -1e7}) {
     Grid<4> grid = Grid<4>::unit({5, 5, 5, 5});
     grid.axes[3] = Axis::uniform(5, origin, 4.0);
@@ -148,7 +148,7 @@ TEST(SliceImage, IsAManifoldAtAThousandTimes) {
     const auto cut = slice(whole, at);
     const auto report = test::expect_oriented_manifold(cut);
     EXPECT_GT(report.simplices, 1000u);
-    // Open at the border of the image, and nowhere else.
+    // Open at the image border only.
     for (const auto& edge : test::boundary_faces(cut)) {
       bool on_border = false;
       for (int a = 0; a < 3; ++a)
@@ -196,7 +196,7 @@ TEST(SliceImage, EqualsTheCutOfTheWholeContourWhereSamplesEqualTheIsovalue) {
 }
 
 TEST(SliceImage, EqualsTheCutOfTheWholeContourNextToMissingValues) {
-  // Missing at all times in the same places, as land is.
+  // Samples missing at all times at the same positions, such as land.
   auto owned = test::noise<float, 4>(Grid<4>::unit({7, 7, 7, 7}), 33);
   const auto mask = test::noise<float, 3>(7, 37);
   for (std::size_t i = 0; i < owned.values.size(); ++i)
@@ -210,7 +210,7 @@ TEST(SliceImage, EqualsTheCutOfTheWholeContourNextToMissingValues) {
 }
 
 TEST(SliceImage, CoversTheCutOfTheWholeContourWhereMissingValuesComeAndGo) {
-  // Where holes meet in edges or squares of the grid, the whole contour may be divided further than a slab's.
+  // If holes meet in edges or squares of the grid, the whole contour may be separated further than a slab's contour.
   const auto owned = test::noise_with_missing<float, 4>(Grid<4>::unit({7, 7, 7, 7}), 33, 0.02);
   for (ExtractOptions options : all_options())
     for (const bool close : {false, true}) {
@@ -228,7 +228,7 @@ TEST(SliceImage, CoversTheCutOfTheWholeContourWhereMissingValuesComeAndGo) {
 }
 
 TEST(SliceImage, NextToMissingValuesShowsTheLayerWhereTilesTouchIt) {
-  // Values missing at all times in the same places: every cube of a layer with a contour has a tile above and below.
+  // Values missing at all times at the same positions: every active cube of a layer has a tile above and below.
   auto owned = test::noise_with_missing<float, 4>(Grid<4>::unit({8, 8, 8, 5}), 34, 0.0);
   const auto mask = test::noise<float, 3>(8, 35);
   for (std::size_t i = 0; i < owned.values.size(); ++i)
@@ -250,7 +250,7 @@ TEST(SliceImage, ShowsALayerThatHasTilesOnItsUpperSideAlone) {
 TEST(SliceImage, FollowsAxesOfAnyKind) {
   Grid<4> grid = Grid<4>::unit({5, 6, 5, 5});
   grid.axes[0] = Axis::uniform(5, 10.0, -0.5);
-  grid.axes[3] = Axis::rectilinear({1000.0, 850.5, 700.25, 500.0, 0.1});  // pressure, falling
+  grid.axes[3] = Axis::rectilinear({1000.0, 850.5, 700.25, 500.0, 0.1});  // pressure, descending
   grid.axes[3].name = "pressure";
   const auto owned = test::noise<float, 4>(grid, 37);
   const std::vector<double> places{1000.0, 999.0, 850.5, 800.0, 600.0, 500.0, 0.1, 0.2};
@@ -269,7 +269,7 @@ TEST(SliceImage, FollowsAWorldMapThatLeavesTheLastAxisApart) {
   std::vector<double> places;
   for (double i = 0; i <= 4.0; i += 0.25) places.push_back(-0.7 * i + 11.1);
   for (const ExtractOptions& options : all_options()) expect_direct_is_whole(owned.view(), 0.5, options, places);
-  // The normals face low in the world: a ball bulges outwards.
+  // Normals face low in world coordinates, that is outwards for a ball.
   const auto ball = test::sample_field<double>(grid, test::Ball<4>{{2, 2, 2, 2}, 1.7});
   const Eigen::Vector3d centre = grid.linear.topLeftCorner<3, 3>() * Eigen::Vector3d(2, 2, 2) + grid.offset.head<3>();
   for (const auto& cut : {slice(extract<double>(ball.view(), 0.0), 9.6), slice_image<double>(ball.view(), 0.0, 9.6)})

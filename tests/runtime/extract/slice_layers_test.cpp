@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The cut of a contour at a layer of the image is the contour of that layer: the same oriented simplices, coordinate
-// bits by coordinate bits. For every triangulation, ambiguity, border and epsilon, with and without samples that equal
-// the isovalue, across every axis, at every layer, by every way to a cut. The comparison is this file's own.
+// The slice of a contour at a layer of the image is the contour of that layer: equal oriented simplices with bitwise
+// equal coordinates. Tested for every triangulation, ambiguity, border and epsilon, with and without samples that equal
+// the isovalue, across every axis, at every layer, and by every function that slices. The comparison is independent of
+// the library's.
 //
-// By default a share of the images is tested, all of them with TEGL_FULL_TOPOLOGY=1 in the environment; the test says
-// how many layers it compared.
+// By default a share of the images is tested, with TEGL_FULL_TOPOLOGY=1 in the environment all of them; the test prints
+// the number of layers compared.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -33,8 +34,8 @@ namespace {
 template <class Real>
 using BitsOf = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-/// A simplex by the bits of its corners' coordinates, ascending, and whether an odd permutation brings them into that
-/// order. A simplex with two equal corners is its own mirror image.
+/// A simplex by the bits of its corners' coordinates in ascending order, and the parity of the sorting permutation. A
+/// simplex with two equal corners has no orientation.
 template <int N, class Real>
 struct OrientedSimplex {
   std::array<std::array<BitsOf<Real>, N>, N> corners;
@@ -54,7 +55,7 @@ std::vector<OrientedSimplex<N, Real>> oriented_simplices(const Contour<N, Real>&
     for (int i = 0; i < N; ++i)
       for (int j = i + 1; j < N; ++j) {
         repeats = repeats || s.corners[i] == s.corners[j];
-        s.odd = s.odd != (s.corners[j] < s.corners[i]);  // as many inversions as exchanges, modulo 2
+        s.odd = s.odd != (s.corners[j] < s.corners[i]);  // parity of the number of inversions
       }
     std::sort(s.corners.begin(), s.corners.end());
     s.odd = s.odd && !repeats;
@@ -94,14 +95,14 @@ struct Tally {
   std::size_t layers = 0, cuts = 0, different = 0;
 };
 
-/// All layers across all axes of an image.
+/// Compares all layers across all axes of an image.
 template <int N, class Real>
 void compare_layers(const Image<float, N>& image, const Combination& combination, Tally& tally) {
   const ExtractOptions& options = combination.options;
   const auto whole = extract<Real>(image, 1.0, options);
   for (int axis = 0; axis < N; ++axis) {
     const Scrubber<N, Real> scrubber(whole, Scrubber<N, Real>::Vector::Unit(axis));
-    // Only the last axis of 4D contours keeps points between layers off the layers (slice.hpp).
+    // Only along the last axis of 4D contours points between layers are kept off the layers (slice.hpp).
     const bool by_contour = !combination.ties || options.epsilon > 0.0 || (N == 4 && axis == N - 1);
     for (std::size_t k = 0; k < image.size(axis); ++k) {
       const double at = image.grid().axes[axis][k];
@@ -126,7 +127,7 @@ void compare_layers(const Image<float, N>& image, const Combination& combination
 template <int N>
 OwnedImage<float, N> random_image(const std::array<std::size_t, N>& sizes, std::uint64_t seed, bool ties) {
   Grid<N> grid = Grid<N>::unit(sizes);
-  // Steps that neither float nor double holds exactly, one axis falling, one uneven.
+  // Steps that neither float nor double represents exactly; one axis is descending, one uneven.
   grid.axes[0] = Axis::uniform(sizes[0], 0.1, 0.3);
   grid.axes[1] = Axis::uniform(sizes[1], 2.0, -0.7);
   std::vector<double> uneven;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of several isovalues in one pass: each as in a pass of its own, the layers read once, one call at a time;
-// and the end of all where one fails.
+// Contours of several isovalues in one pass: each equals that of its own pass, every layer is read once, calls are
+// serialised, and all end if one fails.
 #include "tegl/stream_several.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 
 using Layers = FunctionLayers<float, 3>;
 
-/// Keeps what comes; counts whoever calls at the same time.
+/// Keeps the contour; counts concurrent callers.
 class KeepingSink final : public ContourSink<3, double> {
  public:
   explicit KeepingSink(std::atomic<int>& inside) : inside_(inside) {}
@@ -43,7 +43,7 @@ class KeepingSink final : public ContourSink<3, double> {
 
   std::vector<Vertex> vertices, normals;
   std::vector<Simplex> simplices;
-  std::size_t fails_at = 0;  ///< number of vertices beyond which it fails; 0: never
+  std::size_t fails_at = 0;  ///< number of vertices at which it fails; 0: never
 
  private:
   struct Call {
@@ -66,7 +66,7 @@ class StreamSeveral : public testing::Test {
     for (float& value : values_) value = values(random);
     values_[5 * kSize * kSize + 77] = std::numeric_limits<float>::quiet_NaN();
   }
-  /// Layers that count how often each is read, and by whom.
+  /// Layers that record the number of reads and concurrent readers.
   Layers layers() {
     return Layers(Grid<3>::unit({kSize, kSize, kSize}), [this](std::size_t k, float* to) {
       EXPECT_EQ(++inside_, 1);
@@ -76,7 +76,7 @@ class StreamSeveral : public testing::Test {
       --inside_;
     });
   }
-  /// Contours at these isovalues that go to new sinks.
+  /// Contours at these isovalues, with new sinks.
   std::vector<StreamedContour<3, double>> contours(const std::vector<double>& isovalues) {
     std::vector<StreamedContour<3, double>> result;
     for (const double isovalue : isovalues) {

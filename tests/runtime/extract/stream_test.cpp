@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A contour that is streamed is the contour in memory: the same vertices and simplices with the same numbers, whatever
-// the parts. And what goes wrong on the way reaches the caller.
+// A streamed contour equals the contour in memory: vertices and simplices with equal numbers, for any division into
+// parts. Errors on the way reach the caller.
 #include "kernel/stream.hpp"
 
 #include <cstring>
@@ -17,7 +17,7 @@
 namespace tegl::test {
 namespace {
 
-/// The layers of an image in memory; counts what is asked for.
+/// The layers of an image in memory; counts the requests.
 template <Value T, int N>
 class ImageLayers final : public LayerReader<T, N> {
  public:
@@ -78,7 +78,7 @@ void expect_equal(const Collector<N, Real>& streamed, const Contour<N, Real>& co
     for (std::size_t j = 0; j < N; ++j) ASSERT_EQ(streamed.simplices[s][j], contour.simplices[s][j]) << s << ' ' << j;
 }
 
-/// Noise, with a share of missing samples where the type has such.
+/// Noise with a share of missing samples if the type supports them.
 template <Value T, int N>
 OwnedImage<T, N> holey_noise(const std::array<std::size_t, N>& sizes, std::uint64_t seed, unsigned missing_percent) {
   if constexpr (std::is_floating_point_v<T>)
@@ -156,7 +156,7 @@ TEST(Streamed, ThroughThePublicFunction) {
   EXPECT_EQ(stats.tiles, 8u * 7 * 6 * 5);
 }
 
-/// Layers that are in no one else's memory: nothing beyond those at hand may be looked at.
+/// Layers in memory of their own: no layer beyond the current ones may be accessed.
 TEST(Streamed, HasTheNormalsOfTheWholeImage) {
   for (const bool close : {false, true}) {
     ExtractOptions options;
@@ -198,7 +198,7 @@ TEST(Streamed, WithoutTilesIsEmpty) {
   EXPECT_EQ((extract_streamed<float>(layers, noise_isovalue<float>(), {}, collector).vertices), 0u);
 }
 
-/// Numbers beyond 2^32, without as many vertices: a sink that is told that many came before.
+/// Vertex numbers beyond 2^32 without that many vertices: the sink starts at a large number.
 TEST(Streamed, NumbersPassTwoToTheThirtyTwo) {
   constexpr std::uint64_t kBefore = (std::uint64_t{1} << 32) - 5;
   Collector<3, float> collector;
@@ -210,7 +210,7 @@ TEST(Streamed, NumbersPassTwoToTheThirtyTwo) {
     const detail::ContourPart part{first, end, first_simplex, first_simplex + 1, 0.5};
     const auto room = output.open(part);
     for (std::uint64_t v = first; v < end; ++v) room.vertices[v - first] = {};
-    // As the kernel writes them: modulo 2^32.
+    // As written by the kernel: modulo 2^32.
     room.simplices[0] = {static_cast<Index>(first), static_cast<Index>(end - 2), static_cast<Index>(end - 1)};
     output.close(part, none);
   };

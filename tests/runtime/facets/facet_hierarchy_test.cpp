@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contour as facets of every dimension: the boundary of a boundary is zero, facets meet two by two, and every
-// triangulation that `extract` makes is a subdivision.
+// The contour as facets of every dimension: the boundary of a boundary is zero, each interior facet has two cofacets,
+// and every triangulation made by `extract` is a subdivision.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -50,7 +50,7 @@ std::size_t noise_size() {
   return N == 2 ? 70 : N == 3 ? 20 : 8;
 }
 
-/// compact and barycentric make no difference to facets: all ways to resolve ambiguity, open and closed.
+/// All ways to resolve ambiguity, open and closed. The triangulations compact and barycentric have equal facets.
 std::vector<ExtractOptions> facet_variants() {
   std::vector<ExtractOptions> result;
   for (const bool close : {false, true})
@@ -99,7 +99,7 @@ TYPED_TEST(Facets, NextToMissingValuesAreAManifoldInItsRidges) {
       const auto report = expect_sound(extract_facets<double>(image.view(), 0.5, options));
       const auto expected = check(extract<double>(image.view(), 0.5, options));
       EXPECT_EQ(report.components, expected.components) << report;
-      // In 4D `extract` parts holes that meet in a point by simplices of zero size, which joins their borders.
+      // In 4D `extract` separates holes that meet in a point by degenerate simplices, which join their borders.
       if (N < 4) {
         EXPECT_EQ(report.euler, expected.euler) << report;
       }
@@ -169,7 +169,7 @@ TYPED_TEST(Facets, LieInTheFacesOfTheGridThatTheyName) {
   }
 }
 
-/// A grid that has everything: a descending axis, one that is not uniform, a map to the world.
+/// A grid with all special features: a descending axis, a non-uniform one, and a world map.
 template <int N>
 Grid<N> twisted_grid(std::size_t samples) {
   Grid<N> grid;
@@ -234,8 +234,8 @@ TEST(FacetsOf3d, ArePolygonsThatTheTrianglesOfTheContourSubdivide) {
       SCOPED_TRACE(describe(options));
       const auto facets = extract_facets<double>(image.view(), 0.5, options);
       const auto contour = extract<double>(image.view(), 0.5, options);
-      // Both number points in the same order, so that a triangle belongs to the polygon that has all three. Where the
-      // data decide, the contour has others between them, of which polygons know nothing.
+      // Both number points in the same order, so a triangle belongs to the polygon that contains its three points. If
+      // ambiguity is resolved from the data, the contour has further points between them, which polygons lack.
       constexpr Index kOther = ~Index{0};
       std::vector<Index> number(contour.vertices.size(), kOther);
       Index next = 0;
@@ -280,7 +280,7 @@ TEST(FacetsOf3d, ArePolygonsThatTheTrianglesOfTheContourSubdivide) {
     }
 }
 
-/// The image whose only tile has this signature.
+/// An image whose only tile has this signature.
 OwnedImage<float, 4> tile_image(unsigned signature) {
   OwnedImage<float, 4> image{Grid<4>::unit({2, 2, 2, 2}), std::vector<float>(16)};
   for (unsigned v = 0; v < 16; ++v) image.values[v] = (signature >> v & 1u) != 0 ? 1.0f : 0.0f;
@@ -313,7 +313,7 @@ TEST(FacetsOf4d, AreThoseThatTheBuilderOfTilesFinds) {
     }
 }
 
-/// The Euler characteristics of the connected parts of a facet's simplices.
+/// The Euler characteristics of the connected components of a facet's simplices.
 std::vector<int> parts_of(const facets::Facet& facet) {
   std::map<facets::VertexId, facets::VertexId> leader;
   const std::function<facets::VertexId(facets::VertexId)> find = [&](facets::VertexId v) {
@@ -409,7 +409,7 @@ TYPED_TEST(Facets, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(FacetsOf4d, OfAPlaneAreCubes) {
-  // The hyperplane t = 1.5 passes 3 x 3 x 3 tiles, in a cube each.
+  // The hyperplane t = 1.5 meets 3 x 3 x 3 tiles, each in a cube.
   const auto image = sample_field<float, 4>(Grid<4>::unit({4, 4, 4, 4}), [](const Point<4>& x) { return x[3]; });
   const auto facets = extract_facets<double>(image.view(), 1.5);
   EXPECT_EQ(facets.count(3), 27u);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Triangles of polygons: each method draws the chords that its definition says, and contours from polygons are
-// manifolds, whichever tiles meet.
+// Triangulations of polygons: each method's chords follow its definition, and contours made of polygons are manifolds
+// for all pairs of tiles.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -33,7 +33,7 @@ Triangles triangles_of(const Points& points, PolygonTriangulation method, std::s
   return triangulate_polygon<3>(points, method, forbidden);
 }
 
-/// A circle of points, pushed off it.
+/// A circle of points with random displacements.
 Points random_polygon(std::size_t size, std::mt19937_64& bits) {
   Points points;
   for (std::size_t i = 0; i < size; ++i) {
@@ -44,7 +44,7 @@ Points random_polygon(std::size_t size, std::mt19937_64& bits) {
   return points;
 }
 
-/// The chords, each once, least point first.
+/// The chords, each once, smaller point first.
 std::set<Chord> chords_of(const Triangles& triangles, std::size_t size) {
   std::set<Chord> chords;
   for (const auto& t : triangles)
@@ -55,7 +55,7 @@ std::set<Chord> chords_of(const Triangles& triangles, std::size_t size) {
   return chords;
 }
 
-/// The triangles' directed edges, those that cancel left out, are the polygon's.
+/// Expects the triangles' directed edges, after cancellation, to be the polygon's.
 void expect_bounded_by_polygon(const Triangles& triangles, std::size_t size) {
   std::map<Chord, int> edges;
   for (const auto& t : triangles)
@@ -89,7 +89,7 @@ TEST(Polygons, OfSevenPointsAreCutAsInTheThesis) {
             (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}}));
   EXPECT_EQ(triangles_of(points, PolygonTriangulation::zigzag),
             (Triangles{{0, 1, 6}, {5, 6, 1}, {1, 2, 5}, {4, 5, 2}, {2, 3, 4}}));
-  // A quadrilateral and a pentagon: one chord leaves three points on its far side, and every other fewer.
+  // A quadrilateral and a pentagon: one chord leaves three points on its far side, and any other chord fewer.
   for (const auto method : {PolygonTriangulation::halving_chord, PolygonTriangulation::halving_kink}) {
     int halves = 0;
     for (const auto& [a, b] : chords_of(triangles_of(points, method), 7)) halves += b - a == 3 || b - a == 4 ? 1 : 0;
@@ -97,7 +97,7 @@ TEST(Polygons, OfSevenPointsAreCutAsInTheThesis) {
   }
 }
 
-/// The weight of a kink by the angle between the planes of the chord and the edges at one end of it.
+/// The weight of a kink by the angle between the planes of the chord and the edges at one of its ends.
 double kink_by_planes(const Points& p, std::size_t i, std::size_t j) {
   const std::size_t n = p.size();
   const auto minus = [](const Point<3>& a, const Point<3>& b) {
@@ -145,7 +145,8 @@ TEST(Polygons, HaveNoForbiddenChords) {
     for (Index a = 0; a < size; ++a)
       for (Index b = a + 2; b < size; ++b)
         if (unit_random(bits) < 0.4) forbidden.push_back({b, a});
-    // Is there any? By trying all triangles on the edge from the last point to the first, and so on.
+    // Tests whether a triangulation exists by trying all triangles on the edge from the last point to the first,
+    // recursively.
     const auto can = [&](const auto& self, Index a, Index b) -> bool {
       if (b - a == 1) return true;
       const bool is_edge = a == 0 && b == size - 1;
@@ -187,8 +188,8 @@ TEST(Polygons, TellErrors) {
   EXPECT_THROW(triangles_of(four, PolygonTriangulation::fan, beyond), Error);
 }
 
-/// All pairs of cubes that share a square, one after the other: `axis` is the one across the square, of three samples;
-/// along another there are two for each pair.
+/// All pairs of cubes that share a square in one image. `axis` is orthogonal to the square and has three samples; along
+/// another axis there are two samples per pair.
 OwnedImage<float, 3> all_pairs(int axis) {
   const int along = (axis + 1) % 3;
   std::array<std::size_t, 3> sizes{2, 2, 2};
@@ -212,7 +213,7 @@ TEST(ContoursFromPolygons, AreManifoldsForAllPairsOfCubes) {
       for (const bool close : {false, true}) {
         SCOPED_TRACE(way.name);
         ExtractOptions options = way.options;
-        if (options.ambiguity > Ambiguity::high && (axis > 0 || close)) continue;  // they are many
+        if (options.ambiguity > Ambiguity::high && (axis > 0 || close)) continue;  // reduces their number
         options.close = close;
         const auto facets = extract_facets<float>(image.view(), 0.0, options);
         const FacetReport expected = check(facets);
@@ -222,7 +223,8 @@ TEST(ContoursFromPolygons, AreManifoldsForAllPairsOfCubes) {
           const MeshReport report = expect_oriented_manifold(contour);
           EXPECT_EQ(report.euler, expected.euler);
           EXPECT_EQ(report.boundary_simplices, expected.border);
-          // Resolved from the data, a polygon may pass so many squares twice that it has no triangles of its points.
+          // If resolved from the data, a polygon may meet so many squares twice that no triangulation of its points
+          // exists.
           if (method != PolygonTriangulation::barycentric && options.ambiguity <= Ambiguity::high) {
             EXPECT_EQ(contour.vertices.size(), facets.vertices.size()) << "a polygon had forbidden chords alone";
           }
@@ -232,7 +234,7 @@ TEST(ContoursFromPolygons, AreManifoldsForAllPairsOfCubes) {
 }
 
 TEST(ContoursFromPolygons, AreFansAndZigzagsWhateverChordsAreForbidden) {
-  // Of a fan, all triangles have a point in common; of a zigzag no point is in more than three of them.
+  // All triangles of a fan have a common point; in a zigzag no point is in more than three triangles.
   const auto image = all_pairs(0);
   for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high}) {
     const auto facets = extract_facets<float>(image.view(), 0.0, by_ambiguity(ambiguity));
@@ -305,7 +307,7 @@ TEST(ContoursFromPolygons, FaceTheWayThatIsAskedFor) {
       ExtractOptions options;
       options.direction = direction;
       const auto contour = triangulate(extract_facets<double>(image.view(), 0.0, options), method);
-      // Which is negative if the contour faces another way than it says.
+      // Negative if the contour's orientation contradicts its `direction`.
       EXPECT_EQ(contour.direction, direction);
       EXPECT_NEAR(enclosed_content(contour), ball.content(), 0.05 * ball.content());
     }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Axis and Grid: coordinates, parts, world maps, and invalid arguments.
 #include "tegl/grid.hpp"
 
 #include <limits>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Image views: strides, parts, and invalid arguments.
 #include "tegl/image.hpp"
 
 #include <limits>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours closed at the border (thesis, 8.1.27), on noise: every value type, every dimension, every kind of table,
-// samples at the isovalue, missing values and points kept off the samples.
+// Contours closed at the border (thesis, 8.1.27) on noise: every value type, dimension and kind of table, samples at
+// the isovalue, missing values, and points kept off the samples.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,7 @@
 namespace tegl::test {
 namespace {
 
-/// Steps that differ, one axis not uniform, one descending.
+/// Different steps, one non-uniform axis, one descending.
 template <int N>
 Grid<N> uneven_grid(std::size_t samples) {
   Grid<N> grid;
@@ -31,7 +31,7 @@ constexpr std::size_t kSamples = N == 2   ? 12
                                  : N == 4 ? 4
                                           : 2;
 
-/// 5D images have one triangulation.
+/// 5D images have only one triangulation.
 template <int N>
 std::vector<ExtractOptions> variants_in() {
   auto result = variants();
@@ -89,7 +89,7 @@ TYPED_TEST_P(CloseNoise, EndsAtMissingValuesAlone) {
         expect_closed_up_to_missing_values<double>(image.view(), 0.4, options);
       }
   } else {
-    // Integers have no missing values; 5D images with such are refused.
+    // Integers have no missing values; 5D images with missing values are refused.
     SUCCEED();
   }
 }

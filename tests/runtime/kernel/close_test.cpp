@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours closed at the image's border are the boundary of the high set: watertight, of the right
-// content, with caps that lie exactly in the border.
+// Contours closed at the image border are the boundary of the high set: watertight, of the correct content, with caps
+// exactly in the border.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -72,7 +72,7 @@ TYPED_TEST(Close, ContentOfALinearFieldIsExact) {
   grid.axes[1] = Axis::rectilinear({2.0, 1.5, 0.25, -0.5, -1.0});  // descending and not uniform
   grid.linear(0, 1) = 0.5;
   grid.linear(0, 0) = -2.0;
-  // High where the last coordinate is above a plane through the middle.
+  // High if the last coordinate is above a plane through the middle.
   const double middle = 0.5 * (grid.axes[N - 1][0] + grid.axes[N - 1][grid.axes[N - 1].size() - 1]);
   const auto image = sample_field<double, N>(grid, [&](const Point<N>& x) {
     double sum = 0.0;
@@ -94,7 +94,7 @@ TYPED_TEST(Close, ABallThatLeavesTheImageIsCutOffAtTheBorder) {
   constexpr int N = TypeParam::value;
   Ball<N> ball;
   ball.radius = 0.8;
-  ball.centre.fill(1.0);  // in a corner: one orthant of it is inside
+  ball.centre.fill(1.0);  // in a corner: one orthant of the ball is inside
   const auto image = sample_field<float, N>(centred_grid<N>(N == 4 ? 17 : 33, 1.0), ball);
   for (const ExtractOptions& options : closed_variants()) {
     SCOPED_TRACE(describe(options));
@@ -107,7 +107,7 @@ TYPED_TEST(Close, ABallThatLeavesTheImageIsCutOffAtTheBorder) {
   }
 }
 
-/// The contour itself is unchanged, and comes first.
+/// The open contour is unchanged and comes first.
 TYPED_TEST(Close, AddsCapsToTheOpenContour) {
   constexpr int N = TypeParam::value;
   const auto image = noise<std::uint8_t, N>(N == 4 ? 5 : 9, 21);
@@ -130,7 +130,7 @@ TYPED_TEST(Close, AddsCapsToTheOpenContour) {
   }
 }
 
-/// An image with a layer of low samples around it has the same high set, pushed out by a little.
+/// An image padded by a layer of low samples has the same high set, slightly enlarged.
 TYPED_TEST(Close, HasTheTopologyOfThePaddedImage) {
   constexpr int N = TypeParam::value;
   constexpr std::size_t kSize = N == 4 ? 4 : 7;
@@ -166,14 +166,14 @@ TYPED_TEST(Close, LeavesTheContourOpenAtMissingValues) {
     const auto contour = extract<double>(image.view(), 0.0, options);
     const auto report = expect_oriented_manifold(contour);
     EXPECT_GT(report.boundary_simplices, 0u);
-    // Open around the missing tile and nowhere else: every boundary face lies on that tile.
+    // Open around the missing tile only: every boundary face lies on that tile.
     for (const auto& face : boundary_faces(contour))
       for (const Index v : face)
         for (int a = 0; a < N; ++a) EXPECT_LE(contour.vertices[v][a], image.grid.axes[a][1]);
   }
 }
 
-/// Caps and contour end together at missing values, however these lie.
+/// Caps and contour have a common boundary at missing values, for any pattern of these.
 TYPED_TEST(Close, CapsFitTheContourAroundMissingValues) {
   constexpr int N = TypeParam::value;
   std::array<std::size_t, N> sizes;

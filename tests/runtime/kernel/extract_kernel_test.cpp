@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The private parts of the extraction: bit planes against the plain comparison, limits.
+// Private parts of the extraction: bit planes against plain comparison, limits.
 #include "kernel/extract_kernel.hpp"
 
 #include <fstream>
@@ -71,8 +71,8 @@ TEST(Limits, NumbersOfTwoBatchesAreToldApart) {
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these need address space
-/// Does the contour fit into so much more address space than the process has?
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers need address space
+/// True if the contour can be extracted with `more` bytes of address space in addition to the process's.
 bool fits_into(const OwnedImage<float, 3>& image, std::size_t more) {
   const pid_t child = fork();
   if (child == 0) {
@@ -98,7 +98,7 @@ bool fits_into(const OwnedImage<float, 3>& image, std::size_t more) {
 
 TEST(Limits, WhereLittleAddressSpaceDoesMoreDoesToo) {
   auto image = test::noise<float, 3>(120, 7);
-  for (std::size_t i = 0; i < image.values.size(); ++i)  // a few sheets
+  for (std::size_t i = 0; i < image.values.size(); ++i)  // a few parallel sheets
     image.values[i] = static_cast<float>(i / (120 * 120) % 12) / 12.0F;
   bool fitted = false;
   for (std::size_t mebibytes = 8; mebibytes < 1200; mebibytes += mebibytes < 128 ? 12 : 60) {

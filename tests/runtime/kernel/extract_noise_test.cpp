@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whatever the values: contours of noise, of all value types, are oriented manifolds that end at the
-// image's border and at missing values only.
+// Contours of noise, of all value types, are oriented manifolds with boundary only at the image border and at missing
+// values.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -62,7 +62,7 @@ TEST(Noise, Of14To4IsAManifoldInAllVariants) {
   }
 }
 
-/// Sparse and dense noise reach signatures that even noise rarely does.
+/// Sparse and dense noise contains signatures that are rare in uniform noise.
 TEST(Noise, OfAnyShareOfHighSamplesIsAManifold) {
   for (const double isovalue : {0.03, 0.2, 0.8, 0.97}) {
     SCOPED_TRACE(isovalue);

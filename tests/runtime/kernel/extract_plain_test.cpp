@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernel against the definitions: the same vertices, bit by bit and in the same order, and in each tile the same
-// simplices as plain_contour.hpp finds by the recursion over dimension. For all value types, for rows of all lengths
-// around the 64 bits of a word, and whatever the number of threads.
+// The kernel against the definitions: vertices are bitwise equal and in the same order, and each tile has the simplices
+// that plain_contour.hpp finds by recursion over dimension. Tested for all value types, row lengths around the 64 bits
+// of a word, and all numbers of threads.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -32,7 +32,7 @@ template <int N, class Real>
   return ::testing::AssertionFailure() << "the simplices differ";
 }
 
-/// Options for each number of threads, where the library has them.
+/// The options with each number of threads, if the library has threads.
 template <class Options>
 std::vector<Options> with_threads(Options options) {
   std::vector<Options> result;
@@ -43,7 +43,7 @@ std::vector<Options> with_threads(Options options) {
   return result;
 }
 
-/// The plain contour's vertices have no point where they are barycentres; those must lie in the image.
+/// Barycentres of the plain contour have no position; in the kernel's contour they must lie in the image.
 template <int N, class Real>
 void expect_vertices(const Contour<N, Real>& contour, const Contour<N, Real>& plain) {
   ASSERT_GE(contour.vertices.size(), plain.vertices.size());
@@ -67,7 +67,7 @@ void expect_simplices(const Contour<N, Real>& contour, const PlainContour<N, Rea
   }
 }
 
-/// Next to missing values, vertices are doubled where sheets touch: takes that back. Points must differ otherwise.
+/// Merges vertices that are duplicated beside missing values, where sheets touch. Other vertices must differ.
 template <int N, class Real>
 void merge_doubled_vertices(Contour<N, Real>& contour, std::size_t vertices) {
   std::map<std::array<Real, N>, Index> number;
@@ -96,7 +96,7 @@ void expect_plain(const Image<T, N>& image, double isovalue, const ExtractOption
 
 constexpr std::size_t kRowSizes[] = {1, 2, 3, 31, 62, 63, 64, 65, 66, 96, 127, 128, 129, 130};
 
-/// Noise in rows of all sizes, the other axes as given.
+/// Noise in rows of all sizes; the other axes have the given sizes.
 template <class Real, Value T, int N>
 void expect_plain_rows(std::array<std::size_t, N> sizes, std::uint64_t seed) {
   static std::map<int, RecursiveBuilder<N>> builders;
@@ -130,7 +130,7 @@ TYPED_TEST(PlainOf, EqualsTheKernelIn4d) {
   expect_plain_rows<double, TypeParam, 4>({0, 3, 2, 3}, 331);
 }
 
-/// Grids of every kind, options of every kind.
+/// Tests all kinds of grids and options.
 template <class Real, int N>
 void expect_plain_options(std::array<std::size_t, N> sizes, std::uint64_t seed) {
   Grid<N> grid = Grid<N>::unit(sizes);
@@ -158,7 +158,7 @@ void expect_plain_options(std::array<std::size_t, N> sizes, std::uint64_t seed) 
     uneven.linear(N - 1, N - 1) = -1.7;
     uneven.offset(0) = 11.3;
     expect_plain<Real>(Image<float, N>(image.values.data(), uneven), 0.5, options, builder);
-    if (N == 4) uneven.linear(N - 1, 0) = 0.1;  // no layers across the last axis any more
+    if (N == 4) uneven.linear(N - 1, 0) = 0.1;  // the last axis then has no layers
     expect_plain<Real>(Image<float, N>(image.values.data(), uneven), 0.5, options, builder);
   }
 }
@@ -176,7 +176,7 @@ TEST(Plain, EqualsTheKernelIn4dWithAllOptions) {
   expect_plain_options<double, 4>({4, 3, 5, 9}, 500);
 }
 
-/// The same samples in memory in other orders, every other one, and backwards.
+/// Equal samples stored in other orders, with gaps, and backwards.
 template <int N>
 void expect_plain_strides(std::uint64_t seed) {
   std::array<std::size_t, N> sizes;
@@ -204,11 +204,12 @@ TEST(Plain, EqualsTheKernelForAnyStrides) {
   expect_plain_strides<4>(602);
 }
 
-/// Contours of 4D images get further vertices and simplices next to missing values (pinches_test.cpp), so none here.
+/// 2D and 3D only: beside missing values, contours of 4D images have further vertices and simplices
+/// (split_nonmanifold_test.cpp).
 template <int N>
 void expect_plain_missing(std::array<std::size_t, N> sizes, std::uint64_t seed) {
   for (const ExtractOptions& options : variants()) {
-    if (N == 3 && options.triangulation == Triangulation::barycentric) continue;  // doubled barycentres have no point
+    if (N == 3 && options.triangulation == Triangulation::barycentric) continue;  // duplicates have no position
     RecursiveBuilder<N> builder(options);
     for (const double share : {0.001, 0.02, 0.3}) {
       SCOPED_TRACE(describe(options) + ", missing " + std::to_string(share));
@@ -224,7 +225,7 @@ TEST(Plain, EqualsTheKernelNextToMissingValues) {
   expect_plain_missing<3>({9, 8, 30}, 740);
 }
 
-/// Rows that are passed over follow on rows with a contour, in the same storage, and missing values on both.
+/// Skipped rows follow rows with a contour in the same storage, with missing values in both.
 TEST(Plain, EqualsTheKernelWhereBusyAndEmptyLayersAlternate) {
   RecursiveBuilder<3> builder(ExtractOptions{});
   for (std::uint64_t seed = 760; seed < 764; ++seed) {
@@ -237,14 +238,14 @@ TEST(Plain, EqualsTheKernelWhereBusyAndEmptyLayersAlternate) {
   }
 }
 
-/// Beyond 2^16 samples, and just within.
+/// Rows of 2^16 samples, and of slightly more.
 TEST(Plain, EqualsTheKernelInLongRows) {
   RecursiveBuilder<2> builder(ExtractOptions{});
   expect_plain<float>(view_of(noise<float, 2>({65536, 3}, 780)), 0.5, {}, builder);
   expect_plain<float>(view_of(noise<float, 2>({65536 + 70, 3}, 781)), 0.5, {}, builder);
 }
 
-/// As large as several of the kernel's working units along every axis.
+/// Images as large as several of the kernel's work units along every axis.
 TEST(Plain, EqualsTheKernelForImagesOfManyRowsAndLayers) {
   RecursiveBuilder<2> builder2(ExtractOptions{});
   expect_plain<float>(view_of(noise<float, 2>({100, 700}, 800)), 0.5, {}, builder2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What `extract` promises beside topology: vertices shared and none to spare, positions, orientation in
-// the world, any strides, any sample values, options, errors.
+// Guarantees of `extract` besides topology: shared and no unused vertices, positions, orientation in the world, any
+// strides, any sample values, options, errors.
 #include "tegl/extract.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ void for_each_edge(const Image<T, N>& image, const Visit& visit) {
   });
 }
 
-/// The points on all critical edges, written from the definition (theory, section 1), sorted.
+/// The points on all critical edges, computed by definition (theory, section 1), sorted.
 template <Value T, int N>
 std::vector<std::array<double, N>> expected_points(const Image<T, N>& image, double isovalue) {
   std::vector<std::array<double, N>> points;
@@ -70,7 +70,7 @@ TYPED_TEST(Extract, EveryCriticalEdgeHasExactlyOneVertexAtItsPlace) {
   for (const ExtractOptions& options : variants()) {
     SCOPED_TRACE(describe(options));
     const auto vertices = sorted_vertices(extract<double>(image.view(), 12345.0, options));
-    // Barycentres aside, which lie off the edges; no vertex occurs twice.
+    // Except for barycentres, which lie off the edges; no vertex occurs twice.
     EXPECT_EQ(std::adjacent_find(vertices.begin(), vertices.end()), vertices.end());
     EXPECT_TRUE(std::includes(vertices.begin(), vertices.end(), points.begin(), points.end()));
     if (N < 4 && options.triangulation == Triangulation::compact) {
@@ -83,7 +83,7 @@ TYPED_TEST(Extract, AnyStridesGiveTheSameContourAsADenseCopy) {
   constexpr int N = TypeParam::value;
   const auto image = noise<float, N>(N == 4 ? 5 : 9, 41);
   const std::size_t n = image.grid.axes[0].size();
-  // The same samples stored backwards, axes in reverse order, 3 elements apart.
+  // Equal samples stored backwards, with axes in reverse order and gaps of 3 elements.
   std::vector<float> stored(3 * image.values.size(), -7.0f);
   typename Image<float, N>::Strides strides;
   std::ptrdiff_t step = -3;
@@ -115,7 +115,7 @@ TYPED_TEST(Extract, ZeroStrideRepeatsOneLayer) {
   EXPECT_EQ(a.simplices, b.simplices);
 }
 
-/// -V has the high samples where V has low ones, when no sample equals the isovalue; the alternatives change places.
+/// If no sample equals the isovalue, -V exchanges high and low samples, and with them the alternatives.
 TYPED_TEST(Extract, HighAlternativeIsTheReversedLowOneOfTheNegatedImage) {
   constexpr int N = TypeParam::value;
   const auto image = noise<float, N>(N == 4 ? 6 : 15, 51);
@@ -218,7 +218,7 @@ TYPED_TEST(Extract, EpsilonKeepsPointsAwayFromSamples) {
   std::size_t points = 0;
   for (const auto& vertex : extract<double>(image.view(), 100.0, options).vertices) {
     const auto off = [](double x) { return std::abs(x - std::round(x)); };
-    // Barycentres apart, one coordinate is off the samples.
+    // Except for barycentres, exactly one coordinate is not a sample's.
     if (std::count_if(vertex.begin(), vertex.end(), [&](double x) { return off(x) != 0.0; }) != 1) continue;
     ++points;
     for (const double x : vertex) EXPECT_TRUE(off(x) == 0.0 || off(x) >= 0.25) << x;
@@ -277,7 +277,7 @@ TEST(ExtractValues, HugeDifferencesDoNotOverflow) {
   EXPECT_EQ(contour.vertices[0][0], 0.5);
 }
 
-/// The image's type against the isovalue as a real number, at and around the limits of the type.
+/// Compares the image's type with the isovalue as a real number, at and around the limits of the type.
 template <Value T>
 void expect_exact_classification(const std::vector<double>& isovalues, const std::vector<T>& samples) {
   for (const double isovalue : isovalues)
@@ -298,7 +298,7 @@ TEST(ExtractValues, AreComparedExactlyInEveryType) {
   expect_exact_classification<std::int16_t>({-32769, -32768, 0, 32767, 32768}, {-32768, 0, 32767});
   expect_exact_classification<std::int32_t>({-2147483649.0, -2147483648.0, 0.5, 2147483647.0, 2147483648.0},
                                             {-2147483647 - 1, 0, 1, 2147483647});
-  // 0.1 is no float: the nearest one is above it, the nearest to -0.1 below.
+  // 0.1 is not a float: the nearest float is larger, the one nearest to -0.1 smaller.
   expect_exact_classification<float>({0.1, -0.1, 1e300, -1e300, 0.0},
                                      {0.1f, std::nextafter(0.1f, 0.0f), -0.1f, std::nextafter(-0.1f, 0.0f), 0.0f, -0.0f,
                                       kInfinity, -kInfinity, std::numeric_limits<float>::max()});
@@ -360,7 +360,7 @@ TYPED_TEST(Extract, OfTheSmallestImageWorks) {
 
 // ---- the same in two dimensions ----
 
-/// A 4D contour's tile layers t = k hold the points of the 3D contours of the steps, bit by bit.
+/// The layers t = k of a 4D contour contain the points of the steps' 3D contours, bit by bit.
 TEST(Extract4d, HoldsThePointsOfThe3dContoursOfItsSteps) {
   auto image = noise<float, 4>({9, 7, 6, 4}, 81);
   image.grid.axes[3] = Axis::rectilinear({0.0, 0.7, 1.1, 3.0});
@@ -391,7 +391,7 @@ TYPED_TEST(Extract, StatsCountTilesThatHoldHighAndLowCorners) {
   constexpr int N = TypeParam::value;
   const auto image = noise_with_missing<float, N>(Grid<N>::unit(noise<float, N>(6, 0).grid.sizes()), 91, 0.02);
   ExtractStats stats;
-  stats.tiles = 999;  // to be overwritten
+  stats.tiles = 999;  // must be overwritten
   extract<float>(image.view(), 0.9, {}, &stats);
   std::uint64_t tiles = 0;
   std::uint64_t active = 0;

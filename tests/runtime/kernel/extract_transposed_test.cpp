@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Images whose rows lie across memory are turned around layer by layer: the contour is the same, byte by byte.
+// Images whose rows are not contiguous are transposed layer by layer: the contour is equal byte by byte.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace tegl::test {
 namespace {
 
-/// The same image with its axes in another order in memory: order[0] fastest, flipped[a] from its end on.
+/// The image with its axes in another memory order: order[0] fastest, flipped[a] in reverse.
 template <class T, int N>
 struct Elsewhere {
   std::vector<T> values;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kinds of normals: the Sobel kernel against the thesis's, flat and geometric ones from the shape alone, gradients
-// at the vertices of any contour, and how exact each is on analytic fields, with its order, and in noise.
+// The kinds of normals: the Sobel kernel against the thesis's, flat and geometric normals from the shape only,
+// gradients at the vertices of any contour, and the error of each on analytic fields, its order, and in noise.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -47,8 +47,8 @@ ExtractOptions with(GradientKind kind, ExtractOptions options = {}) {
 
 // ---- Sobel ----
 
-/// The kernels as the thesis prints them, and their rule carried on to 4D: by how many of the other axes a sample is
-/// away in, and the divisor.
+/// The kernels as printed in the thesis, continued to 4D by their rule: weights by the number of other axes along which
+/// a sample is displaced, and the divisor.
 template <int N>
 std::pair<std::vector<double>, double> printed_kernel() {
   if constexpr (N == 2) return {{2, 1}, 8};
@@ -56,7 +56,7 @@ std::pair<std::vector<double>, double> printed_kernel() {
   if constexpr (N == 4) return {{12, 6, 4, 3}, 240};
 }
 
-/// By the whole kernel at once; for samples that are not at the border, steps of 1.
+/// Applies the whole kernel at once; for samples inside the image and steps of 1.
 template <int N>
 std::array<double, N> printed_sobel(const Image<double, N>& image, const std::array<std::size_t, N>& index) {
   const auto [weights, divisor] = printed_kernel<N>();
@@ -118,7 +118,7 @@ TEST(Sobel, IsTheThesisKernelIn2dAnd3dAndItsRuleIn4d) {
   expect_printed_kernel<4>(6);
 }
 
-/// Uneven, backwards, sheared.
+/// An uneven, reversed, sheared grid.
 template <int N>
 Grid<N> odd_grid() {
   Grid<N> grid;
@@ -144,7 +144,7 @@ void expect_exact_slopes() {
   });
   const double isovalue = image.values[image.values.size() / 2] + 0.01;
   for (const bool missing : {false, true}) {
-    // A line without two neighbouring samples is left out, and the others still have the slope.
+    // A line without two neighbouring samples is skipped; the others still give the slope.
     for (std::size_t i = 7; i < image.values.size() && missing; i += 31)
       image.values[i] = std::numeric_limits<double>::quiet_NaN();
     for (ExtractOptions options : variants()) {
@@ -207,7 +207,7 @@ void expect_gradients_of_the_extraction(const Grid<N>& grid, double missing, dou
       const auto contour = extract<Real>(image.view(), 0.5, options);
       const auto normals = gradient_normals(image.view(), contour, kind);
       ASSERT_GT(normals.size(), 20u);
-      // Where the gradient nearly vanishes its direction is as good as that of the vertex.
+      // If the gradient nearly vanishes, its direction is undefined, as at the vertex.
       EXPECT_LT((largest_difference<N, Real>(normals, contour.normals)), tolerance);
     }
 }
@@ -249,7 +249,7 @@ void expect_flat_normals(std::size_t samples) {
       Eigen::Matrix<double, N, N> frame;
       frame.template leftCols<N - 1>() = edges;
       frame.col(N - 1) = normal;
-      ASSERT_GT(frame.determinant(), 0.0);  // to the side that the orientation faces
+      ASSERT_GT(frame.determinant(), 0.0);  // the side that the orientation faces
     }
   }
 }
@@ -291,7 +291,7 @@ TEST(GeometricNormals, OfAPlaneAreItsOwn) {
   expect_normals_of_a_plane<4>(6);
 }
 
-/// The corner of a cube in 3-space, whose three squares are cut through the corner or past it.
+/// The corner of a cube in 3-space, whose three squares are divided through the corner or beside it.
 TEST(GeometricNormals, ByAngleDoNotDependOnHowAFlatFacetIsDivided) {
   const double third = 1.0 / std::sqrt(3.0);
   int other_by_area = 0;
@@ -319,8 +319,8 @@ TEST(GeometricNormals, ByAngleDoNotDependOnHowAFlatFacetIsDivided) {
   EXPECT_GT(other_by_area, 0) << "areas depend on it";
 }
 
-/// The corner of a tesseract, whose cubes are cut into a corner tetrahedron there (and others away from it), or into
-/// six around their diagonal through it: the solid angles of a cube's corner add up to pi / 2 in both.
+/// The corner of a tesseract, whose cubes are divided into a corner tetrahedron there (and others elsewhere), or into
+/// six tetrahedra around their diagonal through it: the solid angles at a cube's corner add up to pi / 2 in both.
 TEST(GeometricNormals, BySolidAngleDoNotDependOnHowAFlatCubeIsDivided) {
   for (unsigned through = 0; through < 16; ++through) {
     Contour<4, double> contour;
@@ -331,7 +331,7 @@ TEST(GeometricNormals, BySolidAngleDoNotDependOnHowAFlatCubeIsDivided) {
       const auto last = contour.simplices.size() - 1;
       if (flat_normals(contour)[last][axis] < 0) std::swap(contour.simplices[last][0], contour.simplices[last][1]);
     };
-    for (int across = 0; across < 4; ++across) {  // the cube where this coordinate is 1, at corner 15
+    for (int across = 0; across < 4; ++across) {  // the cube x_across = 1, at corner 15
       std::array<Index, 3> along;
       for (int a = 0, k = 0; a < 4; ++a)
         if (a != across) along[k++] = 1u << a;
@@ -370,7 +370,7 @@ TEST(GeometricNormals, StopWhereProgressSaysSo) {
 
 // ---- how exact ----
 
-/// The root mean square of the angles between normals and those of a ball around the origin of the world.
+/// The root mean square of the angles between normals and those of a ball around the world origin.
 template <int N>
 double angular_error(const Contour<N, double>& contour, const Buffer<std::array<double, N>>& normals) {
   double sum = 0;
@@ -386,8 +386,8 @@ double angular_error(const Contour<N, double>& contour, const Buffer<std::array<
 
 enum class GridKind { regular, smooth, rough, sheared };
 
-/// Samples over [-1.3, 1.3], a bit off centre: regular; rectilinear with steps that change slowly; with steps that
-/// alternate; sheared.
+/// Samples over [-1.3, 1.3], slightly off centre: regular; rectilinear with slowly varying steps; with alternating
+/// steps; sheared.
 template <int N>
 Grid<N> grid_of(GridKind kind, std::size_t samples) {
   Grid<N> grid = centred_grid<N>(samples, 1.35);
@@ -406,7 +406,7 @@ Grid<N> grid_of(GridKind kind, std::size_t samples) {
   return grid;
 }
 
-/// A ball in the world, as a square root whose derivatives do not vanish.
+/// A ball in world coordinates, as a square root with non-vanishing derivatives.
 template <int N>
 OwnedImage<double, N> ball_in_world(const Grid<N>& grid) {
   return sample_field<double, N>(grid, [&](const Point<N>& x) {
@@ -418,7 +418,7 @@ OwnedImage<double, N> ball_in_world(const Grid<N>& grid) {
 
 struct Expected {
   GridKind grid;
-  double gradient_order;  ///< at least
+  double gradient_order;  ///< minimum
 };
 
 template <int N>
@@ -453,8 +453,8 @@ TEST(NormalErrors, AreOfSecondOrderForGradientsOfFirstOnRoughGridsAndForTheShape
   expect_orders<4>(11);
 }
 
-/// In noise of independent samples the error of a mean of lines is smaller by the root of the sum of the squares of its
-/// weights.
+/// In independent noise, the error of a weighted mean of lines is the error of one line times the root of the sum of
+/// squared weights.
 template <int N>
 void expect_damped_noise(std::size_t samples, double factor) {
   constexpr double kNoise = 1e-3;
@@ -467,7 +467,7 @@ void expect_damped_noise(std::size_t samples, double factor) {
   const auto random = noise<double, N>(samples, 12);
   for (std::size_t i = 0; i < image.values.size(); ++i) image.values[i] += kNoise * (random.values[i] - 0.5);
   const auto error = [&](GradientKind kind) {
-    // Close to samples, whose gradients are independent of those of the edges' other ends by differences alone.
+    // Near samples, whose gradients by differences are independent of those at the other ends of the edges.
     const auto contour = extract<double>(image.view(), 0.5 * static_cast<double>(samples) + 0.01, with(kind));
     double sum = 0;
     std::size_t count = 0;

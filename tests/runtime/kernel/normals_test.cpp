@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Normals from gradients: exact for linear fields on grids of any kind, radial on spheres, the differences of theory
-// section 10 on uneven axes, one for each vertex whatever the options, and the same for any number of threads.
+// Normals from gradients: exact for linear fields on all kinds of grids, radial on spheres, the differences of theory
+// section 10 on uneven axes, one per vertex for all options, and equal for any number of threads.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -34,7 +34,7 @@ double length(const std::array<Real, N>& v) {
   return std::sqrt(square);
 }
 
-/// Uneven, backwards, sheared.
+/// An uneven, reversed, sheared grid.
 template <int N>
 Grid<N> odd_grid() {
   std::array<std::size_t, N> sizes;
@@ -166,7 +166,7 @@ TEST(Normals, AreThereForEveryVertexNextToHolesAndOnCaps) {
 }
 
 TEST(Normals, AreZeroWhereTheGradientVanishes) {
-  const std::vector<std::uint8_t> values{0, 1, 0, 1, 0, 1, 0, 1};  // differences cancel but at the border
+  const std::vector<std::uint8_t> values{0, 1, 0, 1, 0, 1, 0, 1};  // differences cancel except at the border
   const auto contour =
       extract<float>(Image<std::uint8_t, 2>(values.data(), Grid<2>::unit({4, 2})), 0.5, with_normals());
   std::size_t zeros = 0;
@@ -174,7 +174,7 @@ TEST(Normals, AreZeroWhereTheGradientVanishes) {
   EXPECT_EQ(zeros, 2u);
 }
 
-/// The same gradient by the plainest code: differences of double, in the world.
+/// The gradient by straightforward code: differences of doubles in world coordinates.
 template <Value T, int N>
 std::array<double, N> plain_gradient(const Image<T, N>& image, const std::array<std::size_t, N>& index) {
   std::array<double, N> gradient{};
@@ -197,11 +197,11 @@ std::array<double, N> plain_gradient(const Image<T, N>& image, const std::array<
   return gradient;
 }
 
-/// Finds each vertex's edge by its place on a grid of step 1 (axis 0 may be uneven, with whole coordinates).
+/// Finds each vertex's edge by its position on a grid of step 1 (axis 0 may be uneven, with integer coordinates).
 template <class Real, Value T, int N>
 void expect_plain_normals(const OwnedImage<T, N>& image, double isovalue, double tolerance) {
   ExtractOptions options;
-  options.epsilon = 0.01;  // vertices are inside of their edges
+  options.epsilon = 0.01;  // keeps vertices inside their edges
   const auto contour = extract<Real>(image.view(), isovalue, with_normals(options));
   const Axis& first = image.grid.axes[0];
   std::size_t compared = 0;
@@ -223,7 +223,7 @@ void expect_plain_normals(const OwnedImage<T, N>& image, double isovalue, double
       ++between;
       alpha = (x - axis[i]) / (axis[i + 1] - axis[i]);
     }
-    if (N == 4 && between > 1) continue;  // a vertex that a tile has inside
+    if (N == 4 && between > 1) continue;  // a vertex inside a tile
     ++compared;
     const auto here = plain_gradient<T, N>(image.view(), low);
     const auto there = plain_gradient<T, N>(image.view(), high);
@@ -251,7 +251,7 @@ void expect_plain_normals_of(const std::array<std::size_t, N>& sizes) {
       if constexpr (std::is_floating_point_v<T>)
         for (std::size_t i = 5; i < image.values.size() && missing > 0; i += 23)
           image.values[i] = std::numeric_limits<T>::quiet_NaN();
-      expect_plain_normals<float>(image, noise_isovalue<T>(), 1e-3);  // a vertex's place as float is not its alpha
+      expect_plain_normals<float>(image, noise_isovalue<T>(), 1e-3);  // rounded positions change alpha
       expect_plain_normals<double>(image, noise_isovalue<T>(), 1e-8);
     }
   }
@@ -271,7 +271,7 @@ TEST(Normals, AreThoseOfPlainCode) {
   expect_plain_normals_of<float, 4>({21, 3, 3, 3});
 }
 
-/// Samples that lie next to each other are read by registers where edges are many, others one by one.
+/// Contiguous samples are read by vector registers if edges are dense, otherwise one by one.
 template <class Real, Value T, int N>
 void expect_the_same_normals_apart(const std::array<std::size_t, N>& sizes) {
   const auto image = noise<T, N>(sizes, 29);
@@ -347,7 +347,7 @@ TEST(Normals, OfTheLargestNumbersAreNumbers) {
   }
 }
 
-/// One-sided differences twice as large as half of the largest number.
+/// One-sided differences that exceed the largest number.
 template <int N>
 void expect_normals_of_the_steepest(const std::array<std::size_t, N>& sizes) {
   Grid<N> grid = Grid<N>::unit(sizes);
@@ -376,7 +376,7 @@ TEST(Normals, NextToMissingValuesAreNumbersHoweverSteepTheField) {
   expect_normals_of_the_steepest<4>({7, 6, 5, 6});
 }
 
-/// Normals by place; where the contour passes a place twice, one of them.
+/// Normals by position; if the contour passes a position twice, one of them.
 template <int N, class Real>
 std::map<std::array<Real, N>, std::array<Real, N>> by_place(const Contour<N, Real>& contour) {
   std::map<std::array<Real, N>, std::array<Real, N>> result;
@@ -384,7 +384,7 @@ std::map<std::array<Real, N>, std::array<Real, N>> by_place(const Contour<N, Rea
   return result;
 }
 
-/// Edges of one row are worked on in pieces if they are more than some thousand; across it they are few.
+/// Edges along one row are processed in pieces if they number more than some thousand; across it they are few.
 TEST(Normals, AndPointsOfLongRowsAreThoseOfTheTransposedImage) {
   constexpr std::size_t kLong = 20000;
   const auto along = noise<float, 2>({kLong, 4}, 23);

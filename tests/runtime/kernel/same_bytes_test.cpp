@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The result does not depend on the processor or on how many threads work: the same bytes for each instruction set that
-// this machine has, with 1 to 4 threads.
+// The result does not depend on the processor or the number of threads: equal bytes for each instruction set of this
+// machine, with 1 to 4 threads.
 #include <hwy/targets.h>
 
 #include <array>
@@ -20,7 +20,7 @@
 namespace tegl::test {
 namespace {
 
-/// While it lives, the library takes the best of the given instruction sets.
+/// During its lifetime, the library uses the best of the given instruction sets.
 class OnlyTargets {
  public:
   explicit OnlyTargets(std::int64_t targets) { choose(targets); }
@@ -63,7 +63,7 @@ void expect_same_bytes(const Image<T, N>& image, double isovalue, ExtractOptions
   }
 }
 
-/// An axis backwards from 0, so that -0 occurs; a world that is sheared.
+/// A reversed axis that starts at 0, so that -0 occurs; a sheared world.
 template <int N>
 Grid<N> slanted(const std::array<std::size_t, N>& sizes, bool mapped) {
   Grid<N> grid = Grid<N>::unit(sizes);
@@ -84,7 +84,7 @@ void expect_same_bytes_of_noise(const std::array<std::size_t, N>& sizes, std::ui
     SCOPED_TRACE(describe(options) + ", seed " + std::to_string(seed));
     expect_same_bytes<Real>(view_of(noise<T, N>(slanted<N>(sizes, seed % 2 == 0), seed)), noise_isovalue<T>(), options);
     options.epsilon = seed % 5 == 0 ? 0.01 : 0.0;
-    // Many samples at the isovalue: places of 0 with either sign.
+    // Many samples at the isovalue: positions of 0 with either sign.
     expect_same_bytes<Real>(view_of(coarse_noise<T, N>(slanted<N>(sizes, seed % 2 != 0), seed, 3)), 1.0, options);
     ++seed;
   }

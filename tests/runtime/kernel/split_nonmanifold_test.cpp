@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours next to missing values are manifolds too: where tiles meet in an edge or a square alone, they are told
-// apart.
+// Contours beside missing values are manifolds too: vertices are duplicated if tiles meet only in an edge or a square.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +62,7 @@ TEST(Pinches, NoiseWithMissingValuesIn4dIsAManifold) {
   for (const double share : {0.005, 0.02, 0.05, 0.1, 0.2}) expect_manifolds<4>(6, 12, 13, share);
 }
 
-/// Samples that rise from 0 to 1 along the axis with two of them: the contour is flat, at 0.5, and has a vertex on each
+/// Samples that rise from 0 to 1 along the axis with two of them. The contour at 0.5 is flat and has a vertex on each
 /// edge along that axis.
 template <int N>
 OwnedImage<float, N> rising(const std::array<std::size_t, N>& sizes,
@@ -93,8 +92,8 @@ TEST(Pinches, TwoFieldsOfAChessboardAreTwoSheets) {
 }
 
 TEST(Pinches, AnEdgeWithTwoFansGetsAMidpointInOne) {
-  // Of the tiles around the square from x = 1 to 2 at y = t = 2, two opposite ones are left; they hang together by one
-  // tile before x = 1 and another behind x = 2, so that the ends of the contour's edge in the square have one fan each.
+  // Of the tiles around the square from x = 1 to 2 at y = t = 2, two opposite ones remain. One tile before x = 1 and
+  // another behind x = 2 connect them, so each end of the contour's edge in the square has one fan.
   const auto image = rising<4>({4, 4, 2, 4}, {{1, 3, 0, 1}, {2, 1, 0, 3}});
   for (const ExtractOptions& options : variants()) {
     const auto contour = extract<float>(image.view(), 0.5, options);
@@ -106,7 +105,7 @@ TEST(Pinches, AnEdgeWithTwoFansGetsAMidpointInOne) {
 }
 
 TEST(Pinches, HolesThatMeetInAPointArePartedByTetrahedraOfNoSize) {
-  // Of the eight tiles around an edge, two that have nothing but this edge in common are missing.
+  // Of the eight tiles around an edge, two that share only this edge are missing.
   const auto image = rising<4>({5, 5, 2, 5}, {{1, 1, 0, 1}, {3, 3, 0, 3}});
   for (const ExtractOptions& options : variants()) {
     const auto contour = extract<float>(image.view(), 0.5, options);
@@ -120,7 +119,7 @@ TEST(Pinches, HolesThatMeetInAPointArePartedByTetrahedraOfNoSize) {
 TEST(Pinches, OneMissingCornerLeavesTheRestAsItWas) {
   auto image = noise<float, 3>(std::array<std::size_t, 3>{20, 20, 20}, 14);
   const auto whole = extract<float>(image.view(), 0.5);
-  // One missing sample in a corner can double nothing: the rest of the contour keeps its numbers.
+  // One missing sample in a corner causes no duplicates: the rest of the contour keeps its numbers.
   image.values.back() = kNaN;
   const auto most = extract<float>(image.view(), 0.5);
   ASSERT_LE(most.vertices.size(), whole.vertices.size());

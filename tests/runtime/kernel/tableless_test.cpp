@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The extraction without tables: in 2D to 4D against the one by tables, in 5D by what a contour has to be.
+// The extraction without tables: in 2D to 4D compared with the one by tables, in 5D checked by invariants.
 #include "kernel/tableless.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Contour<N, Real> extract_tile_by_tile(const Image<T, N>& image, double isovalue,
   return contour;
 }
 
-/// Coordinates rounded to 2^-30, so that what differs by rounding errors is the same.
+/// Coordinates rounded to 2^-30, to remove differences by rounding errors.
 template <int N>
 Contour<N, double> rounded(Contour<N, double> contour) {
   for (auto& vertex : contour.vertices)
@@ -53,7 +53,7 @@ void expect_as_by_tables(const Image<T, N>& image, double isovalue, ExtractOptio
   }
 }
 
-/// Axes that are not regular, one of them descending, and a map to the world that mirrors.
+/// Irregular axes, one of them descending, and a world map with a reflection.
 template <int N>
 Grid<N> bent_grid(std::size_t samples) {
   Grid<N> grid;
@@ -290,7 +290,7 @@ TEST(Extract5d, ClosedNoiseIsAClosedManifoldAndEnclosesTheHighSide) {
   expect_closed_manifold(high);
   const double content = enclosed_content(high);
   EXPECT_GT(content, 0.0);
-  // The low side is that of the negative, contoured with the other alternative.
+  // The low side is the high side of the negative, contoured with the other alternative.
   auto negative = image;
   for (std::uint8_t& value : negative.values) value = static_cast<std::uint8_t>(255 - value);
   options.ambiguity = Ambiguity::high;
@@ -309,7 +309,7 @@ bool same_bytes(const Contour<5, Real>& a, const Contour<5, Real>& b) {
 void expect_contour_of_layer(const ExtractOptions& options) {
   const auto image = noise<float, 5>({3, 4, 3, 3, 3}, 7);
   const auto contour = extract<double>(image.view(), 0.5, options);
-  // In layer 1, which is inside: faces with all vertices in it. Each is in two simplices, below and above.
+  // Faces with all vertices in layer 1, which is interior. Each is in two simplices, one below and one above.
   std::vector<std::array<std::array<double, 4>, 4>> found;
   for (const auto& simplex : contour.simplices) {
     std::array<std::array<double, 4>, 4> face;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours and labels that contradict themselves, as files and callers may bring them: every function that takes one
-// refuses it, and reads nothing beyond the end of anything.
+// Inconsistent contours and labels, as files and callers may supply them: every function that takes one refuses it,
+// without reading out of bounds.
 #include <functional>
 #include <limits>
 #include <string>
@@ -42,7 +42,7 @@ SimplifyOptions<4> to_half() {
 
 using Calls = std::vector<std::pair<std::string, std::function<void(const Any&)>>>;
 
-/// What makes another contour of one, and carries normals and attributes along; beside these, `others`.
+/// Functions that convert one contour to another and copy normals and attributes, with `others` in addition.
 Calls all_that_make_contours(Calls others) {
   static const std::vector<double> at = {0.5};
   const Calls calls = {
@@ -58,7 +58,7 @@ Calls all_that_make_contours(Calls others) {
   return others;
 }
 
-/// What looks up vertices by number.
+/// Functions that look up vertices by number.
 Calls all_that_follow_vertices() {
   static const std::vector<double> at = {0.5};
   return all_that_make_contours({
@@ -82,7 +82,7 @@ Calls all_that_follow_vertices() {
   });
 }
 
-/// What carries normals and attributes along.
+/// Functions that copy normals and attributes.
 Calls all_that_carry_attributes() {
   return all_that_make_contours({
       {"split_components", [](const Any& c) { split_components(c, label_components(c)); }},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `check` of complexes of 4-simplices: what is a manifold passes, what fails in one place is counted there.
+// `check` of complexes of 4-simplices: manifolds pass, and single defects are counted.
 #include <algorithm>
 #include <array>
 #include <random>
@@ -18,7 +18,7 @@ namespace {
 
 using Simplices = std::vector<std::array<Index, 5>>;
 
-/// With coordinates in general position.
+/// Checks the complex with coordinates in general position.
 MeshReport report_of(const Simplices& simplices) {
   std::size_t vertices = 0;
   for (const auto& simplex : simplices)
@@ -42,7 +42,7 @@ Simplices smallest_sphere() {
   return result;
 }
 
-/// Cones over a contour of tetrahedra from one more vertex, or from two, one on either side.
+/// Cones over a contour of tetrahedra from one additional vertex, or from two, one on either side.
 Simplices cones(const Contour<4>& base, int count) {
   Simplices result;
   for (int c = 0; c < count; ++c)
@@ -116,7 +116,7 @@ TEST(Check4d, ATurnedSimplexIsInConflictWithAllItsNeighbours) {
   EXPECT_EQ(report_of(simplices).orientation_conflicts, 5u);
 }
 
-/// Simplices around vertex 0, each sharing a tetrahedron with the next: a ball, and so is the link of vertex 0.
+/// Simplices around vertex 0, consecutive ones sharing a tetrahedron: a ball; the link of vertex 0 is a ball too.
 Simplices fan(Index count) {
   Simplices result;
   for (Index i = 1; i <= count; ++i) result.push_back({0, i, i + 1, i + 2, i + 3});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// `check` on complexes made by hand: each defect alone, and manifolds whose numbers are known.
+// `check` on hand-made complexes: single defects, and manifolds with known numbers.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -18,8 +18,8 @@ namespace {
 
 using Rows = std::vector<Index>;
 
-/// Coordinates in general position for `count` vertices: points on the moment curve (i, i^2, i^3, i^4) are such that no
-/// simplex of distinct ones is flat.
+/// Coordinates in general position for `count` vertices: points on the moment curve (i, i^2, i^3, i^4), of which no
+/// distinct ones span a degenerate simplex.
 std::vector<double> moment_curve(std::size_t count, int space_dim) {
   std::vector<double> coordinates;
   for (std::size_t i = 0; i < count; ++i) {
@@ -35,7 +35,7 @@ MeshReport check_rows(int d, const Rows& rows) {
   return check(d, rows, d + 1, moment_curve(count, d + 1));
 }
 
-/// A simplex's boundary, oriented: the sphere S^d from d + 2 vertices.
+/// The oriented boundary of a simplex: the sphere S^d with d + 2 vertices.
 Rows simplex_boundary(int d) {
   Rows rows;
   for (int omitted = 0; omitted < d + 2; ++omitted) {
@@ -58,7 +58,7 @@ Rows joined(Rows a, const Rows& b) {
   return a;
 }
 
-/// A torus of m x n vertices, two triangles for each square.
+/// A torus of m x n vertices, two triangles per square.
 Rows torus(Index m, Index n) {
   Rows rows;
   for (Index i = 0; i < m; ++i)
@@ -69,7 +69,7 @@ Rows torus(Index m, Index n) {
   return rows;
 }
 
-/// The 3-torus of n^3 vertices, six tetrahedra for each cube (Kuhn's triangulation).
+/// The 3-torus of n^3 vertices, six tetrahedra per cube (Kuhn's triangulation).
 Rows three_torus(Index n) {
   Rows rows;
   std::array<int, 3> axes{0, 1, 2};
@@ -89,7 +89,7 @@ Rows three_torus(Index n) {
   return rows;
 }
 
-/// Every simplex of `rows` (dimension d) joined to a new vertex `apex` in front.
+/// Joins every simplex of `rows` (dimension d) to a new first vertex `apex`.
 Rows cone(int d, const Rows& rows, Index apex) {
   Rows result;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -222,8 +222,8 @@ TEST(Check, ConeOverTwoSpheresHasABadLink) {
 }
 
 TEST(Check, ConeOverTwoSurfacesInOnePointHasBadLinks) {
-  // The link of vertex 0 is two discs that meet in one point alone: connected, no edge in three triangles, Euler
-  // characteristic 1 as of a disc; what tells is the two fans around that point.
+  // The link of vertex 0 is two discs that meet in a single point: connected, no edge in three triangles, and Euler
+  // characteristic 1 as for a disc. Only the two fans around that point reveal it.
   Rows second = shifted(torus(4, 4), 16);
   for (Index& v : second)
     if (v == 16) v = 0;
@@ -246,7 +246,7 @@ TEST(Check, AFlippedTetrahedronConflictsOnItsFourTriangles) {
 }
 
 TEST(Check, AMoebiusBandCannotBeOriented) {
-  // The five-vertex band (Möbius): triangles i, i+1, i+2 modulo 5, oriented one after the other.
+  // The Möbius strip with five vertices: triangles i, i+1, i+2 modulo 5, oriented one after the other.
   const Rows rows{0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 0, 4, 0, 1};
   const MeshReport report = check_rows(2, rows);
   EXPECT_EQ(report.euler, 0);
@@ -263,12 +263,12 @@ TEST(Check, ProjectivePlaneIsClosedAndNotOriented) {
   EXPECT_EQ(report.boundary_simplices, 0u);
   EXPECT_EQ(report.bad_links, 0u);
   EXPECT_GT(report.orientation_conflicts, 0u);
-  // As a link it has the Euler characteristic of a disc, and is none.
+  // As a link it has the Euler characteristic of a disc, but is not one.
   EXPECT_EQ(check_rows(3, cone(2, rows, 6)).bad_links, 1u);
 }
 
 TEST(Check, OrientationIsTheParityOfTheVertexOrder) {
-  // All twelve even orders of one tetrahedron of a sphere keep it oriented; all twelve odd ones conflict.
+  // All twelve even permutations of one tetrahedron of a sphere keep it oriented; all twelve odd ones cause conflicts.
   const Rows sphere = simplex_boundary(3);
   std::array<int, 4> order{0, 1, 2, 3};
   do {
@@ -294,7 +294,7 @@ TEST(Check, RepeatedVerticesAreDegenerateAndLeftOut) {
 }
 
 TEST(Check, DuplicateVerticesLeaveSeams) {
-  // Two triangles side by side whose common edge has its vertices twice: same places, other numbers.
+  // Two adjacent triangles whose common edge has duplicated vertices: equal positions, different numbers.
   const Rows rows{0, 1, 2, 3, 4, 5};
   const std::vector<double> coordinates{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   const MeshReport report = check(2, rows, 3, coordinates);

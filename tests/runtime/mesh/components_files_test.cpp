@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Components and measures of simulated and measured data in four dimensions.
+// Components and measures of simulated and measured 4D data.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 namespace tegl::test {
 namespace {
 
-/// The middle half of a file's image along x, y and t, contoured.
+/// The contour of the middle half of a file's image along x, y and t.
 Contour<4, double> contour_of_middle(const std::filesystem::path& file, double isovalue) {
   const ReadImageResult input = read_image(file);
   const auto of_image = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> Contour<4, double> {

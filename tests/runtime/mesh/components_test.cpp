@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Components against a breadth-first search, against `check`, and against what is known of analytic fields.
+// Components against a breadth-first search, against `check`, and against analytic fields.
 #include "tegl/components.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace tegl::test {
 namespace {
 
-/// Labels by breadth-first search from the smallest vertex that has none yet.
+/// Labels by breadth-first search from the smallest unlabelled vertex.
 template <int N, class Real>
 ComponentLabels labels_by_search(const Contour<N, Real>& contour) {
   std::vector<std::vector<Index>> stars(contour.vertices.size());
@@ -49,7 +49,7 @@ bool same(const ComponentLabels& a, const ComponentLabels& b) {
   return a.count == b.count && a.vertices == b.vertices && a.simplices == b.simplices;
 }
 
-/// Noise whose contour has many components; closed at the border or not.
+/// Noise whose contour has many components, closed at the border or not.
 template <int N>
 Contour<N, double> noise_contour(std::size_t samples, std::uint64_t seed, bool close) {
   ExtractOptions options;
@@ -75,7 +75,7 @@ TEST(Components, AreThoseOfABreadthFirstSearch) {
   expect_labels_of_search<5>(4);
 }
 
-/// Values compared by their bytes: -0 is not 0 here.
+/// Compares by bytes: -0 differs from 0.
 template <int N>
 bool same_bytes(const std::vector<Component<N>>& a, const std::vector<Component<N>>& b) {
   const auto equal = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof(x)) == 0; };
@@ -104,7 +104,7 @@ TEST(Components, AreTheSameForAnyNumberOfThreads) {
   expect_same_for_any_threads<4>(9);
 }
 
-/// What is said of the components, of each against a contour of it alone, and of all against the whole.
+/// The properties of each component against a separate contour of it, and of all components against the whole.
 template <int N>
 void expect_parts_make_up_the_whole(std::size_t samples, bool close) {
   SCOPED_TRACE(testing::Message() << N << "D" << (close ? ", closed" : ""));

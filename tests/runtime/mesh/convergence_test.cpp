@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of smooth fields have the right topology, and their measure and content converge at second
-// order in the grid's step.
+// Contours of smooth fields have the correct topology, and their measure and content converge at second order in the
+// grid's step.
 #include <cmath>
 #include <string>
 
@@ -16,13 +16,13 @@
 namespace tegl::test {
 namespace {
 
-/// Errors relative to the exact value at three resolutions, each of half the step.
+/// Errors relative to the exact value at three resolutions with halved steps.
 template <int N, class Field, class Quantity>
 void expect_second_order(const Field& field, double half_width, std::size_t samples, double exact, double finest,
                          const ExtractOptions& options, const Quantity& quantity) {
   double errors[3];
   for (int level = 0; level < 3; ++level, samples = 2 * samples - 1) {
-    // Off the lattice, so that the field's symmetries do not help.
+    // Off the lattice, so that symmetries of the field do not improve the result.
     Grid<N> grid = centred_grid<N>(samples, half_width);
     for (int a = 0; a < N; ++a) {
       const double shift = grid.axes[a].step() * 0.17 * (a + 1);
@@ -32,7 +32,7 @@ void expect_second_order(const Field& field, double half_width, std::size_t samp
     errors[level] = quantity(extract<double>(image.view(), 0.0, options)) / exact - 1.0;
   }
   EXPECT_LT(std::abs(errors[2]), finest);
-  // Over two halvings, which evens out the noise of where the grid cuts.
+  // Over two halvings, which averages over the grid's position.
   const double order = 0.5 * convergence_order(errors[0], errors[2]);
   EXPECT_GT(order, 1.7) << "errors " << errors[0] << ' ' << errors[1] << ' ' << errors[2];
 }
@@ -92,8 +92,8 @@ TEST(Topology, TubesAreConnectedWithEulerCharacteristic0) {
   }
 }
 
-/// Two balls that merge, in space-time closed at the first and the last step: one component. A 2D contour of two
-/// moving intervals is a circle, in 3D two discs give a sphere; a 3-sphere in 4D.
+/// Two merging balls over time, closed at the first and the last step: one component. The 2D contour of two moving
+/// intervals is a circle; in 3D two discs give a sphere, in 4D two balls a 3-sphere.
 template <int N>
 void expect_merging_balls_to_be_one_sphere(std::size_t samples) {
   const MergingBalls<N> balls{0.7, 1.5, 1.0};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elements of contours: their sizes are the surface's, their normals close up (Gauss), point where the contour faces,
-// and follow affine maps as covectors; attributes are exact for linear fields; pieces of tiles are what Cornelius'
-// paper asks of them.
+// Elements of contours: their sizes add up to the surface's, their normals to zero (Gauss); normals face the contour's
+// direction and transform as covectors under affine maps; attributes are exact for linear fields; elements by cell meet
+// the requirements of Cornelius' paper.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -40,7 +40,7 @@ Grid<N> shifted_grid(std::size_t samples, double half_width) {
   return grid;
 }
 
-/// The area by elements, its order, Gauss's theorem for 1 (closed) and x (content).
+/// The area by elements, its order, and Gauss's theorem for 1 (closed) and x (content).
 template <int N>
 void expect_elements_of_a_ball(std::size_t samples) {
   const Ball<N> ball;
@@ -54,12 +54,12 @@ void expect_elements_of_a_ball(std::size_t samples) {
     ASSERT_EQ(all.centroids.size(), contour.simplices.size());
     const ElementSum<N> sum = sum_of(all);
     error = sum.measure / ball.surface() - 1.0;
-    EXPECT_NEAR(sum.measure, measure(contour), 1e-9 * sum.measure);  // whose roots of determinants have half the digits
+    EXPECT_NEAR(sum.measure, measure(contour), 1e-9 * sum.measure);  // its roots of determinants have half the digits
     EXPECT_LT(sum.closure_error(), 1e-13);
     double flux = 0;
     for (std::size_t e = 0; e < all.centroids.size(); ++e) flux += dot<N>(all.centroids[e], all.normals[e]);
     EXPECT_NEAR(flux / N, enclosed_content(contour), 1e-12 * ball.content());
-    // By cell the whole is the same, and each element is as large as it can be at most.
+    // By cell the totals are equal, and the norm of each normal is at most the element's measure.
     const Elements<N> cells = elements_by_cell(contour, grid);
     const ElementSum<N> cell_sum = sum_of(cells);
     EXPECT_LE(cells.centroids.size(), all.centroids.size());
@@ -106,7 +106,7 @@ TEST(Elements, FaceLowOrHighAsTheContourDoes) {
   expect_direction<4>(7);
 }
 
-/// dσ over a closed surface is 0 whatever it looks like.
+/// The integral of dσ over any closed surface is 0.
 template <Value T, int N>
 void expect_noise_to_close(std::size_t samples) {
   for (std::uint64_t seed = 1; seed < 4; ++seed)
@@ -131,7 +131,7 @@ TEST(Elements, OfClosedNoiseAddUpToZero) {
 }
 
 TEST(Elements, OfAnOpenContourAddUpToWhatClosesIt) {
-  // A plane across the unit cube: its own vector area, whatever its triangles.
+  // A plane across the unit cube: its vector area is independent of its triangles.
   Grid<3> grid = Grid<3>::unit({6, 6, 6});
   const auto image = sample_field<double, 3>(grid, [](const Point<3>& x) { return x[2]; });
   const ElementSum<3> sum = sum_of(elements(extract<double>(image.view(), 2.5)));
@@ -141,7 +141,7 @@ TEST(Elements, OfAnOpenContourAddUpToWhatClosesIt) {
   EXPECT_DOUBLE_EQ(sum.closure_error(), 1.0);
 }
 
-/// Normals are covectors with the volume's factor: the cofactor matrix carries them along.
+/// Normals are covectors times the volume factor: they transform by the cofactor matrix.
 template <int N>
 void expect_equivariance(std::size_t samples) {
   auto image = noise<double, N>(samples, 11);
@@ -162,7 +162,7 @@ void expect_equivariance(std::size_t samples) {
     const Eigen::Matrix<double, N, 1> centroid = linear * Vector(plain.centroids[e].data()) + image.grid.offset;
     ASSERT_LT((Vector(mapped.centroids[e].data()) - centroid).norm(), 1e-12);
   }
-  // Tiles are found through the map.
+  // Tiles are found through the world map.
   auto unmapped = noise<double, N>(samples, 11);
   const auto cells = elements_by_cell(extract<double>(image.view(), 0.5), image.grid);
   const auto plain_cells = elements_by_cell(extract<double>(unmapped.view(), 0.5), unmapped.grid);
@@ -212,8 +212,8 @@ TEST(Elements, HaveLinearAttributesExactlyAtTheirCentroids) {
   expect_linear_attributes<4>(5);
 }
 
-/// One tile with random corners, as the example program of Cornelius has it: its elements are the pieces of the tile's
-/// contour, and their normals add up to the flow through the high parts of the tile's faces.
+/// One tile with random corners, as in the example program of Cornelius: its elements are the components of the tile's
+/// contour, and their normals add up to the flux through the high parts of the tile's faces.
 template <int N>
 void expect_pieces_of_single_tiles(int rounds) {
   std::map<std::size_t, int> pieces;
@@ -223,7 +223,7 @@ void expect_pieces_of_single_tiles(int rounds) {
     const Elements<N> all = elements_by_cell(contour, image.grid);
     ASSERT_EQ(all.centroids.size(), check(contour).components) << "seed " << seed;
     ++pieces[all.centroids.size()];
-    // Closed by caps, whose sum is minus that of the contour: it depends on the faces alone.
+    // Closed by caps, whose sum is minus that of the contour: it depends on the faces only.
     ExtractOptions closed;
     closed.close = true;
     const ElementSum<N> sum = sum_of(all), rest = sum_of(elements(extract<double>(image.view(), 0.5, closed)));
@@ -244,7 +244,7 @@ TEST(Elements, ByCellAreThePiecesOfATilesContour) {
   expect_pieces_of_single_tiles<4>(300);
 }
 
-/// Each tile by itself against all of them: pieces, sums and centroids agree.
+/// Single tiles against the whole image: elements, sums and centroids agree.
 template <int N>
 void expect_cells_to_be_those_of_single_tiles(const std::array<std::size_t, N>& sizes) {
   const auto image = noise<double, N>(sizes, 21);
@@ -256,7 +256,7 @@ void expect_cells_to_be_those_of_single_tiles(const std::array<std::size_t, N>& 
     Image<double, N> tile = image.view();
     for (int a = 0; a < N; ++a) tile = tile.part(a, index[a], 2);
     const Elements<N> own = elements_by_cell(extract<double>(tile, 0.5), tile.grid());
-    // The pieces of a tile come in the order of their simplices, which is the same in both.
+    // The elements of a tile are ordered by their simplices, equally in both.
     for (std::size_t e = 0; e < own.centroids.size(); ++e, ++next) {
       ASSERT_LT(next, whole.centroids.size());
       ASSERT_EQ(whole.counts[next], own.counts[e]);

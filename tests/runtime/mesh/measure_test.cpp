@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Measures against analytic fields, with the order of convergence, and against cuts that are made.
+// Measures against analytic fields, with the order of convergence, and against measures of slices.
 #include "tegl/measure.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Contour<N, double> contour_of(const Field& field, std::size_t samples, double ha
   return extract<double>(view_of(sample_field<double>(centred_grid<N>(samples, half_width), field)), 0.0, options);
 }
 
-/// Errors of size and content at two steps, one half of the other: small, and of second order.
+/// Errors of size and content at a step and half of it: small, and of second order.
 template <int N, class Field>
 void expect_second_order(const Field& field, double half_width, std::size_t tiles, double most_error,
                          double exact_content) {
@@ -95,7 +95,7 @@ TEST(Measure, OfAnOpenContourHasNoContent) {
 
 TEST(Measure, FacesThatDoNotCancelLeaveNoContent) {
   auto contour = contour_of<3>(Ball<3>{{}, 0.6}, 10, 1.0);
-  std::swap(contour.simplices[0][0], contour.simplices[0][1]);  // turns one triangle around
+  std::swap(contour.simplices[0][0], contour.simplices[0][1]);  // reverses one triangle
   const Measures<3> found = tegl::measure(contour);
   EXPECT_FALSE(found.content.has_value());
   EXPECT_EQ(found.boundary_simplices, 0u);
@@ -131,7 +131,7 @@ TEST(Measure, OfNothingIsZero) {
 
 // ---- cuts ----
 
-/// What measure_cuts says, against the cuts that `slice` makes.
+/// measure_cuts against the slices made by `slice`.
 template <int N>
 void expect_measures_of_slices(const Contour<N, double>& contour, const std::vector<double>& at) {
   const std::vector<CutMeasures> found = measure_cuts(contour, at);
@@ -153,7 +153,7 @@ TEST(MeasureCuts, AreThoseOfSlices) {
   for (const bool close : {false, true}) {
     ExtractOptions options;
     options.close = close;
-    // Whole values too: at the first one the limit is from above, elsewhere from below.
+    // Also at integers: at the first one the limit is from above, at the others from below.
     expect_measures_of_slices<3>(extract<double>(view_of(noise<float, 3>(9, 21)), 0.5, options),
                                  {0.0, 0.1, 1.0, 2.5, 4.999, 7.0, 7.75, 8.0});
     expect_measures_of_slices<4>(extract<double>(view_of(noise<float, 4>(6, 22)), 0.5, options),
@@ -162,8 +162,8 @@ TEST(MeasureCuts, AreThoseOfSlices) {
 }
 
 TEST(MeasureCuts, OfASingleContourMeetTheTimesThatDoublesMiss) {
-  // 0.1, 0.2 … are other numbers in single precision than in double: some larger, some smaller. At its own first and
-  // last time the contour must not be missed.
+  // 0.1, 0.2 … differ between single and double precision: some floats are larger, some smaller. The contour must not
+  // be missed at its own first and last time.
   Grid<4> grid = Grid<4>::unit({6, 6, 6, 8});
   grid.axes[3] = Axis::uniform(8, 0.1, 0.1);
   const auto contour = extract<float>(view_of(noise<float, 4>(grid, 23)), 0.5);
@@ -181,7 +181,7 @@ TEST(MeasureCuts, OfASingleContourMeetTheTimesThatDoublesMiss) {
 }
 
 TEST(MeasureCuts, AreClosedWhereTheContourIsOpenInTimeAlone) {
-  // A ball that is there from the first to the last time: the 4D contour is open at both, its cuts are closed.
+  // A ball that exists from the first to the last time: the 4D contour is open at both, its slices are closed.
   const auto contour = contour_of<4>([](const Point<4>& x) { return 0.7 - std::hypot(x[0], x[1], x[2]); }, 12, 1.0);
   EXPECT_FALSE(tegl::measure(contour).content.has_value());
   const std::vector<double> at = {-1.0, -0.3, 0.5, 1.0};
@@ -218,7 +218,7 @@ TEST(MeasureCuts, OfAnExpandingBallConvergeWithTheSquareOfTheStep) {
   EXPECT_NEAR(convergence_order(content_error[0], content_error[1]), 2.0, 0.5);
 }
 
-/// The integral of the cuts' contents over the last coordinate in [-1, 1], by Simpson's rule.
+/// The integral of the slices' contents over the last coordinate in [-1, 1], by Simpson's rule.
 template <int N>
 double integrated_content(const Contour<N, double>& contour) {
   constexpr std::size_t kSteps = 400;

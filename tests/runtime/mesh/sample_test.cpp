@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sampling at vertices: exact for multilinear fields on grids of any kind, NaN where an image says nothing and nowhere
-// else, and the isovalue itself where the image is the contour's own.
+// Sampling at vertices: exact for multilinear fields on all kinds of grids, NaN exactly where the image is undefined,
+// and the isovalue if the image is the contour's own.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Uneven, backwards and sheared, around the unit ball.
+/// An uneven, reversed and sheared grid around the unit ball.
 template <int N>
 Grid<N> odd_grid() {
   Grid<N> grid;
@@ -34,7 +34,7 @@ Grid<N> odd_grid() {
   return grid;
 }
 
-/// Linear in the world, whatever the grid.
+/// A function that is linear in world coordinates, for any grid.
 template <int N>
 double plane(const std::array<double, N>& x) {
   double sum = 0.25;
@@ -82,7 +82,7 @@ TEST(Sample, OfALinearFieldIsExactOnUnevenBackwardAndShearedGrids) {
   expect_linear_fields_to_be_exact<3, float>(12, 1e-13);  // vertices are rounded, values at them are not
 }
 
-/// Points on edges of the grid have the isovalue, whatever the type; those inside of tiles need not.
+/// Points on edges of the grid have the isovalue for all types; points inside tiles need not.
 template <Value T, int N>
 void expect_the_isovalue(std::size_t samples) {
   const auto image = noise<T, N>(samples, 5);
@@ -111,7 +111,7 @@ TEST(Sample, OfTheContoursOwnImageIsTheIsovalue) {
   expect_the_isovalue<double, 4>(5);
 }
 
-/// Next to missing samples each vertex is on an edge between two that are there.
+/// Beside missing samples each vertex lies on an edge between two existing ones.
 template <class Real>
 void expect_missing_samples_to_spoil_nothing() {
   Grid<3> grid = Grid<3>::unit({12, 11, 10});
@@ -129,7 +129,7 @@ TEST(Sample, IsNotSpoiltByMissingSamplesThatDoNotCount) {
   expect_missing_samples_to_spoil_nothing<float>();
 }
 
-/// A contour of two points, for places of one's own choice.
+/// A contour of isolated points at given positions.
 Contour<2, double> points(const std::vector<std::array<double, 2>>& places) {
   Contour<2, double> contour;
   contour.vertices.assign(places.begin(), places.end());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of measured and simulated 3D and 4D data, where the folder with the files is there: parts, facets,
-// triangulations, normals, measures, elements, cuts and projections, each held against figures that are made another
-// way.
+// Contours of measured and simulated 3D and 4D data: components, facets, triangulations, normals, measures, elements,
+// slices and projections, each compared with independently computed values. Skipped if the folder with the files does
+// not exist.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -32,7 +32,7 @@ namespace {
 
 struct File {
   std::string path;
-  double quantile;  ///< of the values; the isovalue is a little above the value there
+  double quantile;  ///< of the values; the isovalue is slightly above it
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
 
@@ -44,7 +44,7 @@ std::string name_of(const ::testing::TestParamInfo<File>& info) {
 template <int N>
 class ShapeOfFile : public ::testing::TestWithParam<File> {
  protected:
-  /// Calls with the middle of the file's image and the isovalue.
+  /// Calls `visit` with the middle of the file's image and the isovalue.
   template <class Visit>
   void with_image(const Visit& visit) {
     const std::filesystem::path path = std::filesystem::path(TEGL_SHARED_DATA_DIR) / GetParam().path;
@@ -70,7 +70,7 @@ ExtractOptions closed() {
   return options;
 }
 
-// ---- what holds in 3D and in 4D ----
+// ---- properties in 3D and 4D ----
 
 template <Value T, int N>
 void expect_parts_of_the_samples(const Image<T, N>& image, double isovalue) {
@@ -88,9 +88,9 @@ void expect_parts_of_the_samples(const Image<T, N>& image, double isovalue) {
   EXPECT_NEAR(content, enclosed_content(contour), 1e-9 * content);
 }
 
-/// The content, of the closed contour, is the flux of the position through the elements; their sum is 0. The share of
-/// the tiles' corners that are high tells it too, up to the tiles that the contour crosses, whose errors go both ways:
-/// they are a whole tile each at most, and in the mean far less.
+/// The content of the closed contour equals the flux of the position through the elements, whose sum is 0. The share of
+/// high tile corners approximates it up to the active tiles: each contributes an error of at most one tile, of either
+/// sign, so the mean error is far smaller.
 template <Value T, int N>
 void expect_measures_and_elements_by_gauss(const Image<T, N>& image, double isovalue) {
   const auto contour = extract<double>(image, isovalue, closed());
@@ -110,7 +110,7 @@ void expect_measures_and_elements_by_gauss(const Image<T, N>& image, double isov
   }
   double high = 0;
   for_each_sample<N>(image.grid(), [&](std::size_t, const std::array<std::size_t, N>& index) {
-    double share = 1;  // half of a step at the border
+    double share = 1;  // half a step at the border
     for (int a = 0; a < N; ++a) share *= index[a] == 0 || index[a] + 1 == image.size(a) ? 0.5 : 1.0;
     if (static_cast<double>(image(index)) >= isovalue) high += share;
   });
@@ -120,7 +120,7 @@ void expect_measures_and_elements_by_gauss(const Image<T, N>& image, double isov
   EXPECT_NEAR(*tegl::measure(steps).content, high, 0.25 * static_cast<double>(stats.active_tiles));
 }
 
-/// At vertices on edges of the grid, away from the border: central differences at both ends, interpolated.
+/// At vertices on edges of the grid away from the border: central differences at both ends, interpolated.
 template <Value T, int N>
 void expect_normals_by_differences(const Image<T, N>& image, double isovalue) {
   const auto unit = on_unit_grid(image);
@@ -307,8 +307,8 @@ TEST_P(FilmOfFile, ProjectionCoversWhatItEntersAsOftenAsItLeavesIt) {
     const auto surface = outline(contour);
     const MeshReport report = expect_closed_manifold(surface);
     EXPECT_GT(report.simplices, 100u);
-    // What it encloses, folds counted as often as they lie over each other, is what is entered, but for what the
-    // smoothing of normals does.
+    // The enclosed content, with overlapping folds counted multiply, equals the content entered, up to the effect of
+    // smoothed normals.
     EXPECT_NEAR(enclosed_content(surface), entered, 0.2 * entered);
   });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Indexes of active tiles find what the definition says, at every isovalue that matters, whatever the method, the
-// dimension and the values; and they come back from files as they were, or not at all.
+// Indexes of active tiles find the tiles of the definition at every relevant isovalue, for every method, dimension and
+// value type; and loading restores them exactly or fails.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 template <int N>
 using Indexes = std::vector<std::unique_ptr<ActiveTiles<N>>>;
 
-/// Indexes by all methods, each also saved and loaded.
+/// Indexes of all methods, each also saved and loaded.
 template <Value T, int N>
 Indexes<N> all_indexes(const Image<T, N>& image) {
   Indexes<N> result;
@@ -164,7 +164,7 @@ TEST(ActiveTiles, OfAnyStridesAreThoseOfTheDenseImage) {
   for (const ActiveMethod method : active_methods()) {
     MemoryFile file;
     build_active_tiles(image.view(), method)->save(file);
-    const auto index = load_active_tiles(file, view);  // the same values: the same image
+    const auto index = load_active_tiles(file, view);  // equal values count as the same image
     EXPECT_EQ(index->find(0.5), PlainRanges<3>(image.view()).active(0.5));
     EXPECT_EQ(build_active_tiles(view, method)->find(0.25), PlainRanges<3>(image.view()).active(0.25));
   }
@@ -203,7 +203,7 @@ TEST(TileGrid, NumbersAndIndicesAreInverse) {
 
 // ---- files ----
 
-/// What loading throws: code and message.
+/// The error of loading: code and message.
 template <Value T, int N>
 std::pair<ErrorCode, std::string> error_of_loading(std::vector<unsigned char> content, const Image<T, N>& image) {
   MemoryFile file;
@@ -253,7 +253,7 @@ TEST_P(ActiveTilesFile, OfAnotherImageIsRefused) {
 }
 
 TEST(ActiveTiles, OfManyTilesComeBackFromAFile) {
-  const auto image = noise<std::uint8_t, 2>({2400, 2000}, 18);  // arrays of more than one piece
+  const auto image = noise<std::uint8_t, 2>({2400, 2000}, 18);  // arrays of more than one block
   for (const ActiveMethod method : {ActiveMethod::interval_tree, ActiveMethod::span_space}) {
     const auto index = build_active_tiles(image.view(), method);
     MemoryFile file;

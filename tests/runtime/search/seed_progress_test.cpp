@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seeds, bounds, indexes and picks tell how far they are: fractions begin at 0 or a little later, never fall, end at 1,
-// and the work stops wherever the caller says so. In each way that seeds are found: of all tiles, and, where these turn
-// out to be too many, of fewer.
+// Seeds, bounds, indexes and picks report progress: fractions start near 0, never decrease and end at 1, and cancelling
+// works at any report. Tested for each way to find seeds: from all tiles, and from fewer if these are too many.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -35,7 +34,7 @@ void expect_rising_progress(const Work& work) {
   EXPECT_LE(told.front(), 0.2);
   EXPECT_EQ(told.back(), 1.0);
   for (std::size_t i = 1; i < told.size(); ++i) ASSERT_LE(told[i - 1], told[i]) << "report " << i;
-  // Stops at any report: the first, one in between, and the last.
+  // Cancels at the first report, one in between, and the last.
   for (std::size_t stop = 0; stop < told.size(); stop += std::max<std::size_t>(1, (told.size() - 1) / 2)) {
     std::size_t reports = 0;
     try {
@@ -122,13 +121,13 @@ TEST(SeedProgress, OfPicksRisesToTheEnd) {
   const auto image = noise<float, 3>({30, 29, 28}, 9);
   expect_rising_progress([&](const Progress& progress) {
     ExtractOptions options;
-    options.threads = 1;  // of several, who reports first decides how many reports there are
+    options.threads = 1;  // with several threads the number of reports varies
     options.progress = progress;
     extract_component<float>(image.view(), 0.5, {10.0, 12.0, 14.0}, options);
   });
-  expect_rising_progress([&](const Progress& progress) {  // of nothing
+  expect_rising_progress([&](const Progress& progress) {  // without tiles
     ExtractOptions options;
-    options.threads = 1;  // of several, who reports first decides how many reports there are
+    options.threads = 1;  // with several threads the number of reports varies
     options.progress = progress;
     extract_component<float>(image.view(), 2.0, {10.0, 12.0, 14.0}, options);
   });

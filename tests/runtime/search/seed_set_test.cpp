@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Seed sets meet every component of active tiles at every isovalue, whatever the method, the neighbourhood, the scan
-// order, the dimension and the values; bounds are bounds; and the figures of the thesis of 2005 are met or beaten.
+// Seed sets meet every component of active tiles at every isovalue, for every method, neighbourhood, scan order,
+// dimension and value type; bounds hold; and the numbers of the thesis of 2005 are met or improved.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace {
 constexpr std::array<Neighbourhood, 3> kNeighbourhoods = {Neighbourhood::faces, Neighbourhood::faces_and_edges,
                                                           Neighbourhood::all};
 
-/// Neighbours of a tile by their definition: indices that differ by at most 1, in so many axes at most.
+/// Neighbours of a tile by definition: indices that differ by at most 1 along a limited number of axes.
 template <int N>
 std::vector<TileNumber> neighbours_of(const TileGrid<N>& grid, TileNumber tile, Neighbourhood neighbourhood) {
   const int most = neighbourhood == Neighbourhood::faces ? 1
@@ -53,10 +53,10 @@ std::vector<TileNumber> neighbours_of(const TileGrid<N>& grid, TileNumber tile, 
   return result;
 }
 
-/// Active tiles with the number of their component; others have none.
+/// Active tiles have the number of their component; others have none.
 constexpr std::size_t kInactive = std::numeric_limits<std::size_t>::max();
 
-/// Numbers the components of active tiles, from `first` on; returns the next number.
+/// Numbers the components of active tiles from `first`; returns the next number.
 template <int N>
 std::size_t label_tiles(const TileGrid<N>& grid, const PlainRanges<N>& ranges, double isovalue,
                         Neighbourhood neighbourhood, std::vector<std::size_t>& label, std::size_t first) {
@@ -79,7 +79,7 @@ std::size_t label_tiles(const TileGrid<N>& grid, const PlainRanges<N>& ranges, d
   return first;
 }
 
-/// Labels of all components at all isovalues that matter, isovalue by isovalue.
+/// Labels of all components at all relevant isovalues, isovalue by isovalue.
 template <Value T, int N>
 struct AllComponents {
   AllComponents(const OwnedImage<T, N>& image, Neighbourhood neighbourhood, std::size_t most) {
@@ -93,7 +93,7 @@ struct AllComponents {
       count = label_tiles(grid, ranges, values[i], neighbourhood, labels.back(), count);
     }
   }
-  /// How many of them have no tile of these.
+  /// The number of components that contain none of these tiles.
   [[nodiscard]] std::size_t missed_by(const std::vector<TileNumber>& tiles) const {
     std::vector<bool> met(count);
     for (const auto& label : labels)
@@ -161,7 +161,7 @@ TEST(SeedSet, NextToMissingValuesMeetsAllComponents) {
 }
 
 TEST(SeedSet, AroundAHoleMeetsAllComponents) {
-  // An angle around a hole of missing values: no contour parts the image in two.
+  // The polar angle around a hole of missing values: no contour separates the image.
   auto image = sample_field<float>(centred_grid<2>(24, 1.0), [](const Point<2>& x) { return std::atan2(x[1], x[0]); });
   for_each_sample<2>(image.grid, [&](std::size_t i, const std::array<std::size_t, 2>& index) {
     if (index[0] > 7 && index[0] < 16 && index[1] > 7 && index[1] < 16) image.values[i] = std::nanf("");
@@ -176,7 +176,7 @@ TEST(SeedSet, OfInfiniteValuesMeetsAllComponents) {
   expect_seed_sets(image, 200);
 }
 
-/// At isovalues all over the range; `cover` alone, which has more tiles to choose from than it takes.
+/// At isovalues over the whole range; only for `cover`, whose candidate tiles exceed its limit here.
 template <Value T, int N>
 void expect_reduced_covers(const OwnedImage<T, N>& image, std::size_t isovalues) {
   for (const Neighbourhood neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
@@ -203,7 +203,7 @@ TEST(SeedSet, OfManyDifferentValuesMeetsAllComponents) {
 }
 
 TEST(SeedSet, ChosenPartByPartMeetsAllComponents) {
-  // More trees than are chosen from at a time: noise leaves one of eight tiles.
+  // More trees than are selected from at a time: noise leaves one of eight tiles.
   const auto image = noise<float, 2>({760, 760}, 12);
   const AllComponents<float, 2> all(image, Neighbourhood::faces, 9);
   SeedSetOptions options;
@@ -217,7 +217,7 @@ TEST(SeedSet, ChosenPartByPartMeetsAllComponents) {
   EXPECT_LT(10 * set.tiles.size(), 7 * find_seeds(image.view(), options).tiles.size());
 }
 
-/// Seeds and their bound for each tile, of noise with a few samples along the first axes and many along the last.
+/// Seeds and their bound per tile, for noise with few samples along the first axes and many along the last.
 template <int N>
 std::pair<double, double> share_of_seeds(const std::array<std::size_t, N>& sizes) {
   const auto image = noise<float, N>(sizes, 17);
@@ -230,7 +230,7 @@ std::pair<double, double> share_of_seeds(const std::array<std::size_t, N>& sizes
 }
 
 TEST(SeedSet, OfLongThinImagesHasAboutAsManySeedsAndABoundWhateverTheirLength) {
-  // Whatever is sampled of so many tiles must not lie in one column, or in the margin.
+  // The sample of these tiles must not lie in a single column or in the margin.
   const auto expect_alike = [](const auto& a, const auto& b) {
     EXPECT_NEAR(a.first / b.first, 1.0, 0.02);
     EXPECT_NEAR(a.second / b.second, 1.0, 0.02);
@@ -264,7 +264,7 @@ TEST(SeedSet, InEveryScanOrderMeetsAllComponents) {
   }
 }
 
-/// The size of the smallest seed set, by trying all sets of tiles, small ones first.
+/// The size of the smallest seed set, by trying all sets of tiles in order of size.
 template <Value T, int N>
 std::size_t smallest_by_trial(const OwnedImage<T, N>& image, Neighbourhood neighbourhood) {
   const AllComponents<T, N> all(image, neighbourhood, 1000);

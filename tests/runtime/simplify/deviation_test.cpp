@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The distance of two contours: against spheres, against samples taken the slow way, and as it has to be.
+// The distance of two contours: compared with spheres and with brute-force samples, and its invariants.
 #include "tegl/deviation.hpp"
 
 #include <gtest/gtest.h>
@@ -89,7 +89,7 @@ TYPED_TEST(DeviationOf, IsMeasuredInUnitsOfTheScale) {
   EXPECT_NEAR(deviation(from, to).bound, scaled, 1e-9);
 }
 
-/// A simplex in the hyperplane of the last axis, with its corners at the origin and at 1 along each other axis.
+/// A simplex in the hyperplane of the last axis, with corners at the origin and at 1 along each other axis.
 template <int N>
 Contour<N, double> one_simplex() {
   Contour<N, double> contour;
@@ -103,7 +103,7 @@ Contour<N, double> one_simplex() {
   return contour;
 }
 
-/// Turns simplices in that hyperplane so that all face as one_simplex does.
+/// Orients simplices in that hyperplane as one_simplex does.
 template <int N>
 void face_as_one_simplex(Contour<N, double>& contour) {
   for (auto& simplex : contour.simplices) {
@@ -134,14 +134,14 @@ Contour<N, double> in_slices(const std::vector<std::pair<double, double>>& slice
   return contour;
 }
 
-/// What is covered twice does not make up for what is not covered at all.
+/// A double cover does not compensate for a hole.
 TYPED_TEST(DeviationOf, SeesAHoleAsLargeAsADoubleCover) {
   constexpr int N = TypeParam::value;
   const auto from = one_simplex<N>();
   for (const double height : {0.0, 0.01, 0.1}) {
     const auto to = in_slices<N>({{0.0, 0.25}, {0.5, 0.75}, {0.5, 0.75}, {0.75, 1.0}}, height);
     const double truth =
-        std::hypot(0.125, height) / (N == 2 ? 1.0 : 2.0);  // less than the distance of the hole's middle
+        std::hypot(0.125, height) / (N == 2 ? 1.0 : 2.0);  // less than the distance of the hole's centre
     const Deviation result = deviation(from, to);
     EXPECT_GE(result.bound, truth) << "height " << height;
     EXPECT_GE(result.bound, sampled_deviation(from, to, 2000, 5)) << "height " << height;
@@ -149,12 +149,12 @@ TYPED_TEST(DeviationOf, SeesAHoleAsLargeAsADoubleCover) {
   }
 }
 
-/// Also one that the sum of contents hardly shows.
+/// Detects a missing corner that hardly changes the sum of contents.
 TYPED_TEST(DeviationOf, SeesACornerThatIsCutOff) {
   constexpr int N = TypeParam::value;
   const auto from = one_simplex<N>();
   for (const double share : {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 4e-3, 1e-2, 1e-1}) {
-    // What is left without the corner at 0: a slice that ends before each of the other corners.
+    // The simplex without the corner at 0: a slice that ends before each of the other corners.
     Contour<N, double> to;
     std::vector<std::array<double, N>> low, high;  // where the edges from 0 are cut, and where they end
     for (int a = 0; a + 1 < N; ++a) {
@@ -178,16 +178,16 @@ TYPED_TEST(DeviationOf, SeesACornerThatIsCutOff) {
     EXPECT_GE(result.bound, result.least) << share;
     EXPECT_NEAR(result.least, truth, 1e-12) << share;
     EXPECT_LE(result.bound, 3.0 * truth + 1e-4) << share;
-    EXPECT_LE(deviation(to, from).bound, 1e-10) << share;  // of what is on the border, a rim of 1e-11 is left out
+    EXPECT_LE(deviation(to, from).bound, 1e-10) << share;  // a rim of 1e-11 of the border is missing
   }
 }
 
-/// Also one that no vertex lies in, however small.
+/// Detects a hole that contains no vertex, however small.
 TYPED_TEST(DeviationOf, SeesAHoleInTheMiddle) {
   constexpr int N = TypeParam::value;
   const auto from = one_simplex<N>();
   for (const double size : {0.3, 1e-2, 1e-4, 1e-6, 1e-8}) {
-    // Between the simplex and a small copy of it around its centroid: a prism over each face, cut into simplices.
+    // Between the simplex and a small copy of it around its centroid: a prism over each face, divided into simplices.
     Contour<N, double> to;
     for (const double scale : {1.0, size})
       for (const auto& corner : from.vertices) {
@@ -232,7 +232,7 @@ TEST(Deviation, RefusesScalesAndNumbersThatMakeNoSense) {
   expect_error(ErrorCode::InvalidArgument, "1073741824", [&] { deviation(contour, broken); });
 }
 
-/// Progress only grows, up to the end; and wherever it is told, it can stop the work.
+/// Progress increases up to the end, and every report can stop the work.
 TEST(Deviation, TellsProgressAndStopsAnywhere) {
   const auto from = sphere<4>(1.1, 8), to = sphere<4>(1.0, 7);
   std::vector<double> told;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of measured and simulated data closed at the border, and simplified; where the folder with the files is
-// there.
+// Contours of measured and simulated data, closed at the border and simplified. Skipped if the folder with the files
+// does not exist.
 #include <filesystem>
 #include <ostream>
 #include <string>
@@ -22,7 +22,7 @@ struct File {
   const char* path;
   double isovalue;
   bool has_missing = false;
-  double along_z = 0.5;  ///< where the part lies: 0 at the first sample, 1 at the last
+  double along_z = 0.5;  ///< position of the part: 0 at the first sample, 1 at the last
 };
 std::ostream& operator<<(std::ostream& out, const File& file) { return out << file.path; }
 
@@ -33,7 +33,8 @@ class RealFile : public ::testing::TestWithParam<File> {
   }
   static std::filesystem::path path() { return std::filesystem::path(TEGL_SHARED_DATA_DIR) / GetParam().path; }
 
-  /// Calls work(image) with a part of the file's image, so many samples along each axis in space and in time.
+  /// Calls work(image) with a part of the file's image with these numbers of samples along each spatial axis and in
+  /// time.
   template <class Work>
   static void with_part(std::size_t of_3d, std::size_t of_4d, std::size_t times, const Work& work) {
     const ReadImageResult input = read_image(path());
@@ -82,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(RealData, ClosedFile,
 
 using SimplifiedFile = RealFile;
 
-/// Where axes have other units than the first, lengths are those of steps, so that all count.
+/// If axes have units other than the first's, measures lengths in steps, so that all axes count.
 template <int N, class Real>
 void in_steps(Contour<N, Real>& contour, const Grid<N>& grid) {
   Eigen::Matrix<double, N, 1> factors;
@@ -111,13 +112,13 @@ TEST_P(SimplifiedFile, KeepsManifoldAndBorderWithinItsBound) {
       EXPECT_EQ(border_points(result), border_points(contour));
       EXPECT_GE(*stats.error_of_original, sampled_deviation(contour, result, 100, 1));
       EXPECT_GE(*stats.error_of_result, sampled_deviation(result, contour, 100, 2));
-      EXPECT_LE(*stats.error(), 3.0);  // steps: samples of these data are as rough as that
+      EXPECT_LE(*stats.error(), 3.0);  // in steps: samples of these data are that rough
     }
   });
 }
 
-/// A cut of a part of a 4D file: across an axis, of so many samples along the first two others from these on; and
-/// largest errors, ascending, after the automatic scale.
+/// A slice of a part of a 4D file: across an axis, with given numbers of samples along the other two from given starts;
+/// and largest errors, ascending, after the automatic scale.
 struct FileCut {
   const char* path;
   double isovalue;
@@ -162,9 +163,9 @@ class CutOfAFile : public ::testing::TestWithParam<FileCut> {
   Contour<3, double> contour_;
 };
 
-/// A largest error is reached in some rounds, never given up for the contour as it was; and the more it is the less is
-/// left. What an error takes, a count is to give, to the simplex: with hardly more error, for thin parts that went too
-/// early; and fewer have the larger error.
+/// A largest error is reached in several rounds and never abandoned in favour of the input; a larger one leaves fewer
+/// simplices. A count equal to the one left by an error is reached exactly, with hardly more error (caused by thin
+/// parts removed too early); a smaller count has a larger error.
 TEST_P(CutOfAFile, HasFewerSimplicesTheLargerTheErrorIsAndHardlyMoreErrorByCount) {
   const MeshReport before = check(contour());
   double last = 0.99, last_by_count = 0.0;
@@ -197,7 +198,7 @@ TEST_P(CutOfAFile, HasFewerSimplicesTheLargerTheErrorIsAndHardlyMoreErrorByCount
   EXPECT_LT(last, 0.5);
 }
 
-/// With both goals, the count ends it where the error lets it; and the error where it ends it alone.
+/// With both goals, simplification ends at the count if the error permits it, and otherwise as with the error only.
 TEST_P(CutOfAFile, EndsAtTheFirstOfTwoGoals) {
   SimplifyOptions<3> options = scaled_options();
   options.max_error = GetParam().errors.back();
@@ -240,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(RealData, CutOfAFile,
                                            FileCut{kViscousFingers, 30, 3, 7.3, 20, 16, {0.02}},
                                            FileCut{kOcean, 20, 3, 4350.0, 0, 40, {0.3, 0.7}}));
 
-/// The bound may be looser than the distance where contours are rough, but not by much.
+/// The bound may exceed the distance for rough contours, but not by much.
 TEST_P(SimplifiedFile, HasABoundNearToADistanceThatIsReached) {
   with_part(22, 10, 5, []<Value T, int N>(const Image<T, N>& image) {
     auto contour = extract<double>(image, GetParam().isovalue);

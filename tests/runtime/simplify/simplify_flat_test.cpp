@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours with flat parts, which may go for nothing: caps in the border of the image, planes. By a count, the error is
-// then what the rest makes of it, and not that of one round, which takes from everywhere.
+// Contours with flat parts, which cost no error: caps in the image border, planes. For a count, the error is then
+// determined by the rest, and smaller than with a single round, which simplifies everywhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Grid<N> unit_grid(std::size_t samples) {
   return Grid<N>::unit(sizes);
 }
 
-/// Flat but for a bump of one tile's width.
+/// A plane with a bump of one tile's width.
 Contour<3, double> plane_with_a_bump() {
   const auto image = sample_field<float, 3>(unit_grid<3>(30), [](const Point<3>& x) {
     const double square = (x[0] - 15) * (x[0] - 15) + (x[1] - 15) * (x[1] - 15);
@@ -39,7 +39,7 @@ Contour<3, double> plane_with_a_bump() {
   return extract<double>(image.view(), 0.0);
 }
 
-/// Waves, cut off at the border of the image, and closed there.
+/// Waves that end at the image border and are closed there.
 template <int N>
 Contour<N, double> waves_with_caps(std::size_t samples) {
   const auto image = sample_field<float, N>(unit_grid<N>(samples), [](const Point<N>& x) {
@@ -52,7 +52,7 @@ Contour<N, double> waves_with_caps(std::size_t samples) {
   return extract<double>(image.view(), 0.3, extraction);
 }
 
-/// In the middle of July, closed.
+/// The warm water in the middle of July, closed.
 Contour<3, double> warm_water() {
   const auto input = read_image(std::filesystem::path(TEGL_SOURCE_DIR) / "examples/data/ocean_temperature.nc");
   ExtractOptions extraction;
@@ -78,8 +78,8 @@ SimplifyStats simplified(const Contour<N, double>& contour, const SimplifyOption
   return stats;
 }
 
-/// For each of these largest errors, ascending: a count as large as what it leaves and this share of the rest is
-/// reached with hardly more error; and fewer have the larger one.
+/// For each of these largest errors, ascending: the count left by it plus this share of the rest is reached with hardly
+/// more error; a smaller count has a larger error.
 template <int N>
 void expect_hardly_more_error_by_count(const Contour<N, double>& contour, const std::vector<double>& errors,
                                        const SimplifyOptions<N>& with = {},
@@ -123,7 +123,7 @@ TEST(SimplifyFlat, PlaneWithABumpKeepsTheBump) {
   expect_hardly_more_error_by_count(contour, {1e-5, 1e-3, 0.03});
 }
 
-/// A largest error beside the count that does not matter changes nothing; one that does is kept.
+/// With a count, an irrelevant largest error changes nothing, and a relevant one is respected.
 TEST(SimplifyFlat, PlaneWithABumpKeepsTheBumpByTwoGoals) {
   const auto contour = plane_with_a_bump();
   SimplifyOptions<3> options;
@@ -143,7 +143,7 @@ TEST(SimplifyFlat, CapsGoFirstIn2D) { expect_hardly_more_error_by_count(waves_wi
 TEST(SimplifyFlat, CapsGoFirstIn3D) { expect_hardly_more_error_by_count(waves_with_caps<3>(12), {1e-3, 0.02}); }
 TEST(SimplifyFlat, CapsGoFirstIn4D) { expect_hardly_more_error_by_count(waves_with_caps<4>(4), {0.02}, {}, {0.6}); }
 
-/// What is flat altogether has no error at all.
+/// Entirely flat contours have no error.
 TEST(SimplifyFlat, PlanesHaveNoError) {
   const auto image = sample_field<float, 3>(unit_grid<3>(9), [](const Point<3>& x) { return x[2] - 3.5; });
   const auto contour = extract<double>(image.view(), 0.0);
@@ -162,7 +162,7 @@ TEST(SimplifyFlat, WarmWaterWithCapsIsNearerTheMoreIsLeft) {
   SimplifyOptions<3> options;
   options.scale = automatic_scale(contour);
   expect_hardly_more_error_by_count(contour, {0.02, 0.05}, options);
-  // What is flat alone is more than half of it.
+  // More than half of the simplices are flat.
   options.max_error = 1e-4;
   ASSERT_LT(simplified(contour, options).simplices_after, contour.simplices.size() / 2);
   options.max_error.reset();

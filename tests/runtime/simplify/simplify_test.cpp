@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Simplified contours: the manifold, its border, its caps and its error bound are what they have to be, for all
-// methods, in 2D to 4D, on noise and on smooth fields.
+// Invariants of simplified contours: manifold, border, caps and error bound, for all methods, in 2D to 4D, on noise and
+// on smooth fields.
 #include "tegl/simplify.hpp"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TYPED_TEST(Simplify, KeepsCapsInTheBorderAndTheContourClosed) {
   }
 }
 
-/// A box of high samples: what is flat goes, corners stay, and the content is exactly what it was.
+/// A box of high samples: flat parts are simplified, corners stay, and the content is exactly preserved.
 TYPED_TEST(Simplify, LeavesABoxWithItsCornersAlone) {
   constexpr int N = TypeParam::value;
   const auto image = sample_field<float, N>(centred_grid<N>(N == 4 ? 4 : 9, 1.0), [](const Point<N>&) { return 1.0; });
@@ -141,7 +141,7 @@ TYPED_TEST(Simplify, LeavesABoxWithItsCornersAlone) {
     SimplifyStats stats;
     const auto result = simplify(contour, with_ratio<N>(method, 0.0), &stats);
     expect_closed_manifold(result);
-    // Facets of which two corners are to stay cannot be drawn together, so that method leaves some more.
+    // Facets with two fixed corners cannot be contracted, so that method leaves more vertices.
     const std::size_t corners = std::size_t{1} << N;
     EXPECT_GE(result.vertices.size(), corners);
     EXPECT_LE(result.vertices.size(), method == SimplifyMethod::facets ? 4 * corners : corners + corners / 2);
@@ -167,7 +167,7 @@ TYPED_TEST(Simplify, ErrorsAreBoundedAsSamplesShow) {
     EXPECT_GE(*stats.error_of_original, sampled);
     EXPECT_GE(*stats.error_of_result, sampled_deviation(result, contour, kSamples<N>, 2));
     EXPECT_LE(*stats.error_of_original, 2.5 * sampled + 1e-3);
-    // The attribute: its largest value is the bound.
+    // The largest value of the attribute is the bound.
     ASSERT_EQ(result.vertex_attributes.size(), 1u);
     const Attribute& attribute = result.vertex_attributes[0];
     EXPECT_EQ(attribute.name, "simplification_error");
@@ -181,7 +181,7 @@ TYPED_TEST(Simplify, KeepsTheLargestError) {
   const auto contour = ball<N>(ball_samples<N>());
   for (const SimplifyMethod method : kMethods)
     for (const double largest : {0.05, 0.01}) {
-      if (N == 4 && (method != SimplifyMethod::quadric || largest < 0.05)) continue;  // time
+      if (N == 4 && (method != SimplifyMethod::quadric || largest < 0.05)) continue;  // takes too long
       SCOPED_TRACE(name(method) + ", " + std::to_string(largest));
       SimplifyOptions<N> options;
       options.method = method;
@@ -233,7 +233,7 @@ TYPED_TEST(Simplify, CarriesNormalsAndAttributesAlong) {
         way = std::max(way, std::abs(result.vertex_attributes[0].values[v * N + a] - result.vertices[v][a]));
       }
       EXPECT_NEAR(length, 1.0, 1e-9);
-      EXPECT_GT(along, 0.9);  // of the unit ball: outwards
+      EXPECT_GT(along, 0.9);  // for the unit ball: outwards
       EXPECT_LE(way, method == SimplifyMethod::vertices ? 0.0 : 0.6);
     }
     ASSERT_EQ(result.simplex_attributes.size(), 1u);
@@ -257,7 +257,7 @@ TYPED_TEST(Simplify, FacetsMethodStopsAtTheLargestCurvature) {
   const auto contour = ball<N>(ball_samples<N>());
   auto options = with_ratio<N>(SimplifyMethod::facets, 0.0);
   options.measure = false;
-  options.max_curvature = 0.01;  // a ball of radius 1 has curvature 1 everywhere
+  options.max_curvature = 0.01;  // a sphere of radius 1 has curvature 1 everywhere
   EXPECT_EQ(simplify(contour, options).simplices.size(), contour.simplices.size());
   options.max_curvature = 100.0;
   EXPECT_LT(simplify(contour, options).simplices.size(), contour.simplices.size() / 4);
@@ -269,7 +269,7 @@ TYPED_TEST(Simplify, IsTheSameForAnyNumberOfThreadsAndInFloat) {
   const auto contour = extract<float>(image.view(), 0.0);
   for (const SimplifyMethod method : kMethods) {
     SCOPED_TRACE(name(method));
-    if (N == 4 && method != SimplifyMethod::quadric) continue;  // time
+    if (N == 4 && method != SimplifyMethod::quadric) continue;  // takes too long
     auto one = with_ratio<N>(method, 0.2), four = one;
     one.threads = 1;
     four.threads = 4;
@@ -287,7 +287,7 @@ TYPED_TEST(Simplify, ScaleDecidesWhatIsFar) {
   SimplifyOptions<N> options;
   options.max_error = 0.02;
   const auto fine = simplify(contour, options);
-  options.scale.fill(0.1);  // the same in centimetres: 0.02 of them is ten times as far
+  options.scale.fill(0.1);  // in centimetres: 0.02 of them is ten times the length
   EXPECT_LT(simplify(contour, options).simplices.size(), fine.simplices.size());
 }
 
@@ -300,7 +300,7 @@ TYPED_TEST(Simplify, EarlierErrorsCountByTheScaleTheyWereTakenAt) {
   auto once = simplify(contour, options, &first);
   ASSERT_EQ(once.vertex_attributes.size(), 1u);
   EXPECT_EQ(once.vertex_attributes[0].unit, N == 2 ? "scale 0.5,1" : (N == 3 ? "scale 0.5,1,1" : "scale 0.5,1,1,1"));
-  options = with_ratio<N>(SimplifyMethod::quadric, 1.0);  // nothing goes: all of its error is from before
+  options = with_ratio<N>(SimplifyMethod::quadric, 1.0);  // nothing is removed: its error is that of the input
   auto twice = simplify(once, options, &second);
   EXPECT_NEAR(*second.error(), 2.0 * *first.error(), 1e-9);  // lengths along the first axis have doubled
   EXPECT_EQ(twice.vertex_attributes[0].unit, contour.axis_units[0]);
@@ -326,7 +326,7 @@ TYPED_TEST(Simplify, AutomaticScaleMakesOtherUnitsAsFineAsTheFirst) {
   EXPECT_NEAR(scale[N - 1], 0.05, 0.01);
 }
 
-/// Where samples equal the isovalue, vertices fall together: these edges are contracted first, and cost nothing.
+/// If samples equal the isovalue, vertices coincide: their edges are contracted first, without error.
 TYPED_TEST(Simplify, RemovesSimplicesOfZeroSize) {
   constexpr int N = TypeParam::value;
   const auto image = sample_field<float, N>(centred_grid<N>(N == 4 ? 5 : 9, N == 4 ? 1.0 : 2.0), [](const Point<N>& x) {
@@ -343,7 +343,7 @@ TYPED_TEST(Simplify, RemovesSimplicesOfZeroSize) {
   EXPECT_LT(check(result).degenerate_simplices, check(contour).degenerate_simplices);
 }
 
-/// Samples that equal the isovalue make parts of no size, whose vertices have no hyperplanes that would hold them.
+/// Samples that equal the isovalue cause degenerate parts, whose vertices have no hyperplanes that restrict them.
 TYPED_TEST(Simplify, KeepsTheLargestErrorWhereSimplicesHaveNoSize) {
   constexpr int N = TypeParam::value;
   constexpr std::size_t kSize = N == 2 ? 60 : (N == 3 ? 9 : 4);
@@ -352,7 +352,7 @@ TYPED_TEST(Simplify, KeepsTheLargestErrorWhereSimplicesHaveNoSize) {
   const MeshReport before = check(contour);
   ASSERT_GT(before.degenerate_simplices, before.simplices / 20);
   for (const double largest : {0.05, 0.2}) {
-    if (N == 4 && largest < 0.2) continue;  // time
+    if (N == 4 && largest < 0.2) continue;  // takes too long
     SCOPED_TRACE(largest);
     SimplifyOptions<N> options;
     options.max_error = largest;
@@ -367,7 +367,7 @@ TYPED_TEST(Simplify, KeepsTheLargestErrorWhereSimplicesHaveNoSize) {
   }
 }
 
-/// By a count, a few contractions where parts are thin would make most of the error: the search finds others.
+/// For a count, a few contractions in thin parts would cause most of the error: the search finds others.
 TYPED_TEST(Simplify, IsNearerByACountThanOneRoundIs) {
   constexpr int N = TypeParam::value;
   if (N == 4) GTEST_SKIP() << "noise that small is as rough as one round is";
@@ -384,12 +384,12 @@ TYPED_TEST(Simplify, IsNearerByACountThanOneRoundIs) {
   }
 }
 
-/// A largest error that does not matter leaves what the count alone leaves, and no worse.
+/// With a count, an irrelevant largest error does not change the count reached or worsen the error.
 TYPED_TEST(Simplify, IsAsNearByTwoGoalsAsByTheCountWhereTheErrorLetsIt) {
   constexpr int N = TypeParam::value;
   const auto contour = ball<N>(N == 2 ? 60 : (N == 3 ? 16 : 5));
   for (const SimplifyMethod method : kMethods) {
-    if (N > 2 && method != SimplifyMethod::quadric) continue;  // time
+    if (N > 2 && method != SimplifyMethod::quadric) continue;  // takes too long
     SCOPED_TRACE(name(method));
     auto options = with_ratio<N>(method, 0.5);
     SimplifyStats alone, both;
@@ -421,7 +421,7 @@ TEST(Simplify2, CapsOfASlantedGridStayInItsBorder) {
   ASSERT_EQ(options.planes.size(), 6u);
   const auto result = simplify(contour, options);
   expect_same_topology(check(contour), check(result));
-  // As many vertices in each plane as it takes for a cap, and none beyond.
+  // Each plane has at least the vertices of a cap, and no vertex is beyond it.
   for (const auto& plane : options.planes) {
     const auto height = [&](const std::array<double, 3>& p) {
       return plane.normal[0] * p[0] + plane.normal[1] * p[1] + plane.normal[2] * p[2] - plane.offset;
@@ -513,7 +513,7 @@ TEST(SimplifyErrors, AnEarlierErrorIsANumberAndNotNegative) {
   }
 }
 
-/// What has a larger error already cannot come within a smaller one.
+/// A contour that already has a larger error cannot satisfy a smaller one.
 TEST(SimplifyErrors, AnEarlierErrorIsAtMostTheLargest) {
   SimplifyOptions<3> options;
   options.max_error = 0.1;
@@ -532,7 +532,7 @@ TEST(SimplifyErrors, AnEarlierErrorIsAtMostTheLargest) {
   }
 }
 
-/// What ends a simplification: the error only where more would have gone without it.
+/// The reported end of a simplification: `error` only if it could have continued without the error limit.
 TEST(SimplifyEnds, AreWhatKeepsTheRest) {
   const auto contour = ball<3>(16);
   SimplifyStats stats;
@@ -564,8 +564,8 @@ TEST(SimplifyEnds, AreWhatKeepsTheRest) {
   }
 }
 
-/// Meshoptimizer takes a tolerance for all, and no part can get less: where it leaves too large an error however small
-/// that is, the contour is left as it was, and that is said.
+/// Meshoptimizer has a single tolerance for all parts. If its smallest result still exceeds the error, the contour
+/// stays unchanged, and the report says so.
 TEST(SimplifyEnds, AreRoundsWhereNoneIsNearEnough) {
   if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
   const auto contour = ball<3>(16);
@@ -581,7 +581,7 @@ TEST(SimplifyEnds, AreRoundsWhereNoneIsNearEnough) {
   EXPECT_EQ(result.simplices, contour.simplices);
 }
 
-/// It ends at the whole, and never goes back, whatever the goal.
+/// For every goal, progress ends at 1 and never decreases.
 TEST(SimplifyProgress, GrowsUpToOne) {
   for (int goal = 0; goal < 4; ++goal) {
     SimplifyOptions<3> options;
@@ -599,7 +599,7 @@ TEST(SimplifyProgress, GrowsUpToOne) {
   }
 }
 
-/// Simplified again with a larger error: what the first time left of it is used, and the sum kept.
+/// A second simplification with a larger error uses the remaining error and keeps the sum.
 TEST(SimplifyTwice, UsesWhatIsLeftOfTheError) {
   const auto contour = ball<3>(24);
   SimplifyOptions<3> options;
@@ -615,7 +615,7 @@ TEST(SimplifyTwice, UsesWhatIsLeftOfTheError) {
   EXPECT_GE(*stats.error_of_original, sampled_deviation(contour, again, kSamples<3>, 1));
 }
 
-/// The bound is as close as it can be, not as close as a large error makes enough.
+/// The bound is as tight as possible, even if a looser one would suffice.
 TEST(SimplifyErrors, AreNotLooseWhereTheLargestIsLarge) {
   const auto contour = ball<3>(16);
   SimplifyOptions<3> options;
@@ -626,7 +626,7 @@ TEST(SimplifyErrors, AreNotLooseWhereTheLargestIsLarge) {
   EXPECT_LE(*stats.error(), 2.0 * reached);
 }
 
-/// Meshoptimizer may take all of a closed surface: that is no contour of it.
+/// Meshoptimizer may remove a closed surface entirely, which is not a valid result.
 TEST(SimplifyFast, LeavesSomethingOrSaysSo) {
   if (!has_fast_simplify()) GTEST_SKIP() << "built without meshoptimizer";
   auto options = with_ratio<3>(SimplifyMethod::fast, 0.0);
@@ -649,7 +649,7 @@ TEST(SimplifyFast, RefusesWhatIsNoManifoldToBeginWith) {
   auto broken = ball<3>(8);
   broken.simplices.push_back(broken.simplices[0]);
   expect_error(ErrorCode::UnsupportedData, "3 simplices", [&] { simplify(broken, options); });
-  auto exact = with_ratio<3>(SimplifyMethod::fast, 1.0);  // nothing is to go
+  auto exact = with_ratio<3>(SimplifyMethod::fast, 1.0);  // nothing must be removed
   exact.max_error = 0.0;
   expect_error(ErrorCode::UnsupportedData, "3 simplices", [&] { simplify(broken, exact); });
 }

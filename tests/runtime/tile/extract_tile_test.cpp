@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One tile of every signature, embedded in a larger grid of low samples, and of high ones: the contour is
-// a closed oriented manifold, whose topology follows from the corners.
-// Based on: the scheme of CGAL's Isosurfacing_3 tests (single cells, then embedded), here in n dimensions.
+// Tiles of every signature, embedded in a larger grid of low or high samples: the contour is a closed oriented manifold
+// whose topology follows from the corners. Based on: the scheme of CGAL's Isosurfacing_3 tests (single cells, then
+// embedded), here in n dimensions.
 #include <array>
 #include <bit>
 #include <random>
@@ -19,8 +19,8 @@
 namespace tegl::test {
 namespace {
 
-/// A 4^N grid of `around`, whose middle tile has the signature; values otherwise random, so that no points fall
-/// together and no four of them lie in a plane by chance.
+/// A 4^N grid of `around` whose middle tile has the signature. Magnitudes are random, so that no points coincide and no
+/// four of them are coplanar by chance.
 template <int N>
 OwnedImage<double, N> embedded_tile(unsigned signature, bool around) {
   std::array<std::size_t, N> sizes;
@@ -42,10 +42,10 @@ OwnedImage<double, N> embedded_tile(unsigned signature, bool around) {
   return image;
 }
 
-/// Euler characteristic of the solid that the corners in `set` are, if diagonals are kept apart. It has the homotopy
-/// type of the complex of all edges, squares and cubes whose corners all lie in the set; but where just two corners
-/// of a 3-diagonal are missing, each is cut off by a triangle (theory, section 2: class 126), and the
-/// tile's centre fills the ring of the other six.
+/// Euler characteristic of the solid of the corners in `set` if diagonals are kept separate. It is homotopy equivalent
+/// to the complex of all edges, squares and cubes whose corners all lie in the set. Exception: if just two corners of a
+/// 3-diagonal are missing, each is cut off by a triangle (theory, section 2: class 126), and the tile's centre fills
+/// the ring of the other six.
 template <int N>
 int euler_of_solid(unsigned set) {
   int euler = 0;
@@ -64,7 +64,7 @@ int euler_of_solid(unsigned set) {
   return euler;
 }
 
-/// Connected components of the corners in `set`, neighbours along edges.
+/// Number of connected components of the corners in `set`, connected along edges.
 template <int N>
 unsigned components_of_corners(unsigned set) {
   unsigned count = 0;
@@ -91,8 +91,8 @@ void expect_sound_tile(unsigned signature) {
       const auto contour = extract<double>(image.view(), 0.0, options);
       const auto report = expect_closed_manifold(contour);
       EXPECT_EQ(report.degenerate_simplices, 0u);
-      // The corners that differ from the surroundings are cells apart; where the alternative keeps them apart,
-      // the contour is the boundary of their thickening.
+      // The corners that differ from the surroundings form components; if the alternative separates them, the contour
+      // is the boundary of their thickening.
       constexpr unsigned kAll = (1u << (1u << N)) - 1;
       const unsigned set = around ? ~signature & kAll : signature;
       if ((options.ambiguity == Ambiguity::low) != around) {

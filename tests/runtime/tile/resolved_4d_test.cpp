@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of 4D noise with every face resolved from the data: closed oriented manifolds, every cut of them too, and at
-// whole steps the contour of the step.
+// Contours of 4D noise with every face resolved from the data: closed oriented manifolds whose slices are closed
+// oriented surfaces; at time steps the slice equals the step's contour.
 #include <cmath>
 #include <random>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr Ambiguity kEstimators[] = {Ambiguity::mean, Ambiguity::saddle};
 
-/// Coordinates rounded to 2^-30, so that what differs by rounding errors is the same.
+/// Coordinates rounded to 2^-30, to remove differences by rounding errors.
 Contour<3, double> rounded(Contour<3, double> contour) {
   for (auto& vertex : contour.vertices)
     for (double& x : vertex) x = std::round(x * 0x1p30) * 0x1p-30;
@@ -48,7 +48,7 @@ TEST(Resolved4d, ClosedNoiseIsAClosedManifoldAndSoIsEveryCut) {
   }
 }
 
-/// A choice at random for each face of the grid, by its place.
+/// A random choice for each face of the grid, determined by its position.
 facets::Choice hashed(const AmbiguousFace& face) {
   std::uint64_t hash = face.axes();
   for (const std::size_t i : face.base()) hash = (hash ^ hash >> 31 ^ i) * 0x9e3779b97f4a7c15u;

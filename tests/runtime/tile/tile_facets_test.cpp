@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Single tiles with signs: the tunnel, faces by number, certificates, arguments.
+// Single tiles with signs of faces: the tunnel, face numbers, certificates, arguments.
 #include "tegl/tile_facets.hpp"
 
 #include <random>
@@ -43,8 +43,8 @@ TEST(TileFacets, ASquareIsCutOrJoinedByTheSignOfItsCentre) {
   const auto joined = tile_facets<2>(0b0110, signs), cut = tile_facets<2>(0b0110);
   EXPECT_EQ(joined.facets.size(), 2u);
   EXPECT_EQ(cut.facets.size(), 2u);
-  // The edges are numbered 4 to 7: along x below, along y on the left and on the right, along x above. Corner 1 is cut
-  // off between the edges below and on the right; joined with corner 2, corner 0 is.
+  // The edges have numbers 4 to 7: along x below, along y left, along y right, along x above. Corner 1 is cut off
+  // between the edges below and right; if corners 1 and 2 are joined, corner 0 is cut off.
   const auto faces_of = [](const facets::TileFacets& tile) {
     std::vector<std::vector<std::uint32_t>> result;
     for (const facets::Facet& facet : tile.facets) {

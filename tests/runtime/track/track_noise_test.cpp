@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The graph of parts through time, held against what cuts show: at a time between any two events the cut is made, its
-// parts are compared one by one, and the pieces of the contour between two such times must join the parts as the event
-// between them says.
+// The graph of components over time against slices: at a time between any two events the slice's components are
+// compared one by one. The parts of the contour between two such times must connect the components as the event between
+// them states.
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -31,8 +31,8 @@ class Sets {
   std::vector<std::size_t> parents_;
 };
 
-/// Sets of simplices that are connected within from <= t <= to: those that share a vertex or an edge that is there in
-/// part. Simplices that are not there are alone.
+/// Sets of simplices connected within from <= t <= to: by a vertex or an edge that lies at least partly in the
+/// interval. Simplices outside the interval are singletons.
 template <int N>
 Sets connected_between(const Contour<N, double>& contour, double from, double to) {
   Sets sets(contour.simplices.size());
@@ -47,7 +47,7 @@ Sets connected_between(const Contour<N, double>& contour, double from, double to
   return sets;
 }
 
-/// A part of the cut at a time: the simplices that it cuts, and what they are cut to.
+/// A component of the slice at a time: the contour's simplices that it meets, and the slice's simplices.
 template <int N>
 struct Part {
   std::vector<std::size_t> simplices;
@@ -91,7 +91,7 @@ TrackSample measured(const Contour<D, double>& cut) {
   return sample;
 }
 
-/// The graph's segments at one time, found by what they measure; each part has one and each segment a part.
+/// The graph's segments at one time, matched by their measures; components and segments correspond one to one.
 template <int N>
 std::vector<Index> segments_of(const std::vector<Part<N>>& parts, const TrackGraph& graph, double time) {
   std::vector<Index> found;
@@ -106,7 +106,7 @@ std::vector<Index> segments_of(const std::vector<Part<N>>& parts, const TrackGra
       double sum = std::abs(sample.measure - expected.measure);
       for (int a = 0; a < N - 1; ++a) {
         sum += std::abs(sample.lower[a] - expected.lower[a]) + std::abs(sample.upper[a] - expected.upper[a]);
-        // Where samples equal the isovalue parts may have no size, hence no centroid.
+        // If samples equal the isovalue, components may have zero size and then no centroid.
         if (expected.measure > 1e-12) sum += std::abs(sample.centroid[a] - expected.centroid[a]);
       }
       return sum;
@@ -115,7 +115,7 @@ std::vector<Index> segments_of(const std::vector<Part<N>>& parts, const TrackGra
     for (const auto& [s, sample] : alive)
       if (best == TrackGraph::kNoSegment || distance(*sample) < distance(*alive[best])) best = s;
     if (best == TrackGraph::kNoSegment) break;
-    EXPECT_LT(distance(*alive[best]), 2e-8) << "at " << time;  // the square roots of `measure` are no better
+    EXPECT_LT(distance(*alive[best]), 2e-8) << "at " << time;  // limited by the square roots of `measure`
     if (expected.measure > 1e-12) {
       EXPECT_EQ(std::isnan(alive[best]->content), std::isnan(expected.content)) << "at " << time;
     }
@@ -128,7 +128,7 @@ std::vector<Index> segments_of(const std::vector<Part<N>>& parts, const TrackGra
   return found;
 }
 
-/// Times between any two at which something happens.
+/// One time between any two consecutive events.
 std::vector<double> times_between(const TrackGraph& graph) {
   std::set<double> happenings;
   for (const TrackEvent& event : graph.events) happenings.insert(event.time);
@@ -151,7 +151,7 @@ std::int64_t euler_at(const TrackGraph& graph, double time) {
   return euler;
 }
 
-/// What joins the parts at one time and those at the next: sets of segments, by the contour and by the graph.
+/// Connections between the components at one time and the next: sets of segments, by the contour and by the graph.
 using Joined = std::set<std::pair<std::set<Index>, std::set<Index>>>;
 
 template <int N>
@@ -180,7 +180,7 @@ Joined joined_by_graph(const TrackGraph& graph, const std::array<double, 2>& tim
   return joined;
 }
 
-/// The whole graph against the cuts.
+/// Compares the whole graph with slices.
 template <int N>
 TrackGraph expect_right(const Contour<N, double>& contour) {
   TrackOptions options;
@@ -204,7 +204,7 @@ TrackGraph expect_right(const Contour<N, double>& contour) {
   return graph;
 }
 
-/// What holds for every graph.
+/// Invariants of every graph.
 template <int N, class Real>
 void expect_consistent(const Contour<N, Real>& contour, const TrackGraph& graph) {
   std::vector<std::int64_t> handles(graph.segments.size());
@@ -231,7 +231,8 @@ void expect_consistent(const Contour<N, Real>& contour, const TrackGraph& graph)
   }
   const MeshReport report = check(contour);
   EXPECT_EQ(count, report.components);
-  // The loops of the Reeb graph on a closed oriented surface are as many as its handles, those in one time aside.
+  // The Reeb graph of a closed oriented surface has as many loops as the surface has handles, except handles within one
+  // time.
   const auto loops = static_cast<std::int64_t>(graph.segments.size() + count - graph.events.size());
   EXPECT_GE(loops, 0);
   if (N == 3 && report.boundary_simplices == 0) {
@@ -266,7 +267,7 @@ TEST(TrackNoise, In4dAgreesWithEveryCut) {
 }
 
 TEST(TrackNoise, OfFewValuesAgreesWithEveryCut) {
-  // Many samples equal the isovalue: vertices coincide, and many have the same time.
+  // Many samples equal the isovalue: vertices coincide, and many have equal times.
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
     const auto image = test::coarse_noise<std::uint8_t, 4>(Grid<4>::unit({5, 4, 4, 5}), seed, 3);
@@ -293,8 +294,8 @@ TEST(TrackNoise, InThePlaneAgreesWithEveryCut) {
 }
 
 TEST(TrackNoise, LoopsOfAClosedSurfaceAreItsHandles) {
-  // Cole-McLaughlin et al., Loops in Reeb graphs of 2-manifolds, 2003: as many as the genus, if no two critical
-  // vertices are at one time.
+  // Cole-McLaughlin et al., Loops in Reeb graphs of 2-manifolds, 2003: the number of loops is the genus, if no two
+  // critical vertices have equal times.
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
     Contour<3, double> contour = noise_contour<3>({12, 12, 12}, seed, true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The graph of parts through time of fields whose events are known, and its options.
+// The graph of components over time for fields with known events, and its options.
 #include "tegl/track.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using Kind = TrackEventKind;
 
-/// `samples` samples along each axis of space from -half to half, and `steps` from t = first to last.
+/// `samples` samples along each spatial axis from -half to half, and `steps` from t = first to last.
 template <int N>
 Grid<N> space_time(std::size_t samples, double half, std::size_t steps, double first, double last) {
   Grid<N> grid = test::centred_grid<N>(samples, half);
@@ -44,8 +44,8 @@ std::vector<Kind> kinds(const TrackGraph& graph) {
   return result;
 }
 
-/// Two balls of radius 1 on the x axis whose centres are sqrt(0.55 + t^2 / 2) from the origin: as one between
-/// t = -sqrt(0.9) and sqrt(0.9).
+/// Two balls of radius 1 on the x axis with centres sqrt(0.55 + t^2 / 2) from the origin: merged between t = -sqrt(0.9)
+/// and sqrt(0.9).
 struct PassingBalls {
   double operator()(const Point<4>& p) const {
     const double d = std::sqrt(0.55 + 0.5 * p[3] * p[3]);
@@ -53,8 +53,8 @@ struct PassingBalls {
   }
 };
 
-/// A tube of radius 0.3 around an arc of radius 1 in the x-y plane, open by an angle of 0.9 - t to either side of the
-/// x axis: its ends, half balls, touch when the sine of that is 0.3.
+/// A tube of radius 0.3 around an arc of radius 1 in the x-y plane, open by an angle of 0.9 - t on either side of the x
+/// axis. Its ends, half balls, touch when the sine of that angle is 0.3.
 struct ClosingRing {
   double operator()(const Point<4>& p) const {
     const double gap = std::max(0.0, 0.9 - p[3]);
@@ -66,8 +66,8 @@ struct ClosingRing {
   [[nodiscard]] static double event() { return 0.9 - std::asin(0.3); }
 };
 
-/// Around two points a = 1 to either side of the origin, where the product of the distances is less than b^2 (Cassini):
-/// the parts meet when b = 0.8 + 0.4 t is 1.
+/// The region around two points at distance a = 1 from the origin in which the product of the distances is less than
+/// b^2 (Cassini): the components meet when b = 0.8 + 0.4 t is 1.
 struct Cassini {
   double operator()(const Point<4>& p) const {
     const double rest = p[1] * p[1] + p[2] * p[2];
@@ -76,8 +76,8 @@ struct Cassini {
   [[nodiscard]] static double event() { return 0.5; }
 };
 
-/// A ring that thickens, thinnest where x is greatest: (r - 1)^2 + z^2 + 0.2 x < 0.1 + 0.2 t. It closes when the right
-/// side is the least of the left one over r at z = 0, y = 0, which is 0.2 - 0.01.
+/// A ring that thickens, thinnest at maximum x: (r - 1)^2 + z^2 + 0.2 x < 0.1 + 0.2 t. It closes when the right side
+/// equals the minimum of the left side over r at z = 0, y = 0, which is 0.2 - 0.01.
 struct ThickeningRing {
   double operator()(const Point<4>& p) const {
     const double out = std::hypot(p[0], p[1]) - 1.0;
@@ -149,7 +149,7 @@ TEST(Track, BallsThatMeetAndPartAreALoop) {
   EXPECT_EQ(graph.events[2].euler_change, -2);
   EXPECT_EQ(graph.events[3].euler_change, 2);
   EXPECT_EQ(graph.segments.size(), 5u);
-  // One track goes on through both; one ends in the merge, and one starts at the split.
+  // One track continues through both events; one ends in the merge, and one starts at the split.
   ASSERT_EQ(graph.tracks.size(), 3u);
   std::vector<std::size_t> lengths;
   for (const Track& t : graph.tracks) lengths.push_back(t.segments.size());
@@ -178,12 +178,12 @@ TEST(Track, AnUprightRingSplitsAndMerges) {
   ASSERT_THAT(kinds(graph), ElementsAre(Kind::birth, Kind::split, Kind::merge, Kind::death));
   const std::array expected{-1.4, -0.6, 0.6, 1.4};
   for (std::size_t e = 0; e < 4; ++e) EXPECT_NEAR(graph.events[e].time, expected[e], 0.03);
-  // The contour is S^1 x S^2, of first Betti number 1: one loop.
+  // The contour is S^1 x S^2 with first Betti number 1: one loop.
   EXPECT_EQ(graph.segments.size(), 4u);
 }
 
 TEST(Track, EventTimesConvergeWithTheSquareOfTheStep) {
-  // The touching points lie at several places in a tile; the worst of them counts.
+  // The touching points lie at several positions within a tile; the maximum error counts.
   const auto error = [](std::size_t samples, const auto& field, auto time_of, double exact) {
     double worst = 0;
     const double step = 3.4 / static_cast<double>(samples - 1);
@@ -220,7 +220,7 @@ TEST(Track, EventTimesConvergeWithTheSquareOfTheStep) {
 }
 
 TEST(Track, WhatCrossesTheBorderEntersAndLeaves) {
-  // A ball in the plane that comes in at one side and goes out at the other; another that is there all the time.
+  // A ball in the plane that enters at one side and leaves at the other, and another that always exists.
   const auto field = [](const Point<3>& p) {
     return std::max(0.4 - std::hypot(p[0] - 1.5 * p[2], p[1] - 0.5), 0.3 - std::hypot(p[0], p[1] + 0.5));
   };
@@ -234,7 +234,8 @@ TEST(Track, WhatCrossesTheBorderEntersAndLeaves) {
   ASSERT_EQ(measured.segments.size(), 2u);
   EXPECT_FALSE(std::isnan(measured.segments[1].samples[0].content));
   EXPECT_TRUE(std::isnan(measured.segments[1].samples[1].content)) << "half of it is outside: open";
-  // Closed at the border, it is born and dies there; so is the other one, unless it is known when the data begin.
+  // Closed at the border, it is born and dies there; so does the other one, unless it is known to exist at the first
+  // time.
   EXPECT_THAT(kinds(track(contour_of(grid, field, true))),
               ElementsAre(Kind::birth, Kind::birth, Kind::death, Kind::death));
   options.first = -1.2;
@@ -244,7 +245,7 @@ TEST(Track, WhatCrossesTheBorderEntersAndLeaves) {
 }
 
 TEST(Track, OfASingleContourMeasuresTimesThatDoublesMiss) {
-  // 0.7 is more than the single precision number nearest to it, where this contour ends.
+  // 0.7 exceeds the nearest single-precision number, at which this contour ends.
   Grid<4> grid = space_time<4>(12, 1.0, 7, 0.0, 1.0);
   grid.axes[3] = Axis::uniform(7, 0.1, 0.1);
   const auto image =
@@ -303,7 +304,8 @@ TEST(Track, BeginsAndEndsWhereTheDataSaySo) {
 }
 
 TEST(Track, LeavesOutWhatLivesTooShort) {
-  // A long life with a branch of length 0.25 that merges, one of 0.5 that splits off, and a part of its own of 0.125.
+  // A long life with a branch of length 0.25 that merges, one of 0.5 that splits off, and a separate component of
+  // 0.125.
   Contour<2, double> contour;
   contour.vertices = {{0, 0}, {0, 1}, {1, 0.75}, {0, 2}, {1, 2.5}, {0, 4}, {5, 1}, {5, 1.125}};
   contour.simplices = {{0, 1}, {2, 1}, {1, 3}, {3, 4}, {3, 5}, {6, 7}};
@@ -326,7 +328,7 @@ TEST(Track, LeavesOutWhatLivesTooShort) {
 }
 
 TEST(Track, LeavesOutShortLoops) {
-  Contour<2, double> contour;  // 0 to 1, two ways to 1.5, then to 3
+  Contour<2, double> contour;  // 0 to 1, two paths to 1.5, then to 3
   contour.vertices = {{0, 0}, {0, 1}, {-1, 1.2}, {1, 1.3}, {0, 1.5}, {0, 3}};
   contour.simplices = {{0, 1}, {1, 2}, {2, 4}, {1, 3}, {3, 4}, {4, 5}};
   EXPECT_EQ(track(contour).segments.size(), 4u);
@@ -338,7 +340,7 @@ TEST(Track, LeavesOutShortLoops) {
 }
 
 TEST(Track, OfWhatLastsNoTimeThereIsNoEvent) {
-  // A path that runs level for a while, with a spur at that level; and a piece that is level altogether.
+  // A path with a level section, with a spur at that level; and an entirely level component.
   Contour<2, double> contour;
   contour.vertices = {{0, 0}, {1, 1}, {2, 1}, {3, 1}, {2, 2}, {8, 1}, {9, 1}};
   contour.simplices = {{0, 1}, {1, 2}, {2, 3}, {2, 4}, {5, 6}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The generated tables, by name and by dimension. The definitions are written by `gen` into the build tree.
+// Declares the generated tables, by name and by dimension. `gen` writes their definitions into the build tree.
 #pragma once
 
 #include "tegl/table_contract.hpp"
@@ -11,17 +11,18 @@ extern const TileTable kTile2Barycentric, kTile2Compact;
 extern const TileTable kTile3Barycentric, kTile3Compact;
 extern const TileTable kTile4Barycentric, kTile4Compact;
 
-/// The cube with every ambiguity resolved freely.
+/// The cube with every ambiguous square resolved independently.
 extern const ResolvedTable kTile3Resolved;
 
 extern const RegionTable kRegion1BarycentricLow, kRegion1BarycentricHigh, kRegion1CompactLow, kRegion1CompactHigh;
 extern const RegionTable kRegion2BarycentricLow, kRegion2BarycentricHigh, kRegion2CompactLow, kRegion2CompactHigh;
 extern const RegionTable kRegion3BarycentricLow, kRegion3BarycentricHigh, kRegion3CompactLow, kRegion3CompactHigh;
 
-/// The contours of the dim-tile, dim = 2, 3, 4; triangulation 0: barycentric, 1: compact.
+/// The table of the dim-tile's contours, dim = 2, 3, 4; triangulation 0: barycentric, 1: compact.
 const TileTable& tile_table(int dim, int triangulation) noexcept;
 
-/// The high regions of the k-tile, k = 1, 2, 3; alternative 0: low-connected, 1: high-connected.
+/// The table of the k-tile's high regions, k = 1, 2, 3; triangulation as above; alternative 0: low-connected, 1:
+/// high-connected.
 const RegionTable& region_table(int k, int triangulation, int alternative) noexcept;
 
 }  // namespace tegl::tables

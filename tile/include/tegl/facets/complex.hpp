@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Small simplicial complexes, and whether one is a ball or a sphere. From dimension 3 on this is shown, not guessed:
-// by a shelling, or else links are recognised by recursion, and a combinatorial manifold that collapses to a point is a
-// PL ball (J. H. C. Whitehead, Simplicial spaces, nuclei and m-groups, 1939). What cannot be shown is `other`.
+// Small simplicial complexes and the recognition of balls and spheres. From dimension 3 on the result is proved: by a
+// shelling; otherwise by recursion over links and a collapse, since a combinatorial manifold that collapses to a point
+// is a PL ball (J. H. C. Whitehead, Simplicial spaces, nuclei and m-groups, 1939). `other` means: not proved.
 #pragma once
 
 #include <array>
@@ -11,28 +11,28 @@
 
 namespace tegl::facets {
 
-/// Number of a vertex within one tile.
+/// Vertex number within one tile.
 using VertexId = std::uint16_t;
-/// No vertex.
+/// Marks an unused vertex entry.
 inline constexpr VertexId kNoVertex = 0xffff;
-/// Of a simplex.
+/// Maximum number of vertices of a simplex.
 inline constexpr int kMaxVertices = 7;
 
-/// The vertices of a simplex; what is not used is kNoVertex, at the end.
+/// The vertices of a simplex; unused entries at the end are kNoVertex.
 using Simplex = std::array<VertexId, kMaxVertices>;
-/// A simplex without vertices.
+/// The simplex without vertices.
 inline constexpr Simplex kNoSimplex = {kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex, kNoVertex};
-/// A complex, by its simplices of the highest dimension.
+/// A complex, given by its simplices of the highest dimension.
 using Simplices = std::vector<Simplex>;
 
-/// Number of vertices.
+/// Number of vertices of the simplex.
 constexpr int size(const Simplex& simplex) noexcept {
   int n = 0;
   while (n < kMaxVertices && simplex[n] != kNoVertex) ++n;
   return n;
 }
 
-/// Without vertex i, the others in their order.
+/// The simplex without vertex i; the other vertices keep their order.
 constexpr Simplex without(const Simplex& simplex, int i) noexcept {
   Simplex rest = simplex;
   for (; i + 1 < kMaxVertices; ++i) rest[i] = rest[i + 1];
@@ -40,7 +40,7 @@ constexpr Simplex without(const Simplex& simplex, int i) noexcept {
   return rest;
 }
 
-/// With `vertex` in front. At most 6 vertices before.
+/// The simplex with `vertex` added in front. `simplex` has at most 6 vertices.
 constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
   Simplex result = kNoSimplex;
   result[0] = vertex;
@@ -48,7 +48,7 @@ constexpr Simplex with_apex(VertexId vertex, const Simplex& simplex) noexcept {
   return result;
 }
 
-/// Sorts the vertices; the sign of the permutation.
+/// Sorts the vertices; returns the sign of the permutation.
 constexpr int sort_vertices(Simplex& simplex) noexcept {
   int sign = 1;
   for (int i = 1; i < kMaxVertices; ++i)
@@ -60,15 +60,16 @@ constexpr int sort_vertices(Simplex& simplex) noexcept {
   return sign;
 }
 
-/// What a complex is shown to be.
+/// Proved shape of a complex; `other` if neither is proved.
 enum class Shape { other, ball, sphere };
 
-/// The shape of the pure complex of some simplices of equal size, 1 to 6, their vertices sorted, none twice.
-/// `ball` and `sphere` are proved; a sphere of dimension 3 or more that resists some tries to collapse is `other`.
+/// Shape of a pure complex. All simplices have the same number of vertices, 1 to 6, sorted, and are distinct. `ball`
+/// and `sphere` are proved. A sphere of dimension 3 or more is reported as `other` if no seeded try finds a shelling or
+/// a collapse.
 Shape shape_of(const Simplices& simplices);
 
-/// Does the complex collapse to a circle, in one of some tries? An orientable 3-manifold that does is a solid torus:
-/// the regular neighbourhood of that circle.
+/// True if one of a few seeded tries collapses the complex to a circle. An orientable 3-manifold that collapses to a
+/// circle is a solid torus, the regular neighbourhood of that circle.
 bool collapses_to_a_circle(const Simplices& simplices);
 
 /// Euler characteristic of the complex.

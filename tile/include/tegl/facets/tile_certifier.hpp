@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Builds tiles and certifies them together with what they have in their faces, from the squares up.
+// Builds tiles and certifies each together with the contours in its faces, from the squares up.
 #pragma once
 
 #include <functional>
@@ -11,33 +11,33 @@
 
 namespace tegl::facets {
 
-/// The certificate of a tile says that its boundary is Sigma. This class shows as well that Sigma is right, whatever
-/// the builder did: in each face it is the contour of that face built alone, hence the same for a neighbour that shares
-/// the face; that one passes the certificate too, and so on down to the squares, whose edges have a point if and only
-/// if their ends differ. Contours in faces are compared by sums of 64-bit hashes of their simplices. Faces of dimension
-/// up to 3 are certified once for each signature and choices. One thread at a time.
+/// Certifier proves that a tile's boundary is Sigma. This class also proves Sigma correct, whatever the builder did. In
+/// each face, Sigma must equal the contour of that face built on its own, so a neighbour that shares the face has the
+/// same one. That contour is certified in turn, down to the squares, whose edges have a point if and only if their two
+/// corners differ. Contours in faces are compared by sums of 64-bit hashes of their simplices. Faces of dimension up to
+/// 3 (with at most 32 faces of their own) are certified once per signature and choices. Not thread-safe.
 class TileCertifier {
  public:
-  /// Builds a tile of the lattice; what it returns is used up before its next call.
+  /// Builds a tile of the lattice. The result is read before the next call and must stay valid until then.
   using Build = std::function<const TileFacets&(Signature signature, const Resolution& resolution)>;
 
   /// Throws std::invalid_argument for a lattice of dimension less than 2.
   explicit TileCertifier(FaceLattice lattice);
-  /// With tiles from elsewhere; what they have in their faces is built by FacetBuilder, alone.
+  /// Certifies tiles from `build`. The contours in their faces are compared with those of FacetBuilder.
   TileCertifier(FaceLattice lattice, Build build);
   ~TileCertifier();
-  TileCertifier(TileCertifier&&) noexcept;             ///< moved from: good for nothing but to be assigned to
-  TileCertifier& operator=(TileCertifier&&) noexcept;  ///< likewise
+  TileCertifier(TileCertifier&&) noexcept;             ///< a moved-from object may only be assigned to or destroyed
+  TileCertifier& operator=(TileCertifier&&) noexcept;  ///< as the constructor
 
-  [[nodiscard]] const FaceLattice& lattice() const&;  ///< what tiles are made of
-  [[nodiscard]] FaceLattice lattice() const&&;        ///< of a temporary: a copy
+  [[nodiscard]] const FaceLattice& lattice() const&;  ///< the lattice of the tiles
+  [[nodiscard]] FaceLattice lattice() const&&;        ///< for a temporary: a copy
 
   /// Builds and certifies a tile. Errors: as FacetBuilder::build.
   Fault certify(Signature signature, const Resolution& resolution);
 
-  /// The tile built last, without geometry.
+  /// The last tile; without geometry if it was built by FacetBuilder.
   [[nodiscard]] const TileFacets& tile() const&;
-  [[nodiscard]] TileFacets tile() const&&;  ///< of a temporary: a copy
+  [[nodiscard]] TileFacets tile() const&&;  ///< for a temporary: a copy
 
  private:
   class Impl;
