@@ -254,7 +254,7 @@ Contour<N, Real> extract_component(const Image<T, N>& image, double isovalue,
   found.tiles = tiles.size();
   const bool in_tiles = !detail::kIsTileByTile<N> && !options.close;
   // If missing values separate the tiles around an edge, a vertex on it is doubled for the components on either side.
-  // It comes first in one component and last in the others (pinches.hpp), so all tiles around it are needed.
+  // It comes first in one component and last in the others (split_nonmanifold.hpp), so all tiles around it are needed.
   std::vector<TileNumber> around;
   if (at_missing && in_tiles) around = flood.beside(tiles, detail::FloodRule::crossed_faces, Neighbourhood::all);
   std::vector<TileNumber> looked_at = tiles;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Separation of facets next to missing values. Tiles without missing corners may share only an edge or a square of the
-// grid there, and so may the contours in these tiles (pinches.hpp does the same for simplices).
+// grid there, and so may the contours in these tiles (split_nonmanifold.hpp does the same for simplices).
 #pragma once
 
 #include <algorithm>

@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/workers.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/exact_sum.hpp"
 #include "base/progress.hpp"
+#include "base/workers.hpp"
 #include "image/locate.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"

@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
-#include "base/workers.hpp"
 #include "base/exact_sum.hpp"
+#include "base/workers.hpp"
 #include "mesh/faces_of_stars.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "mesh/validate.hpp"
