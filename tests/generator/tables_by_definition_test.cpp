@@ -180,6 +180,22 @@ std::string fault_of_cut(const BoundaryPart& part, const Parts& parts, const std
   return "";
 }
 
+/// A cone vertex, whose mask has edges only, is the mean of all edge points of its component.
+std::string fault_of_masks(const tables::ResolvedList& list) {
+  const std::vector<Piece> contour = pieces_of(triangles_of(list), 3);
+  for (unsigned j = 0; j < list.own_vertices; ++j) {
+    const std::uint32_t mask = tables::kTile3Resolved.masks[list.first_mask + j];
+    if ((mask & 255u) != 0) continue;
+    std::uint32_t expected = 0;
+    for (const Piece& piece : contour)
+      if (std::binary_search(piece.vertices.begin(), piece.vertices.end(), static_cast<std::uint8_t>(12 + j)))
+        for (const std::uint8_t v : piece.vertices)
+          if (v < 12) expected |= std::uint32_t{1} << (8 + v);
+    if (mask != expected) return "an own vertex that is not the mean of its component's points";
+  }
+  return "";
+}
+
 TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
   const tables::ResolvedTable& table = tables::kTile3Resolved;
   unsigned entries = 0;
@@ -200,6 +216,8 @@ TEST(TablesByDefinition, EveryListOfTheResolvedCube) {
       }
       ASSERT_EQ(fault_of_separate(parts, triangles_of(entry.separate)), "") << s << ", resolution " << r;
       EXPECT_EQ(entry.components, pieces_of(triangles_of(entry.separate), 3).size());
+      for (const tables::ResolvedList* list : {&entry.separate, &entry.low, &entry.high})
+        ASSERT_EQ(fault_of_masks(*list), "") << s << ", resolution " << r;
       ASSERT_EQ(fault_of_cut(parts.high, parts, triangles_of(entry.low)), "") << s << ", resolution " << r << ", low";
       ASSERT_EQ(fault_of_cut(parts.low, parts, triangles_of(entry.high)), "") << s << ", resolution " << r << ", high";
     }

@@ -19,7 +19,7 @@ struct ResolvedCube {
   std::vector<std::uint8_t> ambiguous;               ///< by signature: set of its ambiguous squares
   std::vector<tables::ResolvedEntry> entries;        ///< the lists of every resolution
   std::vector<std::uint8_t> triangles;               ///< 3 local vertices each
-  std::vector<std::uint16_t> masks;  ///< per own vertex: its corners (bit v) and edge points (bit 8 + e)
+  std::vector<std::uint32_t> masks;  ///< per own vertex: its corners (bit v) and edge points (bit 8 + e)
 };
 
 /// Builds the table. A polygon that the compact table has for the signature is triangulated as there. Otherwise the
