@@ -9,7 +9,7 @@
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/face_signs.hpp"
 #include "tile/cube_key.hpp"
-#include "tile/extract_rows.hpp"
+#include "tile/row_table.hpp"
 #include "tile/variant_table.hpp"
 
 namespace tegl::detail {

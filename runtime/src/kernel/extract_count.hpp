@@ -13,9 +13,9 @@
 #include "ambiguity/tesseract_decision.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_layers.hpp"
+#include "kernel/extract_rows.hpp"
 #include "kernel/table_set.hpp"
 #include "tegl/table_contract.hpp"
-#include "tile/extract_rows.hpp"
 #include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {

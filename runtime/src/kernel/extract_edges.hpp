@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "kernel/extract_layers.hpp"
+#include "kernel/extract_rows.hpp"
 #include "kernel/placement.hpp"
-#include "tile/extract_rows.hpp"
 
 namespace tegl::detail {
 

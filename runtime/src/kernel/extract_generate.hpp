@@ -13,9 +13,9 @@
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_count.hpp"
 #include "kernel/extract_edges.hpp"
+#include "kernel/extract_rows.hpp"
 #include "kernel/placement.hpp"
 #include "kernel/shared_places.hpp"
-#include "tile/extract_rows.hpp"
 #include "tile/extract_tables.hpp"
 #include "tile/local_simplices.hpp"
 

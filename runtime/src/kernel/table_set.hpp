@@ -5,7 +5,7 @@
 
 #include "tegl/extract.hpp"
 #include "tegl/table_contract.hpp"
-#include "tile/extract_rows.hpp"
+#include "tile/row_table.hpp"
 
 namespace tegl::detail {
 

@@ -22,7 +22,7 @@
 #include "tegl/facets/facets.hpp"
 #include "tile/cube_regions.hpp"
 #include "tile/cube_subcases.hpp"
-#include "tile/extract_rows.hpp"
+#include "tile/row_table.hpp"
 
 namespace tegl::detail {
 

@@ -9,7 +9,7 @@
 
 #include "tegl/table_contract.hpp"
 #include "tile/cube_key.hpp"
-#include "tile/extract_rows.hpp"
+#include "tile/row_table.hpp"
 
 namespace tegl::detail {
 
