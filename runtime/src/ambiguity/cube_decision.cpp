@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "base/corners.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/saddle.hpp"
 
