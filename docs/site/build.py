@@ -28,9 +28,10 @@ AS_THEY_ARE = {".svg", ".png", ".jpg", ".jpeg", ".webp", ".gif", ".nc"}  # what 
 
 
 def version() -> str:
-    found = re.search(r"^project\(tegl VERSION ([0-9.]+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)
-    assert found, "CMakeLists.txt has lost its version"
-    return found[1]
+    header = (SOURCE / "runtime/include/tegl/version.hpp").read_text(encoding="utf-8")
+    found = [re.search(rf"#define TEGL_VERSION_{part} (\d+)", header) for part in ("MAJOR", "MINOR", "PATCH")]
+    assert all(found), "version.hpp has lost the version"
+    return ".".join(part[1] for part in found)
 
 
 def run_doxygen(output: pathlib.Path) -> None:
