@@ -20,8 +20,7 @@ TEST(ResolutionsIn5D, RandomTilesPass) {
   const std::uint64_t tiles = test::cases_to_test(10000, kShare);
   const ResolutionFigures figures = certify_sample(TileKind::cube, 5, tiles, 5, 0);
   EXPECT_EQ(figures.tiles, tiles);
-  for (const std::uint64_t facets : figures.by_filling)
-    EXPECT_GT(facets, tiles / 20) << "a way of filling hardly seen";
+  for (const std::uint64_t facets : figures.by_filling) EXPECT_GT(facets, tiles / 20) << "a way of filling hardly seen";
   EXPECT_GT(figures.euler.at(0), tiles) << "tiles with several components";
 }
 
