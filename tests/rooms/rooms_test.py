@@ -81,21 +81,17 @@ def circles(arrows):
 
 
 def includes_within(root, file):
-    """The files below `root` that `file` includes, as paths from `root`; and the includes that are none of these."""
+    """The files below `root` that `file` includes, as paths from `root`; and those in other folders, with their names."""
+    root = root.resolve()
     inside, outside = [], []
     for name in INCLUDE.findall(file.read_text()):
-        found = None
-        for at in (root / name, file.parent / name):
-            if at.is_file() and not name.startswith("tegl/"):
-                found = at.resolve()
-        try:
-            inside.append(str(found.relative_to(root.resolve())) if found else None)
-        except ValueError:
-            outside.append((name, found))
+        found = next((at.resolve() for at in (file.parent / name, root / name) if at.is_file()), None)
+        if found is None or name.startswith("tegl/"):
             continue
-        if found is None:
-            inside.pop()
-            outside.append((name, None))
+        if found.is_relative_to(root):
+            inside.append(str(found.relative_to(root)))
+        else:
+            outside.append((name, found))
     return inside, outside
 
 
@@ -137,7 +133,7 @@ def faults_of_rooms(root, elsewhere=()):
                 if other not in doors[room] and used not in doors[room]:
                     faults.append(f"{name} includes {used}; '{room}' may use {', '.join(doors[room]) or 'nothing'}")
         for used, at in outside:
-            if at is not None and not any(at.is_relative_to(folder.resolve()) for folder in elsewhere):
+            if not any(at.is_relative_to(folder.resolve()) for folder in elsewhere):
                 faults.append(f"{name} includes {used}, outside of its rooms")
     faults += ["a circle of files: " + ", ".join(part) for part in circles(arrows)]
     faults += ["a circle of rooms: " + ", ".join(part) for part in circles(rooms)]
