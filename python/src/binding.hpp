@@ -25,6 +25,7 @@
 #include "tegl/error.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::python {
 

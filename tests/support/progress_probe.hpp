@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::test {
 

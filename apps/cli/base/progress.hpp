@@ -10,6 +10,7 @@
 #include "base/console.hpp"
 #include "base/interrupt.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::cli {
 

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

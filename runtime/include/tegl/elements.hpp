@@ -10,6 +10,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/grid.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Error codes, the exception type, and options for progress and threads that all parts of the library share.
+// Error codes and the exception type of the library.
 #pragma once
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -38,16 +37,6 @@ class Error : public std::runtime_error {
 
  private:
   ErrorCode code_;
-};
-
-/// Called by long operations from time to time with a fraction in [0, 1]. Returning false stops the operation, which
-/// throws `Error{Cancelled}`.
-using Progress = std::function<bool(double fraction)>;
-
-/// Options of every long operation on contours.
-struct WorkOptions {
-  unsigned threads = 0;    ///< number of threads; 0: all of the machine. The result is the same, byte by byte.
-  Progress progress = {};  ///< called from time to time
 };
 
 }  // namespace tegl

@@ -11,6 +11,7 @@
 #include "tegl/ambiguity.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

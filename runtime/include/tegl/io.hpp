@@ -21,6 +21,7 @@
 #include "tegl/image.hpp"
 #include "tegl/layers.hpp"
 #include "tegl/stream.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

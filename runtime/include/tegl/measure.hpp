@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

@@ -5,6 +5,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
 #include "tegl/facet_hierarchy.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

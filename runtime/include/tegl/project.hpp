@@ -4,8 +4,8 @@
 #pragma once
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

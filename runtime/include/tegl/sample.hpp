@@ -8,6 +8,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/image.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

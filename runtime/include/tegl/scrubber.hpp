@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

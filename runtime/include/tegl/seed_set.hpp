@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "tegl/active_tiles.hpp"
-#include "tegl/error.hpp"
 #include "tegl/image.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
-#include "tegl/error.hpp"
 #include "tegl/grid.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

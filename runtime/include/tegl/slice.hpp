@@ -8,6 +8,7 @@
 
 #include "tegl/extract.hpp"
 #include "tegl/hyperplane.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

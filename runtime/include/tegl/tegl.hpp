@@ -35,3 +35,4 @@
 #include "tegl/track.hpp"
 #include "tegl/values.hpp"
 #include "tegl/version.hpp"
+#include "tegl/work.hpp"

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::io_detail {
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::io_detail {
 

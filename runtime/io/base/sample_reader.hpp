@@ -11,6 +11,7 @@
 
 #include "base/value_array.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::io_detail {
 

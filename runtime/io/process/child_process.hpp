@@ -21,6 +21,7 @@
 #include "process/child_side.hpp"
 #include "process/package.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::io_detail {
 

@@ -12,6 +12,7 @@
 #include "process/child_messages.hpp"
 #include "process/package.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::io_detail {
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 

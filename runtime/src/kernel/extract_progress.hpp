@@ -13,6 +13,7 @@
 
 #include "base/workers.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 

@@ -22,6 +22,7 @@
 #include "mesh/vertex_stars.hpp"
 #include "tegl/error.hpp"
 #include "tegl/facets/complex.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 namespace {

@@ -22,6 +22,7 @@
 #include "mesh/vertex_stars.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 

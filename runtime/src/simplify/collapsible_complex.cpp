@@ -10,6 +10,7 @@
 
 #include "base/progress.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 namespace {

@@ -16,6 +16,7 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 

@@ -13,6 +13,7 @@
 #include "simplify/collapsible_complex.hpp"
 #include "simplify/quadric.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 

@@ -7,6 +7,7 @@
 
 #include "simplify/edge_collapse.hpp"
 #include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 

@@ -12,6 +12,7 @@
 #include "invariants.hpp"
 #include "tegl/error.hpp"
 #include "tegl/slice.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tegl/elements.hpp"
-#include "tegl/error.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tegl/io.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl {
 
